@@ -1,0 +1,121 @@
+// The collision room's only header: shapes and boxes in, pairs and contact manifolds out.
+//
+// Frames: a placement is the pose of a body's frame in the world. Contact points are relative to body a's
+// origin, world axes, so that single precision suffices anywhere in the world.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "base/math.h"
+#include "base/memory.h"
+
+namespace taut::collision {
+
+// ---------------------------------------------------------------- shapes
+
+struct Hull;  // vertices, merged faces, edges with their two faces; see shapes.cpp
+
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
+constexpr int kShapeKinds = 5;
+
+struct Shape {
+    ShapeKind kind = ShapeKind::sphere;
+    Vec3f size = Vec3f::Zero();  // box: half extents; sphere: (radius,,); capsule: (radius, half length,); plane: unit normal
+    std::shared_ptr<const Hull> hull;  // hull only
+};
+
+struct MassProperties {
+    double mass = 0;            // [kg]
+    Vec3 centre = Vec3::Zero();  // [m], body frame
+    Sym3 inertia;               // about the centre, body axes [kg m^2]
+};
+
+// Builds the hull of count points [m]: at most max_vertices of them, coplanar faces merged, vertices and
+// faces in an order that depends on the points alone. Returns null and a reason (static text) for fewer
+// than 4 points, non-finite points, or points thinner than thickness [m].
+std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> points, int max_vertices, float thickness,
+                                       const char** reason);
+std::span<const Vec3f> hull_vertices(const Hull& hull);
+// Vertex indices, three a triangle, outward counter-clockwise.
+void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices);
+
+// Exact for each kind, by polyhedral integration for hulls. A plane has no mass.
+MassProperties mass_properties(const Shape& shape, double density);
+
+// ---------------------------------------------------------------- bounds and pairs
+
+struct Placement {
+    Vec3 position;   // of the body's origin [m]
+    Mat3f rotation;  // world from body
+};
+
+struct Box {
+    Vec3f lo, hi;  // [m], world
+};
+
+// Tight axis-aligned box (exact support of the shape), not grown. A plane's box is +-1e9 on every side.
+Box bounds(const Shape& shape, const Placement& placement);
+
+// Dynamic tree of fat boxes with sorted pairs. Ids are the caller's node numbers.
+class Broadphase {
+public:
+    explicit Broadphase(Memory& memory);
+    ~Broadphase();
+    Broadphase(const Broadphase&) = delete;
+    Broadphase& operator=(const Broadphase&) = delete;
+
+    // moves: false for static bodies; two ids that both do not move never pair.
+    void add(uint32_t id, const Box& tight, bool moves);
+    void remove(uint32_t id);
+    // Re-inserts the leaf if the tight box (already grown by the contact margin) left its fat box; displacement [m]
+    // is the motion to expect, by which the new fat box reaches ahead.
+    void update(uint32_t id, const Box& tight, const Vec3f& displacement);
+    void set_moves(uint32_t id, bool moves);
+
+    // Brings the pair list up to date. Returns true if it changed.
+    bool refresh_pairs();
+    // Sorted keys (smaller id << 32 | larger id) of overlapping fat boxes; independent of the tree's history.
+    std::span<const uint64_t> pairs() const;
+
+private:
+    struct State;
+    State* state_;
+    Memory& memory_;
+};
+
+// ---------------------------------------------------------------- contacts
+
+struct ContactPoint {
+    Vec3f position;    // midway between the surfaces, relative to a's origin, world axes [m]
+    float separation;  // along the normal [m], negative when overlapping
+    uint32_t feature;  // the same pair of features keeps its id over frames
+};
+
+struct Manifold {
+    Vec3f normal;  // unit, from a to b, world axes
+    int count = 0;
+    ContactPoint points[4];
+};
+
+// What a pair remembers between calls: the axis that last separated or touched. Zero is a fresh pair; the
+// result of collide() may depend on it only within the tolerance of the axis choice, and it is part of the state hash.
+struct PairCache {
+    uint32_t words[4] = {0, 0, 0, 0};
+};
+
+// Contact points of two shapes that are closer than margin [m] (speculative points have positive separation).
+// At most four points, chosen for area and depth. The kinds may come in any order; two planes never touch.
+void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+             PairCache& cache, Manifold& out);
+
+// General convex pair by libccd's MPR on support functions with face clipping: the path for shapes without a kernel
+// of their own, and an oracle for tests. Same contract as collide(); the normal and depth are MPR's.
+void collide_support_mapped(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+                            Manifold& out);
+
+// Asserts that the Bullet library linked has single precision, as this room was compiled. False: refuse to run.
+bool precision_matches();
+
+}  // namespace taut::collision

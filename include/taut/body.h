@@ -1,0 +1,130 @@
+/**
+ * @file body.h
+ * Rigid bodies and particles: the nodes of the one system that Taut solves.
+ * Each function here: thread safety: one thread at a time per world, not inside a step.
+ */
+#ifndef TAUT_BODY_H
+#define TAUT_BODY_H
+
+#include <taut/base.h>
+#include <taut/math.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** How a node moves. */
+typedef enum taut_body_kind {
+    TAUT_BODY_STATIC = 0,    /**< never moves */
+    TAUT_BODY_KINEMATIC = 1, /**< moves at its own velocity; pushes, is not pushed */
+    TAUT_BODY_DYNAMIC = 2,   /**< moved by forces, contacts and joints; 6 degrees of freedom */
+    TAUT_BODY_PARTICLE = 3,  /**< point mass; 3 degrees of freedom, no shape, no rotation */
+    TAUT_BODY_KIND_MAX = 0x7fffffff
+} taut_body_kind;
+
+/** Surface of a body. A pair uses sqrt(friction_a * friction_b) and max(restitution_a, restitution_b). */
+typedef struct taut_material {
+    float friction;    /**< Coulomb coefficient, [0, 100]. Default 0.5 */
+    float restitution; /**< approach speed kept as separation speed, [0, 1]. Default 0 */
+} taut_material;
+
+/**
+ * Who collides with whom: two bodies collide when they share a non-zero group with positive sign, never
+ * when they share a negative one; else when each one's category is in the other's mask.
+ */
+typedef struct taut_filter {
+    uint64_t category; /**< default 1 */
+    uint64_t mask;     /**< default all bits */
+    int32_t group;     /**< default 0 */
+    uint32_t reserved; /**< zero */
+} taut_filter;
+
+/** A rigid body. */
+typedef struct taut_body_def {
+    uint32_t struct_size;
+    taut_body_kind kind; /**< default TAUT_BODY_DYNAMIC; particles have their own def */
+    taut_pos position;   /**< of the body's origin [m] */
+    taut_quat rotation;  /**< default identity */
+    taut_vec3 linear_velocity;  /**< of the centre of mass [m/s]; zero for a static body */
+    taut_vec3 angular_velocity; /**< world axes [rad/s]; zero for a static body */
+    taut_shape shape;    /**< null: no collisions; a dynamic body then needs mass and inertia */
+    taut_material material;
+    taut_filter filter;
+    float density;       /**< [kg/m^3], (0, 1e8]. Used when mass is 0. Default 1000 */
+    float mass;          /**< [kg], 0 or [1e-6, 1e15]. 0: from shape and density. Default 0 */
+    taut_vec3 centre_of_mass; /**< in the body's frame [m]; used when inertia is given. Default 0 */
+    taut_sym3 inertia;   /**< about the centre of mass [kg m^2], positive definite; all zero: from shape, scaled to mass */
+    float gravity_scale; /**< [-1000, 1000]. Default 1 */
+    uint32_t reserved;   /**< zero */
+    uint64_t user_data;
+} taut_body_def;
+
+/** A particle: a point mass that joints connect to particles, rigid bodies and the world. */
+typedef struct taut_particle_def {
+    uint32_t struct_size;
+    float mass;          /**< [kg], [1e-9, 1e21]. Default 1 */
+    taut_pos position;   /**< [m] */
+    taut_vec3 velocity;  /**< [m/s] */
+    float gravity_scale; /**< [-1000, 1000]. Default 1 */
+    uint64_t user_data;
+} taut_particle_def;
+
+/** Position of the body's origin and rotation of its frame. */
+typedef struct taut_pose {
+    taut_pos position; /**< [m] */
+    taut_quat rotation;
+    uint32_t reserved[2]; /**< zero; keeps the size a multiple of 16 */
+} taut_pose;
+
+TAUT_API void taut_body_def_init(taut_body_def *def);
+TAUT_API void taut_particle_def_init(taut_particle_def *def);
+
+/**
+ * Adds a rigid body. Positions lie within 1e7 m of the origin, speeds within 1e4 m/s and 1e4 rad/s.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names field and value), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
+ *         TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE (shape of another world), TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_world_add_body(taut_world world, const taut_body_def *def, taut_body *out);
+/** Adds a particle; ranges and results as for taut_world_add_body. */
+TAUT_API taut_result taut_world_add_particle(taut_world world, const taut_particle_def *def, taut_body *out);
+/** Removes a body or particle and every joint that ends on it. Its contacts end with the next step's events. */
+TAUT_API taut_result taut_body_remove(taut_body body);
+/** 1 if the handle names a live body or particle, else 0. */
+TAUT_API int32_t taut_body_is_valid(taut_body body);
+
+TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind *out);
+TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t *out);
+TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
+/** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
+TAUT_API taut_result taut_body_get_mass(taut_body body, float *mass, taut_vec3 *centre_of_mass, taut_sym3 *inertia);
+TAUT_API taut_result taut_body_get_material(taut_body body, taut_material *out);
+TAUT_API taut_result taut_body_set_material(taut_body body, const taut_material *material);
+
+/** Pose after the last step. */
+TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose *out);
+/** Teleports. A particle ignores the rotation. Carried contact impulses of the body are dropped. */
+TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose *pose);
+/** Pose between the last two steps at the fraction left by taut_world_advance, for rendering. */
+TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose *out);
+
+/** Velocity of the centre of mass [m/s] and angular velocity [rad/s], world axes. Either pointer may be null. */
+TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3 *linear, taut_vec3 *angular);
+/** Sets both; refused for a static body, and a non-zero angular velocity for a particle. */
+TAUT_API taut_result taut_body_set_velocity(taut_body body, taut_vec3 linear, taut_vec3 angular);
+/** Gives a kinematic body the velocity that brings it to the pose in one step; it keeps that velocity until changed. */
+TAUT_API taut_result taut_body_move_kinematic(taut_body body, const taut_pose *target);
+
+/** Force [N] at the centre of mass and torque [N m], world axes, during the next step only; calls add up. Dynamic bodies and (force) particles. */
+TAUT_API taut_result taut_body_apply_force(taut_body body, taut_vec3 force, taut_vec3 torque);
+/** Force [N] at a world point during the next step. */
+TAUT_API taut_result taut_body_apply_force_at(taut_body body, taut_vec3 force, taut_pos point);
+/** Impulse [N s] at the centre of mass and angular impulse [N m s], at once. */
+TAUT_API taut_result taut_body_apply_impulse(taut_body body, taut_vec3 impulse, taut_vec3 angular_impulse);
+/** Impulse [N s] at a world point, at once. */
+TAUT_API taut_result taut_body_apply_impulse_at(taut_body body, taut_vec3 impulse, taut_pos point);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,72 @@
+/**
+ * @file event.h
+ * What the last step did, as arrays: read them after the step. A view's pointer is valid until the next
+ * step or the end of the world; handles inside may have become stale since.
+ * Each function here: thread safety: any thread between steps while no other changes the world.
+ */
+#ifndef TAUT_EVENT_H
+#define TAUT_EVENT_H
+
+#include <taut/base.h>
+#include <taut/body.h>
+#include <taut/math.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Two bodies began or stopped touching in the last step. */
+typedef struct taut_contact_event {
+    taut_body body_a;
+    taut_body body_b;
+} taut_contact_event;
+
+/** A dynamic, kinematic or particle body that the last step moved. */
+typedef struct taut_moved_event {
+    taut_body body;
+    uint64_t user_data;
+    taut_pose pose;
+} taut_moved_event;
+
+/** A body whose state became non-finite: it was put back to its last finite pose and made static. */
+typedef struct taut_quarantine_event {
+    taut_body body;
+    uint64_t user_data;
+} taut_quarantine_event;
+
+/** The events of the last step. */
+typedef struct taut_events {
+    const taut_contact_event *begin;
+    const taut_contact_event *end;
+    const taut_moved_event *moved;
+    const taut_quarantine_event *quarantined;
+    uint32_t begin_count;
+    uint32_t end_count;
+    uint32_t moved_count;
+    uint32_t quarantined_count;
+} taut_events;
+
+/** One point of a touching pair. */
+typedef struct taut_contact {
+    taut_body body_a;
+    taut_body body_b;
+    taut_pos position;      /**< midway between the two surfaces [m] */
+    taut_vec3 normal;       /**< unit, from a to b */
+    float separation;       /**< [m], negative when overlapping */
+    float normal_impulse;   /**< of the last substep [N s] */
+    float friction_impulse; /**< magnitude, of the last substep [N s] */
+} taut_contact;
+
+TAUT_API taut_result taut_world_get_events(taut_world world, taut_events *out);
+/**
+ * Copies the contact points of the last step, sorted by pair.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_get_contacts(taut_world world, taut_contact *contacts, uint32_t capacity,
+                                             uint32_t *count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,17 @@
+/**
+ * @file taut.h
+ * All of the Taut C API: real-time constrained dynamics for games.
+ */
+#ifndef TAUT_TAUT_H
+#define TAUT_TAUT_H
+
+#include <taut/base.h>
+#include <taut/body.h>
+#include <taut/event.h>
+#include <taut/joint.h>
+#include <taut/math.h>
+#include <taut/profile.h>
+#include <taut/shape.h>
+#include <taut/world.h>
+
+#endif

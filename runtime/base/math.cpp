@@ -1,0 +1,31 @@
+#include "base/math.h"
+
+namespace taut {
+
+double sinc(double x) {
+    const double y = x * x;
+    // sum (-y)^k / (2k+1)!
+    return 1.0 + y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 + y * (-1.0 / 39916800 +
+           y * (1.0 / 6227020800.0 + y * (-1.0 / 1307674368000.0 + y * (1.0 / 355687428096000.0))))))));
+}
+
+double cosine(double x) {
+    const double y = x * x;
+    // sum (-y)^k / (2k)!
+    return 1.0 + y * (-1.0 / 2 + y * (1.0 / 24 + y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 +
+           y * (1.0 / 479001600.0 + y * (-1.0 / 87178291200.0 + y * (1.0 / 20922789888000.0 +
+           y * (-1.0 / 6402373705728000.0)))))))));
+}
+
+Quat rotation_from_vector(const Vec3& theta) {
+    const double squared = theta.squaredNorm();
+    double half = 0.5 * std::sqrt(squared);
+    if (half <= 1.5) {
+        const double k = 0.5 * sinc(half);
+        return Quat(cosine(half), k * theta.x(), k * theta.y(), k * theta.z());
+    }
+    const Quat q = rotation_from_vector(0.5 * theta);
+    return q * q;
+}
+
+}  // namespace taut

@@ -1,0 +1,42 @@
+// Vectors, rotations and small helpers. Eigen is confined to the library's inside.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace taut {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+using Vec3f = Eigen::Vector3f;
+using Mat3f = Eigen::Matrix3f;
+
+// Cross-product matrix: hat(a) b = a x b.
+inline Mat3 hat(const Vec3& a) {
+    Mat3 m;
+    m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+    return m;
+}
+
+// Polynomials for sin(x)/x and cos(x), |x| <= pi/2: the same bits from every compiler and C library,
+// which the step needs and libm does not promise. Taylor to x^16: error < 2e-14 on the range.
+double sinc(double x);
+double cosine(double x);
+
+// Rotation by the vector theta [rad]; exact for any size (large angles are halved first).
+Quat rotation_from_vector(const Vec3& theta);
+
+// Symmetric 3x3 in packed order xx, yy, zz, xy, xz, yz.
+struct Sym3 {
+    double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+    Mat3 matrix() const {
+        Mat3 m;
+        m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+        return m;
+    }
+    static Sym3 of(const Mat3& m) { return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}; }
+};
+
+}  // namespace taut
