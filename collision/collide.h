@@ -102,7 +102,7 @@ struct Manifold {
 // What a pair remembers between calls: the axis that last separated or touched. Zero is a fresh pair; the
 // result of collide() may depend on it only within the tolerance of the axis choice, and it is part of the state hash.
 struct PairCache {
-    uint32_t words[4] = {0, 0, 0, 0};
+    uint32_t words[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 };
 
 // Contact points of two shapes that are closer than margin [m] (speculative points have positive separation).

@@ -30,8 +30,8 @@ typedef struct taut_world_def {
     float time_step;          /**< frame [s], [1e-4, 0.1]. Default 1/60 */
     uint32_t substeps;        /**< least substeps of a frame, [1, 64]; an island may take more. Default 4 */
     uint32_t fixed_substeps;  /**< 1: no island takes more than substeps. Default 0 */
-    uint32_t sweeps;          /**< sweeps (iterations) a substep of the iterative solvers, [1, 1000]. Default 1 for
-                                   Gauss-Seidel on contacts; see README for joints */
+    uint32_t sweeps;          /**< iterations a substep of sweeps or Jacobi, [0, 1000]; 0: the solver's own (1 and 30).
+                                   Default 0 */
     uint32_t geometric_stiffness; /**< 0 leaves it out (for comparison only). Default 1 */
     float velocity_filter;    /**< low-pass factor of the velocity that geometric stiffness spares, [0, 1]; 0: plain
                                    implicit Euler damping (Tournier 2015). Default 0.25 */

@@ -1,0 +1,68 @@
+// The table of kernels, one a pair of kinds, and the way into and out of their frames.
+#include "collision/collide.h"
+
+#include <array>
+
+#include "collision/narrowphase/kernel.h"
+
+namespace taut::collision {
+namespace {
+
+// A kernel takes its shapes in one order; swapped says that it is the other one.
+struct Entry {
+    Kernel kernel;
+    bool swapped;
+};
+
+void never_touch(const Pair&, Manifold&) {}
+
+constexpr Entry kNone = {never_touch, false};
+constexpr Entry kBoxes = {box_box, false};
+constexpr Entry kPolytopes = {polytope_polytope, false};
+constexpr Entry kRounds = {round_round, false};
+constexpr Entry kOnRound = {polytope_round, false};
+constexpr Entry kRoundOn = {polytope_round, true};
+constexpr Entry kOnPlane = {core_plane, false};
+constexpr Entry kUnder = {core_plane, true};
+
+// Rows and columns: plane, box, sphere, capsule, hull.
+constexpr std::array<std::array<Entry, kShapeKinds>, kShapeKinds> kKernels = {{
+    {kNone, kUnder, kUnder, kUnder, kUnder},
+    {kOnPlane, kBoxes, kOnRound, kOnRound, kPolytopes},
+    {kOnPlane, kRoundOn, kRounds, kRounds, kRoundOn},
+    {kOnPlane, kRoundOn, kRounds, kRounds, kRoundOn},
+    {kOnPlane, kPolytopes, kOnRound, kOnRound, kPolytopes},
+}};
+
+// Where b lies as a sees it: the difference of positions in double, all else in single precision.
+Pose relative(const Placement& a, const Placement& b) {
+    const Vec3f apart = (b.position - a.position).cast<float>();
+    return {a.rotation.transpose() * b.rotation, a.rotation.transpose() * apart};
+}
+
+// From the first shape's frame to axes of the world.
+void to_world(const Mat3f& rotation, Manifold& manifold) {
+    manifold.normal = rotation * manifold.normal;
+    for (int i = 0; i < manifold.count; ++i) manifold.points[i].position = rotation * manifold.points[i].position;
+}
+
+}  // namespace
+
+void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+             PairCache& cache, Manifold& out) {
+    out.count = 0;
+    const Entry& entry = kKernels[size_t(a.kind)][size_t(b.kind)];
+    if (!entry.swapped) {
+        entry.kernel({a, b, at_a, at_b, relative(at_a, at_b), margin, cache}, out);
+        if (out.count > 0) to_world(at_a.rotation, out);
+        return;
+    }
+    entry.kernel({b, a, at_b, at_a, relative(at_b, at_a), margin, cache}, out);
+    if (out.count == 0) return;
+    to_world(at_b.rotation, out);
+    out.normal = -out.normal;
+    const Vec3f apart = (at_b.position - at_a.position).cast<float>();
+    for (int i = 0; i < out.count; ++i) out.points[i].position += apart;
+}
+
+}  // namespace taut::collision

@@ -1,0 +1,136 @@
+#include "collision/manifold.h"
+
+#include <algorithm>
+
+namespace taut::collision {
+namespace {
+
+// A point this much deeper than the chosen ones takes the nearest one's place [m].
+constexpr float kClearlyDeeper = 0.003f;
+
+struct Chosen {
+    int count = 0;
+    int index[4];
+
+    void add(int i) {
+        if (std::find(index, index + count, i) == index + count) index[count++] = i;
+    }
+};
+
+// Diagonals keep the widest support for a box on a box; the factor breaks the ties of regular polygons.
+constexpr float kDiagonals[4][2] = {{-1, -1.02f}, {1, -1.02f}, {-1, 1.02f}, {1, 1.02f}};
+
+Chosen choose(const ClipPoint* points, int count) {
+    Chosen chosen;
+    for (const auto& [dx, dy] : kDiagonals) {
+        int best = 0;
+        float most = dx * points[0].x + dy * points[0].y;
+        for (int i = 1; i < count; ++i) {
+            const float reach = dx * points[i].x + dy * points[i].y;
+            if (reach > most) {
+                most = reach;
+                best = i;
+            }
+        }
+        chosen.add(best);
+    }
+    int lowest = 0;
+    for (int i = 1; i < count; ++i) {
+        if (points[i].z < points[lowest].z) lowest = i;
+    }
+    float chosen_lowest = 1e30f;
+    for (int i = 0; i < chosen.count; ++i) chosen_lowest = std::min(chosen_lowest, points[chosen.index[i]].z);
+    if (points[lowest].z > chosen_lowest - kClearlyDeeper) return chosen;
+    if (chosen.count < 4) {
+        chosen.add(lowest);
+        return chosen;
+    }
+    int nearest = 0;
+    float least = 1e30f;
+    for (int i = 0; i < 4; ++i) {
+        const float dx = points[chosen.index[i]].x - points[lowest].x;
+        const float dy = points[chosen.index[i]].y - points[lowest].y;
+        if (dx * dx + dy * dy < least) {
+            least = dx * dx + dy * dy;
+            nearest = i;
+        }
+    }
+    chosen.index[nearest] = lowest;
+    return chosen;
+}
+
+}  // namespace
+
+// Sutherland-Hodgman, side by side. A crossing is cut on the side itself.
+void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
+    Polygon spare;
+    Polygon* in = &polygon;
+    Polygon* out = &spare;
+    for (size_t s = 0; s < sides.size() && in->count > 0; ++s) {
+        const Side& side = sides[s];
+        float outside[kMaxClip];
+        bool any = false;
+        for (int i = 0; i < in->count; ++i) {
+            outside[i] = side.x * in->points[i].x + side.y * in->points[i].y - side.offset;
+            any |= outside[i] > slack;
+        }
+        if (!any) continue;
+        out->count = 0;
+        const uint32_t line = kSideLine + uint32_t(s);
+        for (int i = 0; i < in->count && out->count + 2 <= kMaxClip; ++i) {
+            const int j = i + 1 == in->count ? 0 : i + 1;
+            const ClipPoint& from = in->points[i];
+            const ClipPoint& to = in->points[j];
+            const bool from_in = outside[i] <= slack;
+            const bool to_in = outside[j] <= slack;
+            if (from_in) out->points[out->count++] = from;
+            if (from_in == to_in) continue;
+            const float inner = from_in ? outside[i] : outside[j];
+            const float outer = from_in ? outside[j] : outside[i];
+            const float t = inner < 0 ? inner / (inner - outer) : 0.0f;  // from the inner end
+            const ClipPoint& a = from_in ? from : to;
+            const ClipPoint& b = from_in ? to : from;
+            out->points[out->count++] = {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t,
+                                         from_in ? line : from.id};
+        }
+        std::swap(in, out);
+    }
+    if (in != &polygon) {
+        polygon.count = in->count;
+        std::copy(in->points, in->points + in->count, polygon.points);
+    }
+    uint32_t previous = polygon.count > 0 ? polygon.points[polygon.count - 1].id : 0;
+    for (int i = 0; i < polygon.count; ++i) {
+        const uint32_t line = polygon.points[i].id;
+        polygon.points[i].id = previous << 7 | line;
+        previous = line;
+    }
+}
+
+void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out) {
+    ClipPoint low[kMaxClip];
+    int count = 0;
+    for (int i = 0; i < polygon.count; ++i) {
+        if (polygon.points[i].z <= margin) low[count++] = polygon.points[i];
+    }
+    if (count == 0) return;
+    Chosen chosen;
+    if (count <= 4) {
+        for (int i = 0; i < count; ++i) chosen.add(i);
+    } else {
+        chosen = choose(low, count);
+    }
+    for (int i = 0; i < chosen.count && out.count < 4; ++i) {
+        const ClipPoint& p = low[chosen.index[i]];
+        out.points[out.count++] = {plane.u * p.x + plane.v * p.y + plane.normal * (plane.offset + 0.5f * p.z), p.z,
+                                   base | p.id};
+    }
+}
+
+float deepest(const Manifold& manifold) {
+    float least = 1e30f;
+    for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[i].separation);
+    return least;
+}
+
+}  // namespace taut::collision

@@ -1,0 +1,187 @@
+// Box against box: separating axes (three faces each, nine edge pairs), then face clipping or one edge point.
+#include <array>
+#include <cmath>
+
+#include "collision/narrowphase/kernel.h"
+#include "collision/narrowphase/segment.h"
+
+namespace taut::collision {
+namespace {
+
+// Axes by number: 0..2 faces of a, 3..5 faces of b, 6 + 3 i + j edge i of a with edge j of b.
+constexpr int kFirstEdge = 6;
+constexpr int kAxes = 15;
+
+// The cache's word 0: 1 + axis, and whether the boxes touched along it.
+constexpr uint32_t kTouching = 1u << 8;
+
+constexpr int next(int axis) { return axis == 2 ? 0 : axis + 1; }
+
+struct Boxes {
+    Vec3f a, b;        // half extents
+    Mat3f r, q;        // b's axes in a's frame, and their magnitudes
+    Vec3f t, t_in_b;   // from a's centre to b's, in a's and in b's frame
+
+    explicit Boxes(const Pair& pair)
+        : a(pair.a.size), b(pair.b.size), r(pair.b_in_a.rotation), q(r.cwiseAbs()), t(pair.b_in_a.position),
+          t_in_b(r.transpose() * t) {}
+
+    // |t . n| - (reach of a) - (reach of b) along the unit axis n; negative is overlap.
+    float face_a(int i) const {
+        return std::fabs(t[i]) - a[i] - (q(i, 0) * b[0] + q(i, 1) * b[1] + q(i, 2) * b[2]);
+    }
+    float face_b(int j) const {
+        return std::fabs(t_in_b[j]) - b[j] - (q(0, j) * a[0] + q(1, j) * a[1] + q(2, j) * a[2]);
+    }
+    // n = e_i x r_j / sin of their angle; nearly parallel edges (0.6 degrees) have no axis of their own.
+    float edge(int i, int j) const {
+        const float sine_squared = 1 - r(i, j) * r(i, j);
+        if (sine_squared < 1e-4f) return -1e30f;
+        const int i1 = next(i), i2 = next(i1), j1 = next(j), j2 = next(j1);
+        const float reach = a[i1] * q(i2, j) + a[i2] * q(i1, j) + b[j1] * q(i, j2) + b[j2] * q(i, j1);
+        return (std::fabs(t[i2] * r(i1, j) - t[i1] * r(i2, j)) - reach) / std::sqrt(sine_squared);
+    }
+    float separation(int axis) const {
+        if (axis < 3) return face_a(axis);
+        if (axis < kFirstEdge) return face_b(axis - 3);
+        return edge((axis - kFirstEdge) / 3, (axis - kFirstEdge) % 3);
+    }
+    float size() const { return std::min(a.minCoeff(), b.minCoeff()); }
+};
+
+struct Best {
+    int axis = -1;
+    float separation = -1e30f;
+};
+
+struct Axes {
+    Best face, edge;
+    int separating = -1;  // an axis further apart than the margin; the rest is unset then
+};
+
+// kept: last frame's face, preferred by keep [m]; -1 for none.
+Axes find_axes(const Boxes& boxes, float margin, int kept, float keep) {
+    Axes axes;
+    float best = -1e30f;
+    for (int axis = 0; axis < kFirstEdge; ++axis) {
+        const float s = boxes.separation(axis);
+        if (s > margin) {
+            axes.separating = axis;
+            return axes;
+        }
+        const float score = axis == kept ? s + keep : s;
+        if (score > best + 1e-5f) {
+            best = score;
+            axes.face = {axis, s};
+        }
+    }
+    for (int axis = kFirstEdge; axis < kAxes; ++axis) {
+        const float s = boxes.separation(axis);
+        if (s > margin) {
+            axes.separating = axis;
+            return axes;
+        }
+        if (s > axes.edge.separation) axes.edge = {axis, s};
+    }
+    return axes;
+}
+
+// The two edges that support the axis, their nearest points and the point between.
+void edge_contact(const Boxes& boxes, const Best& edge, Manifold& out) {
+    const int i = (edge.axis - kFirstEdge) / 3;
+    const int j = (edge.axis - kFirstEdge) % 3;
+    const Vec3f along_b = boxes.r.col(j);
+    Vec3f normal = Vec3f::Unit(i).cross(along_b).normalized();
+    if (normal.dot(boxes.t) < 0) normal = -normal;
+    Vec3f middle_a = Vec3f::Zero();
+    Vec3f middle_b = boxes.t;
+    int signs = 0;
+    for (int k = 0; k < 3; ++k) {
+        const bool up_a = normal[k] > 0;
+        const bool up_b = normal.dot(boxes.r.col(k)) > 0;
+        if (k != i) middle_a[k] = up_a ? boxes.a[k] : -boxes.a[k];
+        if (k != j) middle_b -= boxes.r.col(k) * (up_b ? boxes.b[k] : -boxes.b[k]);
+        if (k != i) signs = signs * 2 + up_a;
+        if (k != j) signs = signs * 2 + up_b;
+    }
+    const Vec3f reach_a = Vec3f::Unit(i) * boxes.a[i];
+    const Vec3f reach_b = along_b * boxes.b[j];
+    const Segment edge_a = {middle_a - reach_a, 2 * reach_a};
+    const Segment edge_b = {middle_b - reach_b, 2 * reach_b};
+    const SegmentPair nearest = nearest_points(edge_a, edge_b);
+    out.normal = normal;
+    out.count = 1;
+    out.points[0] = {0.5f * (edge_a.at(nearest.s) + edge_b.at(nearest.t)), edge.separation,
+                     edge_feature(edge.axis, signs)};
+}
+
+// One box as the reference, the other as the incident box in the reference's frame.
+struct FaceView {
+    Vec3f reference, incident;  // half extents
+    Vec3f centre;               // of the incident box
+    Mat3f axes;                 // of the incident box
+};
+
+// Clips the incident face that looks most against the reference face.
+void face_contact(const FaceView& view, int r, bool reference_on_b, float margin, Manifold& out) {
+    const int u = next(r);
+    const int v = next(u);
+    const float sign = view.centre[r] < 0 ? -1.0f : 1.0f;
+    int k = 0;
+    for (int i = 1; i < 3; ++i) {
+        if (std::fabs(view.axes(r, i)) > std::fabs(view.axes(r, k)) + 1e-4f) k = i;
+    }
+    const float against = view.axes(r, k) * sign > 0 ? -1.0f : 1.0f;
+    const Vec3f centre = view.centre + view.axes.col(k) * (against * view.incident[k]);
+    const Vec3f p = view.axes.col(next(k)) * view.incident[next(k)];
+    const Vec3f q = view.axes.col(next(next(k))) * view.incident[next(next(k))];
+    Polygon polygon;
+    polygon.count = 4;
+    constexpr float kCorners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    for (int i = 0; i < 4; ++i) {
+        const Vec3f corner = centre + p * kCorners[i][0] + q * kCorners[i][1];
+        polygon.points[i] = {corner[u], corner[v], sign * corner[r] - view.reference[r], uint32_t(i)};
+    }
+    const float hu = view.reference[u];
+    const float hv = view.reference[v];
+    const std::array<Side, 4> sides = {{{1, 0, hu}, {-1, 0, hu}, {0, 1, hv}, {0, -1, hv}}};
+    clip(polygon, sides, flush_slack(std::min(hu, hv)));
+    const ReferencePlane plane = {Vec3f::Unit(u), Vec3f::Unit(v), sign * Vec3f::Unit(r), view.reference[r]};
+    out.normal = plane.normal;
+    add_points(polygon, plane, face_base(reference_on_b, 2 * r + (sign > 0), 2 * k + (against > 0)), margin, out);
+}
+
+void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out) {
+    if (axis < 3) {
+        face_contact({boxes.a, boxes.b, boxes.t, boxes.r}, axis, false, pair.margin, out);
+        return;
+    }
+    face_contact({boxes.b, boxes.a, -boxes.t_in_b, boxes.r.transpose()}, axis - 3, true, pair.margin, out);
+    move_to_a(pair.b_in_a, out);
+}
+
+}  // namespace
+
+void box_box(const Pair& pair, Manifold& out) {
+    const Boxes boxes(pair);
+    uint32_t& word = pair.cache.words[0];
+    const int kept = int(word & 0xff) - 1;
+    if (kept >= 0 && kept < kAxes && !(word & kTouching) && boxes.separation(kept) > pair.margin) return;
+
+    const Preference preference(boxes.size());
+    const Axes axes = find_axes(boxes, pair.margin, word & kTouching ? kept : -1, preference.keep);
+    if (axes.separating >= 0) {
+        word = uint32_t(axes.separating + 1);
+        return;
+    }
+    const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
+    bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge);
+    if (!on_edge) {
+        face_contact(pair, boxes, axes.face.axis, out);
+        on_edge = preference.face_misses(deepest(out), axes.edge.separation, axes.face.separation);
+    }
+    if (on_edge) edge_contact(boxes, axes.edge, out);
+    word = uint32_t((on_edge ? axes.edge.axis : axes.face.axis) + 1) | kTouching;
+}
+
+}  // namespace taut::collision

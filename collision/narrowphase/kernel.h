@@ -1,0 +1,57 @@
+// One kernel a pair of kinds. Kernels work in the frame of their first shape, in single precision.
+#pragma once
+
+#include "collision/collide.h"
+#include "collision/manifold.h"
+
+namespace taut::collision {
+
+struct Pose {
+    Mat3f rotation;
+    Vec3f position;
+
+    Vec3f operator*(const Vec3f& point) const { return rotation * point + position; }
+};
+
+struct Pair {
+    const Shape& a;
+    const Shape& b;
+    const Placement& at_a;
+    const Placement& at_b;
+    Pose b_in_a;  // takes points of b's frame to a's
+    float margin;
+    PairCache& cache;
+};
+
+// Fills out (empty on entry) in a's frame: normal from a to b, positions in a's axes about a's origin.
+using Kernel = void (*)(const Pair& pair, Manifold& out);
+
+void box_box(const Pair& pair, Manifold& out);
+void polytope_polytope(const Pair& pair, Manifold& out);  // box or hull against box or hull
+void polytope_round(const Pair& pair, Manifold& out);     // box or hull against sphere or capsule
+void round_round(const Pair& pair, Manifold& out);        // sphere or capsule against sphere or capsule
+void core_plane(const Pair& pair, Manifold& out);         // anything but a plane against a plane
+
+// Takes a manifold from b's frame, with its normal from b to a, to a's frame.
+inline void move_to_a(const Pose& b_in_a, Manifold& manifold) {
+    manifold.normal = -(b_in_a.rotation * manifold.normal);
+    for (int i = 0; i < manifold.count; ++i) manifold.points[i].position = b_in_a * manifold.points[i].position;
+}
+
+// Which axis a pair chooses. Face contacts stand on more points, so an edge pair must separate by clearly more; what
+// was chosen last frame keeps a small advantage, lest the ids flicker. size: of the smaller shape [m].
+struct Preference {
+    float slop, keep;
+
+    explicit Preference(float size) : slop(std::min(0.0025f, 0.02f * size)), keep(0.4f * slop) {}
+
+    bool edge_wins(float edge, float face, bool was_edge) const {
+        const float ask = was_edge ? slop - keep : slop;
+        return edge > face + ask && edge > 0.9f * face + 0.2f * ask;
+    }
+    // The incident face may lie beside the reference face where edges are what meets: then the clipped face shows
+    // nothing of the overlap (found: its deepest point).
+    bool face_misses(float found, float edge, float face) const { return edge > face - slop && found > edge + slop; }
+};
+
+}  // namespace taut::collision

@@ -1,0 +1,75 @@
+#include "collision/polytope.h"
+
+#include <cmath>
+
+namespace taut::collision {
+namespace {
+
+// Vertex i lies at (+-hx, +-hy, +-hz), bits 0, 1, 2 of i set for plus.
+// Corners of face 2 k + s counter-clockwise: its first in-plane axis is k + 1 if it looks along plus, else k + 2.
+constexpr std::array<uint8_t, 24> box_loops() {
+    std::array<uint8_t, 24> loops{};
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        const int positive = face % 2;
+        const int u = 1 << (positive ? (axis + 1) % 3 : (axis + 2) % 3);
+        const int v = 1 << (positive ? (axis + 2) % 3 : (axis + 1) % 3);
+        const int base = positive << axis;
+        const int corners[4] = {base, base + u, base + u + v, base + v};
+        for (int i = 0; i < 4; ++i) loops[size_t(4 * face + i)] = uint8_t(corners[i]);
+    }
+    return loops;
+}
+
+// Edge 4 k + i runs along +axis k; e_u x e_v = e_k says which of its faces is on the left.
+constexpr std::array<Edge, 12> box_edges() {
+    std::array<Edge, 12> edges{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        for (int i = 0; i < 4; ++i) {
+            const int su = i & 1;
+            const int sv = i >> 1;
+            const int from = (su << u) + (sv << v);
+            const uint8_t face_u = uint8_t(2 * u + su);
+            const uint8_t face_v = uint8_t(2 * v + sv);
+            const bool along = su == sv;
+            edges[size_t(4 * axis + i)] = {uint8_t(from), uint8_t(from + (1 << axis)), along ? face_u : face_v,
+                                           along ? face_v : face_u};
+        }
+    }
+    return edges;
+}
+
+constexpr std::array<uint8_t, 24> kLoops = box_loops();
+constexpr std::array<Edge, 12> kEdges = box_edges();
+
+}  // namespace
+
+BoxPolytope::BoxPolytope(const Vec3f& half) {
+    for (int i = 0; i < 8; ++i) {
+        vertices_[size_t(i)] =
+            Vec3f(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z());
+    }
+    const Eigen::Array4f x(-half.x(), half.x(), -half.x(), half.x());
+    const Eigen::Array4f y(-half.y(), -half.y(), half.y(), half.y());
+    const Eigen::Array4f z = Eigen::Array4f::Constant(half.z());
+    packs_[0] = {x, y, -z};
+    packs_[1] = {x, y, z};
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        const int positive = face % 2;
+        const int u = positive ? (axis + 1) % 3 : (axis + 2) % 3;
+        const int v = positive ? (axis + 2) % 3 : (axis + 1) % 3;
+        faces_[size_t(face)] = {Vec3f::Unit(axis) * (positive ? 1.0f : -1.0f), Vec3f::Unit(u), Vec3f::Unit(v),
+                                half[axis], uint16_t(4 * face), 4};
+        Side* sides = &sides_[size_t(4 * face)];
+        sides[0] = {0, -1, half[v]};
+        sides[1] = {1, 0, half[u]};
+        sides[2] = {0, 1, half[v]};
+        sides[3] = {-1, 0, half[u]};
+    }
+    view_ = {vertices_, packs_, faces_, kLoops, sides_, kEdges, Vec3f::Zero(), half.minCoeff(), half.norm()};
+}
+
+}  // namespace taut::collision

@@ -1,0 +1,97 @@
+// Convex polytopes as the narrowphase sees them: one view for hulls (built once) and boxes (built on the stack).
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "base/math.h"
+
+namespace taut::collision {
+
+// Euler's formula bounds faces and edges: f <= 2 v - 4, e <= 3 v - 6.
+constexpr int kMaxVertices = 64;
+constexpr int kMaxFaces = 2 * kMaxVertices - 4;
+constexpr int kMaxEdges = 3 * kMaxVertices - 6;
+
+// Four vertices side by side; the last pack repeats its last vertex.
+struct VertexPack {
+    Eigen::Array4f x, y, z;
+};
+
+// A point p of a face has the plane coordinates (u . p, v . p) and the height normal . p - offset.
+struct Face {
+    Vec3f normal, u, v;  // right-handed, unit
+    float offset;        // [m]
+    uint16_t first, count;  // corners, counter-clockwise from outside, in loops and sides
+};
+
+// The edge of a face that starts at the same place of loops: inside is x px + y py <= offset, (x, y) unit.
+struct Side {
+    float x, y, offset;
+};
+
+// Runs from -> to counter-clockwise around the left face, hence along normal(left) x normal(right).
+struct Edge {
+    uint8_t from, to, left, right;
+};
+
+struct Polytope {
+    std::span<const Vec3f> vertices;
+    std::span<const VertexPack> packs;
+    std::span<const Face> faces;
+    std::span<const uint8_t> loops;  // vertex indices
+    std::span<const Side> sides;     // parallel to loops
+    std::span<const Edge> edges;
+    Vec3f centre = Vec3f::Zero();
+    float inner_radius = 0;  // of a ball about the centre that lies inside [m]
+    float outer_radius = 0;  // of a ball about the centre that holds all vertices [m]
+
+    std::span<const Side> sides_of(const Face& face) const { return sides.subspan(face.first, face.count); }
+    std::span<const uint8_t> loop_of(const Face& face) const { return loops.subspan(face.first, face.count); }
+    Vec3f direction(const Edge& edge) const { return vertices[edge.to] - vertices[edge.from]; }
+};
+
+inline Eigen::Array4f heights(const VertexPack& pack, const Vec3f& direction) {
+    return pack.x * direction.x() + pack.y * direction.y() + pack.z * direction.z();
+}
+
+// max over vertices of direction . v
+inline float highest(const Polytope& polytope, const Vec3f& direction) {
+    Eigen::Array4f best = heights(polytope.packs[0], direction);
+    for (size_t i = 1; i < polytope.packs.size(); ++i) best = best.max(heights(polytope.packs[i], direction));
+    return best.maxCoeff();
+}
+
+// Index of the vertex furthest along direction; the first of equals.
+inline int support(const Polytope& polytope, const Vec3f& direction) {
+    alignas(16) float height[kMaxVertices];
+    Eigen::Array4f best = heights(polytope.packs[0], direction);
+    for (size_t i = 0; i < polytope.packs.size(); ++i) {
+        const Eigen::Array4f pack = heights(polytope.packs[i], direction);
+        Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(height + 4 * i) = pack;
+        best = best.max(pack);
+    }
+    const float top = best.maxCoeff();
+    const int last = int(polytope.vertices.size()) - 1;
+    int index = 0;
+    while (index < last && height[index] != top) ++index;
+    return index;
+}
+
+// A box spelled out as a polytope; face 2 k + s looks along +axis k if s = 1, else -axis k.
+class BoxPolytope {
+public:
+    explicit BoxPolytope(const Vec3f& half_extents);
+    BoxPolytope(const BoxPolytope&) = delete;
+    BoxPolytope& operator=(const BoxPolytope&) = delete;
+    const Polytope& view() const { return view_; }
+
+private:
+    std::array<Vec3f, 8> vertices_;
+    std::array<VertexPack, 2> packs_;
+    std::array<Face, 6> faces_;
+    std::array<Side, 24> sides_;
+    Polytope view_;
+};
+
+}  // namespace taut::collision

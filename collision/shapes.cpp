@@ -1,0 +1,151 @@
+// What a shape weighs and how far it reaches, one function a kind.
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "collision/collide.h"
+#include "collision/hull.h"
+
+namespace taut::collision {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// ---------------------------------------------------------------- mass
+
+MassProperties plane_mass(const Shape&, double) { return {}; }
+
+// m/3 (b^2 + c^2) for half extents b, c.
+MassProperties box_mass(const Shape& shape, double density) {
+    const Vec3 h = shape.size.cast<double>();
+    MassProperties out;
+    out.mass = density * 8 * h.x() * h.y() * h.z();
+    const Vec3 s = h.cwiseAbs2() * (out.mass / 3);
+    out.inertia = {s.y() + s.z(), s.z() + s.x(), s.x() + s.y(), 0, 0, 0};
+    return out;
+}
+
+MassProperties sphere_mass(const Shape& shape, double density) {
+    const double r = shape.size.x();
+    MassProperties out;
+    out.mass = density * 4.0 / 3.0 * kPi * r * r * r;
+    const double i = 0.4 * out.mass * r * r;
+    out.inertia = {i, i, i, 0, 0, 0};
+    return out;
+}
+
+// A cylinder of length 2 h and two half balls, whose centres lie 3 r / 8 beyond the ends; axis y.
+MassProperties capsule_mass(const Shape& shape, double density) {
+    const double r = shape.size.x();
+    const double h = shape.size.y();
+    const double cylinder = density * kPi * r * r * 2 * h;
+    const double ball = density * 4.0 / 3.0 * kPi * r * r * r;
+    const double along = cylinder * r * r / 2 + ball * 0.4 * r * r;
+    // (2/5 - 9/64) r^2 + (h + 3/8 r)^2 = 2/5 r^2 + h^2 + 3/4 h r
+    const double across = cylinder * (h * h / 3 + r * r / 4) + ball * (0.4 * r * r + h * h + 0.75 * h * r);
+    MassProperties out;
+    out.mass = cylinder + ball;
+    out.inertia = {across, along, across, 0, 0, 0};
+    return out;
+}
+
+// Sum over tetrahedra from a point p to the surface's triangles (a, b, c), relative to p:
+// V = a . (b x c) / 6;  integral of x = V (a + b + c) / 4;
+// integral of x x^T = V / 20 (a a^T + b b^T + c c^T + s s^T), s = a + b + c.
+MassProperties hull_mass(const Shape& shape, double density) {
+    const Hull& hull = *shape.hull;
+    const Vec3 from = hull.centre.cast<double>();
+    std::vector<uint32_t> indices;
+    hull_triangles(hull, indices);
+    double volume = 0;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+    for (size_t i = 0; i < indices.size(); i += 3) {
+        const Vec3 a = hull.vertices[indices[i]].cast<double>() - from;
+        const Vec3 b = hull.vertices[indices[i + 1]].cast<double>() - from;
+        const Vec3 c = hull.vertices[indices[i + 2]].cast<double>() - from;
+        const Vec3 s = a + b + c;
+        const double v = a.dot(b.cross(c)) / 6;
+        volume += v;
+        first += v / 4 * s;
+        second += v / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
+    }
+    const Vec3 centre = first / volume;
+    second -= volume * centre * centre.transpose();
+    MassProperties out;
+    out.mass = density * volume;
+    out.centre = from + centre;
+    out.inertia = Sym3::of(density * (second.trace() * Mat3::Identity() - second));
+    return out;
+}
+
+// ---------------------------------------------------------------- bounds
+
+// Single precision box of a box in double, rounded outwards.
+Box rounded(const Vec3& centre, const Vec3& lo, const Vec3& hi) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Box box;
+    for (int i = 0; i < 3; ++i) {
+        const double low = centre[i] + lo[i];
+        const double high = centre[i] + hi[i];
+        box.lo[i] = float(low);
+        box.hi[i] = float(high);
+        if (double(box.lo[i]) > low) box.lo[i] = std::nextafter(box.lo[i], -kInfinity);
+        if (double(box.hi[i]) < high) box.hi[i] = std::nextafter(box.hi[i], kInfinity);
+    }
+    return box;
+}
+
+Box plane_bounds(const Shape&, const Placement&) { return {Vec3f::Constant(-1e9f), Vec3f::Constant(1e9f)}; }
+
+Box box_bounds(const Shape& shape, const Placement& at) {
+    const Vec3 reach = at.rotation.cwiseAbs().cast<double>() * shape.size.cast<double>();
+    return rounded(at.position, -reach, reach);
+}
+
+Box sphere_bounds(const Shape& shape, const Placement& at) {
+    const Vec3 reach = Vec3::Constant(shape.size.x());
+    return rounded(at.position, -reach, reach);
+}
+
+Box capsule_bounds(const Shape& shape, const Placement& at) {
+    const Vec3 reach = at.rotation.col(1).cwiseAbs().cast<double>() * double(shape.size.y()) +
+                       Vec3::Constant(shape.size.x());
+    return rounded(at.position, -reach, reach);
+}
+
+Box hull_bounds(const Shape& shape, const Placement& at) {
+    const Polytope polytope = shape.hull->view();
+    Vec3 lo, hi;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3f axis = at.rotation.row(i);
+        lo[i] = -highest(polytope, -axis);
+        hi[i] = highest(polytope, axis);
+    }
+    return rounded(at.position, lo, hi);
+}
+
+struct KindFunctions {
+    MassProperties (*mass)(const Shape&, double density);
+    Box (*bounds)(const Shape&, const Placement&);
+};
+
+constexpr std::array<KindFunctions, kShapeKinds> kKinds = {{
+    {plane_mass, plane_bounds},
+    {box_mass, box_bounds},
+    {sphere_mass, sphere_bounds},
+    {capsule_mass, capsule_bounds},
+    {hull_mass, hull_bounds},
+}};
+
+}  // namespace
+
+MassProperties mass_properties(const Shape& shape, double density) {
+    return kKinds[size_t(shape.kind)].mass(shape, density);
+}
+
+Box bounds(const Shape& shape, const Placement& placement) {
+    return kKinds[size_t(shape.kind)].bounds(shape, placement);
+}
+
+}  // namespace taut::collision

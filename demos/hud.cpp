@@ -1,0 +1,92 @@
+#include "hud.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace demo {
+
+namespace {
+
+using render::Colour;
+using render::from_srgb;
+
+const Colour kPanel = from_srgb(0x10161F), kWhite = from_srgb(0xFFFFFF), kDim = from_srgb(0xAEBBCB);
+const Colour kTrack = from_srgb(0x33404F), kGood = from_srgb(0x4FC28B), kBusy = from_srgb(0xF3A712), kLate = from_srgb(0xE4572E);
+constexpr float kPanelAlpha = 0.88f, kRadius = 8, kMargin = 16, kPadding = 16;
+constexpr float kTitle = 15, kText = 10;                 // heights of capitals
+constexpr float kAdvance = 5.9f / 6.0f;                  // width of a character, of its height
+
+[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
+    char buffer[160];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(buffer, sizeof buffer, format, arguments);
+    va_end(arguments);
+    return buffer;
+}
+
+// "1 kN"; powers of ten beyond the usual prefixes stay powers of ten.
+std::string newtons(int decade) {
+    static const char* const prefixes[] = {"", "k", "M", "G"};
+    if (decade < 0 || decade > 11) return text_of("1e%d N", decade);
+    static const int ones[] = {1, 10, 100};
+    return text_of("%d %sN", ones[decade % 3], prefixes[decade / 3]);
+}
+
+// "12.3 um", in the unit that suits.
+std::string distance_of(double metres) {
+    if (metres < 1e-6) return text_of("%.2g nm", metres * 1e9);
+    if (metres < 1e-4) return text_of("%.2f um", metres * 1e6);
+    return text_of("%.2f mm", metres * 1e3);
+}
+
+}  // namespace
+
+void add_hud(render::DrawList& list, const HudFigures& f) {
+    constexpr float kLine = 19;
+    float x = kMargin + kPadding, y = kMargin + kPadding;
+    float width = std::max(372.0f, static_cast<float>(f.description.size()) * 9 * kAdvance + 2 * kPadding);
+    float height = kTitle + 14 + 9 + 16 + 2 * kLine + 16 + (f.has_joints ? 2 : 1) * kLine + 2 * kPadding - 6;
+    list.rects.push_back({kMargin, kMargin, width, height, kRadius, kPanel, kPanel, kPanelAlpha});
+    auto line = [&](std::string text, float cap, Colour colour, float step) {
+        list.texts.push_back({x, y, cap, std::move(text), colour, 1});
+        y += step;
+    };
+    line(f.scene, kTitle, kWhite, kTitle + 14);
+    line(f.description, 9, kDim, 9 + 16);
+    line(text_of("frame %u/%u   t = %.2f s", f.frame, f.frames, f.time), kText, kWhite, kLine);
+    line(text_of("step %.2f ms of %.2f ms", f.step_ms, f.budget_ms), kText, kWhite, kLine - 2);
+    float full = width - 2 * kPadding, share = static_cast<float>(std::clamp(f.step_ms / f.budget_ms, 0.0, 1.0));
+    Colour bar = f.step_ms > f.budget_ms ? kLate : f.step_ms > 0.5 * f.budget_ms ? kBusy : kGood;
+    list.rects.push_back({x, y, full, 7, 3.5f, kTrack, kTrack, 1});
+    list.rects.push_back({x, y, std::max(7.0f, full * share), 7, 3.5f, bar, bar, 1});
+    y += 18;
+    if (f.has_joints)
+        line("joint error " + distance_of(f.joint_error) + ", worst " + distance_of(f.worst_joint_error), kText, kWhite,
+             kLine);
+    line(text_of("%u bodies  %u joints  %u contacts", f.bodies, f.joints, f.points), kText, kDim, kLine);
+}
+
+void add_tension_legend(render::DrawList& list, const TensionScale& scale) {
+    constexpr float kWidth = 372, kHeight = 66, kBar = 12, kBottom = 720 - kMargin;
+    constexpr int kSpans = 15;
+    float left = kMargin, top = kBottom - kHeight, x = left + kPadding, full = kWidth - 2 * kPadding;
+    list.rects.push_back({left, top, kWidth, kHeight, kRadius, kPanel, kPanel, kPanelAlpha});
+    list.texts.push_back({x, top + 12, kText, "joint force", kWhite, 1});
+    for (int i = 0; i < kSpans; ++i) {
+        float a = static_cast<float>(i) / kSpans, b = static_cast<float>(i + 1) / kSpans;
+        list.rects.push_back({x + a * full - 0.5f, top + 30, (b - a) * full + 1, kBar, 0, TensionScale::ramp(a),
+                              TensionScale::ramp(b), 1});
+    }
+    int decades = scale.high_decade() - scale.low_decade(), stride = (decades + 4) / 5;
+    for (int decade = scale.low_decade(); decade <= scale.high_decade(); decade += stride) {
+        float at = x + full * static_cast<float>(decade - scale.low_decade()) / static_cast<float>(decades);
+        std::string label = newtons(decade);
+        float half = 0.5f * 8 * kAdvance * static_cast<float>(label.size());
+        float from = std::clamp(at - half, x - 4, x + full + 4 - 2 * half);
+        list.texts.push_back({from, top + 49, 8, label, kDim, 1});
+    }
+}
+
+}  // namespace demo

@@ -1,0 +1,25 @@
+// Figures and legends over the picture.
+#pragma once
+
+#include <string>
+
+#include "render/draw_list.h"
+#include "scene_view.h"
+
+namespace demo {
+
+// What the panel shows.
+struct HudFigures {
+    std::string scene, description;
+    uint32_t frame = 0, frames = 0;
+    double time = 0;               // simulated [s]
+    double step_ms = 0, budget_ms = 0;
+    double joint_error = 0, worst_joint_error = 0;  // now, and so far [m]
+    bool has_joints = false;
+    uint32_t bodies = 0, joints = 0, pairs = 0, points = 0;
+};
+
+void add_hud(render::DrawList& list, const HudFigures& figures);
+void add_tension_legend(render::DrawList& list, const TensionScale& scale);
+
+}  // namespace demo

@@ -1,0 +1,234 @@
+// taut-demo: runs a scene of Taut and renders it without a window.
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "hud.h"
+#include "options.h"
+#include "png_file.h"
+#include "render/egl_context.h"
+#include "scene_view.h"
+#include "scenes/catalogue.h"
+#include "video.h"
+
+namespace demo {
+
+namespace {
+
+enum ExitCode { kFine = 0, kRunFailed = 1, kBadArguments = 2, kNoEgl = 3 };
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begin) { return std::chrono::duration<double, std::milli>(Clock::now() - begin).count(); }
+
+// Figures over all frames so far.
+struct Figures {
+    uint32_t frames = 0;
+    double step_sum_ms = 0, step_worst_ms = 0, draw_sum_ms = 0, write_sum_ms = 0;
+    double joint_error = 0, penetration = 0;  // worst [m]
+    uint32_t quarantined = 0;
+};
+
+void print_log(taut_log_level level, const char* text, void*) {
+    std::fprintf(stderr, "taut %s: %s\n", level == TAUT_LOG_ERROR ? "error" : level == TAUT_LOG_WARNING ? "warning" : "info", text);
+}
+
+scenes::Scene scene_of(const Options& options) {
+    scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, options.mesh});
+    if (options.substeps) scene.world.substeps = *options.substeps;
+    if (options.solver) scene.world.solver = scenes::solver_named(*options.solver);
+    scene.world.hooks.log = print_log;
+    return scene;
+}
+
+// One film: world, renderer and files.
+class Run {
+public:
+    Run(const Options& options, const scenes::Scene& scene)
+        : options_(options), scene_(scene), frames_(options.frames.value_or(scene.steps)), world_(scene) {
+        if (!options.render) return;
+        if (!options.video.empty())
+            video_ = std::make_unique<Video>(options.video, options.width, options.height, 1.0 / scene.world.time_step);
+        if (!options.out.empty()) std::filesystem::create_directories(options.out);
+        renderer_ = std::make_unique<render::Renderer>(render::RendererOptions{options.width, options.height, 4, 2048});
+        std::fprintf(stderr, "%s\n", renderer_->description().c_str());
+        view_ = std::make_unique<SceneView>(scene, world_, *renderer_);
+        list_.camera = view_->camera();
+    }
+
+    void go() {
+        for (uint32_t frame = 0; frame < frames_; ++frame) {
+            step();
+            if (renderer_) draw(frame);
+            show_progress(frame + 1);
+        }
+        if (video_) video_->finish();
+    }
+
+    nlohmann::ordered_json json() const;
+    void print_summary() const;
+    const Figures& figures() const { return figures_; }
+
+private:
+    void step() {
+        auto begin = Clock::now();
+        world_.step();
+        step_ms_ = ms_since(begin);
+        profile_ = world_.profile();
+        taut_events events{};
+        scenes::check(taut_world_get_events(world_.world, &events), "reading the events");
+        ++figures_.frames;
+        figures_.step_sum_ms += step_ms_;
+        figures_.step_worst_ms = std::fmax(figures_.step_worst_ms, step_ms_);
+        figures_.joint_error = std::fmax(figures_.joint_error, profile_.joint_error);
+        figures_.penetration = std::fmax(figures_.penetration, profile_.penetration);
+        figures_.quarantined += events.quarantined_count;
+    }
+
+    void draw(uint32_t frame) {
+        auto begin = Clock::now();
+        list_.clear();
+        bool tension = options_.tension.value_or(!scene_.joints.empty());
+        view_->add_bodies(list_, tension);
+        view_->add_joints(list_, tension);
+        if (options_.contacts) view_->add_contacts(list_);
+        if (options_.hud) add_figures(frame);
+        if (options_.hud && tension && !scene_.joints.empty()) add_tension_legend(list_, view_->tension_scale());
+        const render::Picture& picture = renderer_->draw(list_);
+        figures_.draw_sum_ms += ms_since(begin);
+        begin = Clock::now();
+        if (!options_.out.empty()) write_png(frame_path(frame), picture);
+        if (video_) video_->add(picture);
+        figures_.write_sum_ms += ms_since(begin);
+    }
+
+    void add_figures(uint32_t frame) {
+        HudFigures hud;
+        hud.scene = scene_.name;
+        hud.description = scene_.description;
+        hud.frame = frame + 1;
+        hud.frames = frames_;
+        hud.time = (frame + 1) * static_cast<double>(scene_.world.time_step);
+        hud.step_ms = step_ms_;
+        hud.budget_ms = 1000.0 / 60.0;
+        hud.joint_error = profile_.joint_error;
+        hud.worst_joint_error = figures_.joint_error;
+        hud.has_joints = !scene_.joints.empty();
+        hud.bodies = profile_.bodies;
+        hud.joints = profile_.joints;
+        hud.pairs = profile_.touching;
+        hud.points = profile_.points;
+        add_hud(list_, hud);
+    }
+
+    std::string frame_path(uint32_t frame) const {
+        char number[16];
+        std::snprintf(number, sizeof number, "_%05u.png", frame);
+        return (std::filesystem::path(options_.out) / (scene_.name + number)).string();
+    }
+
+    void show_progress(uint32_t done) const {
+        if (!isatty(STDERR_FILENO)) return;
+        std::fprintf(stderr, "\r%s: frame %u/%u, step %.2f ms ", scene_.name.c_str(), done, frames_, step_ms_);
+        if (done == frames_) std::fputc('\n', stderr);
+    }
+
+    const Options& options_;
+    const scenes::Scene& scene_;
+    uint32_t frames_;
+    scenes::TautWorld world_;
+    std::unique_ptr<render::Renderer> renderer_;
+    std::unique_ptr<SceneView> view_;
+    std::unique_ptr<Video> video_;
+    render::DrawList list_;
+    taut_profile profile_{};
+    double step_ms_ = 0;
+    Figures figures_;
+};
+
+nlohmann::ordered_json Run::json() const {
+    uint64_t hash = 0;
+    scenes::check(taut_world_get_state_hash(world_.world, &hash), "reading the state hash");
+    char hash_text[20];
+    std::snprintf(hash_text, sizeof hash_text, "%016llx", static_cast<unsigned long long>(hash));
+    double frames = figures_.frames;
+    nlohmann::ordered_json json;
+    json["scene"] = scene_.name;
+    json["solver"] = scenes::solver_name(scene_.world.solver);
+    json["frames"] = figures_.frames;
+    json["threads"] = 1;
+    json["bodies"] = profile_.bodies;
+    json["joints"] = profile_.joints;
+    json["mean_step_ms"] = figures_.step_sum_ms / frames;
+    json["worst_step_ms"] = figures_.step_worst_ms;
+    json["worst_joint_error_mm"] = 1e3 * figures_.joint_error;
+    json["worst_penetration_mm"] = 1e3 * figures_.penetration;
+    json["quarantined"] = figures_.quarantined;
+    json["state_hash"] = hash_text;
+    if (!renderer_) return json;
+    json["size"] = std::to_string(options_.width) + "x" + std::to_string(options_.height);
+    json["gl_renderer"] = renderer_->gl_renderer();
+    json["software"] = renderer_->software();
+    json["samples"] = renderer_->samples();
+    json["mean_draw_ms"] = figures_.draw_sum_ms / frames;
+    json["mean_write_ms"] = figures_.write_sum_ms / frames;
+    if (!options_.out.empty()) json["out"] = options_.out;
+    if (!options_.video.empty()) json["video"] = options_.video;
+    return json;
+}
+
+void Run::print_summary() const {
+    if (renderer_ && !options_.out.empty())
+        std::fprintf(stderr, "frames: %u PNG in %s, %s to %s\n", figures_.frames, options_.out.c_str(),
+                     std::filesystem::path(frame_path(0)).filename().c_str(),
+                     std::filesystem::path(frame_path(figures_.frames - 1)).filename().c_str());
+    if (video_) std::fprintf(stderr, "video: %u frames in %s\n", figures_.frames, options_.video.c_str());
+    std::fprintf(stderr, "step: mean %.3f ms, worst %.3f ms\n", figures_.step_sum_ms / figures_.frames,
+                 figures_.step_worst_ms);
+}
+
+int run(const Options& options) {
+    scenes::Scene scene = scene_of(options);
+    if (options.threads > 1) std::fprintf(stderr, "--threads: this version steps on one thread\n");
+    Run film(options, scene);
+    film.go();
+    std::string figures = film.json().dump(2);
+    std::printf("%s\n", figures.c_str());
+    std::fflush(stdout);
+    if (!options.json.empty()) {
+        std::ofstream file(options.json);
+        if (!(file << figures << '\n' << std::flush)) throw std::runtime_error("cannot write " + options.json);
+    }
+    film.print_summary();
+    if (film.figures().quarantined == 0) return kFine;
+    std::fprintf(stderr, "taut-demo: %u bodies became non-finite and were frozen\n", film.figures().quarantined);
+    return kRunFailed;
+}
+
+}  // namespace
+
+}  // namespace demo
+
+int main(int argc, char** argv) {
+    int code = 0;
+    std::optional<demo::Options> options = demo::read_options(argc, argv, &code);
+    if (!options) return code;
+    try {
+        return demo::run(*options);
+    } catch (const scenes::BadScene& error) {
+        std::fprintf(stderr, "taut-demo: %s\n", error.what());
+        return demo::kBadArguments;
+    } catch (const render::NoEglDevice& error) {
+        std::fprintf(stderr, "taut-demo: %s\n", error.what());
+        return demo::kNoEgl;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "taut-demo: %s\n", error.what());
+        return demo::kRunFailed;
+    }
+}

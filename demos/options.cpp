@@ -1,0 +1,89 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <iostream>
+
+#include "scenes/catalogue.h"
+
+namespace demo {
+
+namespace {
+
+constexpr int kBadArguments = 2;
+constexpr int kLeastSide = 64, kMostSide = 8192;  // [pixels]
+
+void print_scenes() {
+    for (const scenes::Family& family : scenes::families())
+        std::printf("%-22s %s (as in %s)\n", family.pattern, family.description, family.example);
+}
+
+// "1280x720", both even because videos need it.
+bool read_size(const std::string& text, Options& options) {
+    int width = 0, height = 0, used = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2) return false;
+    if (static_cast<size_t>(used) != text.size() || width < kLeastSide || height < kLeastSide) return false;
+    if (width > kMostSide || height > kMostSide || width % 2 != 0 || height % 2 != 0) return false;
+    options.width = width;
+    options.height = height;
+    return true;
+}
+
+}  // namespace
+
+std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
+    Options options;
+    std::string size = "1280x720";
+    uint32_t frames = 0, substeps = 0;
+    std::string solver;
+    bool list = false, no_render = false, no_hud = false, tension = true;
+    CLI::App app{"Runs a scene of Taut and renders it without a window.\n"
+                 "Exit codes: 0 fine, 1 the run failed, 2 bad arguments, 3 no usable EGL device."};
+    CLI::Option* scene_flag = app.add_option("--scene", options.scene, "scene by name, see --list (default: main)");
+    app.add_flag("--list", list, "print all scenes");
+    CLI::Option* frames_flag =
+        app.add_option("--frames", frames, "frames, one step each (default: the scene's)")->check(CLI::Range(1, 1000000));
+    app.add_option("--out", options.out, "folder for PNG frames (default: out; none with --video alone)");
+    app.add_option("--size", size, "picture size, WxH (default: 1280x720)");
+    app.add_option("--video", options.video, "film, made by ffmpeg");
+    app.add_option("--json", options.json, "also write the figures to this file");
+    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")->check(CLI::Range(1, 256));
+    app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
+    app.add_option("--mesh", options.mesh, "OBJ file of the scene mesh_drop");
+    CLI::Option* substeps_flag = app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
+    CLI::Option* solver_flag =
+        app.add_option("--solver", solver, "block_ldlt, projected_gauss_seidel or accelerated_jacobi");
+    app.add_flag("--no-render", no_render, "simulate only");
+    app.add_flag("--no-hud", no_hud, "leave out the figures in the picture");
+    app.add_flag("--contacts", options.contacts, "draw contact points and normals");
+    CLI::Option* tension_flag = app.add_flag("--tension,!--no-tension", tension,
+                                             "colour joints by their force (default: on in scenes with joints)");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        *exit_code = app.exit(error, std::cout, std::cerr) == 0 ? 0 : kBadArguments;
+        return std::nullopt;
+    }
+    if (list) {
+        print_scenes();
+        *exit_code = 0;
+        return std::nullopt;
+    }
+    if (!read_size(size, options)) {
+        std::fprintf(stderr, "--size: '%s' is not WxH with even numbers from %d to %d\n", size.c_str(), kLeastSide, kMostSide);
+        *exit_code = kBadArguments;
+        return std::nullopt;
+    }
+    if (frames_flag->count() > 0) options.frames = frames;
+    if (substeps_flag->count() > 0) options.substeps = substeps;
+    if (solver_flag->count() > 0) options.solver = solver;
+    if (tension_flag->count() > 0) options.tension = tension;
+    if (!options.mesh.empty() && scene_flag->count() == 0) options.scene = "mesh_drop";
+    options.render = !no_render;
+    options.hud = !no_hud;
+    if (options.out.empty() && options.video.empty()) options.out = "out";
+    return options;
+}
+
+}  // namespace demo

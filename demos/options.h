@@ -1,0 +1,31 @@
+// Command line of taut-demo.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace demo {
+
+struct Options {
+    std::string scene = "main";
+    std::string mesh;
+    std::optional<uint32_t> frames;  // else the scene's own number
+    std::string out;                 // folder of the PNG frames, empty: none
+    std::string video, json;         // files, empty: none
+    int width = 1280, height = 720;
+    uint32_t threads = 1;
+    uint64_t seed = 0;
+    std::optional<uint32_t> substeps;
+    std::optional<std::string> solver;
+    bool render = true;
+    bool hud = true;
+    bool contacts = false;
+    std::optional<bool> tension;     // else on for scenes with joints
+};
+
+// Reads the command line. Returns no options when the program is done already (--help, --list, bad arguments),
+// with its exit code in *exit_code.
+std::optional<Options> read_options(int argc, char** argv, int* exit_code);
+
+}  // namespace demo

@@ -1,0 +1,84 @@
+// What a picture consists of. The renderer knows nothing of physics: whoever fills this list does.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math.h"
+
+namespace render {
+
+// Linear light, each channel in [0, 1].
+using Colour = Vec3;
+
+// From the 0xRRGGBB of a colour picker (sRGB) to linear light.
+inline Colour from_srgb(uint32_t rgb) {
+    auto channel = [](uint32_t byte) {
+        float s = static_cast<float>(byte & 255u) / 255.0f;
+        return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+    };
+    return {channel(rgb >> 16), channel(rgb >> 8), channel(rgb)};
+}
+
+struct Camera {
+    Vec3 eye{8, 5, 10};
+    Vec3 target{0, 1, 0};
+    float vertical_fov = 0.7f;  // [rad]
+};
+
+// Meshes that always exist; add_mesh() returns further ones.
+enum BuiltinMesh : uint32_t { kMeshBox = 0, kMeshSphere = 1, kMeshCylinder = 2, kMeshCone = 3, kBuiltinMeshes = 4 };
+
+// How an instance is drawn.
+enum class Pass : uint8_t {
+    solid,    // lit, throws and receives shadows
+    cutaway,  // only the faces turned away from the viewer, no shadow thrown: walls one looks into
+    overlay,  // unlit, pulled towards the viewer so that points inside touching bodies stay visible
+};
+
+// One mesh placed in the world. Unit meshes (box, sphere, cylinder, cone along y) reach from -1 to 1.
+struct Instance {
+    Vec3 position;         // [m]
+    Vec3 scale{1, 1, 1};   // half size along each local axis [m]
+    Quat rotation;
+    Colour colour{0.5f, 0.5f, 0.5f};
+    float gloss = 0.25f;   // strength of the highlight, [0, 1]
+    uint32_t mesh = kMeshBox;
+    Pass pass = Pass::solid;
+};
+
+// Rectangle or text over the picture, in pixels of a 1280x720 picture, y down.
+struct HudRect {
+    float x = 0, y = 0, width = 0, height = 0, radius = 0;
+    Colour left, right;  // blends from left to right
+    float alpha = 1;
+};
+struct HudText {
+    float x = 0, y = 0;  // left end, top of capitals
+    float cap_height = 11;
+    std::string text;
+    Colour colour{1, 1, 1};
+    float alpha = 1;
+};
+
+struct DrawList {
+    Camera camera;
+    std::vector<Instance> instances;
+    std::vector<HudRect> rects;  // below the texts, in order
+    std::vector<HudText> texts;
+
+    void clear() {
+        instances.clear();
+        rects.clear();
+        texts.clear();
+    }
+};
+
+// What stays for a whole film: the box that the sun's shadow map is fitted to, and the ground.
+struct Stage {
+    Vec3 low{-10, 0, -10}, high{10, 10, 10};  // [m]
+    float ground_height = 0;                  // [m]
+};
+
+}  // namespace render

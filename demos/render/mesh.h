@@ -1,0 +1,23 @@
+// Triangle meshes of the renderer.
+#pragma once
+
+#include <vector>
+
+#include "math.h"
+
+namespace render {
+
+struct Vertex {
+    Vec3 position, normal;
+};
+
+// Three vertices a triangle, counter-clockwise seen from outside; each reaches from -1 to 1.
+std::vector<Vertex> box_mesh();
+std::vector<Vertex> sphere_mesh(int rings);
+std::vector<Vertex> cylinder_mesh(int sides);
+std::vector<Vertex> cone_mesh(int sides);  // tip at +y
+
+// Flat shaded triangles from points, three a triangle.
+std::vector<Vertex> flat_mesh(const std::vector<Vec3>& points);
+
+}  // namespace render

@@ -1,0 +1,299 @@
+#include "renderer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+
+#include "egl_context.h"
+#include "hud_batch.h"
+#include "program.h"
+#include "shaders.h"
+
+namespace render {
+
+namespace {
+
+constexpr int kZenithMapSize = 1024;
+constexpr float kOverlayPull = 0.5f;  // [m]; see Pass::overlay
+constexpr int kSunUnit = 1, kZenithUnit = 2;
+const Vec3 kSun = normalised({0.42f, 0.80f, 0.43f});  // towards the sun
+
+// What the GPU reads for one instance.
+struct PackedInstance {
+    Vec3 position, scale;
+    Quat rotation;
+    Colour colour;
+    float gloss;
+};
+
+struct GpuMesh {
+    GLuint array = 0, vertices = 0;
+    GLsizei count = 0;
+};
+
+GpuMesh upload(const std::vector<Vertex>& mesh, GLuint instances) {
+    GpuMesh gpu;
+    gpu.count = static_cast<GLsizei>(mesh.size());
+    glGenVertexArrays(1, &gpu.array);
+    glGenBuffers(1, &gpu.vertices);
+    glBindVertexArray(gpu.array);
+    glBindBuffer(GL_ARRAY_BUFFER, gpu.vertices);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.size() * sizeof(Vertex)), mesh.data(), GL_STATIC_DRAW);
+    for (GLuint i = 0; i < 2; ++i) {
+        glEnableVertexAttribArray(i);
+        glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                              reinterpret_cast<const void*>(i * sizeof(Vec3)));
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, instances);
+    for (GLuint i = 2; i < 6; ++i) {
+        glEnableVertexAttribArray(i);
+        glVertexAttribDivisor(i, 1);
+    }
+    return gpu;
+}
+
+// Points the instance attributes of the bound array at the instances from first on (GL 3.3 has no base instance).
+void point_at_instances(size_t first) {
+    const struct {
+        GLint count;
+        size_t offset;
+    } fields[] = {{3, offsetof(PackedInstance, position)},
+                  {3, offsetof(PackedInstance, scale)},
+                  {4, offsetof(PackedInstance, rotation)},
+                  {4, offsetof(PackedInstance, colour)}};
+    for (GLuint i = 0; i < 4; ++i)
+        glVertexAttribPointer(2 + i, fields[i].count, GL_FLOAT, GL_FALSE, sizeof(PackedInstance),
+                              reinterpret_cast<const void*>(first * sizeof(PackedInstance) + fields[i].offset));
+}
+
+}  // namespace
+
+struct Renderer::Inside {
+    explicit Inside(const RendererOptions& o)
+        : options(o),
+          target(o.width, o.height, o.samples),
+          sun_map(o.shadow_size),
+          zenith_map(kZenithMapSize),
+          solid({shaders::kSolidVertex}, {shaders::kLight, shaders::kSolidFragment}),
+          depth({shaders::kSolidVertex}, {shaders::kDepthFragment}),
+          ground({shaders::kGroundVertex}, {shaders::kLight, shaders::kGroundFragment}),
+          sky({shaders::kSkyVertex}, {shaders::kLight, shaders::kSkyFragment}),
+          hud(o.width, o.height) {
+        glGenVertexArrays(1, &empty_array);
+        glGenBuffers(1, &instance_buffer);
+        for (const auto& mesh : {box_mesh(), sphere_mesh(20), cylinder_mesh(24), cone_mesh(16)})
+            meshes.push_back(upload(mesh, instance_buffer));
+        picture.width = o.width;
+        picture.height = o.height;
+        picture.rgb.resize(3 * static_cast<size_t>(o.width) * static_cast<size_t>(o.height));
+        rows.resize(4 * static_cast<size_t>(o.width) * static_cast<size_t>(o.height));
+        set_stage({});
+    }
+    ~Inside() {
+        for (GpuMesh& mesh : meshes) {
+            glDeleteVertexArrays(1, &mesh.array);
+            glDeleteBuffers(1, &mesh.vertices);
+        }
+        glDeleteBuffers(1, &instance_buffer);
+        glDeleteVertexArrays(1, &empty_array);
+    }
+
+    void set_stage(const Stage& s) {
+        stage = s;
+        Vec3 low = s.low, high = s.high;
+        low.y = std::min(low.y, s.ground_height);
+        sun_map.fit(kSun * -1.0f, low, high);
+        zenith_map.fit({0, -1, 0}, low, high);
+    }
+
+    void sort_instances(const std::vector<Instance>& list);
+    void draw_pass(Program& program, Pass pass);
+    void draw_depth(DepthMap& map);
+    void set_light(Program& program, const Camera& camera);
+    void draw_world(const Camera& camera);
+    void read_back();
+
+    EglContext context;  // first: everything below needs it
+    RendererOptions options;
+    PictureTarget target;
+    DepthMap sun_map, zenith_map;
+    Program solid, depth, ground, sky;
+    HudBatch hud;
+    GLuint empty_array = 0, instance_buffer = 0;
+    std::vector<GpuMesh> meshes;
+    Stage stage;
+    struct Run {
+        uint32_t mesh;
+        Pass pass;
+        size_t first, count;
+    };
+    std::vector<Run> runs;  // of the uploaded instances, by pass and mesh
+    std::vector<uint8_t> rows;
+    Picture picture;
+};
+
+void Renderer::Inside::sort_instances(const std::vector<Instance>& list) {
+    std::vector<uint32_t> order(list.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    auto key = [&](uint32_t i) { return std::pair(list[i].pass, list[i].mesh); };
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+    std::vector<PackedInstance> packed;
+    runs.clear();
+    for (uint32_t i : order) {
+        const Instance& it = list[i];
+        if (it.mesh >= meshes.size()) throw std::runtime_error("draw list names a mesh that was never added");
+        if (runs.empty() || runs.back().mesh != it.mesh || runs.back().pass != it.pass)
+            runs.push_back({it.mesh, it.pass, packed.size(), 0});
+        ++runs.back().count;
+        packed.push_back({it.position, it.scale, it.rotation, it.colour, it.gloss});
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, instance_buffer);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(packed.size() * sizeof(PackedInstance)), packed.data(),
+                 GL_STREAM_DRAW);
+}
+
+void Renderer::Inside::draw_pass(Program& program, Pass pass) {
+    for (const Run& run : runs) {
+        if (run.pass != pass) continue;
+        program.set("bevelled", run.mesh == kMeshBox ? 1 : 0);
+        glBindVertexArray(meshes[run.mesh].array);
+        glBindBuffer(GL_ARRAY_BUFFER, instance_buffer);
+        point_at_instances(run.first);
+        glDrawArraysInstanced(GL_TRIANGLES, 0, meshes[run.mesh].count, static_cast<GLsizei>(run.count));
+    }
+}
+
+void Renderer::Inside::draw_depth(DepthMap& map) {
+    glBindFramebuffer(GL_FRAMEBUFFER, map.framebuffer);
+    glViewport(0, 0, map.size, map.size);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_CLAMP);
+    depth.use();
+    depth.set("clip_from_world", map.clip_from_world);
+    depth.set("pull", 0.0f);
+    draw_pass(depth, Pass::solid);
+    glDisable(GL_DEPTH_CLAMP);
+}
+
+void Renderer::Inside::set_light(Program& program, const Camera& camera) {
+    program.use();
+    program.set("sun", kSun);
+    program.set("eye", camera.eye);
+    program.set("sun_clip", sun_map.clip_from_world);
+    program.set("zenith_clip", zenith_map.clip_from_world);
+    program.set("texel", sun_map.texel, zenith_map.texel);
+    program.set("sun_map", kSunUnit);
+    program.set("zenith_map", kZenithUnit);
+}
+
+void Renderer::Inside::draw_world(const Camera& camera) {
+    float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+    ViewAxes axes = view_axes(normalised(camera.target - camera.eye));
+    Mat4 clip = perspective(camera.vertical_fov, aspect, 0.1f, 900.0f) * view_matrix(camera.eye, axes);
+    for (auto [unit, map] : {std::pair(kSunUnit, &sun_map), std::pair(kZenithUnit, &zenith_map)}) {
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+        glBindTexture(GL_TEXTURE_2D, map->texture);
+    }
+
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    set_light(sky, camera);
+    float tangent = std::tan(0.5f * camera.vertical_fov);
+    sky.set("right", axes.right * (tangent * aspect));
+    sky.set("up", axes.up * tangent);
+    sky.set("back", axes.back);
+    glBindVertexArray(empty_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CULL_FACE);
+    set_light(solid, camera);
+    solid.set("clip_from_world", clip);
+    solid.set("viewer", camera.eye);
+    solid.set("unlit", 0);
+    solid.set("pull", 0.0f);
+    solid.set("side", 1.0f);
+    draw_pass(solid, Pass::solid);
+    glCullFace(GL_FRONT);
+    solid.set("side", -1.0f);
+    draw_pass(solid, Pass::cutaway);
+    glCullFace(GL_BACK);
+
+    glDisable(GL_CULL_FACE);
+    set_light(ground, camera);
+    ground.set("clip_from_world", clip);
+    ground.set("height", stage.ground_height);
+    glBindVertexArray(empty_array);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glEnable(GL_CULL_FACE);
+
+    solid.use();
+    solid.set("unlit", 1);
+    solid.set("pull", kOverlayPull);
+    draw_pass(solid, Pass::overlay);
+}
+
+void Renderer::Inside::read_back() {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.resolved);
+    glReadPixels(0, 0, options.width, options.height, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
+    if (GLenum error = glGetError(); error != GL_NO_ERROR)
+        throw std::runtime_error("OpenGL error " + std::to_string(error) + " while drawing");
+    size_t width = static_cast<size_t>(options.width), height = static_cast<size_t>(options.height);
+    for (size_t y = 0; y < height; ++y) {
+        const uint8_t* from = rows.data() + 4 * width * (height - 1 - y);
+        uint8_t* to = picture.rgb.data() + 3 * width * y;
+        for (size_t x = 0; x < width; ++x, from += 4, to += 3) to[0] = from[0], to[1] = from[1], to[2] = from[2];
+    }
+}
+
+Renderer::Renderer(const RendererOptions& options) : inside_(std::make_unique<Inside>(options)) {}
+Renderer::~Renderer() = default;
+
+std::string Renderer::description() const {
+    const EglContext& c = inside_->context;
+    std::string text = "GL: " + c.renderer() + ", " + (c.software() ? "software" : "hardware") + ", through EGL " +
+                       c.platform() + "\nGL: version " + c.version() + ", " + std::to_string(samples()) +
+                       " samples a pixel";
+    if (samples() < inside_->options.samples)
+        text += " (the driver offers no more; " + std::to_string(inside_->options.samples) + " were wanted)";
+    return text;
+}
+
+std::string Renderer::gl_renderer() const { return inside_->context.renderer(); }
+int Renderer::samples() const { return inside_->target.samples; }
+bool Renderer::software() const { return inside_->context.software(); }
+
+uint32_t Renderer::add_mesh(const std::vector<Vertex>& mesh) {
+    inside_->meshes.push_back(upload(mesh, inside_->instance_buffer));
+    return static_cast<uint32_t>(inside_->meshes.size() - 1);
+}
+
+void Renderer::set_stage(const Stage& stage) { inside_->set_stage(stage); }
+
+const Picture& Renderer::draw(const DrawList& list) {
+    Inside& in = *inside_;
+    in.sort_instances(list.instances);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CULL_FACE);
+    in.draw_depth(in.sun_map);
+    in.draw_depth(in.zenith_map);
+
+    int width = in.options.width, height = in.options.height;
+    glBindFramebuffer(GL_FRAMEBUFFER, in.target.drawn);
+    glViewport(0, 0, width, height);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    in.draw_world(list.camera);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, in.target.drawn);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, in.target.resolved);
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, in.target.resolved);
+    in.hud.draw(list);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    in.read_back();
+    return in.picture;
+}
+
+}  // namespace render

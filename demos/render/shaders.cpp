@@ -1,0 +1,212 @@
+#include "shaders.h"
+
+namespace render::shaders {
+
+// Sky, light and fog, shared by everything that is lit. All colours are linear light; the framebuffer encodes
+// sRGB.
+const char* const kLight = R"(
+uniform vec3 sun, eye;
+uniform mat4 sun_clip, zenith_clip;
+uniform sampler2DShadow sun_map, zenith_map;
+uniform vec2 texel;  // size of a shadow map texel in the world [m]: sun, zenith
+const vec3 kHorizon = vec3(0.74, 0.86, 1.00), kZenith = vec3(0.12, 0.30, 0.62);
+const vec3 kSunLight = vec3(3.30, 3.00, 2.55), kSkyLight = vec3(0.55, 0.70, 0.95);
+const vec3 kGroundLight = vec3(0.30, 0.28, 0.25);
+vec3 sky_colour(vec3 d) {
+    vec3 c = mix(kHorizon, kZenith, pow(clamp(d.y, 0.0, 1.0), 0.5));
+    return c + vec3(1.0, 0.85, 0.6) * 0.25 * pow(max(dot(d, sun), 0.0), 24.0);
+}
+vec3 film(vec3 c) {  // filmic curve: a toe for contrast, a shoulder for highlights
+    c *= 0.60;
+    return clamp(c * (2.4 * c + 0.05) / (c * (2.3 * c + 0.62) + 0.13), 0.0, 1.0);
+}
+vec3 fogged(vec3 c, vec3 p) {
+    vec3 d = p - eye;
+    float r = length(d);
+    float f = 1.0 - exp(-pow(r * 0.0105, 1.6));
+    return mix(c, kHorizon, f);
+}
+float sun_visible(vec3 p, vec3 n, float facing) {
+    // Along the normal by about the filter's radius, more at grazing light: no acne, no gap.
+    vec3 q = p + n * texel.x * (1.2 + 2.2 * sqrt(max(1.0 - facing * facing, 0.0)));
+    vec4 c = sun_clip * vec4(q, 1.0);
+    vec3 s = c.xyz * 0.5 + 0.5;
+    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
+    vec2 t = 1.0 / vec2(textureSize(sun_map, 0));
+    float lit = 0.0;
+    for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j)
+            lit += texture(sun_map, vec3(s.xy + vec2(i, j) * t * 1.1, s.z - 0.0002));
+    return lit / 9.0;
+}
+// Share of the sky above that a point sees: a second depth map from the zenith, widely filtered.
+float sky_visible(vec3 p, vec3 n) {
+    vec4 c = zenith_clip * vec4(p + n * 0.12 + vec3(0.0, 0.03, 0.0), 1.0);
+    vec3 s = c.xyz * 0.5 + 0.5;
+    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
+    vec2 t = 1.0 / (texel.y * vec2(textureSize(zenith_map, 0)));  // of one metre
+    const vec2 tap[8] = vec2[8](vec2(0.18, 0.05), vec2(-0.12, 0.22), vec2(-0.20, -0.18), vec2(0.10, -0.30),
+                                vec2(0.55, 0.30), vec2(-0.45, 0.50), vec2(-0.55, -0.42), vec2(0.48, -0.52));
+    float open = 0.0;
+    for (int i = 0; i < 8; ++i) open += texture(zenith_map, vec3(s.xy + tap[i] * t, s.z));
+    return mix(0.35, 1.0, open / 8.0);
+}
+vec3 lit_colour(vec3 albedo, vec3 p, vec3 n, float gloss) {
+    float facing = max(dot(n, sun), 0.0);
+    float direct = facing > 0.0 ? facing * sun_visible(p, n, facing) : 0.0;
+    float open = sky_visible(p, n);
+    vec3 ambient = mix(kGroundLight, kSkyLight, n.y * 0.5 + 0.5) * open;
+    vec3 view = normalize(eye - p), middle = normalize(view + sun);
+    float fresnel = pow(1.0 - max(dot(n, view), 0.0), 5.0);
+    vec3 shine = kSunLight * (direct * gloss * 0.55 * pow(max(dot(n, middle), 0.0), 48.0));
+    shine += sky_colour(reflect(-view, n)) * (gloss * open * (0.06 + 0.5 * fresnel));
+    return film(fogged(albedo * (ambient * 0.62 + kSunLight * direct * 0.55) + shine, p));
+}
+)";
+
+const char* const kSolidVertex = R"(
+layout(location = 0) in vec3 vertex;
+layout(location = 1) in vec3 vertex_normal;
+layout(location = 2) in vec3 position;
+layout(location = 3) in vec3 scale;
+layout(location = 4) in vec4 rotation;
+layout(location = 5) in vec4 colour_gloss;
+uniform mat4 clip_from_world;
+uniform vec3 viewer;
+uniform float pull;  // [m] by which depth is moved towards the viewer
+out vec3 world, local, local_normal, half_size;
+flat out vec4 paint, turn;
+vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+void main() {
+    local = vertex * scale;
+    half_size = scale;
+    world = position + turned(rotation, local);
+    local_normal = vertex_normal / scale;
+    paint = colour_gloss;
+    turn = rotation;
+    gl_Position = clip_from_world * vec4(world, 1.0);
+    if (pull > 0.0) {
+        vec4 near = clip_from_world * vec4(world + normalize(viewer - world) * pull, 1.0);
+        gl_Position.z = near.z / near.w * gl_Position.w;
+    }
+}
+)";
+
+const char* const kSolidFragment = R"(
+in vec3 world, local, local_normal, half_size;
+flat in vec4 paint, turn;
+uniform int bevelled, unlit;
+uniform float side;  // 1: faces towards the viewer, -1: faces seen from inside
+out vec4 colour;
+vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+void main() {
+    if (unlit != 0) {
+        colour = vec4(fogged(paint.rgb, world), 1.0);
+        return;
+    }
+    vec3 n = normalize(local_normal);
+    vec3 albedo = paint.rgb;
+    if (bevelled != 0) {
+        // A box catches light on its edges: within a small rim of a face the normal leans outwards and the
+        // paint is worn a little lighter. Rims below a pixel fade out.
+        float rim = clamp(0.10 * min(half_size.x, min(half_size.y, half_size.z)), 0.004, 0.04);
+        vec3 lean = smoothstep(vec3(-rim), vec3(0.0), abs(local) - half_size) * sign(local) * (1.0 - step(0.5, abs(n)));
+        float shown = clamp(rim / max(length(fwidth(local)), 1e-6), 0.0, 1.0);
+        n = normalize(n + lean * (0.8 * shown));
+        albedo *= 1.0 + 0.12 * shown * min(length(lean), 1.0);
+    }
+    colour = vec4(lit_colour(albedo, world, turned(turn, n) * side, paint.a), 1.0);
+}
+)";
+
+const char* const kDepthFragment = R"(
+void main() {}
+)";
+
+const char* const kGroundVertex = R"(
+uniform mat4 clip_from_world;
+uniform vec3 eye;
+uniform float height;
+out vec3 world;
+void main() {
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+    world = vec3(eye.x + corner.x * 600.0, height, eye.z + corner.y * 600.0);
+    gl_Position = clip_from_world * vec4(world, 1.0);
+}
+)";
+
+const char* const kGroundFragment = R"(
+in vec3 world;
+out vec4 colour;
+// Share of a pixel covered by lines of the given half width [m] every period [m].
+float lines(vec2 p, float period, float half_width) {
+    vec2 w = max(fwidth(p), 1e-6);
+    vec2 d = abs(fract(p / period + 0.5) - 0.5) * period;
+    vec2 cover = clamp((half_width + 0.5 * w - d) / w, 0.0, 1.0) * clamp(2.0 * half_width / w, 0.0, 1.0);
+    vec2 full = clamp((period * 0.5 - w) / (period * 0.25), 0.0, 1.0);
+    return max(cover.x * full.x, cover.y * full.y);
+}
+void main() {
+    float r = length(world - eye);
+    vec3 albedo = vec3(0.250, 0.275, 0.310);
+    float minor = lines(world.xz, 1.0, 0.012) * exp(-r / 22.0);
+    float major = lines(world.xz, 10.0, 0.03) * exp(-r / 70.0);
+    albedo = mix(albedo, vec3(0.42, 0.45, 0.50), 0.55 * minor);
+    albedo = mix(albedo, vec3(0.52, 0.56, 0.62), 0.75 * major);
+    colour = vec4(lit_colour(albedo, world, vec3(0.0, 1.0, 0.0), 0.10), 1.0);
+}
+)";
+
+const char* const kSkyVertex = R"(
+uniform vec3 right, up, back;  // right and up scaled by the tangents of half the field of view
+out vec3 direction;
+void main() {
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    direction = right * corner.x + up * corner.y - back;
+    gl_Position = vec4(corner, 1.0, 1.0);
+}
+)";
+
+const char* const kSkyFragment = R"(
+in vec3 direction;
+out vec4 colour;
+void main() { colour = vec4(film(sky_colour(normalize(direction))), 1.0); }
+)";
+
+const char* const kHudVertex = R"(
+layout(location = 0) in vec2 pixel;
+layout(location = 1) in vec2 inside;  // texture coordinate of text, pixels from the centre of a rectangle
+layout(location = 2) in vec4 tint;
+layout(location = 3) in vec4 form;    // half width, half height, corner radius, 1 for text
+uniform vec2 size;
+out vec2 at;
+out vec4 hue;
+flat out vec4 outline;
+void main() {
+    at = inside;
+    hue = tint;
+    outline = form;
+    gl_Position = vec4(pixel / size * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
+}
+)";
+
+const char* const kHudFragment = R"(
+in vec2 at;
+in vec4 hue;
+flat in vec4 outline;
+uniform sampler2D glyphs;
+out vec4 colour;
+void main() {
+    float cover;
+    if (outline.w > 0.5) {
+        cover = texture(glyphs, at).r;
+    } else {
+        vec2 d = abs(at) - outline.xy + outline.z;
+        float distance = length(max(d, 0.0)) + min(max(d.x, d.y), 0.0) - outline.z;
+        cover = clamp(0.5 - distance, 0.0, 1.0);
+    }
+    colour = vec4(hue.rgb, hue.a * cover);
+}
+)";
+
+}  // namespace render::shaders

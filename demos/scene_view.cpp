@@ -1,0 +1,234 @@
+#include "scene_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace demo {
+
+namespace {
+
+using render::Colour;
+using render::from_srgb;
+using render::Instance;
+using render::Vec3;
+using scenes::Look;
+using scenes::ShapeKind;
+
+constexpr float kRodRadius = 0.03f, kPointRadius = 0.05f, kCableWeightRadius = 0.30f;  // drawn sizes [m]
+constexpr float kContactRadius = 0.03f, kNormalLength = 0.30f;
+
+const Colour kCrates[] = {from_srgb(0xE4572E), from_srgb(0xF3A712), from_srgb(0xF2E3BC),
+                          from_srgb(0x4B9C8E), from_srgb(0x2E6F95), from_srgb(0x8E5572)};
+const Colour kBricks[] = {from_srgb(0xC4553B), from_srgb(0xD6704A), from_srgb(0xB5473A), from_srgb(0xE08E5A)};
+const Colour kSteel = from_srgb(0x3B424C), kLinkGrey = from_srgb(0xA9B4C0), kStone = from_srgb(0xB9B4A7);
+const Colour kWall = from_srgb(0x8FA3B5), kDecoration = from_srgb(0xE8B23A), kPin = from_srgb(0x2A2F36);
+const Colour kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
+
+Vec3 vec(taut_pos p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+
+// Neighbours rarely share a colour, and a body keeps its own.
+template <size_t N>
+Colour pick(const Colour (&colours)[N], size_t index) {
+    return colours[(index * 2654435761u >> 7) % N];
+}
+
+Colour colour_of(Look look, size_t index) {
+    switch (look) {
+        case Look::brick: return pick(kBricks, index);
+        case Look::steel: return kSteel;
+        case Look::link: return kLinkGrey;
+        case Look::particle: return kPin;
+        case Look::stone: return kStone;
+        case Look::wall: return kWall;
+        case Look::crate:
+        case Look::hidden:
+        case Look::ground: break;
+    }
+    return pick(kCrates, index);
+}
+
+Instance rod(Vec3 a, Vec3 b, float radius, Colour colour) {
+    Vec3 along = b - a;
+    float half = 0.5f * length(along);
+    Instance instance;
+    instance.mesh = render::kMeshCylinder;
+    instance.position = (a + b) * 0.5f;
+    instance.scale = {radius, std::max(half, 1e-4f), radius};
+    instance.rotation = render::from_y_to(half > 0 ? normalised(along) : Vec3{0, 1, 0});
+    instance.colour = colour;
+    return instance;
+}
+
+Instance ball(Vec3 centre, float radius, Colour colour, float gloss) {
+    Instance instance;
+    instance.mesh = render::kMeshSphere;
+    instance.position = centre;
+    instance.scale = {radius, radius, radius};
+    instance.colour = colour;
+    instance.gloss = gloss;
+    return instance;
+}
+
+float force_on(taut_joint joint) {
+    taut_vec3 force{};
+    scenes::check(taut_joint_get_force(joint, &force), "reading a joint's force");
+    return std::sqrt(force.x * force.x + force.y * force.y + force.z * force.z);
+}
+
+}  // namespace
+
+TensionScale::TensionScale(const scenes::Scene& scene) {
+    if (!scene.roles.chain) return;
+    double gravity = std::fabs(scene.world.gravity.y), least = 1e30, all = 0;
+    for (int index : scene.roles.chain->bodies) {
+        double weight = gravity * static_cast<double>(scene.bodies[static_cast<size_t>(index)].mass);
+        least = std::min(least, weight);
+        all += weight;
+    }
+    low_ = static_cast<int>(std::lround(std::log10(std::max(least, 1e-3))));
+    // A weight that falls freely from horizontal pulls three times its weight at the bottom.
+    high_ = std::max(low_ + 1, static_cast<int>(std::ceil(std::log10(std::max(3 * all, 1e-2)))));
+}
+
+Colour TensionScale::ramp(float t) {
+    static const Colour stops[] = {from_srgb(0x2447C9), from_srgb(0x2FA4C7), from_srgb(0x7CC46B), from_srgb(0xF5C542),
+                                   from_srgb(0xEE6C2C), from_srgb(0xD01B2E)};
+    constexpr int kSpans = 5;
+    float at = std::clamp(t, 0.0f, 1.0f) * kSpans;
+    int span = std::min(static_cast<int>(at), kSpans - 1);
+    return mix(stops[span], stops[span + 1], at - static_cast<float>(span));
+}
+
+Colour TensionScale::colour(float force) const {
+    if (!(force > 0)) return ramp(0);
+    return ramp((std::log10(force) - static_cast<float>(low_)) / static_cast<float>(high_ - low_));
+}
+
+SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world, render::Renderer& renderer)
+    : scene_(scene), world_(world), scale_(scene) {
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        uint32_t mesh = render::kMeshBox;
+        if (scene.shapes[i].kind == ShapeKind::sphere) mesh = render::kMeshSphere;
+        if (scene.shapes[i].kind == ShapeKind::hull) {
+            uint32_t count = 0;
+            taut_shape_hull_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+            std::vector<taut_vec3> triangles(count);
+            scenes::check(taut_shape_hull_triangles(world.shapes[i], triangles.data(), count, &count),
+                          "reading a hull's triangles");
+            std::vector<Vec3> points;
+            for (const taut_vec3& p : triangles) points.push_back({p.x, p.y, p.z});
+            mesh = renderer.add_mesh(render::flat_mesh(points));
+        }
+        meshes_.push_back(mesh);
+    }
+    renderer.set_stage({vec(scene.stage.low), vec(scene.stage.high), 0});
+}
+
+render::Camera SceneView::camera() const {
+    return {vec(scene_.camera.eye), vec(scene_.camera.target),
+            scene_.camera.vertical_fov_deg * std::numbers::pi_v<float> / 180};
+}
+
+void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) const {
+    const scenes::Body& body = scene_.bodies[index];
+    taut_pose pose = world_.pose(index);
+    Instance instance;
+    instance.position = vec(pose.position);
+    instance.rotation = {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w};
+    instance.colour = colour;
+    instance.gloss = body.look == Look::steel ? 0.9f : 0.22f;
+    if (body.look == Look::wall) instance.pass = render::Pass::cutaway;
+    if (body.kind == TAUT_BODY_PARTICLE) {
+        float radius = body.look == Look::steel ? kCableWeightRadius : kPointRadius;
+        list.instances.push_back(ball(instance.position, radius, colour, instance.gloss));
+        return;
+    }
+    if (body.shape < 0) return;
+    const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(body.shape)];
+    instance.mesh = meshes_[static_cast<size_t>(body.shape)];
+    float r = shape.radius;
+    switch (shape.kind) {
+        case ShapeKind::plane: return;  // the renderer's ground
+        case ShapeKind::box:
+            instance.scale = {shape.half_extents.x, shape.half_extents.y, shape.half_extents.z};
+            break;
+        case ShapeKind::sphere: instance.scale = {r, r, r}; break;
+        case ShapeKind::hull: break;
+        case ShapeKind::capsule: {
+            Vec3 half = rotate(instance.rotation, {0, shape.half_length, 0});
+            list.instances.push_back(rod(instance.position - half, instance.position + half, r, colour));
+            list.instances.push_back(ball(instance.position - half, r, colour, instance.gloss));
+            list.instances.push_back(ball(instance.position + half, r, colour, instance.gloss));
+            return;
+        }
+    }
+    list.instances.push_back(instance);
+}
+
+void SceneView::add_bodies(render::DrawList& list, bool tension) const {
+    // A link shows the stronger of the forces at its ends.
+    std::vector<float> force(scene_.bodies.size(), 0.0f);
+    if (tension)
+        for (size_t i = 0; i < scene_.joints.size(); ++i)
+            for (int end : {scene_.joints[i].body_a, scene_.joints[i].body_b})
+                if (end != scenes::kWorld) {
+                    float& most = force[static_cast<size_t>(end)];
+                    most = std::max(most, force_on(world_.joints[i]));
+                }
+    for (size_t i = 0; i < scene_.bodies.size(); ++i) {
+        Look look = scene_.bodies[i].look;
+        if (look == Look::hidden || look == Look::ground) continue;
+        add_body(list, i, tension && look == Look::link ? scale_.colour(force[i]) : colour_of(look, i));
+    }
+    for (const scenes::Decoration& decoration : scene_.decorations) {
+        Instance instance;
+        instance.position = vec(decoration.position);
+        instance.scale = {decoration.half_extents.x, decoration.half_extents.y, decoration.half_extents.z};
+        instance.colour = kDecoration;
+        list.instances.push_back(instance);
+    }
+}
+
+float SceneView::thickness_at(const scenes::Joint& joint) const {
+    for (int end : {joint.body_a, joint.body_b}) {
+        if (end == scenes::kWorld || scene_.bodies[static_cast<size_t>(end)].look != Look::link) continue;
+        return scene_.shapes[static_cast<size_t>(scene_.bodies[static_cast<size_t>(end)].shape)].half_extents.y;
+    }
+    return kPointRadius;
+}
+
+void SceneView::add_joints(render::DrawList& list, bool tension) const {
+    for (size_t i = 0; i < scene_.joints.size(); ++i) {
+        taut_pos a{}, b{};
+        scenes::check(taut_joint_get_anchors(world_.joints[i], &a, &b), "reading a joint's anchors");
+        if (scene_.joints[i].kind == TAUT_JOINT_DISTANCE) {
+            Colour colour = tension ? scale_.colour(force_on(world_.joints[i])) : kLinkGrey;
+            list.instances.push_back(rod(vec(a), vec(b), kRodRadius, colour));
+        } else {
+            list.instances.push_back(ball(vec(b), 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));
+        }
+    }
+}
+
+void SceneView::add_contacts(render::DrawList& list) {
+    uint32_t count = 0;
+    taut_result result = taut_world_get_contacts(world_.world, contacts_.data(),
+                                                 static_cast<uint32_t>(contacts_.size()), &count);
+    if (result == TAUT_TOO_SMALL) {
+        contacts_.resize(count);
+        result = taut_world_get_contacts(world_.world, contacts_.data(), count, &count);
+    }
+    scenes::check(result, "reading the contacts");
+    for (uint32_t i = 0; i < count; ++i) {
+        const taut_contact& contact = contacts_[i];
+        Vec3 at = vec(contact.position), normal = {contact.normal.x, contact.normal.y, contact.normal.z};
+        Instance point = ball(at, kContactRadius, kContact, 0);
+        Instance needle = rod(at, at + normal * kNormalLength, 0.3f * kContactRadius, kNormal);
+        point.pass = needle.pass = render::Pass::overlay;
+        list.instances.push_back(point);
+        list.instances.push_back(needle);
+    }
+}
+
+}  // namespace demo

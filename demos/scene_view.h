@@ -1,0 +1,47 @@
+// Fills a draw list from a scene living in a Taut world.
+#pragma once
+
+#include <vector>
+
+#include "render/renderer.h"
+#include "scenes/taut_world.h"
+
+namespace demo {
+
+// Joint forces on a logarithmic scale from blue to red.
+class TensionScale {
+public:
+    explicit TensionScale(const scenes::Scene& scene);
+
+    render::Colour colour(float force) const;  // [N]
+    static render::Colour ramp(float t);       // t in [0, 1]
+    int low_decade() const { return low_; }
+    int high_decade() const { return high_; }
+
+private:
+    int low_ = 0, high_ = 5;  // powers of ten [N]
+};
+
+class SceneView {
+public:
+    // Uploads the hulls of the scene to the renderer and sets its stage.
+    SceneView(const scenes::Scene& scene, const scenes::TautWorld& world, render::Renderer& renderer);
+
+    render::Camera camera() const;
+    void add_bodies(render::DrawList& list, bool tension) const;
+    void add_joints(render::DrawList& list, bool tension) const;
+    void add_contacts(render::DrawList& list);
+    const TensionScale& tension_scale() const { return scale_; }
+
+private:
+    void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
+    float thickness_at(const scenes::Joint& joint) const;
+
+    const scenes::Scene& scene_;
+    const scenes::TautWorld& world_;
+    TensionScale scale_;
+    std::vector<uint32_t> meshes_;  // of each shape
+    std::vector<taut_contact> contacts_;
+};
+
+}  // namespace demo

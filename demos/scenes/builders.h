@@ -1,0 +1,25 @@
+// The build functions of all families; catalogue.cpp lists them. n and r are the numbers in the scene's name.
+#pragma once
+
+#include "catalogue.h"
+
+namespace scenes {
+
+Scene build_main(double n, double r, const Options& options);
+
+Scene build_boxes2000(double n, double r, const Options& options);
+Scene build_pyramid(double n, double r, const Options& options);
+Scene build_stack(double n, double r, const Options& options);
+Scene build_heavy_on_light(double n, double r, const Options& options);
+Scene build_deep_start(double n, double r, const Options& options);
+Scene build_mesh_drop(double n, double r, const Options& options);
+
+Scene build_chain10(double n, double r, const Options& options);
+Scene build_swing(double n, double r, const Options& options);
+Scene build_chain_over_edge(double n, double r, const Options& options);
+Scene build_wrecking_ball(double n, double r, const Options& options);
+
+Scene build_cable(double n, double r, const Options& options);
+Scene build_falling_cable(double n, double r, const Options& options);
+
+}  // namespace scenes

@@ -1,0 +1,94 @@
+#include "catalogue.h"
+
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+
+#include "builders.h"
+
+namespace scenes {
+
+namespace {
+
+constexpr double kLeastR = 1e-3, kMostR = 1e15;
+
+// Matches a name against a pattern and reads the numbers in place of N and R.
+bool match(const std::string& pattern, const std::string& name, double& n, double& r) {
+    size_t at = 0;
+    for (char c : pattern) {
+        if (c != 'N' && c != 'R') {
+            if (at >= name.size() || name[at++] != c) return false;
+            continue;
+        }
+        if (at >= name.size() || !std::isdigit(static_cast<unsigned char>(name[at]))) return false;
+        size_t end = at;
+        if (c == 'N') {
+            while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+            n = std::strtod(name.substr(at, end - at).c_str(), nullptr);
+        } else {
+            std::string rest = name.substr(at);
+            char* stop = nullptr;
+            r = std::strtod(rest.c_str(), &stop);
+            if (rest.find_first_of("xXpP") != std::string::npos) return false;
+            end = at + static_cast<size_t>(stop - rest.c_str());
+        }
+        at = end;
+    }
+    return at == name.size();
+}
+
+void check_range(const std::string& scene, const char* what, double value, double low, double high) {
+    if (value >= low && value <= high) return;
+    throw BadScene("scene '" + scene + "': " + what + " must lie between " + std::to_string(low) + " and " +
+                   std::to_string(high));
+}
+
+}  // namespace
+
+const std::vector<Family>& families() {
+    static const std::vector<Family> list = {
+        {"main", "main", "ten 1 kg links swing a 1000 kg ball into a brick wall", 240, false, build_main, 0},
+        {"boxes2000", "boxes2000", "2000 cubes dropped into a walled bin", 600, false, build_boxes2000, 0},
+        {"pyramidN", "pyramid30", "planar pyramid of cubes, N at the base", 600, false, build_pyramid, 200},
+        {"stackN", "stack20", "N cubes exactly on each other", 600, false, build_stack, 1000},
+        {"heavy_on_light_rR", "heavy_on_light_r1000", "R kg on a stack of ten 1 kg cubes", 600, false,
+         build_heavy_on_light, 0},
+        {"chain10_rR", "chain10_r1000", "ten 1 kg links and R kg, released from horizontal", 600, false, build_chain10,
+         0},
+        {"cableN_rR", "cable50_r1000", "10 m cable of N rods hung with R tonnes (Tournier 2015, table 1)", 1000, false,
+         build_cable, 2000},
+        {"falling_cableN", "falling_cable100", "cable of N rods, mass ratio 1:100, falls from horizontal", 500, false,
+         build_falling_cable, 2000},
+        {"chain_over_edge_rR", "chain_over_edge_r1000", "twenty 1 kg links on a box pulled over its edge by R kg", 600,
+         false, build_chain_over_edge, 0},
+        {"wrecking_ball", "wrecking_ball", "eight 1 kg links swing a 1000 kg ball into 50 cubes", 600, false,
+         build_wrecking_ball, 0},
+        {"deep_start", "deep_start", "a cube made 0.2 m inside the ground", 300, false, build_deep_start, 0},
+        {"swing_rR", "swing_r100", "ten 1 kg links and R kg swing freely from 30 degrees", 1800, false, build_swing, 0},
+        {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
+    };
+    return list;
+}
+
+Scene make_scene(const std::string& name, const Options& options) {
+    for (const Family& family : families()) {
+        double n = 1, r = 1;
+        if (!match(family.pattern, name, n, r)) continue;
+        if (family.largest_n > 0) check_range(name, "N", n, 1, family.largest_n);
+        check_range(name, "R", r, kLeastR, kMostR);
+        if (family.needs_mesh && options.mesh.empty())
+            throw BadScene("scene '" + name + "' needs a mesh: --mesh FILE.obj");
+        if (!family.needs_mesh && !options.mesh.empty())
+            throw BadScene("scene '" + name + "' takes no mesh; --mesh goes with mesh_drop");
+        Scene scene = family.build(n, r, options);
+        scene.name = name;
+        scene.description = family.description;
+        scene.steps = family.steps;
+        return scene;
+    }
+    std::string text = "no scene is called '" + name + "'; there are:";
+    for (const Family& family : families()) text += std::string(" ") + family.pattern;
+    throw BadScene(text + " (N: a count, R: a number)");
+}
+
+}  // namespace scenes

@@ -1,0 +1,32 @@
+// Every scene by name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace scenes {
+
+struct Options {
+    uint64_t seed = 0;  // above 0: a random start, the same for the same seed
+    std::string mesh;   // OBJ file of mesh_drop
+};
+
+// A family of scenes. In a pattern, N stands for a count and R for a mass, ratio or weight.
+struct Family {
+    const char* pattern;
+    const char* example;
+    const char* description;
+    uint32_t steps;
+    bool needs_mesh;
+    Scene (*build)(double n, double r, const Options& options);
+    double largest_n;
+};
+
+const std::vector<Family>& families();
+
+// Builds a scene. Throws BadScene (unknown name, number out of range) or BadFile.
+Scene make_scene(const std::string& name, const Options& options = {});
+
+}  // namespace scenes

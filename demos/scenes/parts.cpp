@@ -1,0 +1,148 @@
+#include "parts.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace scenes {
+
+namespace {
+
+constexpr int32_t kChainGroup = -1;  // links and weight of one chain don't collide with each other
+
+taut_pos plus(taut_pos p, double dx, double dy, double dz) { return {p.x + dx, p.y + dy, p.z + dz}; }
+
+taut_quat times(taut_quat a, taut_quat b) {
+    return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+            a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+// Turns the whole chain about its anchor in the x-y plane.
+void turn_chain(Scene& scene, const Chain& chain, double angle) {
+    double c = std::cos(angle), s = std::sin(angle);
+    for (int index : chain.bodies) {
+        Body& body = scene.bodies[index];
+        double x = body.position.x - chain.anchor.x, y = body.position.y - chain.anchor.y;
+        body.position = {chain.anchor.x + c * x - s * y, chain.anchor.y + s * x + c * y, body.position.z};
+        body.rotation = times(turn({0, 0, 1}, angle), body.rotation);
+    }
+}
+
+}  // namespace
+
+Scene empty_scene() {
+    Scene scene;
+    taut_world_def_init(&scene.world);
+    return scene;
+}
+
+int box_shape(Scene& scene, double half_x, double half_y, double half_z) {
+    Shape shape;
+    shape.kind = ShapeKind::box;
+    shape.half_extents = {static_cast<float>(half_x), static_cast<float>(half_y), static_cast<float>(half_z)};
+    return scene.add_shape(std::move(shape));
+}
+
+int cube_shape(Scene& scene, double side) { return box_shape(scene, side / 2, side / 2, side / 2); }
+
+int sphere_shape(Scene& scene, double radius) {
+    Shape shape;
+    shape.kind = ShapeKind::sphere;
+    shape.radius = static_cast<float>(radius);
+    return scene.add_shape(std::move(shape));
+}
+
+void add_ground(Scene& scene) {
+    Shape plane;
+    plane.kind = ShapeKind::plane;
+    Body ground;
+    ground.kind = TAUT_BODY_STATIC;
+    ground.shape = scene.add_shape(std::move(plane));
+    ground.look = Look::ground;
+    scene.add_body(ground);
+}
+
+void add_static_box(Scene& scene, taut_pos centre, double half_x, double half_y, double half_z, Look look) {
+    Body body;
+    body.kind = TAUT_BODY_STATIC;
+    body.shape = box_shape(scene, half_x, half_y, half_z);
+    body.position = centre;
+    body.look = look;
+    scene.add_body(body);
+}
+
+Body crate(int shape, taut_pos position, double mass, Look look) {
+    Body body;
+    body.shape = shape;
+    body.position = position;
+    body.mass = static_cast<float>(mass);
+    body.look = look;
+    return body;
+}
+
+void add_chain(Scene& scene, const ChainPlan& plan) {
+    Chain chain;
+    chain.anchor = plan.anchor;
+    chain.link_length = plan.link_length;
+    chain.length = plan.links * plan.link_length + plan.weight_reach;
+    double half = plan.link_length / 2, c = std::cos(plan.angle), s = std::sin(plan.angle);
+    int link_shape = box_shape(scene, half, plan.link_thickness / 2, plan.link_thickness / 2);
+    taut_pos end_of_last = plan.anchor;
+    int last = kWorld;
+    for (int i = 0; i <= plan.links; ++i) {
+        bool is_weight = i == plan.links;
+        double reach = is_weight ? plan.weight_reach : half;  // from the joint to the centre
+        double along = i * plan.link_length + reach;
+        Body body = crate(is_weight ? plan.weight_shape : link_shape, plus(plan.anchor, c * along, s * along, 0),
+                          is_weight ? plan.weight_mass : plan.link_mass, is_weight ? Look::steel : Look::link);
+        body.rotation = turn({0, 0, 1}, plan.angle);
+        body.group = kChainGroup;
+        Joint joint;
+        joint.body_a = last;
+        joint.body_b = scene.add_body(body);
+        joint.anchor_a = end_of_last;
+        joint.anchor_b = {-reach, 0, 0};
+        chain.joints.push_back(scene.add_joint(joint));
+        chain.bodies.push_back(joint.body_b);
+        chain.hang_depth.push_back(along);
+        last = joint.body_b;
+        end_of_last = {half, 0, 0};
+    }
+    scene.roles.chain = std::move(chain);
+}
+
+void perturb(Scene& scene, uint64_t seed, ChainStart start) {
+    if (seed == 0) return;
+    Random random(seed * 0x2545f4914f6cdd1du);
+    std::vector<bool> in_chain(scene.bodies.size(), false);
+    if (scene.roles.chain) {
+        const Chain& chain = *scene.roles.chain;
+        double angle = random.around_zero() * std::numbers::pi / 6;
+        double speed = std::pow(10.0, -3 + 2.5 * random.uniform());  // [m/s]
+        if (start == ChainStart::turned) turn_chain(scene, chain, angle);
+        for (int index : chain.bodies) {
+            taut_vec3 v = random.in_cube(speed), &old = scene.bodies[index].linear_velocity;
+            old = {old.x + v.x, old.y + v.y, old.z + v.z};
+            in_chain[index] = true;
+        }
+    }
+    for (size_t i = 0; i < scene.bodies.size(); ++i) {
+        Body& body = scene.bodies[i];
+        if (in_chain[i] || body.kind == TAUT_BODY_STATIC) continue;
+        taut_vec3 offset = random.in_cube(1e-3);  // [m]
+        body.position = plus(body.position, offset.x, std::fabs(offset.y), offset.z);
+        body.linear_velocity = random.in_cube(1e-2);   // [m/s]
+        body.angular_velocity = random.in_cube(1e-2);  // [rad/s]
+    }
+}
+
+void decorate_with_crane(Scene& scene, taut_pos anchor) {
+    constexpr double kBack = 3.0, kHalf = 0.16;  // [m]
+    double top = anchor.y + 2 * kHalf;
+    scene.decorations.push_back({{anchor.x, anchor.y + kHalf, anchor.z - kBack / 2 + 0.1},
+                                 {static_cast<float>(kHalf), static_cast<float>(kHalf), static_cast<float>(kBack / 2 + 0.2)}});
+    scene.decorations.push_back({{anchor.x, top / 2, anchor.z - kBack},
+                                 {static_cast<float>(1.3 * kHalf), static_cast<float>(top / 2), static_cast<float>(1.3 * kHalf)}});
+    scene.decorations.push_back({{anchor.x, 0.1, anchor.z - kBack}, {0.7f, 0.1f, 0.7f}});
+}
+
+}  // namespace scenes

@@ -1,0 +1,123 @@
+// A scene as plain data: built once, used by the demo, the tests and the benchmark, in any engine.
+// TautWorld (taut_world.h) brings it to life through Taut's C API; taut-bench can do so in Bullet as well.
+#pragma once
+
+#include <taut/taut.h>
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace scenes {
+
+constexpr int kWorld = -1;  // in place of a body's index
+
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
+
+struct Shape {
+    ShapeKind kind = ShapeKind::box;
+    taut_vec3 half_extents{};        // box [m]
+    taut_vec3 normal{0, 1, 0};       // plane
+    float radius = 0;                // sphere, capsule [m]
+    float half_length = 0;           // capsule, along y [m]
+    std::vector<taut_vec3> points;   // hull [m]
+    std::string source;              // where it came from, for messages ("cow.obj:12: group 'horn'")
+};
+
+// How a body looks; physics doesn't read it.
+enum class Look : uint8_t { hidden, crate, brick, steel, link, particle, stone, wall, ground };
+
+struct Body {
+    taut_body_kind kind = TAUT_BODY_DYNAMIC;
+    int shape = -1;  // index into Scene::shapes; none for particles
+    taut_pos position{};
+    taut_quat rotation{0, 0, 0, 1};
+    taut_vec3 linear_velocity{}, angular_velocity{};
+    float mass = 0;          // [kg], 0: from density
+    float density = 1000;    // [kg/m^3]
+    float friction = 0.5f;
+    int32_t group = 0;       // bodies of the same negative group don't collide
+    Look look = Look::crate;
+};
+
+struct Joint {
+    taut_joint_kind kind = TAUT_JOINT_BALL;
+    int body_a = kWorld, body_b = kWorld;
+    taut_pos anchor_a{}, anchor_b{};  // in each body's frame, in the world for kWorld
+    float length = 0;                 // of a distance joint [m]
+};
+
+// A chain or cable, from its held end to its weight.
+struct Chain {
+    std::vector<int> joints, bodies;  // in order; the last body is the weight
+    std::vector<double> hang_depth;   // depth of each body's centre below the anchor when all hangs straight [m]
+    taut_pos anchor{};
+    double link_length = 0;           // [m]
+    double length = 0;                // from the anchor to the weight's centre, straight [m]
+};
+
+struct Bounds {
+    taut_pos low{}, high{};
+};
+
+// What the figures of taut-bench and the tests are taken from.
+struct Roles {
+    std::vector<int> pile;          // bodies whose overlap and rest are measured
+    int top_body = -1;              // of a stack
+    std::optional<Chain> chain;
+    std::optional<Bounds> bin;      // centres outside count as escaped
+    bool swings = false;            // the chain swings freely: measure its period
+};
+
+struct Camera {
+    taut_pos eye{}, target{};
+    float vertical_fov_deg = 38;
+};
+
+// A box that is drawn and touches nothing.
+struct Decoration {
+    taut_pos position{};
+    taut_vec3 half_extents{};
+};
+
+struct Scene {
+    std::string name, description;
+    uint32_t steps = 600;
+    taut_world_def world{};  // initialised; hooks are left to the user
+    std::vector<Shape> shapes;
+    std::vector<Body> bodies;
+    std::vector<Joint> joints;
+    std::vector<Decoration> decorations;
+    Roles roles;
+    Camera camera;
+    Bounds stage{{-8, 0, -8}, {8, 8, 8}};  // where shadows fall
+
+    int add_shape(Shape shape) {
+        shapes.push_back(std::move(shape));
+        return static_cast<int>(shapes.size()) - 1;
+    }
+    int add_body(const Body& body) {
+        bodies.push_back(body);
+        return static_cast<int>(bodies.size()) - 1;
+    }
+    int add_joint(const Joint& joint) {
+        joints.push_back(joint);
+        return static_cast<int>(joints.size()) - 1;
+    }
+};
+
+// A name or parameter that no scene has; what() says what was expected.
+class BadScene : public std::invalid_argument {
+public:
+    using std::invalid_argument::invalid_argument;
+};
+
+// A file that cannot be used; what() names file and line.
+class BadFile : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace scenes

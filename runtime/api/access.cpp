@@ -1,0 +1,271 @@
+#include "api/access.h"
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+
+namespace taut {
+
+// ---------------------------------------------------------------- check
+
+Check& Check::pointer(const char* name, const void* value) {
+    if (*this && !value) result_ = refuse(TAUT_NULL_POINTER, "%s: %s is null", call_, name);
+    return *this;
+}
+
+Check& Check::struct_size(uint32_t value, size_t known) {
+    if (*this && value != known) {
+        result_ = refuse(TAUT_STRUCT_SIZE, "%s: struct_size is %u, expected %zu; call the _init function", call_, value,
+                         known);
+    }
+    return *this;
+}
+
+Check& Check::zero(const char* field, uint64_t value) {
+    if (*this && value != 0) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is %llu, expected 0", call_, field,
+                         static_cast<unsigned long long>(value));
+    }
+    return *this;
+}
+
+Check& Check::boolean(const char* field, uint32_t value) { return count(field, value, 0, 1); }
+
+Check& Check::count(const char* field, uint32_t value, uint32_t lo, uint32_t hi) {
+    if (*this && !(value >= lo && value <= hi)) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is %u, expected [%u, %u]", call_, field, value, lo, hi);
+    }
+    return *this;
+}
+
+template <class T>
+Check& Check::in_range(const char* field, const char* part, T value, Range range) {
+    const T lo = static_cast<T>(range.lo), hi = static_cast<T>(range.hi);
+    const bool inside = (range.open_below ? value > lo : value >= lo) && value <= hi;
+    if (*this && !inside) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is %.9g, expected %c%.6g, %.6g]", call_, field, part,
+                         static_cast<double>(value), range.open_below ? '(' : '[', range.lo, range.hi);
+    }
+    return *this;
+}
+
+Check& Check::number(const char* field, float value, Range range) { return in_range(field, "", value, range); }
+Check& Check::number(const char* field, double value, Range range) { return in_range(field, "", value, range); }
+
+Check& Check::zero_or(const char* field, float value, Range range) {
+    if (*this && value != 0 && !(value >= static_cast<float>(range.lo) && value <= static_cast<float>(range.hi))) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is %.9g, expected 0 or [%.6g, %.6g]", call_, field,
+                         static_cast<double>(value), range.lo, range.hi);
+    }
+    return *this;
+}
+
+Check& Check::vector(const char* field, const taut_vec3& value, Range range) {
+    return in_range(field, ".x", value.x, range)
+        .in_range(field, ".y", value.y, range)
+        .in_range(field, ".z", value.z, range);
+}
+
+Check& Check::vector(const char* field, const taut_pos& value, Range range) {
+    return in_range(field, ".x", value.x, range)
+        .in_range(field, ".y", value.y, range)
+        .in_range(field, ".z", value.z, range);
+}
+
+Check& Check::length(const char* field, double squared, Range range) {
+    if (*this && !(squared <= range.hi * range.hi)) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s has length %.9g, expected at most %.6g", call_, field,
+                         std::sqrt(squared), range.hi);
+    }
+    return *this;
+}
+
+Check& Check::bounded(const char* field, const taut_vec3& value, Range range) {
+    return vector(field, value, range).length(field, to_vec(value).squaredNorm(), range);
+}
+
+Check& Check::bounded(const char* field, const taut_pos& value, Range range) {
+    return vector(field, value, range).length(field, to_vec(value).squaredNorm(), range);
+}
+
+Check& Check::zero(const char* field, const taut_vec3& value, const char* why) {
+    if (*this && !(value.x == 0 && value.y == 0 && value.z == 0)) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is (%.9g, %.9g, %.9g), expected 0 %s", call_, field,
+                         static_cast<double>(value.x), static_cast<double>(value.y), static_cast<double>(value.z), why);
+    }
+    return *this;
+}
+
+Check& Check::rotation(const char* field, const taut_quat& value) {
+    constexpr Range component{-1 - kUnitTolerance, 1 + kUnitTolerance};
+    in_range(field, ".x", value.x, component).in_range(field, ".y", value.y, component);
+    in_range(field, ".z", value.z, component).in_range(field, ".w", value.w, component);
+    const double size = Quat(value.w, value.x, value.y, value.z).norm();
+    if (*this && !(std::abs(size - 1) <= kUnitTolerance)) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s has length %.9g, expected 1 within %g", call_, field, size,
+                         kUnitTolerance);
+    }
+    return *this;
+}
+
+Check& Check::require(bool condition, const char* text, taut_result code) {
+    if (*this && !condition) result_ = refuse(code, "%s: %s", call_, text);
+    return *this;
+}
+
+// ---------------------------------------------------------------- the table of worlds
+
+namespace {
+
+// A world's id is slot << 10 | generation; slot 0 is not used and generations are 1 to 1023, so an id is never 0.
+constexpr uint32_t kSlots = 1024, kMaxGeneration = 1023;
+constexpr uint32_t slot_of(uint32_t id) { return id >> 10; }
+constexpr uint32_t make_id(uint32_t slot, uint32_t generation) { return slot << 10 | generation; }
+
+// State of a slot in one word, so that finding and locking are one atomic step:
+// readers 16 bits | writer | taken (a world is being made, lives or is being destroyed) | live | generation from
+// bit 20.
+constexpr uint32_t kReaders = 0xffff, kWriter = 1u << 16, kTaken = 1u << 17, kLive = 1u << 18;
+constexpr uint32_t generation_of(uint32_t state) { return state >> 20; }
+constexpr uint32_t of_generation(uint32_t generation) { return generation << 20; }
+
+struct Slot {
+    std::atomic<uint32_t> state{0};
+    World* world = nullptr;  // written before live is set, read by who holds the slot
+};
+
+constinit std::array<Slot, kSlots> slots;
+// Where the search for a free slot begins: one after the last taken, so that a slot, and with it a generation, comes
+// again as late as possible. A stale handle meets its own id only after a million further worlds.
+constinit std::atomic<uint32_t> next_slot{1};
+
+bool lives(uint32_t state, uint32_t id) { return (state & kLive) && make_id(0, generation_of(state)) == (id & 0x3ff); }
+
+// Takes a free slot and gives it its next generation; 0 if there is none.
+uint32_t take_slot() {
+    const uint32_t first = next_slot.load(std::memory_order_relaxed);
+    for (uint32_t i = 0; i < kSlots - 1; ++i) {
+        const uint32_t slot = 1 + (first - 1 + i) % (kSlots - 1);
+        uint32_t state = slots[slot].state.load(std::memory_order_relaxed);
+        if (state & kTaken) continue;
+        const uint32_t generation = generation_of(state) % kMaxGeneration + 1;
+        if (slots[slot].state.compare_exchange_strong(state, kTaken | of_generation(generation),
+                                                      std::memory_order_acquire, std::memory_order_relaxed)) {
+            next_slot.store(1 + slot % (kSlots - 1), std::memory_order_relaxed);
+            return slot;
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+
+Hold::Hold(uint32_t world, Use use) noexcept : slot_(slot_of(world)), use_(use) {
+    Slot& slot = slots[slot_];
+    uint32_t state = slot.state.load(std::memory_order_relaxed);
+    for (;;) {
+        if (!lives(state, world)) {
+            refusal_ = TAUT_STALE_HANDLE;
+            return;
+        }
+        const bool busy = use == Use::write ? (state & (kWriter | kReaders)) != 0
+                                            : (state & kWriter) != 0 || (state & kReaders) == kReaders;
+        if (busy) {
+            refusal_ = TAUT_LOCKED;
+            return;
+        }
+        const uint32_t held = use == Use::write ? state | kWriter : state + 1;
+        if (slot.state.compare_exchange_weak(state, held, std::memory_order_acquire, std::memory_order_relaxed)) break;
+    }
+    world_ = slot.world;
+}
+
+Hold::~Hold() {
+    if (!world_) return;
+    if (use_ == Use::write)
+        slots[slot_].state.fetch_and(~kWriter, std::memory_order_release);
+    else
+        slots[slot_].state.fetch_sub(1, std::memory_order_release);
+}
+
+uint32_t create_world(const taut_world_def& checked_def) {
+    const uint32_t index = take_slot();
+    if (index == 0) return 0;
+    Slot& slot = slots[index];
+    const uint32_t taken = slot.state.load(std::memory_order_relaxed);
+    const uint32_t id = make_id(index, generation_of(taken));
+    Memory memory(checked_def.hooks);  // for the world's own bytes; its contents count theirs
+    void* room = nullptr;
+    try {
+        room = memory.allocate(sizeof(World), alignof(World));
+        slot.world = new (room) World(checked_def, id);
+    } catch (...) {
+        memory.release(room, sizeof(World), alignof(World));
+        // No handle has seen the generation: give it back.
+        const uint32_t before = generation_of(taken) - 1;
+        slot.state.store(of_generation(before), std::memory_order_release);
+        throw;
+    }
+    slot.state.store(taken | kLive, std::memory_order_release);
+    return id;
+}
+
+void destroy_world(Hold& hold) {
+    Slot& slot = slots[hold.slot_];
+    slot.state.fetch_and(~kLive, std::memory_order_relaxed);  // stale from here on, also for callbacks
+    const taut_hooks hooks = hold.world_->def.hooks;
+    hold.world_->~World();
+    Memory(hooks).release(hold.world_, sizeof(World), alignof(World));
+    slot.world = nullptr;
+    hold.world_ = nullptr;
+    slot.state.fetch_and(~(kWriter | kTaken), std::memory_order_release);
+}
+
+bool world_lives(uint32_t world) noexcept {
+    return lives(slots[slot_of(world)].state.load(std::memory_order_acquire), world);
+}
+
+// ---------------------------------------------------------------- find
+
+taut_result refuse_hold(const char* call, const char* what, taut_result refusal) {
+    if (refusal == TAUT_LOCKED) {
+        return refuse(TAUT_LOCKED, "%s: the world is inside a step, or another thread is using it", call);
+    }
+    return refuse(TAUT_STALE_HANDLE, "%s: %s is null, or its world is gone", call, what);
+}
+
+taut_result refuse_stale(const char* call, const char* what, uint64_t bits) {
+    if (bits == 0) return refuse(TAUT_STALE_HANDLE, "%s: %s is null", call, what);
+    return refuse(TAUT_STALE_HANDLE, "%s: %s is %#llx, which names nothing that lives", call, what,
+                  static_cast<unsigned long long>(bits));
+}
+
+namespace {
+
+template <class Handle>
+taut_result find(const char* call, const char* field, const World& world, Handle handle, uint32_t& index) {
+    HandleBits bits;
+    if (!unpack_handle(handle.bits, bits)) return refuse_stale(call, field, handle.bits);
+    if (bits.world != world.id && world_lives(bits.world)) {
+        return refuse(TAUT_FOREIGN_HANDLE, "%s: %s is %#llx, a %s of another world", call, field,
+                      static_cast<unsigned long long>(handle.bits), name_of(handle));
+    }
+    if (bits.world != world.id || !pool_of(world, handle).live(bits.index, bits.generation)) {
+        return refuse_stale(call, field, handle.bits);
+    }
+    index = bits.index;
+    return TAUT_OK;
+}
+
+}  // namespace
+
+taut_result find_body(const char* call, const char* field, const World& world, taut_body handle, uint32_t& node) {
+    return find(call, field, world, handle, node);
+}
+
+taut_result find_shape(const char* call, const char* field, const World& world, taut_shape handle, uint32_t& shape) {
+    return find(call, field, world, handle, shape);
+}
+
+}  // namespace taut

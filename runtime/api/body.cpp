@@ -1,0 +1,436 @@
+#include <taut/body.h>
+
+#include <algorithm>
+
+#include "api/access.h"
+#include "api/body_mass.h"
+
+using namespace taut;
+
+namespace {
+
+constexpr taut_body_kind kPublicKind[] = {TAUT_BODY_STATIC, TAUT_BODY_KINEMATIC, TAUT_BODY_DYNAMIC, TAUT_BODY_PARTICLE};
+constexpr NodeKind kNodeKind[] = {NodeKind::fixed, NodeKind::kinematic, NodeKind::dynamic};
+constexpr taut_filter kDefaultFilter{1, UINT64_MAX, 0, 0};
+constexpr taut_material kDefaultMaterial{0.5f, 0};
+
+// ---------------------------------------------------------------- check
+
+Check& check_material(Check& check, const char* friction, const char* restitution, const taut_material& material) {
+    return check.number(friction, material.friction, kFriction)
+        .number(restitution, material.restitution, kUnitInterval);
+}
+
+Check& check_inertia(Check& check, const taut_sym3& m) {
+    return check.number("inertia.xx", m.xx, kInertia)
+        .number("inertia.yy", m.yy, kInertia)
+        .number("inertia.zz", m.zz, kInertia)
+        .number("inertia.xy", m.xy, kInertia)
+        .number("inertia.xz", m.xz, kInertia)
+        .number("inertia.yz", m.yz, kInertia);
+}
+
+Check& check_def(Check& check, const taut_body_def& def) {
+    check.struct_size(def.struct_size, sizeof def)
+        .choice("kind", def.kind, TAUT_BODY_DYNAMIC)  // a particle has its own def
+        .bounded("position", def.position, kPosition)
+        .rotation("rotation", def.rotation)
+        .bounded("linear_velocity", def.linear_velocity, kSpeed)
+        .bounded("angular_velocity", def.angular_velocity, kSpeed);
+    if (check && def.kind == TAUT_BODY_STATIC) {
+        check.zero("linear_velocity", def.linear_velocity, "for a static body")
+            .zero("angular_velocity", def.angular_velocity, "for a static body");
+    }
+    check_material(check, "material.friction", "material.restitution", def.material)
+        .zero("filter.reserved", def.filter.reserved)
+        .number("density", def.density, kDensity)
+        .zero_or("mass", def.mass, kBodyMass)
+        .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
+    return check_inertia(check, def.inertia)
+        .number("gravity_scale", def.gravity_scale, kGravityScale)
+        .zero("reserved", def.reserved);
+}
+
+Check& check_pose(Check& check, const taut_pose& pose, const char* position, const char* rotation) {
+    return check.bounded(position, pose.position, kPosition)
+        .rotation(rotation, pose.rotation)
+        .zero("reserved[0]", pose.reserved[0])
+        .zero("reserved[1]", pose.reserved[1]);
+}
+
+// A node that forces and impulses move; angular: whether there is any moment, which a particle cannot take.
+Check& check_pushable(Check& check, NodeKind kind, bool angular) {
+    check.require(moves_by_forces(kind), "body is not dynamic: forces do not move it");
+    return check.require(kind != NodeKind::particle || !angular, "body is a particle, which takes no torque");
+}
+
+// ---------------------------------------------------------------- act
+
+// The shape's box at the node's pose, grown by the contact margin.
+collision::Box contact_box(const World& world, uint32_t node) {
+    const collision::Placement at{world.nodes.origin(node),
+                                  world.nodes.motion[node].q.toRotationMatrix().cast<float>()};
+    collision::Box box = collision::bounds(world.shapes.record[world.nodes.info[node].shape].shape, at);
+    box.lo.array() -= kContactMargin;
+    box.hi.array() += kContactMargin;
+    return box;
+}
+
+NodePose origin_pose(const World& world, uint32_t node) {
+    return {world.nodes.origin(node), world.nodes.motion[node].q};
+}
+
+taut_pose to_pose(const Vec3& position, const Quat& rotation) { return {to_pos(position), to_quat(rotation), {0, 0}}; }
+
+void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
+    motion.v = motion.slow_v = v;
+    motion.w = motion.slow_w = w;
+}
+
+taut_result add_node(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
+                     taut_body* out) {
+    Nodes& nodes = world.nodes;
+    if (!check.require(nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT)) return check.result();
+    const uint32_t node = nodes.add();
+    nodes.info[node] = info;
+    nodes.motion[node] = motion;
+    nodes.mass[node] = mass;
+    nodes.before[node] = origin_pose(world, node);
+    if (info.shape != kNone) {
+        try {
+            world.broadphase.add(node, contact_box(world, node), info.kind != NodeKind::fixed);
+        } catch (...) {
+            nodes.remove(node);
+            throw;
+        }
+        ++world.shapes.record[info.shape].users;
+    }
+    *out = world.body_handle(node);
+    return TAUT_OK;
+}
+
+void remove_node(World& world, uint32_t node) {
+    // What may fail comes first.
+    reserve_ended(world.pairs, node);
+    const uint32_t shape = world.nodes.info[node].shape;
+    if (shape != kNone) {
+        world.broadphase.remove(node);
+        --world.shapes.record[shape].users;
+    }
+    forget_pairs_of(world.pairs, world.nodes, node);
+    for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
+        if (!world.joints.ids.live(joint)) continue;
+        const Joint& record = world.joints.record[joint];
+        if (record.node[0] == node || record.node[1] == node) world.joints.remove(joint);
+    }
+    world.nodes.remove(node);
+}
+
+// Rotation vector of q, at most pi long [rad]. By Newton's iteration on rotation_from_vector, whose bits no C
+// library decides: the remainder turns about the same axis by an angle e, and 2 sin(e/2) of it is taken off.
+Vec3 rotation_vector(const Quat& q) {
+    Vec3 theta = Vec3::Zero();
+    for (int i = 0; i < 6; ++i) {
+        const Quat left = q * rotation_from_vector(theta).conjugate();
+        theta += (left.w() < 0 ? -2.0 : 2.0) * left.vec();
+    }
+    return theta;
+}
+
+// Adds an impulse [N s] and an angular impulse [N m s] about the centre of mass.
+taut_result push(Check& check, World& world, uint32_t node, const Vec3& impulse, const Vec3& angular_impulse) {
+    NodeMotion& motion = world.nodes.motion[node];
+    const NodeMass& mass = world.nodes.mass[node];
+    const Vec3 v = motion.v + mass.inv_mass * impulse;
+    const Vec3 w = motion.w + motion.q * (mass.inv_inertia.matrix() * (motion.q.conjugate() * angular_impulse));
+    // A body beyond the limit may still be slowed.
+    const auto within = [](double speed, double before) { return speed <= std::max(kSpeed.hi, before); };
+    check.require(within(v.norm(), motion.v.norm()), "impulse gives a speed beyond 1e4 m/s");
+    check.require(within(w.norm(), motion.w.norm()), "impulse gives an angular speed beyond 1e4 rad/s");
+    if (!check) return check.result();
+    motion.v = v;
+    motion.w = w;
+    return TAUT_OK;
+}
+
+}  // namespace
+
+void taut_body_def_init(taut_body_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->kind = TAUT_BODY_DYNAMIC;
+    def->rotation = {0, 0, 0, 1};
+    def->material = kDefaultMaterial;
+    def->filter = kDefaultFilter;
+    def->density = 1000;
+    def->gravity_scale = 1;
+}
+
+void taut_particle_def_init(taut_particle_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->mass = 1;
+    def->gravity_scale = 1;
+}
+
+taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, taut_body* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    if (!check_def(check, *def)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        NodeInfo info{kNodeKind[def->kind], kNone, def->material, def->filter, def->user_data};
+        if (def->shape.bits != 0) {
+            const taut_result found = find_shape(check.call(), "shape", world, def->shape, info.shape);
+            if (found != TAUT_OK) return found;
+        }
+        const bool has_shape = info.shape != kNone;
+        NodeMass mass;
+        mass.gravity_scale = def->gravity_scale;
+        if (info.kind == NodeKind::dynamic) {
+            set_body_mass(check, *def, has_shape ? &world.shapes.record[info.shape].shape : nullptr, mass);
+            if (!check) return check.result();
+        }
+        NodeMotion motion;
+        motion.q = to_quat(def->rotation);
+        motion.x = to_vec(def->position) + motion.q * mass.centre;
+        set_velocity(motion, to_vec(def->linear_velocity), to_vec(def->angular_velocity));
+        return add_node(check, world, info, motion, mass, out);
+    });
+}
+
+taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* def, taut_body* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    check.struct_size(def->struct_size, sizeof *def)
+        .number("mass", def->mass, kParticleMass)
+        .bounded("position", def->position, kPosition)
+        .bounded("velocity", def->velocity, kSpeed)
+        .number("gravity_scale", def->gravity_scale, kGravityScale);
+    if (!check) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        NodeMass mass;
+        mass.mass = def->mass;
+        mass.inv_mass = 1 / mass.mass;
+        mass.gravity_scale = def->gravity_scale;
+        mass.isotropic = true;
+        NodeMotion motion;
+        motion.x = to_vec(def->position);
+        set_velocity(motion, to_vec(def->velocity), Vec3::Zero());
+        const NodeInfo info{NodeKind::particle, kNone, kDefaultMaterial, kDefaultFilter, def->user_data};
+        return add_node(check, world, info, motion, mass, out);
+    });
+}
+
+taut_result taut_body_remove(taut_body handle) {
+    return with(__func__, handle, Use::write, [](World& world, uint32_t node) {
+        remove_node(world, node);
+        return TAUT_OK;
+    });
+}
+
+int32_t taut_body_is_valid(taut_body handle) { return is_valid(handle); }
+
+taut_result taut_body_get_kind(taut_body handle, taut_body_kind* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = kPublicKind[static_cast<int>(world.nodes.info[node].kind)];
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_user_data(taut_body handle, uint64_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = world.nodes.info[node].user_data;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_user_data(taut_body handle, uint64_t value) {
+    return with(__func__, handle, Use::write, [&](World& world, uint32_t node) {
+        world.nodes.info[node].user_data = value;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_mass(taut_body handle, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia) {
+    Check check(__func__);
+    check.pointer("mass", mass).pointer("centre_of_mass", centre_of_mass).pointer("inertia", inertia);
+    if (!check) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        const NodeMass& held = world.nodes.mass[node];
+        const bool moves = moves_by_forces(world.nodes.info[node].kind);  // a body in quarantine keeps its mass unseen
+        *mass = moves ? static_cast<float>(held.mass) : 0.0f;
+        *centre_of_mass = to_vec3(held.centre);
+        *inertia = moves ? to_sym3(held.inertia) : taut_sym3{};
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_material(taut_body handle, taut_material* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = world.nodes.info[node].material;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_material(taut_body handle, const taut_material* material) {
+    Check check(__func__);
+    if (!check.pointer("material", material)) return check.result();
+    if (!check_material(check, "friction", "restitution", *material)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        world.nodes.info[node].material = *material;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_pose(taut_body handle, taut_pose* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = to_pose(world.nodes.origin(node), world.nodes.motion[node].q);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
+    Check check(__func__);
+    if (!check.pointer("pose", pose)) return check.result();
+    if (!check_pose(check, *pose, "position", "rotation")) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        NodeMotion& motion = world.nodes.motion[node];
+        const NodeInfo& info = world.nodes.info[node];
+        const NodeMotion old = motion;
+        if (info.kind != NodeKind::particle) motion.q = to_quat(pose->rotation);
+        motion.x = to_vec(pose->position) + motion.q * world.nodes.mass[node].centre;
+        set_velocity(motion, motion.v, motion.w);
+        if (info.shape != kNone) {
+            try {
+                world.broadphase.update(node, contact_box(world, node), Vec3f::Zero());
+            } catch (...) {
+                motion = old;
+                throw;
+            }
+        }
+        world.nodes.before[node] = origin_pose(world, node);  // no streak while rendering between the two
+        for (Pair& pair : world.pairs.list) {
+            if (pair.a() == node || pair.b() == node)
+                std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
+        }
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_render_pose(taut_body handle, taut_pose* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        const NodePose before = world.nodes.before[node], now = origin_pose(world, node);
+        const double t = std::clamp(world.accumulator / world.def.time_step, 0.0, 1.0);
+        const Vec3 position = before.position + t * (now.position - before.position);
+        // Linear and normalised, the short way round.
+        const double sign = before.rotation.dot(now.rotation) < 0 ? -1 : 1;
+        Quat rotation;
+        rotation.coeffs() = (1 - t) * before.rotation.coeffs() + sign * t * now.rotation.coeffs();
+        *out = to_pose(position, rotation.normalized());
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_velocity(taut_body handle, taut_vec3* linear, taut_vec3* angular) {
+    return with(__func__, handle, Use::read, [&](const World& world, uint32_t node) {
+        if (linear) *linear = to_vec3(world.nodes.motion[node].v);
+        if (angular) *angular = to_vec3(world.nodes.motion[node].w);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3 angular) {
+    Check check(__func__);
+    if (!check.bounded("linear", linear, kSpeed).bounded("angular", angular, kSpeed)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        const NodeKind kind = world.nodes.info[node].kind;
+        check.require(kind != NodeKind::fixed, "body is static: it has no velocity");
+        if (kind == NodeKind::particle) check.zero("angular", angular, "for a particle");
+        if (!check) return check.result();
+        set_velocity(world.nodes.motion[node], to_vec(linear), to_vec(angular));
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) {
+    Check check(__func__);
+    if (!check.pointer("target", target)) return check.result();
+    if (!check_pose(check, *target, "target.position", "target.rotation")) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        if (!check.require(world.nodes.info[node].kind == NodeKind::kinematic, "body is not kinematic")) {
+            return check.result();
+        }
+        NodeMotion& motion = world.nodes.motion[node];
+        const double dt = world.def.time_step;
+        const Quat q = to_quat(target->rotation);
+        const Vec3 v = (to_vec(target->position) + q * world.nodes.mass[node].centre - motion.x) / dt;
+        const Vec3 w = rotation_vector(q * motion.q.conjugate()) / dt;
+        check.require(v.norm() <= kSpeed.hi, "target.position asks for a speed beyond 1e4 m/s");
+        check.require(w.norm() <= kSpeed.hi, "target.rotation asks for an angular speed beyond 1e4 rad/s");
+        if (!check) return check.result();
+        set_velocity(motion, v, w);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_apply_force(taut_body handle, taut_vec3 force, taut_vec3 torque) {
+    Check check(__func__);
+    if (!check.vector("force", force, kForce).vector("torque", torque, kForce)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        const Vec3 moment = to_vec(torque);
+        if (!check_pushable(check, world.nodes.info[node].kind, !moment.isZero(0))) return check.result();
+        world.nodes.load[node].force += to_vec(force);
+        world.nodes.load[node].torque += moment;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_apply_force_at(taut_body handle, taut_vec3 force, taut_pos point) {
+    Check check(__func__);
+    if (!check.vector("force", force, kForce).bounded("point", point, kPosition)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        const NodeKind kind = world.nodes.info[node].kind;
+        if (!check_pushable(check, kind, false)) return check.result();
+        NodeLoad& load = world.nodes.load[node];
+        load.force += to_vec(force);
+        // A particle is where it is: the point does not matter.
+        if (kind != NodeKind::particle) {
+            load.torque += (to_vec(point) - world.nodes.motion[node].x).cross(to_vec(force));
+        }
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_apply_impulse(taut_body handle, taut_vec3 impulse, taut_vec3 angular_impulse) {
+    Check check(__func__);
+    check.vector("impulse", impulse, kForce).vector("angular_impulse", angular_impulse, kForce);
+    if (!check) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        const Vec3 moment = to_vec(angular_impulse);
+        if (!check_pushable(check, world.nodes.info[node].kind, !moment.isZero(0))) return check.result();
+        return push(check, world, node, to_vec(impulse), moment);
+    });
+}
+
+taut_result taut_body_apply_impulse_at(taut_body handle, taut_vec3 impulse, taut_pos point) {
+    Check check(__func__);
+    if (!check.vector("impulse", impulse, kForce).bounded("point", point, kPosition)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        if (!check_pushable(check, world.nodes.info[node].kind, false)) return check.result();
+        // A particle's inverse inertia is zero: the point does not matter.
+        const Vec3 arm = to_vec(point) - world.nodes.motion[node].x;
+        return push(check, world, node, to_vec(impulse), arm.cross(to_vec(impulse)));
+    });
+}

@@ -1,0 +1,53 @@
+#include <taut/event.h>
+
+#include <cmath>
+
+#include "api/access.h"
+
+using namespace taut;
+
+taut_result taut_world_get_events(taut_world handle, taut_events* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        const auto size = [](const auto& array) { return static_cast<uint32_t>(array.size()); };
+        *out = {world.contact_begin.data(), world.contact_end.data(), world.moved.data(), world.quarantined.data(),
+                size(world.contact_begin),  size(world.contact_end),  size(world.moved),  size(world.quarantined)};
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        uint32_t needed = 0;
+        for (const Pair& pair : world.pairs.list) {
+            if (pair.touching) needed += static_cast<uint32_t>(pair.manifold.count);
+        }
+        if (needed > capacity) {
+            *count = needed;
+            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
+        }
+        if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
+        *count = needed;
+        for (const Pair& pair : world.pairs.list) {
+            if (!pair.touching) continue;
+            const taut_body a = world.body_handle(pair.a()), b = world.body_handle(pair.b());
+            const Vec3 origin = world.nodes.origin(pair.a());
+            const Vec3f& normal = pair.manifold.normal;
+            for (int i = 0; i < pair.manifold.count; ++i) {
+                const collision::ContactPoint& point = pair.manifold.points[i];
+                const Impulse& impulse = pair.impulse[i];
+                *contacts++ = {a,
+                               b,
+                               to_pos(origin + point.position.cast<double>()),
+                               {normal.x(), normal.y(), normal.z()},
+                               point.separation,
+                               impulse.normal,
+                               std::hypot(impulse.tangent1, impulse.tangent2)};
+            }
+        }
+        return TAUT_OK;
+    });
+}

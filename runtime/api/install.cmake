@@ -1,0 +1,38 @@
+# Installs libraries, headers, the package for CMake and the one for pkg-config. All of it can be moved as a whole.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
+set(here ${PROJECT_SOURCE_DIR}/runtime/api)
+
+install(TARGETS taut EXPORT tautTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS taut_static EXPORT tautStaticTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.h")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${package_dir})
+install(EXPORT tautStaticTargets NAMESPACE taut:: DESTINATION ${package_dir})
+configure_package_config_file(${here}/tautConfig.cmake.in ${PROJECT_BINARY_DIR}/tautConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+# Before 1.0 a new minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/tautConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/tautConfig.cmake ${PROJECT_BINARY_DIR}/tautConfigVersion.cmake
+              ${here}/tautDependencies.cmake
+        DESTINATION ${package_dir})
+
+# Directories relative to the place of taut.pc, unless the installer gave absolute ones.
+cmake_path(SET pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${pc_dir} OUTPUT_VARIABLE prefix_from_pc)
+set(TAUT_PC_PREFIX "\${pcfiledir}/${prefix_from_pc}")
+foreach(kind IN ITEMS LIBDIR INCLUDEDIR)
+    cmake_path(IS_ABSOLUTE CMAKE_INSTALL_${kind} absolute)
+    if(absolute)
+        set(TAUT_PC_${kind} ${CMAKE_INSTALL_${kind}})
+        set(TAUT_PC_PREFIX ${CMAKE_INSTALL_PREFIX})
+    else()
+        set(TAUT_PC_${kind} "\${prefix}/${CMAKE_INSTALL_${kind}}")
+    endif()
+endforeach()
+configure_file(${here}/taut.pc.in ${PROJECT_BINARY_DIR}/taut.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/taut.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,164 @@
+#include <taut/world.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/access.h"
+
+using namespace taut;
+
+namespace {
+
+// Share of a step by which advance may be early: a host that adds 1.0 / 60 to a step of 1 / 60 in single precision
+// gets a step each frame.
+constexpr double kEarly = 1e-3;
+
+Check& check_hooks(Check& check, const taut_hooks& hooks) {
+    check.require(!hooks.allocate == !hooks.free,
+                  "hooks.allocate and hooks.free: one is null, expected both or neither");
+    check.require(!hooks.enqueue_task == !hooks.finish_task,
+                  "hooks.enqueue_task and hooks.finish_task: one is null, expected both or neither");
+    if (!hooks.enqueue_task) check.zero("hooks.worker_count", hooks.worker_count);
+    return check.zero("hooks.reserved", hooks.reserved);
+}
+
+Check& check_def(Check& check, const taut_world_def& def) {
+    check.struct_size(def.struct_size, sizeof def)
+        .choice("solver", def.solver, TAUT_SOLVER_ACCELERATED_JACOBI)
+        .vector("gravity", def.gravity, kGravity)
+        .number("time_step", def.time_step, kTimeStep)
+        .count("substeps", def.substeps, 1, 64)
+        .boolean("fixed_substeps", def.fixed_substeps)
+        .count("sweeps", def.sweeps, 0, 1000)
+        .boolean("geometric_stiffness", def.geometric_stiffness)
+        .number("velocity_filter", def.velocity_filter, kUnitInterval)
+        .count("max_catch_up", def.max_catch_up, 1, 1000)
+        .zero("reserved", def.reserved);
+    return check_hooks(check, def.hooks);
+}
+
+}  // namespace
+
+void taut_world_def_init(taut_world_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->solver = TAUT_SOLVER_BLOCK_LDLT;
+    def->gravity = {0, -9.81f, 0};
+    def->time_step = 1.0f / 60;
+    def->substeps = 4;
+    def->sweeps = 0;
+    def->geometric_stiffness = 1;
+    def->velocity_filter = 0.25f;
+    def->max_catch_up = 4;
+}
+
+taut_result taut_world_create(const taut_world_def* def, taut_world* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    if (!check_def(check, *def)) return check.result();
+    return contain(check.call(), [&] {
+        if (!collision::precision_matches()) {
+            return refuse(TAUT_UNSUPPORTED, "%s: the Bullet collision library linked is not of single precision",
+                          check.call());
+        }
+        const uint32_t id = create_world(*def);
+        if (id == 0) return refuse(TAUT_LIMIT, "%s: 1023 worlds live already", check.call());
+        *out = {id};
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_destroy(taut_world handle) {
+    const char* call = __func__;
+    return contain(call, [&] {
+        Hold hold(world_of(handle), Use::write);
+        if (!hold.world()) return refuse_hold(call, "world", hold.refusal());
+        destroy_world(hold);
+        return TAUT_OK;
+    });
+}
+
+int32_t taut_world_is_valid(taut_world handle) { return world_lives(world_of(handle)) ? 1 : 0; }
+
+taut_result taut_world_step(taut_world handle) {
+    return with_world(__func__, handle, Use::write, [](World& world) {
+        step(world);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* out) {
+    Check check(__func__);
+    if (!check.number("seconds", seconds, kAdvance)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const double dt = world.def.time_step, before = world.accumulator;
+        double due = std::floor((before + seconds) / dt + kEarly);
+        const double dropped = std::max(0.0, due - world.def.max_catch_up);
+        due -= dropped;
+        world.accumulator = before + seconds - dropped * dt;
+        uint32_t steps = 0;
+        for (; steps < due; ++steps) {
+            // A failed first step fails the call, which then has changed nothing. A later one only ends it: the time
+            // left stays in the accumulator, and the next call meets the failure.
+            try {
+                step(world);
+            } catch (...) {
+                if (steps > 0) break;
+                world.accumulator = before;
+                throw;
+            }
+            world.accumulator -= dt;
+        }
+        if (out) {
+            const float fraction = static_cast<float>(world.accumulator / dt);
+            *out = {steps, std::clamp(fraction, 0.0f, std::nextafter(1.0f, 0.0f)), dropped * dt};
+        }
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_gravity(taut_world handle, taut_vec3* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        *out = world.def.gravity;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_gravity(taut_world handle, taut_vec3 gravity) {
+    Check check(__func__);
+    if (!check.vector("gravity", gravity, kGravity)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        world.def.gravity = gravity;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_counts(taut_world handle, uint32_t* bodies, uint32_t* shapes, uint32_t* joints) {
+    return with_world(__func__, handle, Use::read, [&](const World& world) {
+        if (bodies) *bodies = world.nodes.ids.count();
+        if (shapes) *shapes = world.shapes.ids.count();
+        if (joints) *joints = world.joints.ids.count();
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_bytes(taut_world handle, uint64_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        *out = held_bytes(world);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_state_hash(taut_world handle, uint64_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        *out = state_hash(world);
+        return TAUT_OK;
+    });
+}

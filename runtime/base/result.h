@@ -1,0 +1,13 @@
+// The text of the last refused call, one a thread.
+#pragma once
+
+#include <taut/base.h>
+
+namespace taut {
+
+// Sets the calling thread's text (printf format, cut at 511 bytes) and returns the code.
+[[gnu::format(printf, 2, 3)]] taut_result refuse(taut_result code, const char* format, ...) noexcept;
+
+const char* last_error() noexcept;
+
+}  // namespace taut

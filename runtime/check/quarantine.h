@@ -1,0 +1,25 @@
+// Containment: a node whose motion is no longer finite is put back to its last good pose and never moves again;
+// the rest of the world goes on.
+#pragma once
+
+#include "state/joints.h"
+#include "state/nodes.h"
+#include "state/pairs.h"
+
+namespace taut {
+
+// Speeds beyond this are an error, not motion [m/s, rad/s].
+constexpr double kMaxSpeed = 1e6;
+
+inline bool sane(const NodeMotion& m) {
+    return m.x.allFinite() && m.q.coeffs().allFinite() && m.v.squaredNorm() <= kMaxSpeed * kMaxSpeed &&
+           m.w.squaredNorm() <= kMaxSpeed * kMaxSpeed;
+}
+
+// Freezes the insane nodes of a list and appends their numbers to frozen.
+void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen);
+
+// Carried impulses and forces that are not finite become zero.
+void drop_bad_impulses(Pairs& pairs, Joints& joints);
+
+}  // namespace taut

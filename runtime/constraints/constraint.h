@@ -1,0 +1,65 @@
+// The contract between constraints and everything that solves them.
+//
+// A constraint type answers, for one instance and at any poses a solver asks about:
+//   C(x)        error, strain or gap            [m, rad or 1]     rows
+//   J = dC/dx   Jacobian                        [1 or m]          nodes x rows x 6
+//   K = -dJ^T/dx lambda   geometric stiffness   [N/m .. N m]      (6 nodes) x (6 nodes)
+// and knows no solver. Adding one is one file and one line in list.cpp. Coordinates of a node are its
+// translation and a rotation vector on the left (world axes), v and w in rates; a particle uses the first
+// three. lambda is a force: J^T lambda [N, N m] acts on the nodes (Tournier et al. 2015, eq. 7 and 21).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "base/math.h"
+
+namespace taut {
+
+constexpr int kMaxRows = 6;
+constexpr int kMaxNodes = 4;
+constexpr int kDof = 6;  // columns of J a node; a particle leaves the last three zero
+
+// Where a node is: centre of mass and rotation. A particle and the world have R = I; the world has x = 0.
+struct Pose {
+    Vec3 x = Vec3::Zero();
+    Mat3 R = Mat3::Identity();
+};
+
+// Which part of the geometric stiffness to return.
+enum class Curvature {
+    raw,       // exact -dJ^T/dx lambda; not symmetric for rotations (Tournier et al. 2015, eq. 22)
+    positive,  // its symmetric positive semi-definite part, in closed form
+};
+
+// What lambda may be.
+enum class Bound : uint8_t {
+    free,      // equality: any lambda
+    cone,      // row 0 >= 0, rows 1 and 2 within friction * row 0
+};
+
+struct ConstraintType {
+    const char* name;
+    int rows;   // 1, 2, 3 or 6
+    int nodes;  // 1 to 4
+    size_t data_size;
+    Bound bound;
+    bool couples_nodes;  // K has blocks between different nodes, beside the diagonal ones
+
+    // error: rows; jacobian: [nodes][rows][6], may be null when only the error is asked for.
+    void (*evaluate)(const void* data, const Pose* x, double* error, double* jacobian);
+    // k: [6 nodes][6 nodes], row-major, overwritten.
+    void (*stiffness)(const void* data, const Pose* x, const double* lambda, Curvature part, double* k);
+    // An instance with random but valid data and poses around it, for the tests that loop over the list.
+    void (*sample)(uint64_t seed, void* data, Pose* x);
+};
+
+// Every type there is; tests, hash and assembly loop over it.
+std::span<const ConstraintType* const> constraint_types();
+
+extern const ConstraintType kBall;
+extern const ConstraintType kDistance;
+extern const ConstraintType kContact;
+
+}  // namespace taut

@@ -1,0 +1,11 @@
+// Run-time choice of the contact sweep's build.
+#include "system/contact_lanes.h"
+
+namespace taut {
+
+const ContactKernels& contact_kernels() {
+    static const bool wide = __builtin_cpu_supports("avx2");
+    return wide ? kContactKernelsAvx2 : kContactKernelsSse2;
+}
+
+}  // namespace taut

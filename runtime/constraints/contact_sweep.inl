@@ -1,0 +1,227 @@
+// The fused contact sweep, a template over the lanes (simd/lanes.h). Included by one file for each build.
+//
+// Soft normal row (frequency f, damping ratio z, om = 2 pi f): compliance k_n / a2, a1 = 2 z + h om, a2 = h om a1:
+//   dp = -mass_scale/k_n (vn + bias) - impulse_scale p,  p >= 0
+// Friction on the circular cone: q = p_t - K^-1 v_t; if |q| > mu p_n the step is isotropic, q = p_t - v_t / k_max,
+// which opposes the slip, then projected on the circle.
+#pragma once
+
+#include "simd/lanes.h"
+#include "system/contact_lanes.h"
+
+namespace taut {
+
+template <class F>
+struct Vec3Lanes {
+    F x, y, z;
+    friend Vec3Lanes operator+(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    friend Vec3Lanes operator*(const F& s, const Vec3Lanes& a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+template <class F>
+struct ContactSweep {
+    using V = Vec3Lanes<F>;
+
+    static F dot(const V& a, const V& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    static V cross(const V& a, const V& b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+    static V load(const float (&p)[3][kLanes]) { return {F::load(p[0]), F::load(p[1]), F::load(p[2])}; }
+
+    // One side of a lane group: velocities and inverse masses of eight nodes.
+    struct Side {
+        F velocity[8];  // v xyz, pad, w xyz, pad
+        F inv_mass, xx, yy, zz, xy, xz, yz;
+
+        void gather(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepMass* masses) {
+            const float* row[kLanes];
+            F mass[8];
+            for (int i = 0; i < kLanes; ++i) row[i] = &masses[node[i]].inv_mass;
+            F::transpose(row, mass);
+            inv_mass = mass[0];
+            xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
+            for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
+            F::transpose(row, velocity);
+        }
+        void scatter(const uint32_t node[kLanes], SweepVelocity* velocities) const {
+            float* row[kLanes];
+            for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
+            F::transpose_back(velocity, row);
+        }
+        V at(const V& r) const {  // v + w x r
+            return V{velocity[0], velocity[1], velocity[2]} + cross(V{velocity[4], velocity[5], velocity[6]}, r);
+        }
+        void add(const V& p, const V& r) {
+            velocity[0] = velocity[0] + inv_mass * p.x;
+            velocity[1] = velocity[1] + inv_mass * p.y;
+            velocity[2] = velocity[2] + inv_mass * p.z;
+            const V l = cross(r, p);
+            velocity[4] = velocity[4] + (xx * l.x + xy * l.y + xz * l.z);
+            velocity[5] = velocity[5] + (xy * l.x + yy * l.y + yz * l.z);
+            velocity[6] = velocity[6] + (xz * l.x + yz * l.y + zz * l.z);
+        }
+    };
+
+    struct Frame {  // of a lane group
+        V n, t1, t2;
+        F friction;
+        explicit Frame(const LaneGroup& g)
+            : n(ContactSweep::load(g.normal)), t1(ContactSweep::load(g.tangent)), t2(cross(n, t1)), friction(F::load(g.friction)) {}
+    };
+
+    struct ShiftLanes {
+        V dx, q;
+        F w;
+        ShiftLanes(const uint32_t node[kLanes], const SweepShift* shifts) {
+            const float* row[kLanes];
+            F s[8];
+            for (int i = 0; i < kLanes; ++i) row[i] = shifts[node[i]].dx;
+            F::transpose(row, s);
+            dx = {s[0], s[1], s[2]};
+            q = {s[4], s[5], s[6]};
+            w = s[7];
+        }
+        V motion(const V& r) const {  // of the point at r: dx + (R r - r) = dx + 2 (w q x r + q x (q x r))
+            const V t = cross(q, r), d = w * t + cross(q, t);
+            return dx + (d + d);
+        }
+    };
+
+    static void normal_row(LanePoint& p, const V& n, const V& ra, const V& rb, Side& a, Side& b, const F& bias,
+                           const F& mass_scale, const F& impulse_scale) {
+        const F zero = F::all(0);
+        const F vn = dot(b.at(rb) - a.at(ra), n);
+        const F old = F::load(p.impulse[0]);
+        const F step = zero - mass_scale * F::load(p.normal_mass) * (vn + bias) - impulse_scale * old;
+        const F next = F::max(old + step, zero);
+        next.store(p.impulse[0]);
+        F::max(next, F::load(p.peak)).store(p.peak);
+        const V push = (next - old) * n;
+        b.add(push, rb);
+        a.add(zero_minus(push), ra);
+    }
+
+    static V zero_minus(const V& v) {
+        const F zero = F::all(0);
+        return {zero - v.x, zero - v.y, zero - v.z};
+    }
+
+    static void friction_rows(LanePoint& p, const Frame& f, const V& ra, const V& rb, Side& a, Side& b) {
+        const V slip = b.at(rb) - a.at(ra);
+        const F v1 = dot(slip, f.t1), v2 = dot(slip, f.t2);
+        const F old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
+        const F m11 = F::load(p.friction_mass[0]), m22 = F::load(p.friction_mass[1]), m12 = F::load(p.friction_mass[2]);
+        const F iso = F::load(p.isotropic_mass);
+        const F limit = f.friction * F::load(p.impulse[0]);
+        F q1 = old1 - (m11 * v1 + m12 * v2), q2 = old2 - (m12 * v1 + m22 * v2);
+        const F inside = q1 * q1 + q2 * q2, squared = limit * limit;
+        q1 = F::if_greater(inside, squared, old1 - iso * v1, q1);
+        q2 = F::if_greater(inside, squared, old2 - iso * v2, q2);
+        const F length2 = q1 * q1 + q2 * q2;
+        const F one = F::all(1);
+        const F scale = F::if_greater(length2, squared, limit / F::sqrt(F::max(length2, F::all(1e-30f))), one);
+        q1 = scale * q1;
+        q2 = scale * q2;
+        q1.store(p.impulse[1]);
+        q2.store(p.impulse[2]);
+        const V push = (q1 - old1) * f.t1 + (q2 - old2) * f.t2;
+        b.add(push, rb);
+        a.add(zero_minus(push), ra);
+    }
+
+    static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
+                           const SweepMass* masses) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const LaneGroup& g = contacts.group[i];
+            const Frame f(g);
+            Side a, b;
+            a.gather(g.a, velocities, masses);
+            b.gather(g.b, velocities, masses);
+            for (uint32_t k = 0; k < g.points; ++k) {
+                LanePoint& p = contacts.point[g.first_point + k];
+                const V push = F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * f.t2;
+                b.add(push, load(p.rb));
+                a.add(zero_minus(push), load(p.ra));
+            }
+            a.scatter(g.a, velocities);
+            b.scatter(g.b, velocities);
+        }
+    }
+
+    static void sweep_biased(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
+                             const SweepMass* masses, const SweepShift* shifts, const SweepTerms& terms) {
+        const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
+        const F least = F::all(-terms.push), soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
+        for (uint32_t i = begin; i < end; ++i) {
+            const LaneGroup& g = contacts.group[i];
+            const Frame f(g);
+            Side a, b;
+            a.gather(g.a, velocities, masses);
+            b.gather(g.b, velocities, masses);
+            const ShiftLanes at_a(g.a, shifts), at_b(g.b, shifts);
+            for (uint32_t k = 0; k < g.points; ++k) {
+                LanePoint& p = contacts.point[g.first_point + k];
+                const V ra = load(p.ra), rb = load(p.rb);
+                const F gap = F::load(p.gap0) + dot(at_b.motion(rb) - at_a.motion(ra), f.n);
+                gap.store(p.gap);
+                // open: reach the surface within the substep, no sooner; overlapping: soft push
+                const F bias = F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least));
+                normal_row(p, f.n, ra, rb, a, b, bias, F::if_greater(gap, zero, one, soft_mass),
+                           F::if_greater(gap, zero, zero, soft_impulse));
+                friction_rows(p, f, ra, rb, a, b);
+            }
+            a.scatter(g.a, velocities);
+            b.scatter(g.b, velocities);
+        }
+    }
+
+    static void sweep_relaxed(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
+                              const SweepMass* masses, const SweepTerms& terms) {
+        const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h);
+        for (uint32_t i = begin; i < end; ++i) {
+            const LaneGroup& g = contacts.group[i];
+            const Frame f(g);
+            Side a, b;
+            a.gather(g.a, velocities, masses);
+            b.gather(g.b, velocities, masses);
+            for (uint32_t k = 0; k < g.points; ++k) {
+                LanePoint& p = contacts.point[g.first_point + k];
+                const V ra = load(p.ra), rb = load(p.rb);
+                const F gap = F::load(p.gap);
+                normal_row(p, f.n, ra, rb, a, b, F::if_greater(gap, zero, gap * inv_h, zero), one, zero);
+                friction_rows(p, f, ra, rb, a, b);
+            }
+            a.scatter(g.a, velocities);
+            b.scatter(g.b, velocities);
+        }
+    }
+
+    static void restitute(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
+                          const SweepMass* masses, float threshold) {
+        const F zero = F::all(0), one = F::all(1), slow = F::all(-threshold);
+        for (uint32_t i = begin; i < end; ++i) {
+            const LaneGroup& g = contacts.group[i];
+            const Frame f(g);
+            Side a, b;
+            a.gather(g.a, velocities, masses);
+            b.gather(g.b, velocities, masses);
+            for (uint32_t k = 0; k < g.points; ++k) {
+                LanePoint& p = contacts.point[g.first_point + k];
+                const F approach = F::load(p.approach);
+                // bounces: closed fast, and was pushed during the frame
+                const F wanted = F::if_greater(slow, approach, F::load(p.restitution) * approach, zero);
+                const F active = F::if_greater(F::load(p.peak), zero, F::if_greater(zero, wanted, one, zero), zero);
+                normal_row(p, f.n, load(p.ra), load(p.rb), a, b, wanted, active, zero);
+            }
+            a.scatter(g.a, velocities);
+            b.scatter(g.b, velocities);
+        }
+    }
+
+    static constexpr ContactKernels table(const char* name) {
+        return {name, warm_start, sweep_biased, sweep_relaxed, restitute};
+    }
+};
+
+}  // namespace taut

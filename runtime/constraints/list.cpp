@@ -1,0 +1,11 @@
+// The list of constraint types: a new type is its file and a line here.
+#include "constraints/constraint.h"
+
+namespace taut {
+
+std::span<const ConstraintType* const> constraint_types() {
+    static const ConstraintType* const types[] = {&kBall, &kDistance, &kContact};
+    return types;
+}
+
+}  // namespace taut

@@ -1,0 +1,131 @@
+#include "detect/detect.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+// Points further apart than this are not the same point of two frames [m].
+constexpr float kSamePoint = 0.02f;
+// A frame's motion counts towards the contact margin up to this [m].
+constexpr double kMaxReach = 0.5;
+
+collision::Placement placement_of(const Nodes& nodes, uint32_t node) {
+    const NodeMotion& m = nodes.motion[node];
+    const Mat3 R = m.q.toRotationMatrix();
+    return {m.x - R * nodes.mass[node].centre, R.cast<float>()};
+}
+
+bool filters_agree(const taut_filter& a, const taut_filter& b) {
+    if (a.group != 0 && a.group == b.group) return a.group > 0;
+    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+bool may_collide(const Nodes& nodes, const Pairs& pairs, uint64_t key) {
+    const NodeInfo &a = nodes.info[static_cast<uint32_t>(key >> 32)], &b = nodes.info[static_cast<uint32_t>(key)];
+    if (!moves_by_forces(a.kind) && !moves_by_forces(b.kind)) return false;
+    return filters_agree(a.filter, b.filter) && !std::binary_search(pairs.joined.begin(), pairs.joined.end(), key);
+}
+
+// Keys of bodies that a joint forbids to collide, sorted.
+void refresh_joined(const Joints& joints, Pairs& pairs) {
+    if (pairs.joined_version == joints.version) return;
+    pairs.joined.clear();
+    for (const Joint& joint : joints.record) {
+        if (!joint.type || joint.collide_connected || joint.node[0] == kNone || joint.node[1] == kNone) continue;
+        const uint64_t low = std::min(joint.node[0], joint.node[1]), high = std::max(joint.node[0], joint.node[1]);
+        pairs.joined.push_back(low << 32 | high);
+    }
+    std::sort(pairs.joined.begin(), pairs.joined.end());
+    pairs.joined_version = joints.version;
+}
+
+// How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
+float margin_of(const NodeMotion& a, const NodeMotion& b, double time_step) {
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, (a.v - b.v).norm() * time_step));
+}
+
+// Impulses of the old points onto the new ones: by feature, else by place; friction turned into the new tangents.
+void carry_impulses(const collision::Manifold& old, const Impulse* from, const collision::Manifold& now, Impulse* to) {
+    const Vec3f t1 = tangent_of(now.normal), t2 = now.normal.cross(t1);
+    const Vec3f o1 = tangent_of(old.normal), o2 = old.normal.cross(o1);
+    bool used[4] = {}, found[4] = {};
+    auto take = [&](int i, int k) {
+        const Vec3f friction = from[k].tangent1 * o1 + from[k].tangent2 * o2;
+        to[i] = {from[k].normal, friction.dot(t1), friction.dot(t2)};
+        used[k] = found[i] = true;
+    };
+    for (int i = 0; i < now.count; ++i)
+        for (int k = 0; k < old.count && !found[i]; ++k)
+            if (!used[k] && old.points[k].feature == now.points[i].feature) take(i, k);
+    for (int i = 0; i < now.count; ++i) {
+        if (found[i]) continue;
+        to[i] = {};
+        float nearest = kSamePoint * kSamePoint;
+        int best = -1;
+        for (int k = 0; k < old.count; ++k) {
+            const float d = (old.points[k].position - now.points[i].position).squaredNorm();
+            if (!used[k] && d < nearest) nearest = d, best = k;
+        }
+        if (best >= 0) take(i, best);
+    }
+}
+
+}  // namespace
+
+void update_bounds(const Nodes& nodes, const Shapes& shapes, collision::Broadphase& broadphase, double time_step) {
+    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+        const NodeInfo& info = nodes.info[node];
+        if (info.shape == kNone || info.kind == NodeKind::fixed || info.kind == NodeKind::dead) continue;
+        collision::Box box = collision::bounds(shapes.record[info.shape].shape, placement_of(nodes, node));
+        Vec3f reach = (time_step * nodes.motion[node].v).cast<float>();
+        const float length = reach.norm();
+        if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
+        box.lo = (box.lo + reach.cwiseMin(0.0f)).array() - kContactMargin;
+        box.hi = (box.hi + reach.cwiseMax(0.0f)).array() + kContactMargin;
+        broadphase.update(node, box, reach);
+    }
+}
+
+void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphase& broadphase, Pairs& pairs) {
+    refresh_joined(joints, pairs);
+    const bool changed = broadphase.refresh_pairs();
+    const auto keys = broadphase.pairs();
+    if (!changed && keys.size() == pairs.list.size()) return;
+    pairs.scratch.clear();
+    size_t old = 0;
+    for (uint64_t key : keys) {
+        for (; old < pairs.list.size() && pairs.list[old].key < key; ++old) {  // left the broadphase
+            if (pairs.list[old].touching) report_end(pairs, nodes, pairs.list[old]);
+        }
+        if (old < pairs.list.size() && pairs.list[old].key == key) {
+            pairs.scratch.push_back(pairs.list[old++]);
+            continue;
+        }
+        Pair& pair = pairs.scratch.emplace_back();
+        pair.key = key;
+        pair.filtered = !may_collide(nodes, pairs, key);
+    }
+    for (; old < pairs.list.size(); ++old)
+        if (pairs.list[old].touching) report_end(pairs, nodes, pairs.list[old]);
+    pairs.list.swap(pairs.scratch);
+}
+
+void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, double time_step) {
+    pairs.placement.resize(nodes.slots());
+    for (uint32_t node = 0; node < nodes.slots(); ++node)
+        if (nodes.info[node].shape != kNone) pairs.placement[node] = placement_of(nodes, node);
+    for (Pair& pair : pairs.list) {
+        if (pair.filtered) continue;
+        const uint32_t a = pair.a(), b = pair.b();
+        const collision::Manifold old = pair.manifold;
+        Impulse before[4];
+        std::copy(pair.impulse, pair.impulse + 4, before);
+        collision::collide(shapes.record[nodes.info[a].shape].shape, pairs.placement[a],
+                           shapes.record[nodes.info[b].shape].shape, pairs.placement[b],
+                           margin_of(nodes.motion[a], nodes.motion[b], time_step), pair.cache, pair.manifold);
+        if (pair.manifold.count > 0) carry_impulses(old, before, pair.manifold, pair.impulse);
+    }
+}
+
+}  // namespace taut

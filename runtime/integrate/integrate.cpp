@@ -1,0 +1,132 @@
+#include "integrate/integrate.h"
+
+namespace taut {
+namespace {
+
+// One Newton step of the implicit Euler equation I (w - w0) + h w x I w = 0 in body axes, where I is constant:
+// unconditionally stable, where the explicit form spins thin bodies up.
+Vec3 gyroscopic(const Vec3& w, const Mat3& inertia, double h) {
+    const Vec3 l = inertia * w;
+    const Mat3 derivative = inertia + h * (hat(w) * inertia - hat(l));
+    return w - derivative.inverse() * (h * w.cross(l));
+}
+
+void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
+    out.inv_mass = static_cast<float>(mass.inv_mass);
+    const Mat3 inverse = mass.isotropic ? mass.inv_inertia.matrix() : Mat3(R * mass.inv_inertia.matrix() * R.transpose());
+    const Sym3 packed = Sym3::of(inverse);
+    const double values[6] = {packed.xx, packed.yy, packed.zz, packed.xy, packed.xz, packed.yz};
+    for (int i = 0; i < 6; ++i) out.inv_inertia[i] = static_cast<float>(values[i]);
+}
+
+void set_sweep_velocity(SweepVelocity& out, const Vec3& v, const Vec3& w) {
+    for (int i = 0; i < 3; ++i) {
+        out.v[i] = static_cast<float>(v[i]);
+        out.w[i] = static_cast<float>(w[i]);
+    }
+}
+
+void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
+    for (int i = 0; i < 3; ++i) shift.dx[i] = static_cast<float>(dx[i]);
+    for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
+}
+
+}  // namespace
+
+void begin_frame(System& system, const Nodes& nodes) {
+    const uint32_t slots = nodes.slots();
+    system.pose.resize(slots + 1);
+    system.exact.resize(slots + 1);
+    system.free.resize(slots + 1);
+    system.start.resize(slots + 1);
+    system.inertia.resize(slots + 1);
+    system.found.resize(slots + 1);
+    system.velocity.resize(slots + 1);
+    system.inverse_mass.resize(slots + 1);
+    system.shift.assign(slots + 1, SweepShift{});
+    system.in_block.assign(slots + 1, 0);
+    system.kinematic.clear();
+    for (uint32_t node = 0; node < slots; ++node) {
+        if (nodes.info[node].kind == NodeKind::dead) continue;
+        if (nodes.info[node].kind == NodeKind::kinematic) system.kinematic.push_back(node);
+        const NodeMotion& m = nodes.motion[node];
+        system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
+        system.found[node + 1] = {m.x, m.q};
+        system.exact[node + 1] = {m.v, m.w};
+        set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
+        set_sweep_velocity(system.velocity[node + 1], m.v, m.w);
+    }
+}
+
+void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
+    const double h = system.h;
+    for (uint32_t node : group.nodes) {
+        const NodeMotion& m = nodes.motion[node];
+        const NodeMass& mass = nodes.mass[node];
+        const NodeLoad& load = nodes.load[node];
+        Pose& pose = system.pose[node + 1];
+        pose.x = m.x;
+        Velocity u{m.v + h * (mass.gravity_scale * gravity + mass.inv_mass * load.force), m.w};
+        if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
+            u = {};
+            system.inverse_mass[node + 1] = {};
+        }
+        if (nodes.info[node].kind == NodeKind::dynamic) {
+            pose.R = m.q.toRotationMatrix();
+            const Mat3& R = pose.R;
+            if (!mass.isotropic) {
+                u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia.matrix(), h);
+                set_inverse_mass(system.inverse_mass[node + 1], mass, R);
+            }
+            if (load.torque != Vec3::Zero()) u.w += h * (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
+            if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
+        }
+        system.start[node + 1] = {m.v, m.w};
+        system.exact[node + 1] = u;
+        set_sweep_velocity(system.velocity[node + 1], u.v, u.w);
+    }
+}
+
+void commit(System& system, const Group& group, Nodes& nodes) {
+    const double h = system.h;
+    for (uint32_t node : group.nodes) {
+        NodeMotion& m = nodes.motion[node];
+        const Velocity& u = system.exact[node + 1];
+        m.x += h * u.v;
+        if (nodes.info[node].kind == NodeKind::dynamic) m.q = (rotation_from_vector(h * u.w) * m.q).normalized();
+        const System::Found& found = system.found[node + 1];
+        set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
+    }
+}
+
+void store_velocity(const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+    for (uint32_t node : group.nodes) {
+        NodeMotion& m = nodes.motion[node];
+        const Velocity& u = system.exact[node + 1];
+        m.v = u.v;
+        m.w = u.w;
+        const double kappa = system.in_block[node + 1] ? velocity_filter : 1.0;
+        m.slow_v += kappa * (u.v - m.slow_v);
+        m.slow_w += kappa * (u.w - m.slow_w);
+    }
+}
+
+void shift_kinematic(System& system, const Nodes& nodes, double time) {
+    for (uint32_t node : system.kinematic) {
+        const NodeMotion& m = nodes.motion[node];
+        const Quat turned = (rotation_from_vector(time * m.w) * m.q).normalized();
+        system.pose[node + 1] = {m.x + time * m.v, turned.toRotationMatrix()};
+        set_shift(system.shift[node + 1], time * m.v, turned * m.q.conjugate());
+    }
+}
+
+void commit_kinematic(Nodes& nodes, double time_step) {
+    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+        if (nodes.info[node].kind != NodeKind::kinematic) continue;
+        NodeMotion& m = nodes.motion[node];
+        m.x += time_step * m.v;
+        m.q = (rotation_from_vector(time_step * m.w) * m.q).normalized();
+    }
+}
+
+}  // namespace taut

@@ -1,0 +1,26 @@
+// Time integration around the solve: implicit Euler on velocities, positions from the solved ones.
+#pragma once
+
+#include "partition/partition.h"
+#include "system/system.h"
+
+namespace taut {
+
+// Once a frame: poses of all nodes, still shifts, inverse masses of nodes that do not turn theirs.
+void begin_frame(System& system, const Nodes& nodes);
+
+// v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
+void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravity);
+
+// x += h v, q = exp(h w) q; what the contacts' anchors need to follow.
+void commit(System& system, const Group& group, Nodes& nodes);
+
+// The kept velocity back into the state; s += kappa (v - s) for nodes in blocks.
+void store_velocity(const System& system, const Group& group, Nodes& nodes, double velocity_filter);
+
+// Kinematic nodes move at their own velocity: where they are after `time` of the frame, as the solvers see them ...
+void shift_kinematic(System& system, const Nodes& nodes, double time);
+// ... and, once all groups are done, in the state.
+void commit_kinematic(Nodes& nodes, double time_step);
+
+}  // namespace taut

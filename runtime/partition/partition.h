@@ -1,0 +1,104 @@
+// Who is solved with whom: islands, groups of islands with the same substep count, blocks, colours.
+//
+//   island  nodes connected by joints or touching pairs; independent of every other island during a frame
+//   block   nodes connected by joints: solved directly, its elimination order kept while the joint graph stays
+//   group   all islands that take the same number of substeps; solved together
+//   colour  constraints of a group of which no two share a moving node
+#pragma once
+
+#include "solvers/sparse_block_ldlt.h"
+#include "state/joints.h"
+#include "state/nodes.h"
+#include "state/pairs.h"
+
+namespace taut {
+
+// Kept by the direct solve of a block while its joint graph stays.
+struct BlockMemory {
+    double excess_energy = 0;        // decaying sum of energy that no force explains [J]
+    uint32_t solved = 0;             // substeps
+    uint32_t guard_left = 0;         // substeps for which no slow velocity is spared
+    uint32_t since_trip = 1u << 30;  // substeps since the guard last tripped
+    bool escalated = false;          // tripped twice in a short time: the island takes more substeps
+};
+
+// Joint-connected nodes, with what their direct solve remembers over frames.
+struct Block {
+    explicit Block(Memory& m) : nodes(m), joints(m), matrix(m), solution(m), known(m), force(m) {}
+
+    Array<uint32_t> nodes;   // moved by forces, ascending
+    Array<uint32_t> joints;  // ascending
+    SparseBlockLdlt matrix;  // unknowns: nodes, then joints
+    Array<double> solution, known, force;  // scratch of its solve
+    bool looped = false;     // more joints than a tree
+    bool failed = false;     // this substep's matrix could not be factored
+    double mass_ratio = 1;   // heaviest over lightest node
+    uint32_t first_row_block = 0;  // its joints' rows in System::rows, of this frame
+
+    // What its direct solve keeps over substeps; see solvers/block_ldlt.cpp.
+    BlockMemory memory;
+};
+
+struct Group {
+    explicit Group(Memory& memory)
+        : nodes(memory), pairs(memory), pair_colour_begin(memory), joints(memory), joint_colour_begin(memory), blocks(memory) {}
+
+    uint32_t substeps = 0;
+    Array<uint32_t> nodes;   // moved by forces, ascending
+    // Swept constraints by colour; the last colour holds what found no other and is solved one by one.
+    Array<uint32_t> pairs, pair_colour_begin;
+    Array<uint32_t> joints, joint_colour_begin;
+    Array<uint32_t> blocks;  // index into Partition::blocks
+};
+
+constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
+
+struct PartitionRules {
+    uint32_t substeps;  // least
+    bool fixed;         // no more than the least
+    bool direct_joints; // joints form blocks; else they are swept
+};
+
+class Partition {
+public:
+    explicit Partition(Memory& memory);
+
+    // Rebuilds islands, groups and colours from the joints and touching pairs of this frame.
+    void build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+
+    Array<Group> groups;    // in ascending order of substeps; the first group_count are used
+    uint32_t group_count = 0;
+    Array<Block> blocks;
+    uint32_t islands = 0;
+    uint32_t colours = 0;   // most of any group
+
+private:
+    struct Island {
+        uint32_t nodes = 0, levels = 0, substeps = 0;
+        float ratio = 1;  // heaviest load over its support
+        bool jointed = false;
+    };
+
+    void build_blocks(const Nodes& nodes, const Joints& joints);
+    void connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    void measure_towers(const Nodes& nodes, const Pairs& pairs);
+    void choose_substeps(const PartitionRules& rules);
+    void distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    template <class Ends>
+    uint32_t colour(const Array<uint32_t>& items, Array<uint32_t>& sorted, Array<uint32_t>& begin, Ends ends);
+
+    uint32_t find(uint32_t node);
+    void unite(uint32_t a, uint32_t b);
+
+    uint64_t joints_version_ = 0;
+    Array<uint32_t> parent_;      // union-find over slots; roots are the smallest slot
+    Array<uint32_t> island_of_;   // by slot, kNone if not moved by forces
+    Array<uint32_t> level_;       // by slot: bodies between it and a support
+    Array<Island> island_;
+    Array<uint64_t> used_;        // by slot: colours taken
+    Array<uint8_t> colour_of_;    // scratch
+    Array<uint32_t> scratch_, queue_;
+    Array<uint32_t> adjacency_begin_, adjacency_;  // touching pairs by node, for levels
+};
+
+}  // namespace taut

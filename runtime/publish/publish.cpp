@@ -1,0 +1,82 @@
+#include "publish/publish.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+bool touches(const Pair& pair) {
+    for (int k = 0; k < pair.manifold.count; ++k)
+        if (pair.manifold.points[k].separation <= 0 || pair.impulse[k].normal > 0) return true;
+    return false;
+}
+
+taut_pose public_pose(const Vec3& position, const Quat& q) {
+    taut_pose pose{};
+    pose.position = {position.x(), position.y(), position.z()};
+    pose.rotation = {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
+                     static_cast<float>(q.w())};
+    return pose;
+}
+
+}  // namespace
+
+void publish_contacts(World& world) {
+    world.contact_begin.clear();
+    world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
+    world.pairs.ended.clear();
+    for (Pair& pair : world.pairs.list) {
+        pair.was_touching = pair.touching;
+        pair.touching = !pair.filtered && touches(pair);
+        if (pair.touching == pair.was_touching) continue;
+        const taut_contact_event event{world.body_handle(pair.a()), world.body_handle(pair.b())};
+        (pair.touching ? world.contact_begin : world.contact_end).push_back(event);
+    }
+}
+
+void publish_motion(World& world, const Array<uint32_t>& frozen) {
+    const Nodes& nodes = world.nodes;
+    world.moved.clear();
+    world.quarantined.clear();
+    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+        const NodeInfo& info = nodes.info[node];
+        if (info.kind == NodeKind::dead || info.kind == NodeKind::fixed) continue;
+        const Vec3 origin = nodes.origin(node);
+        const Quat& q = nodes.motion[node].q;
+        if (origin == nodes.before[node].position && q.coeffs() == nodes.before[node].rotation.coeffs()) continue;
+        world.moved.push_back({world.body_handle(node), info.user_data, public_pose(origin, q)});
+    }
+    for (uint32_t node : frozen) world.quarantined.push_back({world.body_handle(node), nodes.info[node].user_data});
+}
+
+void publish_profile(World& world) {
+    taut_profile& p = world.profile;
+    p.pairs = static_cast<uint32_t>(world.pairs.list.size());
+    for (const Pair& pair : world.pairs.list) {
+        p.touching += pair.manifold.count > 0;
+        p.points += static_cast<uint32_t>(pair.manifold.count);
+        for (int k = 0; k < pair.manifold.count; ++k)
+            p.penetration = std::max(p.penetration, -pair.manifold.points[k].separation);
+    }
+    for (const NodeInfo& info : world.nodes.info) p.bodies += moves_by_forces(info.kind);
+    for (const Joint& joint : world.joints.record) {
+        if (!joint.type) continue;
+        ++p.joints;
+        Pose poses[2];
+        for (int i = 0; i < 2; ++i) {
+            if (joint.node[i] == kNone) continue;
+            const NodeMotion& m = world.nodes.motion[joint.node[i]];
+            poses[i] = {m.x, m.q.toRotationMatrix()};
+        }
+        double error[kMaxRows], squared = 0;
+        joint.type->evaluate(joint.data, poses, error, nullptr);
+        for (int r = 0; r < joint.type->rows; ++r) squared += error[r] * error[r];
+        p.joint_error = std::max(p.joint_error, static_cast<float>(std::sqrt(squared)));
+    }
+    p.islands = world.partition.islands;
+    p.blocks = static_cast<uint32_t>(world.partition.blocks.size());
+    p.colours = world.partition.colours;
+    p.bytes = world.memory.bytes();
+}
+
+}  // namespace taut

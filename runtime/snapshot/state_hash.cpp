@@ -1,0 +1,72 @@
+// Hash of everything that the future of a world depends on, in slot order.
+#include "base/hash.h"
+#include "world.h"
+
+namespace taut {
+namespace {
+
+void add_nodes(Hash& hash, const Nodes& nodes) {
+    for (uint32_t i = 0; i < nodes.slots(); ++i) {
+        const NodeInfo& info = nodes.info[i];
+        if (info.kind == NodeKind::dead) continue;
+        const NodeMotion& m = nodes.motion[i];
+        hash.add(static_cast<uint64_t>(i) << 8 | static_cast<uint64_t>(info.kind));
+        for (const Vec3* v : {&m.x, &m.v, &m.w, &m.slow_v, &m.slow_w}) hash.add(*v);
+        hash.add(m.q);
+        hash.add(nodes.mass[i].mass);
+        hash.add(nodes.mass[i].gravity_scale);
+        hash.add(nodes.load[i].force);
+        hash.add(nodes.load[i].torque);
+        hash.add(info.material.friction);
+        hash.add(info.material.restitution);
+        hash.add(static_cast<uint64_t>(info.shape));
+    }
+}
+
+void add_joints(Hash& hash, const Joints& joints) {
+    for (size_t i = 0; i < joints.record.size(); ++i) {
+        const Joint& joint = joints.record[i];
+        if (!joint.type) continue;
+        hash.add(static_cast<uint64_t>(i));
+        for (int r = 0; r < joint.type->rows; ++r) hash.add(joint.lambda[r]);
+        hash.add(joint.compliance);
+        hash.add(joint.damping);
+        for (size_t word = 0; word < joint.type->data_size / sizeof(uint64_t); ++word) {
+            uint64_t bits;
+            std::memcpy(&bits, joint.data + word * sizeof bits, sizeof bits);
+            hash.add(bits);
+        }
+    }
+}
+
+void add_pairs(Hash& hash, const Pairs& pairs) {
+    for (const Pair& pair : pairs.list) {
+        if (pair.manifold.count == 0) continue;
+        hash.add(pair.key);
+        for (uint32_t word : pair.cache.words) hash.add(static_cast<uint64_t>(word));
+        for (int k = 0; k < pair.manifold.count; ++k) {
+            hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));
+            hash.add(pair.impulse[k].normal);
+            hash.add(pair.impulse[k].tangent1);
+            hash.add(pair.impulse[k].tangent2);
+        }
+    }
+}
+
+}  // namespace
+
+uint64_t state_hash(const World& world) {
+    Hash hash;
+    for (float g : {world.def.gravity.x, world.def.gravity.y, world.def.gravity.z}) hash.add(g);
+    hash.add(world.accumulator);
+    add_nodes(hash, world.nodes);
+    add_joints(hash, world.joints);
+    add_pairs(hash, world.pairs);
+    for (const Block& block : world.partition.blocks) {
+        hash.add(block.memory.excess_energy);
+        hash.add(static_cast<uint64_t>(block.memory.guard_left) << 1 | block.memory.escalated);
+    }
+    return hash.value();
+}
+
+}  // namespace taut

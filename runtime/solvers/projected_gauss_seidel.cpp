@@ -1,0 +1,208 @@
+// Projected Gauss-Seidel by colour: contacts in lanes where the group has them, all else as rows.
+// Row blocks are solved as blocks: dp = -(S + c)^-1 (J v - target + c p), S = J W J^T, then the bound.
+#include "solvers/projected_gauss_seidel.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "system/soft_contact.h"
+
+namespace taut {
+namespace {
+
+constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce [m/s]
+
+using RowVector = Eigen::Matrix<double, kMaxRows, 1>;
+using NodeVector = Eigen::Matrix<double, kDof, 1>;
+using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>;
+using ShortVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
+
+NodeVector velocity_of(const SweepVelocity& u) {
+    NodeVector v;
+    v << u.v[0], u.v[1], u.v[2], u.w[0], u.w[1], u.w[2];
+    return v;
+}
+
+NodeVector response(const SweepMass& m, const NodeVector& p) {  // W p
+    const float* i = m.inv_inertia;
+    NodeVector v;
+    v << m.inv_mass * p[0], m.inv_mass * p[1], m.inv_mass * p[2], i[0] * p[3] + i[3] * p[4] + i[4] * p[5],
+        i[3] * p[3] + i[1] * p[4] + i[5] * p[5], i[4] * p[3] + i[5] * p[4] + i[2] * p[5];
+    return v;
+}
+
+// One row block and what of the system it touches.
+class RowSweep {
+public:
+    RowSweep(System& system, const RowBlock& block) : system_(system), block_(block), rows_(block.type->rows) {}
+
+    void apply(const ShortVector& impulse) {
+        for (int i = 0; i < block_.type->nodes; ++i) {
+            const uint32_t node = block_.node[i];
+            const NodeVector dv = response(system_.inverse_mass[node], jacobian(i).transpose() * impulse);
+            SweepVelocity& u = system_.velocity[node];
+            for (int k = 0; k < 3; ++k) {
+                u.v[k] += static_cast<float>(dv[k]);
+                u.w[k] += static_cast<float>(dv[3 + k]);
+            }
+        }
+    }
+    ShortVector velocity() const {  // J v
+        ShortVector v = ShortVector::Zero(rows_);
+        for (int i = 0; i < block_.type->nodes; ++i) v += jacobian(i) * velocity_of(system_.velocity[block_.node[i]]);
+        return v;
+    }
+    RowMatrix effective() const {  // J W J^T
+        RowMatrix s = RowMatrix::Zero(rows_, rows_);
+        for (int i = 0; i < block_.type->nodes; ++i)
+            for (int r = 0; r < rows_; ++r)
+                s.col(r) += jacobian(i) * response(system_.inverse_mass[block_.node[i]], jacobian(i).row(r).transpose());
+        return s;
+    }
+    ShortVector impulse() const { return Eigen::Map<const ShortVector>(&system_.rows.impulse[block_.row], rows_); }
+    void move_to(const ShortVector& next) {
+        apply(next - impulse());
+        Eigen::Map<ShortVector>(&system_.rows.impulse[block_.row], rows_) = next;
+    }
+
+    void solve_free(const SweepTerms& soft, bool biased) {
+        const double* error = &system_.rows.error[block_.row];
+        RowMatrix s = effective();
+        ShortVector residual = velocity();
+        double keep = 1;
+        if (block_.compliance > 0) {  // physical softness: the same row in both phases
+            const RowTerms terms = row_terms(block_, system_.h);
+            residual += terms.rate * Eigen::Map<const ShortVector>(error, rows_) + terms.compliance * impulse();
+            s.diagonal().array() += terms.compliance;
+        } else if (biased) {
+            residual += soft.bias_rate * Eigen::Map<const ShortVector>(error, rows_);
+            residual *= soft.mass_scale;
+            keep = 1 - soft.impulse_scale;
+        }
+        move_to(keep * impulse() - s.inverse() * residual);
+    }
+
+    // Normal row first, then the tangents on the cone; as in the fused sweep (constraints/contact_sweep.inl).
+    void solve_cone(const SweepTerms& soft, bool biased) {
+        const double gap = system_.rows.error[block_.row];
+        const RowMatrix s = effective();
+        ShortVector p = impulse();
+        const bool open = gap > 0;
+        const double bias = open ? gap * soft.inv_h : biased ? std::max<double>(soft.bias_rate * gap, -soft.push) : 0.0;
+        const bool softened = biased && !open;
+        const double step = (softened ? soft.mass_scale : 1.0) / s(0, 0) * (velocity()[0] + bias) +
+                            (softened ? soft.impulse_scale : 0.0) * p[0];
+        p[0] = std::max(0.0, p[0] - step);
+        move_to(p);
+
+        const ShortVector v = velocity();
+        const Eigen::Matrix2d k = s.bottomRightCorner<2, 2>();
+        const Eigen::Vector2d slip(v[1], v[2]), old(p[1], p[2]);
+        const double limit = block_.friction * p[0];
+        Eigen::Vector2d q = old - k.inverse() * slip;
+        if (q.norm() > limit) {
+            const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
+            q = old - slip / (half + std::sqrt(diff * diff + k(0, 1) * k(0, 1)));
+            if (q.norm() > limit) q *= limit / q.norm();
+        }
+        p[1] = q[0];
+        p[2] = q[1];
+        move_to(p);
+    }
+
+private:
+    Eigen::Map<const RowJacobian> jacobian(int node) const {
+        return {&system_.rows.jacobian[block_.jacobian + static_cast<uint32_t>(node * rows_ * kDof)], rows_, kDof};
+    }
+
+    System& system_;
+    const RowBlock& block_;
+    int rows_;
+};
+
+// Rows of blocks are the direct solver's; the rest is swept.
+uint32_t first_swept(const Substep& s) {
+    uint32_t first = 0;
+    for (uint32_t b : s.group.blocks) first += static_cast<uint32_t>(s.blocks[b].joints.size());
+    return first;
+}
+
+void sweep_rows(Substep& s, bool biased) {
+    const SweepTerms soft = soft_terms(s.system.h);
+    const auto& blocks = s.system.rows.block;
+    for (size_t i = first_swept(s); i < blocks.size(); ++i) {
+        RowSweep row(s.system, blocks[i]);
+        if (blocks[i].type->bound == Bound::cone) row.solve_cone(soft, biased);
+        else row.solve_free(soft, biased);
+    }
+}
+
+// What the sweeps changed becomes part of the solution, except where a direct solve owns it.
+void publish(Substep& s) {
+    for (uint32_t node : s.group.nodes) {
+        if (s.system.in_block[node + 1]) continue;
+        const SweepVelocity& u = s.system.velocity[node + 1];
+        Velocity& exact = s.system.exact[node + 1];
+        for (int k = 0; k < 3; ++k) {
+            exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
+            exact.w[k] += static_cast<double>(u.w[k] - static_cast<float>(exact.w[k]));
+        }
+    }
+}
+
+void store_forces(Substep& s) {
+    for (const RowBlock& block : s.system.rows.block)
+        if (block.force)
+            for (int r = 0; r < block.type->rows; ++r) block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
+}
+
+void solve(Substep& s) {
+    warm_start_sweeps(s);
+    sweep_biased(s, s.settings.sweeps ? s.settings.sweeps : kDefaultSweeps);
+    store_forces(s);
+}
+
+void relax(Substep& s) { sweep_relaxed(s, kRelaxSweeps); }
+
+}  // namespace
+
+void warm_start_sweeps(Substep& s) {
+    ContactLanes& lanes = s.system.contacts;
+    s.settings.kernels->warm_start(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
+                                   s.system.inverse_mass.data());
+    const auto& blocks = s.system.rows.block;
+    for (size_t i = first_swept(s); i < blocks.size(); ++i) {
+        RowSweep row(s.system, blocks[i]);
+        row.apply(row.impulse());
+    }
+}
+
+void sweep_biased(Substep& s, uint32_t sweeps) {
+    ContactLanes& lanes = s.system.contacts;
+    const SweepTerms soft = soft_terms(s.system.h);
+    for (uint32_t i = 0; i < sweeps; ++i) {
+        sweep_rows(s, true);
+        s.settings.kernels->sweep_biased(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
+                                         s.system.inverse_mass.data(), s.system.shift.data(), soft);
+    }
+    publish(s);
+}
+
+void sweep_relaxed(Substep& s, uint32_t sweeps) {
+    ContactLanes& lanes = s.system.contacts;
+    const SweepTerms soft = soft_terms(s.system.h);
+    for (uint32_t i = 0; i < sweeps; ++i) {
+        sweep_rows(s, false);
+        s.settings.kernels->sweep_relaxed(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
+                                          s.system.inverse_mass.data(), soft);
+    }
+    if (s.last && lanes.bounces)
+        s.settings.kernels->restitute(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
+                                      s.system.inverse_mass.data(), kBounceSpeed);
+    publish(s);
+}
+
+const Solver kProjectedGaussSeidel{"projected_gauss_seidel", false, true, solve, relax};
+
+}  // namespace taut

@@ -1,0 +1,52 @@
+// The contract between solvers and the step. A solver is one file over the assembled system; it knows no
+// constraint type. Adding one is its file and one line in list.cpp.
+#pragma once
+
+#include <span>
+
+#include "partition/partition.h"
+#include "system/system.h"
+
+namespace taut {
+
+struct SolverSettings {
+    uint32_t sweeps;           // iterations a substep; 0: the solver's own default
+    bool geometric_stiffness;
+    double velocity_filter;    // kappa; 0: the slow velocity is taken as zero
+    double gravity_squared;    // |g|^2 [m^2/s^4], scale of the energy guard
+    const ContactKernels* kernels;
+};
+
+struct SolverReport {
+    uint32_t solves = 0, resolves = 0, guard_trips = 0, failures = 0;
+    float direct_us = 0;  // spent in direct solves
+    double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
+};
+
+// One substep of one group.
+struct Substep {
+    System& system;
+    Group& group;
+    Array<Block>& blocks;
+    const Nodes& nodes;
+    const SolverSettings& settings;
+    SolverReport& report;
+    bool last;  // of the frame: bounces happen now
+};
+
+struct Solver {
+    const char* name;
+    bool direct_joints;  // joints form blocks; else they come as rows to sweep, by colour
+    bool wide_contacts;  // contacts come in lanes; else as rows after those of the joints
+    // From system.exact = v* to the velocity that moves the positions, with the push of overlapping contacts.
+    void (*solve)(Substep&);
+    // From there to the velocity that is kept, without that push.
+    void (*relax)(Substep&);
+};
+
+// In the order of taut_solver.
+std::span<const Solver* const> solvers();
+
+extern const Solver kBlockLdlt, kProjectedGaussSeidel, kAcceleratedJacobi;
+
+}  // namespace taut

@@ -1,0 +1,60 @@
+// Joints: constraints that a user made. Their forces are carried over frames.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+
+#include "base/id_pool.h"
+#include "constraints/constraint.h"
+#include "state/nodes.h"
+
+namespace taut {
+
+struct Joint {
+    static constexpr size_t kDataSize = 128;
+
+    const ConstraintType* type = nullptr;  // null: dead slot
+    uint32_t node[2] = {kNone, kNone};     // kNone: the world
+    double lambda[kMaxRows] = {};          // force of the last substep [N, N m]
+    double compliance = 0;                 // of each row [m/N]
+    double damping = 0;                    // of each row [N s/m]
+    bool collide_connected = false;
+    bool fresh = true;                     // not solved yet: lambda means nothing
+    uint64_t user_data = 0;
+    alignas(16) unsigned char data[kDataSize] = {};  // the type's own
+
+    template <class Data>
+    Data& as() {
+        static_assert(sizeof(Data) <= kDataSize && std::is_trivially_copyable_v<Data>);
+        return *reinterpret_cast<Data*>(data);
+    }
+    template <class Data>
+    const Data& as() const {
+        return const_cast<Joint*>(this)->as<Data>();
+    }
+};
+
+struct Joints {
+    explicit Joints(Memory& memory) : ids(memory), record(memory) {}
+
+    uint32_t add(const Joint& joint) {
+        ids.reserve_one();
+        if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
+        const uint32_t index = ids.create();
+        if (index == record.size()) record.push_back(joint);
+        else record[index] = joint;
+        ++version;
+        return index;
+    }
+    void remove(uint32_t index) {
+        record[index].type = nullptr;
+        ids.destroy(index);
+        ++version;
+    }
+
+    IdPool ids;
+    Array<Joint> record;
+    uint64_t version = 1;  // grows whenever the joint graph changes
+};
+
+}  // namespace taut

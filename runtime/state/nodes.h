@@ -1,0 +1,70 @@
+// Nodes: rigid bodies and particles in one index space. Arrays by slot; a dead slot is skipped by kind.
+#pragma once
+
+#include <taut/body.h>
+
+#include "base/id_pool.h"
+#include "base/math.h"
+
+namespace taut {
+
+constexpr uint32_t kNone = UINT32_MAX;  // no node, no shape: the world, or nothing
+
+enum class NodeKind : uint8_t { fixed, kinematic, dynamic, particle, dead };
+
+inline bool moves_by_forces(NodeKind kind) { return kind == NodeKind::dynamic || kind == NodeKind::particle; }
+
+struct NodeMotion {
+    Vec3 x = Vec3::Zero();         // centre of mass [m]
+    Quat q = Quat::Identity();     // world from body
+    Vec3 v = Vec3::Zero();         // of the centre of mass [m/s]
+    Vec3 w = Vec3::Zero();         // world axes [rad/s]
+    Vec3 slow_v = Vec3::Zero();    // low-passed v and w, which geometric stiffness spares
+    Vec3 slow_w = Vec3::Zero();
+};
+
+struct NodeMass {
+    double mass = 0, inv_mass = 0;  // [kg]; 0 for fixed and kinematic nodes
+    Sym3 inertia, inv_inertia;      // about the centre of mass, body axes [kg m^2]
+    Vec3 centre = Vec3::Zero();     // of mass, in the body's frame [m]
+    double gravity_scale = 1;
+    bool isotropic = false;         // inertia is a multiple of the identity: no gyroscopic torque
+};
+
+struct NodeLoad {  // of the next step
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]
+};
+
+struct NodeInfo {
+    NodeKind kind = NodeKind::dead;
+    uint32_t shape = kNone;
+    taut_material material{};
+    taut_filter filter{};
+    uint64_t user_data = 0;
+};
+
+struct NodePose {  // of the body's origin, for rendering
+    Vec3 position = Vec3::Zero();
+    Quat rotation = Quat::Identity();
+};
+
+struct Nodes {
+    explicit Nodes(Memory& memory)
+        : ids(memory), info(memory), motion(memory), mass(memory), load(memory), before(memory) {}
+
+    // Adds a dead-to-live slot with default contents; throws std::bad_alloc before anything changes.
+    uint32_t add();
+    void remove(uint32_t node);
+
+    uint32_t slots() const { return ids.slots(); }
+    Vec3 origin(uint32_t node) const { return motion[node].x - motion[node].q * mass[node].centre; }
+
+    IdPool ids;
+    Array<NodeInfo> info;
+    Array<NodeMotion> motion;
+    Array<NodeMass> mass;
+    Array<NodeLoad> load;
+    Array<NodePose> before;  // origin pose before the last step
+};
+
+}  // namespace taut

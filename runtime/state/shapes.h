@@ -1,0 +1,34 @@
+// Shapes of a world, shared by its bodies.
+#pragma once
+
+#include "base/id_pool.h"
+#include "collision/collide.h"
+
+namespace taut {
+
+struct ShapeRecord {
+    collision::Shape shape;
+    uint32_t users = 0;  // bodies that use it
+};
+
+struct Shapes {
+    explicit Shapes(Memory& memory) : ids(memory), record(memory) {}
+
+    uint32_t add(collision::Shape shape) {
+        ids.reserve_one();
+        if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
+        const uint32_t index = ids.create();
+        if (index == record.size()) record.emplace_back();
+        record[index] = {std::move(shape), 0};
+        return index;
+    }
+    void remove(uint32_t index) {
+        record[index] = {};
+        ids.destroy(index);
+    }
+
+    IdPool ids;
+    Array<ShapeRecord> record;
+};
+
+}  // namespace taut

@@ -1,0 +1,112 @@
+// One frame, from poses to poses.
+#include <algorithm>
+
+#include "base/clock.h"
+#include "check/quarantine.h"
+#include "detect/detect.h"
+#include "integrate/integrate.h"
+#include "publish/publish.h"
+#include "system/assemble.h"
+#include "world.h"
+
+namespace taut {
+namespace {
+
+void remember_poses(Nodes& nodes) {
+    for (uint32_t node = 0; node < nodes.slots(); ++node)
+        if (nodes.info[node].kind != NodeKind::dead) nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
+}
+
+void detect(World& w, Stopwatch& watch) {
+    update_bounds(w.nodes, w.shapes, w.broadphase, w.def.time_step);
+    update_pairs(w.nodes, w.joints, w.broadphase, w.pairs);
+    w.profile.broadphase_us = watch.lap();
+    find_contacts(w.nodes, w.shapes, w.pairs, w.def.time_step);
+    w.profile.narrowphase_us = watch.lap();
+}
+
+// All substeps of a group of islands, which no other group touches.
+void solve_group(World& w, Group& group, const Solver& solver, const SolverSettings& settings, SolverReport& report,
+                 Stopwatch& watch) {
+    System& system = w.system;
+    const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
+    const double frame = w.def.time_step;
+    system.h = frame / group.substeps;
+    for (uint32_t b : group.blocks)
+        for (uint32_t node : w.partition.blocks[b].nodes) system.in_block[node + 1] = 1;
+    build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, solver);
+    if (solver.wide_contacts) build_lanes(system, group, w.pairs, w.nodes);
+    w.profile.predict_us += watch.lap();
+
+    for (uint32_t i = 0; i < group.substeps; ++i) {
+        quarantine(w.nodes, group.nodes, w.frozen);
+        shift_kinematic(system, w.nodes, i * system.h);
+        predict(system, group, w.nodes, gravity);
+        w.profile.predict_us += watch.lap();
+        evaluate_rows(system);
+        w.profile.assemble_us += watch.lap();
+        Substep substep{system, group, w.partition.blocks, w.nodes, settings, report, i + 1 == group.substeps};
+        solver.solve(substep);
+        w.profile.sweep_us += watch.lap();
+        commit(system, group, w.nodes);
+        w.profile.commit_us += watch.lap();
+        solver.relax(substep);
+        w.profile.sweep_us += watch.lap();
+        store_velocity(system, group, w.nodes, settings.velocity_filter);
+        w.profile.commit_us += watch.lap();
+    }
+    if (solver.wide_contacts) store_lanes(system, w.pairs);
+    else store_contact_rows(system, group, w.pairs);
+}
+
+void solve(World& w, Stopwatch& watch) {
+    const Solver& solver = *solvers()[w.def.solver];
+    const taut_vec3 g = w.def.gravity;
+    const SolverSettings settings{w.def.sweeps, w.def.geometric_stiffness != 0, w.def.velocity_filter,
+                                  double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z, &contact_kernels()};
+    SolverReport report;
+    begin_frame(w.system, w.nodes);
+    w.profile.predict_us += watch.lap();
+    for (uint32_t i = 0; i < w.partition.group_count; ++i) {
+        Group& group = w.partition.groups[i];
+        solve_group(w, group, solver, settings, report, watch);
+        w.profile.substeps = std::max(w.profile.substeps, group.substeps);
+    }
+    for (uint32_t i = 0; i < w.partition.group_count; ++i) quarantine(w.nodes, w.partition.groups[i].nodes, w.frozen);
+    if (!w.frozen.empty()) {
+        drop_bad_impulses(w.pairs, w.joints);
+        ++w.joints.version;  // blocks lose the frozen nodes
+    }
+    commit_kinematic(w.nodes, w.def.time_step);
+    w.profile.factor_us = report.direct_us;
+    w.profile.sweep_us -= report.direct_us;
+    w.profile.solves = report.solves;
+    w.profile.resolves = report.resolves;
+    w.profile.guard_trips = report.guard_trips;
+    w.profile.residual = static_cast<float>(report.residual);
+}
+
+}  // namespace
+
+void step(World& w) {
+    Stopwatch whole, watch;
+    const uint64_t calls = w.memory.calls();
+    w.profile = {};
+    w.profile.struct_size = sizeof(taut_profile);
+    w.frozen.clear();
+    remember_poses(w.nodes);
+    detect(w, watch);
+    const Solver& solver = *solvers()[w.def.solver];
+    w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct_joints});
+    w.profile.partition_us = watch.lap();
+    solve(w, watch);
+    std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});
+    publish_contacts(w);
+    publish_motion(w, w.frozen);
+    publish_profile(w);
+    w.profile.publish_us = watch.lap();
+    w.profile.allocations = w.memory.calls() - calls;
+    w.profile.step_us = whole.lap();
+}
+
+}  // namespace taut

@@ -1,0 +1,111 @@
+#include "system/assemble.h"
+
+namespace taut {
+namespace {
+
+RowBlock& add_block(System& system, const ConstraintType& type) {
+    Rows& rows = system.rows;
+    RowBlock block{};
+    block.type = &type;
+    block.row = static_cast<uint32_t>(rows.error.size());
+    block.jacobian = static_cast<uint32_t>(rows.jacobian.size());
+    rows.error.resize(rows.error.size() + type.rows, 0.0);
+    rows.impulse.resize(rows.error.size(), 0.0);
+    rows.jacobian.resize(rows.jacobian.size() + static_cast<size_t>(type.rows * type.nodes * kDof), 0.0);
+    rows.block.push_back(block);
+    return rows.block.back();
+}
+
+void add_joint(System& system, Joint& joint) {
+    RowBlock& block = add_block(system, *joint.type);
+    block.data = joint.data;
+    block.force = joint.lambda;
+    for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
+    block.compliance = joint.compliance;
+    block.damping = joint.damping;
+    block.fresh = joint.fresh;
+    joint.fresh = false;
+}
+
+// Effective anchors and offset of a contact point, so that C is the gap and zero slip at the present poses.
+ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
+    const collision::ContactPoint& point = pair.manifold.points[k];
+    const Pose& a = system.pose[pair.a() + 1];
+    const Pose& b = system.pose[pair.b() + 1];
+    const Vec3 at = nodes.origin(pair.a()) + point.position.cast<double>();
+    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+    ContactData data;
+    data.anchor_a = a.R.transpose() * (at - a.x);
+    data.anchor_b = b.R.transpose() * (at - b.x);
+    data.basis << n.cast<double>().transpose(), t1.cast<double>().transpose(), t2.cast<double>().transpose();
+    data.offset = Vec3(point.separation, 0, 0);
+    return data;
+}
+
+void add_contacts(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes) {
+    Rows& rows = system.rows;
+    rows.data.clear();
+    size_t points = 0;
+    for (uint32_t p : group.pairs) points += pairs.list[p].manifold.count;
+    rows.data.reserve(points);  // addresses below must not move
+    for (uint32_t p : group.pairs) {
+        const Pair& pair = pairs.list[p];
+        const auto& ma = nodes.info[pair.a()].material;
+        const auto& mb = nodes.info[pair.b()].material;
+        for (int k = 0; k < pair.manifold.count; ++k) {
+            rows.data.push_back(contact_data(system, nodes, pair, k));
+            RowBlock& block = add_block(system, kContact);
+            block.data = &rows.data.back();
+            block.node[0] = pair.a() + 1;
+            block.node[1] = pair.b() + 1;
+            block.friction = std::sqrt(static_cast<double>(ma.friction) * mb.friction);
+            const Impulse& impulse = pair.impulse[k];
+            rows.impulse[block.row] = impulse.normal;
+            rows.impulse[block.row + 1] = impulse.tangent1;
+            rows.impulse[block.row + 2] = impulse.tangent2;
+        }
+    }
+}
+
+}  // namespace
+
+void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, const Pairs& pairs,
+                const Nodes& nodes, const Solver& solver) {
+    Rows& rows = system.rows;
+    rows.block.clear();
+    rows.error.clear();
+    rows.impulse.clear();
+    rows.jacobian.clear();
+    for (uint32_t b : group.blocks) {
+        blocks[b].first_row_block = static_cast<uint32_t>(rows.block.size());
+        for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
+    }
+    for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
+    if (!solver.wide_contacts) add_contacts(system, group, pairs, nodes);
+}
+
+void evaluate_rows(System& system) {
+    Rows& rows = system.rows;
+    for (const RowBlock& block : rows.block) {
+        Pose poses[kMaxNodes];
+        for (int i = 0; i < block.type->nodes; ++i) poses[i] = system.pose[block.node[i]];
+        block.type->evaluate(block.data, poses, &rows.error[block.row], &rows.jacobian[block.jacobian]);
+        if (!block.force) continue;
+        for (int r = 0; r < block.type->rows; ++r) rows.impulse[block.row + r] = system.h * block.force[r];
+    }
+}
+
+void store_contact_rows(const System& system, const Group& group, Pairs& pairs) {
+    size_t next = 0;
+    const auto& blocks = system.rows.block;
+    while (next < blocks.size() && blocks[next].force) ++next;  // joints come first
+    for (uint32_t p : group.pairs) {
+        Pair& pair = pairs.list[p];
+        for (int k = 0; k < pair.manifold.count && next < blocks.size(); ++k, ++next) {
+            const double* mu = &system.rows.impulse[blocks[next].row];
+            pair.impulse[k] = {static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(mu[2])};
+        }
+    }
+}
+
+}  // namespace taut

@@ -1,0 +1,94 @@
+// Contacts of a group in lanes: eight pairs of one colour side by side, so that one instruction works on eight.
+// No two pairs of a lane group share a moving node. Structure of arrays inside, one group after the other.
+#pragma once
+
+#include "base/memory.h"
+#include "state/pairs.h"
+
+namespace taut {
+
+constexpr int kLanes = 8;
+
+// By node + 1; 32 bytes each, so that eight gather as an 8x8 transpose.
+struct alignas(32) SweepVelocity {
+    float v[3] = {0, 0, 0}, pad0 = 0;
+    float w[3] = {0, 0, 0}, pad1 = 0;
+};
+struct alignas(32) SweepMass {
+    float inv_mass = 0;
+    float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
+    float pad = 0;
+};
+struct alignas(32) SweepShift {  // since the contacts were found
+    float dx[3] = {0, 0, 0}, pad = 0;  // translation [m]
+    float dq[4] = {0, 0, 0, 1};        // rotation x, y, z, w
+};
+
+struct alignas(32) LaneGroup {
+    uint32_t a[kLanes], b[kLanes];  // index into arrays by node
+    uint32_t pair[kLanes];          // index into Pairs::list, kNone for an empty lane
+    float normal[3][kLanes], tangent[3][kLanes];
+    float friction[kLanes];
+    uint32_t first_point;  // in LanePoint, one for each of `points`
+    uint32_t points;       // most points of a lane
+};
+
+struct alignas(32) LanePoint {  // empty places have zero masses
+    float ra[3][kLanes], rb[3][kLanes];  // from the centres of mass, world axes, at detection [m]
+    float gap0[kLanes];                  // separation at detection [m]
+    float gap[kLanes];                   // at the start of the substep; biased sweep
+    float normal_mass[kLanes];           // 1 / k_n [kg]
+    float friction_mass[3][kLanes];      // inverse of the 2x2 tangential block: 11, 22, 12 [kg]
+    float isotropic_mass[kLanes];        // 1 / its larger eigenvalue [kg]
+    float impulse[3][kLanes];            // normal, tangent 1, tangent 2 [N s]
+    float peak[kLanes];                  // largest normal impulse of the frame [N s]
+    float approach[kLanes];              // normal velocity before the frame's forces [m/s], negative when closing
+    float restitution[kLanes];
+};
+
+// What the kernels see: plain pointers, so that no inline function is shared between builds.
+struct LaneView {
+    const LaneGroup* group;
+    LanePoint* point;
+};
+
+struct ContactLanes {
+    explicit ContactLanes(Memory& memory) : group(memory), point(memory), colour_begin(memory) {}
+
+    Array<LaneGroup> group;
+    Array<LanePoint> point;
+    Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
+
+    bool bounces = false;          // some point has restitution
+
+    LaneView view() { return {group.data(), point.data()}; }
+};
+
+// Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.
+struct SweepTerms {
+    float inv_h;          // [1/s]
+    float bias_rate;      // [1/s], of the overlap
+    float push;           // [m/s], largest push velocity
+    float mass_scale;     // of the effective mass
+    float impulse_scale;  // of the impulse already there
+};
+
+// The fused sweep of contacts: evaluate and solve in one pass over lanes [begin, end) of groups.
+// Three builds of one source give the same bits: scalar, SSE2, AVX2.
+struct ContactKernels {
+    const char* name;
+    void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
+    // Gap from the shifts, then soft normal rows and friction on the cone.
+    void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepShift*,
+                         const SweepTerms&);
+    // Same rows without bias or softness: removes the push from the velocity that is kept.
+    void (*sweep_relaxed)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepTerms&);
+    // Points that closed faster than threshold [m/s] leave with restitution times that speed.
+    void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, float threshold);
+};
+
+extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2;
+// The widest that this machine runs.
+const ContactKernels& contact_kernels();
+
+}  // namespace taut

@@ -1,0 +1,25 @@
+// Softness of contacts and of rigid rows that are swept: a spring of frequency f = 0.25/h and damping ratio z = 10
+// on each row's own effective mass k (Frâncu 2016, section 6.8 gives the regularisation; the closed form is the
+// implicit spring):  om = 2 pi f,  a1 = 2 z + h om,  a2 = h om a1:
+//   dp = -mass_scale/k (J v + bias_rate C) - impulse_scale p
+// with mass_scale = a2/(1 + a2), impulse_scale = 1/(1 + a2), bias_rate = om/a1.
+#pragma once
+
+#include "system/contact_lanes.h"
+
+namespace taut {
+
+inline SweepTerms soft_terms(double h) {
+    constexpr double kPi = 3.14159265358979323846;
+    constexpr double kCycles = 0.25, kDampingRatio = 10, kPush = 3;  // f h [1], [1], [m/s]
+    const double om_h = 2 * kPi * kCycles, a1 = 2 * kDampingRatio + om_h, a2 = om_h * a1;
+    SweepTerms t;
+    t.inv_h = static_cast<float>(1 / h);
+    t.bias_rate = static_cast<float>(om_h / (h * a1));
+    t.push = static_cast<float>(kPush);
+    t.mass_scale = static_cast<float>(a2 / (1 + a2));
+    t.impulse_scale = static_cast<float>(1 / (1 + a2));
+    return t;
+}
+
+}  // namespace taut

@@ -1,0 +1,88 @@
+// The system of one substep: what the solvers see. Built from the state by assemble.cpp and contact_rows.cpp,
+// it names no constraint type; solvers read it, write velocities and impulses, and keep scratch of their own.
+//
+//   [ M + h^2 K   -J^T ] [v+]   [ M v + h f + h^2 K s ]      K: positive part of the geometric stiffness
+//   [ J            c   ] [mu] = [ target              ]      s: low-passed velocity, mu = h lambda
+//
+// Row by row, from C lambda = -error - damping C d(error)/dt at the end of the substep (Frâncu 2016, eq. 6.44):
+//   c = C / (h (h + d)),  target = -error / (h + d),  d = C * damping [s]; a rigid row has C = d = 0.
+//
+// Arrays by node have index node + 1; index 0 is the world, which never moves.
+#pragma once
+
+#include "base/memory.h"
+#include "constraints/constraint.h"
+#include "state/nodes.h"
+#include "constraints/contact.h"
+#include "system/contact_lanes.h"
+
+namespace taut {
+
+// Velocities in double: the unknowns of direct solves, and what commit() integrates.
+struct Velocity {
+    Vec3 v = Vec3::Zero(), w = Vec3::Zero();
+};
+
+// One constraint's rows. Offsets point into the arrays of Rows.
+struct RowBlock {
+    const ConstraintType* type;
+    const void* data;
+    double* force;       // lambda of the last substep, then of this one [N]; type->rows
+    uint32_t node[kMaxNodes];  // indices into arrays by node; unused ones 0
+    uint32_t row;        // first row
+    uint32_t jacobian;   // first entry of [node][row][6]
+    double compliance;   // [m/N]
+    double damping;      // [N s/m]
+    double friction;     // of a cone
+    bool fresh;          // lambda of the last substep means nothing yet
+};
+
+struct Rows {
+    explicit Rows(Memory& memory) : block(memory), error(memory), jacobian(memory), impulse(memory), data(memory) {}
+
+    Array<RowBlock> block;
+    Array<double> error;     // C(x) [m or rad]           rows; assemble()
+    Array<double> jacobian;  // dC/dx                     assemble()
+    Array<double> impulse;   // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
+    Array<ContactData> data; // of contact rows, where a solver takes contacts as rows
+};
+
+struct System {
+    struct Found {  // pose at which contacts were found
+        Vec3 x = Vec3::Zero();
+        Quat q = Quat::Identity();
+    };
+
+    explicit System(Memory& memory)
+        : pose(memory), exact(memory), free(memory), start(memory), inertia(memory), found(memory), kinematic(memory), in_block(memory), velocity(memory), inverse_mass(memory),
+          shift(memory), rows(memory), contacts(memory) {}
+
+    double h = 0;  // substep [s]
+
+    // by node + 1
+    Array<Pose> pose;            // at the start of the substep; predict()
+    Array<Velocity> exact;       // predict(): v* = v + h a; solvers: v+
+    Array<Velocity> free;        // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> start;       // v before forces, for energy balances; predict()
+    Array<Mat3> inertia;         // world axes [kg m^2], of nodes in blocks only; predict()
+    Array<Found> found;          // begin_frame()
+    Array<uint32_t> kinematic;   // nodes; begin_frame()
+    Array<uint8_t> in_block;     // 1: a direct solve owns its exact velocity; partition
+    Array<SweepVelocity> velocity;     // float copy for sweeps
+    Array<SweepMass> inverse_mass;     // of sweeps, world axes
+    Array<SweepShift> shift;     // motion since contacts were found; commit()
+
+    Rows rows;               // of the group being solved
+    ContactLanes contacts;   // of the group being solved
+};
+
+// compliance and target of a row of the block, see above.
+struct RowTerms {
+    double compliance, rate;  // target = -rate * error
+};
+inline RowTerms row_terms(const RowBlock& block, double h) {
+    const double d = block.compliance * block.damping;
+    return {block.compliance / (h * (h + d)), 1 / (h + d)};
+}
+
+}  // namespace taut

@@ -1,0 +1,38 @@
+#include "world.h"
+
+namespace taut {
+
+World::World(const taut_world_def& checked_def, uint32_t world_id)
+    : memory(checked_def.hooks),
+      def(checked_def),
+      id(world_id),
+      nodes(memory),
+      shapes(memory),
+      joints(memory),
+      broadphase(memory),
+      pairs(memory),
+      partition(memory),
+      system(memory),
+      contact_begin(memory),
+      contact_end(memory),
+      moved(memory),
+      quarantined(memory),
+      frozen(memory) {
+    pairs.world = id;
+}
+
+taut_body World::body_handle(uint32_t node) const {
+    if (node == kNone) return {0};
+    return {pack_handle({node, nodes.ids.generation(node), id})};
+}
+
+taut_joint World::joint_handle(uint32_t joint) const {
+    return {pack_handle({joint, joints.ids.generation(joint), id})};
+}
+
+taut_shape World::shape_handle(uint32_t shape) const {
+    if (shape == kNone) return {0};
+    return {pack_handle({shape, shapes.ids.generation(shape), id})};
+}
+
+}  // namespace taut

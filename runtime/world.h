@@ -1,0 +1,54 @@
+// A world owns the rooms' data and no algorithms. What happens to it in a frame is step.cpp.
+#pragma once
+
+#include <taut/taut.h>
+
+#include "collision/collide.h"
+#include "partition/partition.h"
+#include "state/handle.h"
+#include "state/joints.h"
+#include "state/nodes.h"
+#include "state/pairs.h"
+#include "state/shapes.h"
+#include "system/system.h"
+
+namespace taut {
+
+struct World {
+    explicit World(const taut_world_def& checked_def, uint32_t world_id = 0);
+
+    Memory memory;       // first: everything below allocates from it
+    taut_world_def def;  // as checked at creation; gravity may change
+    uint32_t id = 0;     // slot and generation of the handle, 20 bits; the table in api/access.cpp holds its lock
+
+    // state: lives across frames
+    Nodes nodes;
+    Shapes shapes;
+    Joints joints;
+    collision::Broadphase broadphase;
+    Pairs pairs;
+    double accumulator = 0;  // frame time not yet stepped [s]
+
+    // derived: rebuilt by each step from the state, kept for its memory and for what blocks remember
+    Partition partition;
+    System system;
+
+    // results of the last step
+    Array<taut_contact_event> contact_begin, contact_end;
+    Array<taut_moved_event> moved;
+    Array<taut_quarantine_event> quarantined;
+    Array<uint32_t> frozen;  // nodes quarantined by the last step
+    taut_profile profile{};
+
+    taut_body body_handle(uint32_t node) const;
+    taut_joint joint_handle(uint32_t joint) const;
+    taut_shape shape_handle(uint32_t shape) const;
+};
+
+// One fixed time step. Throws std::bad_alloc only before the state changes or with the state still consistent.
+void step(World& world);
+
+// Hash of everything that the future depends on.
+uint64_t state_hash(const World& world);
+
+}  // namespace taut

@@ -1,0 +1,178 @@
+// Every function of the interface that takes a handle, with arguments that are right but for the handle: what a table
+// of handles or a locked world is held against.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "support.h"
+
+namespace taut_test {
+
+template <class Handle>
+struct Call {
+    const char* name;
+    std::function<taut_result(Handle)> run;
+};
+
+inline const taut_pose kIdentity = {{0, 0, 0}, {0, 0, 0, 1}, {0, 0}};
+
+// What a def needs is in the populated world, which the calls need not be made on.
+inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
+    return {
+        {"taut_world_step", [](taut_world w) { return taut_world_step(w); }},
+        {"taut_world_advance", [](taut_world w) { return taut_world_advance(w, 0, nullptr); }},
+        {"taut_world_get_gravity", [](taut_world w) { taut_vec3 out; return taut_world_get_gravity(w, &out); }},
+        {"taut_world_set_gravity", [](taut_world w) { return taut_world_set_gravity(w, {0, -1, 0}); }},
+        {"taut_world_get_counts",
+         [](taut_world w) { return taut_world_get_counts(w, nullptr, nullptr, nullptr); }},
+        {"taut_world_get_bytes", [](taut_world w) { uint64_t out; return taut_world_get_bytes(w, &out); }},
+        {"taut_world_get_state_hash", [](taut_world w) { uint64_t out; return taut_world_get_state_hash(w, &out); }},
+        {"taut_world_get_profile",
+         [](taut_world w) {
+             taut_profile out;
+             out.struct_size = sizeof out;
+             return taut_world_get_profile(w, &out);
+         }},
+        {"taut_world_get_events", [](taut_world w) { taut_events out; return taut_world_get_events(w, &out); }},
+        {"taut_world_get_contacts",
+         [](taut_world w) {
+             taut_contact out[64];
+             uint32_t count;
+             return taut_world_get_contacts(w, out, 64, &count);
+         }},
+        {"taut_world_add_plane",
+         [](taut_world w) {
+             taut_plane_def def;
+             taut_plane_def_init(&def);
+             taut_shape out;
+             return taut_world_add_plane(w, &def, &out);
+         }},
+        {"taut_world_add_box",
+         [](taut_world w) {
+             taut_box_def def;
+             taut_box_def_init(&def);
+             taut_shape out;
+             return taut_world_add_box(w, &def, &out);
+         }},
+        {"taut_world_add_sphere",
+         [](taut_world w) {
+             taut_sphere_def def;
+             taut_sphere_def_init(&def);
+             taut_shape out;
+             return taut_world_add_sphere(w, &def, &out);
+         }},
+        {"taut_world_add_capsule",
+         [](taut_world w) {
+             taut_capsule_def def;
+             taut_capsule_def_init(&def);
+             taut_shape out;
+             return taut_world_add_capsule(w, &def, &out);
+         }},
+        {"taut_world_add_hull",
+         [](taut_world w) {
+             const taut_vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+             taut_hull_def def;
+             taut_hull_def_init(&def);
+             def.points = points;
+             def.point_count = 4;
+             taut_shape out;
+             return taut_world_add_hull(w, &def, &out);
+         }},
+        {"taut_world_add_body",
+         [&p](taut_world w) {
+             const taut_body_def def = body_def(TAUT_BODY_DYNAMIC, p.box, 0, 50, 0);
+             taut_body out;
+             return taut_world_add_body(w, &def, &out);
+         }},
+        {"taut_world_add_particle",
+         [](taut_world w) {
+             taut_particle_def def;
+             taut_particle_def_init(&def);
+             taut_body out;
+             return taut_world_add_particle(w, &def, &out);
+         }},
+        {"taut_world_add_ball_joint",
+         [&p](taut_world w) {
+             taut_ball_joint_def def;
+             taut_ball_joint_def_init(&def);
+             def.body_a = p.crate;
+             taut_joint out;
+             return taut_world_add_ball_joint(w, &def, &out);
+         }},
+        {"taut_world_add_distance_joint",
+         [&p](taut_world w) {
+             taut_distance_joint_def def;
+             taut_distance_joint_def_init(&def);
+             def.body_a = p.crate;
+             def.anchor_b = {0, 20, 0};
+             taut_joint out;
+             return taut_world_add_distance_joint(w, &def, &out);
+         }},
+        {"taut_world_destroy", [](taut_world w) { return taut_world_destroy(w); }},
+    };
+}
+
+// The kind of body that each call works on is in the comment; a stale handle fails before that matters.
+inline std::vector<Call<taut_body>> body_calls() {
+    return {
+        {"taut_body_get_kind", [](taut_body b) { taut_body_kind out; return taut_body_get_kind(b, &out); }},
+        {"taut_body_get_user_data", [](taut_body b) { uint64_t out; return taut_body_get_user_data(b, &out); }},
+        {"taut_body_set_user_data", [](taut_body b) { return taut_body_set_user_data(b, 7); }},
+        {"taut_body_get_mass",
+         [](taut_body b) {
+             float mass;
+             taut_vec3 centre;
+             taut_sym3 inertia;
+             return taut_body_get_mass(b, &mass, &centre, &inertia);
+         }},
+        {"taut_body_get_material", [](taut_body b) { taut_material out; return taut_body_get_material(b, &out); }},
+        {"taut_body_set_material",
+         [](taut_body b) {
+             const taut_material material = {0.5f, 0};
+             return taut_body_set_material(b, &material);
+         }},
+        {"taut_body_get_pose", [](taut_body b) { taut_pose out; return taut_body_get_pose(b, &out); }},
+        {"taut_body_set_pose", [](taut_body b) { return taut_body_set_pose(b, &kIdentity); }},
+        {"taut_body_get_render_pose", [](taut_body b) { taut_pose out; return taut_body_get_render_pose(b, &out); }},
+        {"taut_body_get_velocity", [](taut_body b) { return taut_body_get_velocity(b, nullptr, nullptr); }},
+        {"taut_body_set_velocity", [](taut_body b) { return taut_body_set_velocity(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_move_kinematic", [](taut_body b) { return taut_body_move_kinematic(b, &kIdentity); }},
+        {"taut_body_apply_force", [](taut_body b) { return taut_body_apply_force(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_apply_force_at", [](taut_body b) { return taut_body_apply_force_at(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_apply_impulse", [](taut_body b) { return taut_body_apply_impulse(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_apply_impulse_at",
+         [](taut_body b) { return taut_body_apply_impulse_at(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_remove", [](taut_body b) { return taut_body_remove(b); }},
+    };
+}
+
+inline std::vector<Call<taut_shape>> shape_calls() {
+    return {
+        {"taut_shape_mass_properties",
+         [](taut_shape s) { taut_mass_properties out; return taut_shape_mass_properties(s, 1000, &out); }},
+        {"taut_shape_hull_triangles",
+         [](taut_shape s) {
+             taut_vec3 out[400];
+             uint32_t count;
+             return taut_shape_hull_triangles(s, out, 400, &count);
+         }},
+        {"taut_shape_remove", [](taut_shape s) { return taut_shape_remove(s); }},
+    };
+}
+
+inline std::vector<Call<taut_joint>> joint_calls() {
+    return {
+        {"taut_joint_get_kind", [](taut_joint j) { taut_joint_kind out; return taut_joint_get_kind(j, &out); }},
+        {"taut_joint_get_user_data", [](taut_joint j) { uint64_t out; return taut_joint_get_user_data(j, &out); }},
+        {"taut_joint_get_bodies", [](taut_joint j) { taut_body a, b; return taut_joint_get_bodies(j, &a, &b); }},
+        {"taut_joint_get_anchors", [](taut_joint j) { taut_pos a, b; return taut_joint_get_anchors(j, &a, &b); }},
+        {"taut_joint_get_force", [](taut_joint j) { taut_vec3 out; return taut_joint_get_force(j, &out); }},
+        {"taut_joint_get_error", [](taut_joint j) { float out; return taut_joint_get_error(j, &out); }},
+        {"taut_joint_set_compliance", [](taut_joint j) { return taut_joint_set_compliance(j, 1e-6f, 0); }},
+        {"taut_joint_set_length", [](taut_joint j) { return taut_joint_set_length(j, 2); }},
+        {"taut_joint_remove", [](taut_joint j) { return taut_joint_remove(j); }},
+    };
+}
+
+}  // namespace taut_test

@@ -1,0 +1,394 @@
+// Every def against wrong sizes, null pointers and every float field out of range.
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "support.h"
+
+using namespace taut_test;
+
+namespace {
+
+struct Field {
+    const char* name;  // as texts name it
+    size_t offset;
+    size_t size;  // 4: float, 8: double
+    double lo, hi;
+    enum Edges { closed, open_below, unchecked } edges = closed;  // unchecked: other fields decide about the limits
+};
+
+#define FIELD(def, member, ...) {#member, offsetof(def, member), sizeof(def::member), __VA_ARGS__}
+#define FIELD3(def, member, ...) \
+    FIELD(def, member.x, __VA_ARGS__), FIELD(def, member.y, __VA_ARGS__), FIELD(def, member.z, __VA_ARGS__)
+
+template <class Def>
+Def with(const Def& def, const Field& field, double value) {
+    Def out = def;
+    unsigned char* at = reinterpret_cast<unsigned char*>(&out) + field.offset;
+    if (field.size == sizeof(float)) {
+        const float narrow = static_cast<float>(value);
+        std::memcpy(at, &narrow, sizeof narrow);
+    } else {
+        std::memcpy(at, &value, sizeof value);
+    }
+    return out;
+}
+
+double above(const Field& field, double value) {
+    const double inf = std::numeric_limits<double>::infinity();
+    if (field.size == sizeof(double)) return std::nextafter(value, inf);
+    return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+double below(const Field& field, double value) { return -above(field, -value); }
+
+// Holds one entry point against all that its def forbids, and the limits that it allows.
+template <class Def, class Handle>
+class DefCheck {
+public:
+    DefCheck(taut_world world, const char* name, taut_result (*add)(taut_world, const Def*, Handle*))
+        : world_(world), name_(name), add_(add) {}
+
+    void run(const Def& good, const std::vector<Field>& fields) {
+        SCOPED_TRACE(name_);
+        expect_refused(nullptr, TAUT_NULL_POINTER, "def");
+        ASSERT_EQ(add_(world_, &good, nullptr), TAUT_NULL_POINTER);
+        EXPECT_TRUE(contains(taut_last_error(), "out")) << taut_last_error();
+        for (uint32_t size : {0u, good.struct_size - 1, good.struct_size + 1, UINT32_MAX}) {
+            Def def = good;
+            def.struct_size = size;
+            expect_refused(&def, TAUT_STRUCT_SIZE, "struct_size");
+        }
+        for (const Field& field : fields) {
+            for (double value : bad_values(field)) {
+                const Def def = with(good, field, value);
+                expect_refused(&def, TAUT_INVALID_ARGUMENT, field.name);
+            }
+            for (double value : {field.lo, field.hi}) {
+                if (field.edges == Field::unchecked || (field.edges == Field::open_below && value == field.lo)) continue;
+                const Def def = with(good, field, value);
+                Handle out = {0};
+                EXPECT_EQ(add_(world_, &def, &out), TAUT_OK) << field.name << ": " << taut_last_error();
+                EXPECT_NE(out.bits, 0u);
+            }
+        }
+        Handle out = {0};
+        EXPECT_EQ(add_(world_, &good, &out), TAUT_OK) << taut_last_error();
+    }
+
+    // The def is wrong in a way that the text names by this word.
+    void expect_refused(const Def* def, taut_result code, const char* word) {
+        const Watch watch(world_);
+        Handle out = {0x1234};
+        EXPECT_EQ(add_(world_, def, &out), code) << word << ": " << taut_last_error();
+        EXPECT_TRUE(contains(taut_last_error(), std::string(name_) + ": ")) << taut_last_error();
+        EXPECT_TRUE(contains(taut_last_error(), word)) << taut_last_error();
+        EXPECT_EQ(out.bits, 0x1234u);
+        EXPECT_TRUE(watch.unchanged()) << word;
+    }
+
+private:
+    static std::vector<double> bad_values(const Field& field) {
+        const double inf = std::numeric_limits<double>::infinity(), most = std::numeric_limits<float>::max();
+        std::vector<double> bad = {std::nan(""), inf, -inf, most, -most};
+        if (field.edges != Field::unchecked) {
+            bad.push_back(field.edges == Field::open_below ? field.lo : below(field, field.lo));
+            bad.push_back(above(field, field.hi));
+        }
+        return bad;
+    }
+
+    taut_world world_;
+    const char* name_;
+    taut_result (*add_)(taut_world, const Def*, Handle*);
+};
+
+const double kSizeLo = TAUT_SHAPE_MIN_SIZE, kSizeHi = TAUT_SHAPE_MAX_SIZE;
+
+struct Refusals : testing::Test {
+    Populated p;
+};
+
+TEST_F(Refusals, Plane) {
+    taut_plane_def def;
+    taut_plane_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_plane", taut_world_add_plane);
+    check.run(def, {FIELD3(taut_plane_def, normal, -1e4, 1e4)});
+    def.normal = {0, 0, 0};
+    check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "normal");
+}
+
+TEST_F(Refusals, Box) {
+    taut_box_def def;
+    taut_box_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_box", taut_world_add_box);
+    check.run(def, {FIELD3(taut_box_def, half_extents, kSizeLo, kSizeHi)});
+    def.half_extents.y = 0;
+    check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "half_extents.y is 0, expected [0.001, 10000]");
+}
+
+TEST_F(Refusals, Sphere) {
+    taut_sphere_def def;
+    taut_sphere_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_sphere", taut_world_add_sphere);
+    check.run(def, {FIELD(taut_sphere_def, radius, kSizeLo, kSizeHi)});
+    for (float radius : {0.0f, -0.0f, -1.0f}) {
+        def.radius = radius;
+        check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "radius");
+    }
+}
+
+TEST_F(Refusals, Capsule) {
+    taut_capsule_def def;
+    taut_capsule_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_capsule", taut_world_add_capsule);
+    check.run(def, {FIELD(taut_capsule_def, radius, kSizeLo, kSizeHi),
+                    FIELD(taut_capsule_def, half_length, kSizeLo, kSizeHi)});
+    def.half_length = 0;
+    check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "half_length");
+}
+
+TEST_F(Refusals, Hull) {
+    taut_vec3 points[6] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}};
+    taut_hull_def def;
+    taut_hull_def_init(&def);
+    def.points = points;
+    def.point_count = 6;
+    DefCheck check(p.world, "taut_world_add_hull", taut_world_add_hull);
+    check.run(def, {});
+    for (float bad : {NAN, INFINITY, -INFINITY, 1.1e4f, -1.1e4f}) {
+        for (float* at : {&points[0].x, &points[2].y, &points[5].z}) {
+            const float kept = std::exchange(*at, bad);
+            check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "points");
+            *at = kept;
+        }
+    }
+    for (uint32_t count : {0u, 1u, 3u}) {
+        def.point_count = count;
+        check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "point_count");
+    }
+    def.point_count = 6;
+    def.points = nullptr;
+    check.expect_refused(&def, TAUT_NULL_POINTER, "points");
+    def.points = points;
+    for (taut_vec3& point : points) point.z = 0;  // in one plane
+    check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "points");
+    for (taut_vec3& point : points) point = {1, 2, 3};
+    check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "points");
+}
+
+TEST_F(Refusals, Body) {
+    taut_body_def def = body_def(TAUT_BODY_DYNAMIC, p.box, 0, 20, 0);
+    DefCheck check(p.world, "taut_world_add_body", taut_world_add_body);
+    using Def = taut_body_def;
+    check.run(def, {
+                       // limits of a component are beyond the limit of the length if another is not zero
+                       FIELD(Def, position.x, -1e7, 1e7, Field::unchecked),
+                       FIELD(Def, position.y, -1e7, 1e7),
+                       FIELD(Def, position.z, -1e7, 1e7, Field::unchecked),
+                       FIELD(Def, rotation.x, -1, 1, Field::unchecked),
+                       FIELD(Def, rotation.y, -1, 1, Field::unchecked),
+                       FIELD(Def, rotation.z, -1, 1, Field::unchecked),
+                       FIELD(Def, rotation.w, -1, 1, Field::unchecked),
+                       FIELD3(Def, linear_velocity, -1e4, 1e4),
+                       FIELD3(Def, angular_velocity, -1e4, 1e4),
+                       FIELD(Def, material.friction, 0, 100),
+                       FIELD(Def, material.restitution, 0, 1),
+                       FIELD(Def, density, 0, 1e8, Field::open_below),
+                       FIELD(Def, mass, 1e-6, 1e15),
+                       FIELD3(Def, centre_of_mass, -1e4, 1e4),
+                       FIELD(Def, inertia.xx, 0, 0, Field::unchecked),
+                       FIELD(Def, inertia.yy, 0, 0, Field::unchecked),
+                       FIELD(Def, inertia.zz, 0, 0, Field::unchecked),
+                       FIELD(Def, inertia.xy, 0, 0, Field::unchecked),
+                       FIELD(Def, inertia.xz, 0, 0, Field::unchecked),
+                       FIELD(Def, inertia.yz, 0, 0, Field::unchecked),
+                       FIELD(Def, gravity_scale, -1000, 1000),
+                   });
+    const auto refuse = [&](const char* word, auto change) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, word);
+    };
+    refuse("density is -1, expected (0, 1e+08]", [](Def& d) { d.density = -1; });
+    refuse("mass is -1, expected 0 or [1e-06, 1e+15]", [](Def& d) { d.mass = -1; });
+    refuse("position has length", [](Def& d) { d.position = {8e6, 8e6, 0}; });
+    refuse("linear_velocity has length", [](Def& d) { d.linear_velocity = {8e3f, 0, 8e3f}; });
+    refuse("rotation has length", [](Def& d) { d.rotation = {0, 0, 0, 0}; });
+    refuse("rotation has length", [](Def& d) { d.rotation = {0, 0, 0, 0.998f}; });
+    refuse("kind", [](Def& d) { d.kind = TAUT_BODY_PARTICLE; });
+    refuse("kind", [](Def& d) { d.kind = TAUT_BODY_KIND_MAX; });
+    refuse("filter.reserved", [](Def& d) { d.filter.reserved = 1; });
+    refuse("reserved", [](Def& d) { d.reserved = 1; });
+    refuse("linear_velocity", [](Def& d) { d.kind = TAUT_BODY_STATIC, d.linear_velocity.x = 1; });
+    refuse("angular_velocity", [](Def& d) { d.kind = TAUT_BODY_STATIC, d.angular_velocity.z = 1; });
+    refuse("shape is a plane", [&](Def& d) { d.shape = p.plane; });
+    refuse("mass is 0", [](Def& d) { d.shape = {0}; });
+    refuse("inertia is 0", [](Def& d) { d.shape = {0}, d.mass = 1; });
+    refuse("mass is 0", [](Def& d) { d.shape = {0}, d.inertia = {1, 1, 1, 0, 0, 0}; });
+    refuse("mass from shape and density", [](Def& d) { d.density = 1e-30f; });
+    refuse("positive definite", [](Def& d) { d.inertia = {1, 1, -1, 0, 0, 0}; });
+    refuse("positive definite", [](Def& d) { d.inertia = {1, 1, 0, 0, 0, 0}; });
+    refuse("positive definite", [](Def& d) { d.inertia = {1, 1, 1, 1, 0, 0}; });
+    refuse("positive definite", [](Def& d) { d.inertia = {0, 0, 0, 1, 0, 0}; });
+    refuse("positive definite", [](Def& d) { d.inertia = {1, 1, 1, 0.9f, 0.9f, -0.9f}; });
+}
+
+TEST_F(Refusals, Particle) {
+    taut_particle_def def;
+    taut_particle_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_particle", taut_world_add_particle);
+    using Def = taut_particle_def;
+    check.run(def, {FIELD(Def, mass, 1e-9, 1e21), FIELD3(Def, position, -1e7, 1e7), FIELD3(Def, velocity, -1e4, 1e4),
+                    FIELD(Def, gravity_scale, -1000, 1000)});
+    def.mass = 0;
+    check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "mass is 0");
+}
+
+TEST_F(Refusals, BallJoint) {
+    taut_ball_joint_def def;
+    taut_ball_joint_def_init(&def);
+    def.body_a = p.crate;
+    DefCheck check(p.world, "taut_world_add_ball_joint", taut_world_add_ball_joint);
+    using Def = taut_ball_joint_def;
+    check.run(def, {FIELD3(Def, anchor_a, -1e4, 1e4), FIELD3(Def, anchor_b, -1e7, 1e7), FIELD(Def, compliance, 0, 1e6),
+                    FIELD(Def, damping, 0, 1e12)});
+    const auto refuse = [&](taut_result code, const char* word, auto change) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, code, word);
+    };
+    refuse(TAUT_INVALID_ARGUMENT, "collide_connected", [](Def& d) { d.collide_connected = 2; });
+    refuse(TAUT_INVALID_ARGUMENT, "neither", [](Def& d) { d.body_a = {0}; });
+    refuse(TAUT_INVALID_ARGUMENT, "neither", [&](Def& d) { d.body_a = p.ground; });
+    refuse(TAUT_INVALID_ARGUMENT, "neither", [&](Def& d) { d.body_a = p.lift, d.body_b = p.ground; });
+    refuse(TAUT_INVALID_ARGUMENT, "same", [&](Def& d) { d.body_b = p.crate; });
+    refuse(TAUT_INVALID_ARGUMENT, "anchor_a", [&](Def& d) { d.body_a = p.bob, d.anchor_a = {0, 0.1, 0}; });
+    refuse(TAUT_INVALID_ARGUMENT, "anchor_b", [&](Def& d) { d.body_b = p.bob, d.anchor_b = {0, 0.1, 0}; });
+}
+
+TEST_F(Refusals, DistanceJoint) {
+    taut_distance_joint_def def;
+    taut_distance_joint_def_init(&def);
+    def.body_b = p.crate;
+    def.anchor_a = {0, 5, 0};
+    DefCheck check(p.world, "taut_world_add_distance_joint", taut_world_add_distance_joint);
+    using Def = taut_distance_joint_def;
+    check.run(def, {FIELD3(Def, anchor_a, -1e5, 1e5, Field::unchecked), FIELD3(Def, anchor_b, -1e4, 1e4),
+                    FIELD(Def, length, 1e-4, 1e6), FIELD(Def, compliance, 0, 1e6), FIELD(Def, damping, 0, 1e12)});
+    const auto refuse = [&](const char* word, auto change) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, word);
+    };
+    taut_pose at;
+    ASSERT_OK(taut_body_get_pose(p.crate, &at));
+    refuse("distance", [&](Def& d) { d.anchor_a = {at.position.x, at.position.y, at.position.z + 9e-5}; });
+    refuse("distance", [&](Def& d) { d.anchor_a = {at.position.x, at.position.y, at.position.z}, d.length = 1; });
+    refuse("distance", [](Def& d) { d.anchor_a = {2e6, 0, 0}; });
+    refuse("collide_connected", [](Def& d) { d.collide_connected = UINT32_MAX; });
+    refuse("reserved", [](Def& d) { d.reserved = 1; });
+}
+
+TEST(WorldDef, RefusesWhatItDoesNotState) {
+    taut_world_def good;
+    taut_world_def_init(&good);
+    using Def = taut_world_def;
+    const auto create = [](const Def* def, taut_result code, const char* word) {
+        taut_world out = {0x1234};
+        EXPECT_EQ(taut_world_create(def, &out), code) << word << ": " << taut_last_error();
+        if (code == TAUT_OK) {
+            EXPECT_OK(taut_world_step(out));
+            EXPECT_OK(taut_world_destroy(out));
+            return;
+        }
+        EXPECT_EQ(out.bits, 0x1234u);
+        EXPECT_TRUE(contains(taut_last_error(), "taut_world_create: ")) << taut_last_error();
+        EXPECT_TRUE(contains(taut_last_error(), word)) << taut_last_error();
+    };
+    const auto changed = [&](taut_result code, const char* word, auto change) {
+        Def def = good;
+        change(def);
+        create(&def, code, word);
+    };
+    create(nullptr, TAUT_NULL_POINTER, "def");
+    EXPECT_EQ(taut_world_create(&good, nullptr), TAUT_NULL_POINTER);
+    for (uint32_t size : {0u, good.struct_size - 1, good.struct_size + 1}) {
+        changed(TAUT_STRUCT_SIZE, "struct_size", [&](Def& d) { d.struct_size = size; });
+    }
+
+    const Field fields[] = {FIELD3(Def, gravity, -1e4, 1e4), FIELD(Def, time_step, 1e-4, 0.1),
+                            FIELD(Def, velocity_filter, 0, 1)};
+    for (const Field& field : fields) {
+        for (double value : {std::nan(""), HUGE_VAL, -HUGE_VAL, below(field, field.lo), above(field, field.hi)}) {
+            const Def def = with(good, field, value);
+            create(&def, TAUT_INVALID_ARGUMENT, field.name);
+        }
+        for (double value : {field.lo, field.hi}) {
+            const Def def = with(good, field, value);
+            create(&def, TAUT_OK, field.name);
+        }
+    }
+
+    const struct {
+        const char* name;
+        uint32_t Def::*field;
+        uint32_t lo, hi;
+    } counts[] = {
+        {"substeps", &Def::substeps, 1, 64},
+        {"fixed_substeps", &Def::fixed_substeps, 0, 1},
+        {"sweeps", &Def::sweeps, 0, 1000},
+        {"geometric_stiffness", &Def::geometric_stiffness, 0, 1},
+        {"max_catch_up", &Def::max_catch_up, 1, 1000},
+        {"reserved", &Def::reserved, 0, 0},
+    };
+    for (const auto& count : counts) {
+        changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });
+        changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.hi + 1; });
+        changed(TAUT_OK, count.name, [&](Def& d) { d.*count.field = count.lo; });
+        changed(TAUT_OK, count.name, [&](Def& d) { d.*count.field = count.hi; });
+    }
+    changed(TAUT_INVALID_ARGUMENT, "solver", [](Def& d) { d.solver = TAUT_SOLVER_MAX; });
+    changed(TAUT_OK, "solver", [](Def& d) { d.solver = TAUT_SOLVER_ACCELERATED_JACOBI; });
+
+    Ledger ledger;
+    changed(TAUT_INVALID_ARGUMENT, "hooks.allocate", [&](Def& d) { d.hooks.allocate = ledger.hooks().allocate; });
+    changed(TAUT_INVALID_ARGUMENT, "hooks.free", [&](Def& d) { d.hooks.free = ledger.hooks().free; });
+    changed(TAUT_INVALID_ARGUMENT, "hooks.enqueue_task", [](Def& d) {
+        d.hooks.enqueue_task = [](taut_task_fn, uint32_t, uint32_t, void*, void*) -> void* { return nullptr; };
+    });
+    changed(TAUT_INVALID_ARGUMENT, "hooks.finish_task", [](Def& d) { d.hooks.finish_task = [](void*, void*) {}; });
+    changed(TAUT_INVALID_ARGUMENT, "hooks.worker_count", [](Def& d) { d.hooks.worker_count = 4; });
+    changed(TAUT_INVALID_ARGUMENT, "hooks.reserved", [](Def& d) { d.hooks.reserved = 1; });
+    EXPECT_TRUE(ledger.empty());
+}
+
+TEST(Init, TakesNullAndWritesSizes) {
+    taut_world_def_init(nullptr);
+    taut_body_def_init(nullptr);
+    taut_particle_def_init(nullptr);
+    taut_plane_def_init(nullptr);
+    taut_box_def_init(nullptr);
+    taut_sphere_def_init(nullptr);
+    taut_capsule_def_init(nullptr);
+    taut_hull_def_init(nullptr);
+    taut_ball_joint_def_init(nullptr);
+    taut_distance_joint_def_init(nullptr);
+
+    taut_world_def world;
+    std::memset(&world, 0xff, sizeof world);
+    taut_world_def_init(&world);
+    EXPECT_EQ(world.struct_size, sizeof world);
+    EXPECT_EQ(world.gravity.y, -9.81f);
+    EXPECT_EQ(world.hooks.allocate, nullptr);
+    taut_body_def body;
+    std::memset(&body, 0xff, sizeof body);
+    taut_body_def_init(&body);
+    EXPECT_EQ(body.struct_size, sizeof body);
+    EXPECT_EQ(body.filter.mask, UINT64_MAX);
+    EXPECT_EQ(body.shape.bits, 0u);
+}
+
+}  // namespace

@@ -1,0 +1,218 @@
+// What the tests of the interface share: an allocator that keeps books and fails on demand, a world with one of
+// everything, and the check that a refused call changed nothing.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <unordered_map>
+
+#include <taut/taut.h>
+
+#define ASSERT_OK(call) ASSERT_EQ(call, TAUT_OK) << taut_last_error()
+#define EXPECT_OK(call) EXPECT_EQ(call, TAUT_OK) << taut_last_error()
+
+namespace taut_test {
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// Keeps every live block with its size and alignment; single-threaded.
+class Ledger {
+public:
+    taut_hooks hooks() {
+        taut_hooks out = {};
+        out.allocate = [](size_t size, size_t alignment, void* self) {
+            return static_cast<Ledger*>(self)->allocate(size, alignment);
+        };
+        out.free = [](void* pointer, size_t size, size_t alignment, void* self) {
+            static_cast<Ledger*>(self)->release(pointer, size, alignment);
+        };
+        out.memory_user_data = this;
+        return out;
+    }
+
+    uint64_t bytes = 0;   // live now
+    uint64_t calls = 0;   // of allocate
+    uint64_t errors = 0;  // of whoever allocates: bad sizes and alignments, blocks that are not his
+    uint64_t fail_from = UINT64_MAX, fail_until = UINT64_MAX;  // numbers of calls that return null
+    uint64_t failed = 0;
+    std::function<void()> on_allocate;
+
+    bool empty() const { return blocks_.empty() && bytes == 0; }
+
+private:
+    struct Block {
+        size_t size, alignment;
+    };
+
+    void* allocate(size_t size, size_t alignment) {
+        ++calls;
+        if (size == 0 || alignment == 0 || alignment > 64 || (alignment & (alignment - 1)) != 0) ++errors;
+        if (on_allocate) on_allocate();
+        if (calls >= fail_from && calls < fail_until) {
+            ++failed;
+            return nullptr;
+        }
+        void* pointer = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+        blocks_[pointer] = {size, alignment};
+        bytes += size;
+        return pointer;
+    }
+    void release(void* pointer, size_t size, size_t alignment) {
+        const auto block = blocks_.find(pointer);
+        if (block == blocks_.end() || block->second.size != size || block->second.alignment != alignment) {
+            ++errors;
+            return;
+        }
+        bytes -= size;
+        blocks_.erase(block);
+        std::free(pointer);
+    }
+
+    std::unordered_map<void*, Block> blocks_;
+};
+
+inline taut_world make_world(const taut_hooks& hooks = {}) {
+    taut_world_def def;
+    taut_world_def_init(&def);
+    def.hooks = hooks;
+    taut_world world = {0};
+    EXPECT_EQ(taut_world_create(&def, &world), TAUT_OK) << taut_last_error();
+    return world;
+}
+
+inline uint64_t hash_of(taut_world world) {
+    uint64_t hash = 0;
+    EXPECT_EQ(taut_world_get_state_hash(world, &hash), TAUT_OK) << taut_last_error();
+    return hash;
+}
+
+struct Counts {
+    uint32_t bodies = 0, shapes = 0, joints = 0;
+    bool operator==(const Counts&) const = default;
+};
+
+inline Counts counts_of(taut_world world) {
+    Counts out;
+    EXPECT_EQ(taut_world_get_counts(world, &out.bodies, &out.shapes, &out.joints), TAUT_OK) << taut_last_error();
+    return out;
+}
+
+// Takes the state of a world; later, what must not have changed.
+class Watch {
+public:
+    explicit Watch(taut_world world) : world_(world), hash_(hash_of(world)), counts_(counts_of(world)) {}
+    bool unchanged() const { return hash_of(world_) == hash_ && counts_of(world_) == counts_; }
+
+private:
+    taut_world world_;
+    uint64_t hash_;
+    Counts counts_;
+};
+
+inline taut_body_def body_def(taut_body_kind kind, taut_shape shape, double x = 0, double y = 0, double z = 0) {
+    taut_body_def def;
+    taut_body_def_init(&def);
+    def.kind = kind;
+    def.shape = shape;
+    def.position = {x, y, z};
+    return def;
+}
+
+inline taut_body add_body(taut_world world, const taut_body_def& def) {
+    taut_body body = {0};
+    EXPECT_EQ(taut_world_add_body(world, &def, &body), TAUT_OK) << taut_last_error();
+    return body;
+}
+
+inline taut_body add_particle(taut_world world, double x, double y, double z) {
+    taut_particle_def def;
+    taut_particle_def_init(&def);
+    def.position = {x, y, z};
+    taut_body body = {0};
+    EXPECT_EQ(taut_world_add_particle(world, &def, &body), TAUT_OK) << taut_last_error();
+    return body;
+}
+
+inline taut_shape add_box(taut_world world, float half = 0.5f) {
+    taut_box_def def;
+    taut_box_def_init(&def);
+    def.half_extents = {half, half, half};
+    taut_shape shape = {0};
+    EXPECT_EQ(taut_world_add_box(world, &def, &shape), TAUT_OK) << taut_last_error();
+    return shape;
+}
+
+inline taut_shape add_plane(taut_world world) {
+    taut_plane_def def;
+    taut_plane_def_init(&def);
+    taut_shape shape = {0};
+    EXPECT_EQ(taut_world_add_plane(world, &def, &shape), TAUT_OK) << taut_last_error();
+    return shape;
+}
+
+// A tetrahedron on three axes of this length.
+inline taut_shape add_hull(taut_world world, float length = 1) {
+    const taut_vec3 points[] = {{0, 0, 0}, {length, 0, 0}, {0, length, 0}, {0, 0, length}};
+    taut_hull_def def;
+    taut_hull_def_init(&def);
+    def.points = points;
+    def.point_count = 4;
+    taut_shape shape = {0};
+    EXPECT_EQ(taut_world_add_hull(world, &def, &shape), TAUT_OK) << taut_last_error();
+    return shape;
+}
+
+inline taut_joint add_ball(taut_world world, taut_body a, taut_body b, taut_pos anchor_a = {}, taut_pos anchor_b = {}) {
+    taut_ball_joint_def def;
+    taut_ball_joint_def_init(&def);
+    def.body_a = a;
+    def.body_b = b;
+    def.anchor_a = anchor_a;
+    def.anchor_b = anchor_b;
+    taut_joint joint = {0};
+    EXPECT_EQ(taut_world_add_ball_joint(world, &def, &joint), TAUT_OK) << taut_last_error();
+    return joint;
+}
+
+inline taut_joint add_rod(taut_world world, taut_body a, taut_body b, taut_pos anchor_a = {}, taut_pos anchor_b = {}) {
+    taut_distance_joint_def def;
+    taut_distance_joint_def_init(&def);
+    def.body_a = a;
+    def.body_b = b;
+    def.anchor_a = anchor_a;
+    def.anchor_b = anchor_b;
+    taut_joint joint = {0};
+    EXPECT_EQ(taut_world_add_distance_joint(world, &def, &joint), TAUT_OK) << taut_last_error();
+    return joint;
+}
+
+// A world with one of everything, a box at rest on a plane and a pendulum; destroyed with the object.
+struct Populated {
+    explicit Populated(const taut_hooks& hooks = {}) : world(make_world(hooks)) {
+        plane = add_plane(world);
+        box = add_box(world);
+        hull = add_hull(world);
+        ground = add_body(world, body_def(TAUT_BODY_STATIC, plane));
+        crate = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0, 0.5, 0));
+        lift = add_body(world, body_def(TAUT_BODY_KINEMATIC, box, 5, 3, 0));
+        wedge = add_body(world, body_def(TAUT_BODY_DYNAMIC, hull, -5, 4, 0));
+        bob = add_particle(world, 10, 5, 0);
+        ball = add_ball(world, wedge, {0}, {0, 0, 0}, {-5, 4, 0});
+        rod = add_rod(world, bob, {0}, {0, 0, 0}, {12, 5, 0});
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(taut_world_step(world), TAUT_OK) << taut_last_error();
+    }
+    ~Populated() { taut_world_destroy(world); }
+    Populated(const Populated&) = delete;
+    Populated& operator=(const Populated&) = delete;
+
+    taut_world world;
+    taut_shape plane, box, hull;
+    taut_body ground, crate, lift, wedge, bob;
+    taut_joint ball, rod;
+};
+
+}  // namespace taut_test

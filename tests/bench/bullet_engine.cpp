@@ -1,0 +1,153 @@
+// The same scenes in Bullet's own dynamics with its default settings: one step a frame, ten iterations.
+#include <btBulletDynamicsCommon.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "engine.h"
+
+namespace bench {
+
+namespace {
+
+enum FilterBits : int { kOthers = 1, kChain = 2 };
+
+btVector3 vec(taut_vec3 v) { return {v.x, v.y, v.z}; }
+btVector3 vec(taut_pos p) {
+    return {static_cast<btScalar>(p.x), static_cast<btScalar>(p.y), static_cast<btScalar>(p.z)};
+}
+
+// Boxes keep their true size: btBoxShape takes its margin off the inside.
+std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
+    switch (shape.kind) {
+        case scenes::ShapeKind::plane: return std::make_unique<btStaticPlaneShape>(vec(shape.normal), 0);
+        case scenes::ShapeKind::box: return std::make_unique<btBoxShape>(vec(shape.half_extents));
+        case scenes::ShapeKind::sphere: return std::make_unique<btSphereShape>(shape.radius);
+        case scenes::ShapeKind::capsule: return std::make_unique<btCapsuleShape>(shape.radius, 2 * shape.half_length);
+        case scenes::ShapeKind::hull: break;
+    }
+    throw scenes::BadScene("--engine bullet does not run scenes with hulls: Bullet's margin would change their size");
+}
+
+double volume_of(const scenes::Shape& shape) {
+    double r = static_cast<double>(shape.radius);
+    if (shape.kind == scenes::ShapeKind::box)
+        return 8.0 * static_cast<double>(shape.half_extents.x) * static_cast<double>(shape.half_extents.y) *
+               static_cast<double>(shape.half_extents.z);
+    double ball = 4.0 / 3.0 * SIMD_PI * r * r * r;
+    return shape.kind == scenes::ShapeKind::sphere ? ball : ball + 2 * SIMD_PI * r * r * static_cast<double>(shape.half_length);
+}
+
+class BulletEngine : public Engine {
+public:
+    BulletEngine(const scenes::Scene& scene, uint32_t substeps)
+        : substeps_(substeps), step_(scene.world.time_step / static_cast<float>(substeps)) {
+        dispatcher_ = std::make_unique<btCollisionDispatcher>(&configuration_);
+        world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_, &configuration_);
+        world_->setGravity(vec(scene.world.gravity));
+        for (const scenes::Shape& shape : scene.shapes) shapes_.push_back(make_shape(shape));
+        for (const scenes::Body& body : scene.bodies) add(scene, body);
+        for (const scenes::Joint& joint : scene.joints) add(joint);
+    }
+    ~BulletEngine() override {
+        for (auto& joint : joints_) world_->removeConstraint(joint.get());
+        for (auto& body : bodies_) world_->removeRigidBody(body.get());
+    }
+
+    const char* name() const override { return "bullet"; }
+    const char* solver() const override { return "btSequentialImpulseConstraintSolver"; }
+    uint32_t substeps() const override { return substeps_; }
+    void step() override {
+        for (uint32_t i = 0; i < substeps_; ++i) world_->stepSimulation(step_, 0);
+    }
+
+    Motion motion(size_t body) const override {
+        const btTransform& t = bodies_[body]->getWorldTransform();
+        btQuaternion q = t.getRotation();
+        const btVector3 &p = t.getOrigin(), &v = bodies_[body]->getLinearVelocity(), &w = bodies_[body]->getAngularVelocity();
+        return {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
+    }
+
+    Mass mass(size_t body) const override {
+        if (bodies_[body]->isStaticObject()) return {};
+        const btVector3& inverse = bodies_[body]->getInvInertiaDiagLocal();
+        return {bodies_[body]->getMass(), {1 / inverse.x(), 1 / inverse.y(), 1 / inverse.z(), 0, 0, 0}};
+    }
+
+    uint64_t state_hash() const override {
+        uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over poses and velocities
+        for (size_t i = 0; i < bodies_.size(); ++i) {
+            Motion m = motion(i);
+            std::array<float, 13> values = {static_cast<float>(m.position.x), static_cast<float>(m.position.y),
+                                            static_cast<float>(m.position.z), m.rotation.x, m.rotation.y, m.rotation.z,
+                                            m.rotation.w, m.linear_velocity.x, m.linear_velocity.y, m.linear_velocity.z,
+                                            m.angular_velocity.x, m.angular_velocity.y, m.angular_velocity.z};
+            std::array<unsigned char, sizeof values> bytes;
+            std::memcpy(bytes.data(), values.data(), bytes.size());
+            for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+        }
+        return hash;
+    }
+
+private:
+    void add(const scenes::Scene& scene, const scenes::Body& body) {
+        if (body.kind == TAUT_BODY_PARTICLE)
+            throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' needs particles and rods, which Bullet lacks");
+        btCollisionShape* shape = shapes_[static_cast<size_t>(body.shape)].get();
+        btScalar mass = 0;
+        btVector3 inertia(0, 0, 0);
+        if (body.kind == TAUT_BODY_DYNAMIC) {
+            const scenes::Shape& form = scene.shapes[static_cast<size_t>(body.shape)];
+            mass = body.mass > 0 ? body.mass : static_cast<float>(static_cast<double>(body.density) * volume_of(form));
+            shape->calculateLocalInertia(mass, inertia);
+        }
+        btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape, inertia);
+        info.m_startWorldTransform = btTransform(
+            btQuaternion(body.rotation.x, body.rotation.y, body.rotation.z, body.rotation.w), vec(body.position));
+        info.m_friction = std::sqrt(body.friction);  // Bullet multiplies the two; Taut takes the root of the product
+        info.m_restitution = 0;
+        auto rigid = std::make_unique<btRigidBody>(info);
+        rigid->setLinearVelocity(vec(body.linear_velocity));
+        rigid->setAngularVelocity(vec(body.angular_velocity));
+        rigid->setActivationState(DISABLE_DEACTIVATION);
+        int group = body.group < 0 ? kChain : kOthers;
+        world_->addRigidBody(rigid.get(), group, group == kChain ? kOthers : kOthers | kChain);
+        bodies_.push_back(std::move(rigid));
+    }
+
+    void add(const scenes::Joint& joint) {
+        if (joint.kind != TAUT_JOINT_BALL) throw scenes::BadScene("--engine bullet: Bullet has no distance joint");
+        btRigidBody& b = *bodies_[static_cast<size_t>(joint.body_b)];
+        std::unique_ptr<btPoint2PointConstraint> made;
+        if (joint.body_a == scenes::kWorld) {
+            made = std::make_unique<btPoint2PointConstraint>(b, vec(joint.anchor_b));
+        } else {
+            btRigidBody& a = *bodies_[static_cast<size_t>(joint.body_a)];
+            made = std::make_unique<btPoint2PointConstraint>(a, b, vec(joint.anchor_a), vec(joint.anchor_b));
+        }
+        world_->addConstraint(made.get(), true);
+        joints_.push_back(std::move(made));
+    }
+
+    uint32_t substeps_;
+    btScalar step_;
+    btDefaultCollisionConfiguration configuration_;
+    btDbvtBroadphase broadphase_;
+    btSequentialImpulseConstraintSolver solver_;
+    std::unique_ptr<btCollisionDispatcher> dispatcher_;
+    std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+    std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_bullet_engine(const scenes::Scene& scene, uint32_t substeps) {
+    return std::make_unique<BulletEngine>(scene, substeps);
+}
+
+}  // namespace bench

@@ -1,0 +1,47 @@
+// What taut-bench asks of an engine: step a scene and tell where everything is.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "scenes/scene.h"
+
+namespace bench {
+
+struct Motion {
+    taut_pos position{};
+    taut_quat rotation{0, 0, 0, 1};
+    taut_vec3 linear_velocity{}, angular_velocity{};
+};
+
+// Zero mass for what doesn't move by itself. The scenes' bodies have their centre of mass at the origin.
+struct Mass {
+    double mass = 0;      // [kg]
+    taut_sym3 inertia{};  // body axes [kg m^2]
+};
+
+// Time that the last step spent on direct solves.
+struct SolveTime {
+    double microseconds = 0;
+    uint32_t solves = 0;
+};
+
+class Engine {
+public:
+    virtual ~Engine() = default;
+    virtual const char* name() const = 0;
+    virtual const char* solver() const = 0;
+    virtual uint32_t substeps() const = 0;
+    virtual void step() = 0;
+    virtual Motion motion(size_t body) const = 0;
+    virtual Mass mass(size_t body) const = 0;
+    virtual uint64_t state_hash() const = 0;
+    virtual SolveTime solve_time() const { return {}; }
+    virtual uint32_t quarantined() const { return 0; }  // bodies frozen by the last step because they became non-finite
+};
+
+std::unique_ptr<Engine> make_taut_engine(const scenes::Scene& scene);
+// Only in builds with TAUT_BENCH_PEERS. Throws scenes::BadScene for what Bullet's dynamics doesn't have.
+std::unique_ptr<Engine> make_bullet_engine(const scenes::Scene& scene, uint32_t substeps);
+
+}  // namespace bench

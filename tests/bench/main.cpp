@@ -1,0 +1,157 @@
+// taut-bench: runs one scene without pictures and prints its figures as one JSON object on one line.
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+
+#include "metrics.h"
+#include "scenes/catalogue.h"
+#include "scenes/taut_world.h"
+
+namespace bench {
+
+namespace {
+
+enum ExitCode { kFine = 0, kRunFailed = 1, kBadArguments = 2 };
+
+struct Options {
+    std::string scene, engine = "taut";
+    std::optional<uint32_t> steps, substeps;
+    std::optional<std::string> solver;
+    uint32_t threads = 1;
+    uint64_t seed = 0;
+    bool geometric_stiffness = true;
+};
+
+void print_scenes() {
+    for (const scenes::Family& family : scenes::families())
+        if (!family.needs_mesh)
+            std::printf("%-22s %4u steps  %s (as in %s)\n", family.pattern, family.steps, family.description, family.example);
+}
+
+std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
+    Options options;
+    uint32_t steps = 0, substeps = 0;
+    std::string solver;
+    bool list = false, no_stiffness = false;
+    CLI::App app{"Runs a scene without pictures and prints its figures as one JSON object on one line.\n"
+                 "Exit codes: 0 fine, 1 the run failed, 2 bad arguments."};
+    app.add_option("--scene", options.scene, "scene by name, see --list");
+    CLI::Option* steps_flag =
+        app.add_option("--steps", steps, "steps (default: the scene's)")->check(CLI::Range(1, 10000000));
+    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")->check(CLI::Range(1, 256));
+    app.add_option("--engine", options.engine, "taut, or bullet in builds with TAUT_BENCH_PEERS");
+    CLI::Option* substeps_flag = app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
+    CLI::Option* solver_flag =
+        app.add_option("--solver", solver, "block_ldlt, projected_gauss_seidel or accelerated_jacobi");
+    app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
+    app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
+    app.add_flag("--list", list, "print all scenes");
+    app.footer(kFieldHelp);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        *exit_code = app.exit(error, std::cout, std::cerr) == 0 ? kFine : kBadArguments;
+        return std::nullopt;
+    }
+    if (list) {
+        print_scenes();
+        *exit_code = kFine;
+        return std::nullopt;
+    }
+    if (options.scene.empty()) throw scenes::BadScene("--scene NAME is required, see --list");
+    if (steps_flag->count() > 0) options.steps = steps;
+    if (substeps_flag->count() > 0) options.substeps = substeps;
+    if (solver_flag->count() > 0) options.solver = solver;
+    options.geometric_stiffness = !no_stiffness;
+    return options;
+}
+
+std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene& scene) {
+    if (options.engine == "taut") return make_taut_engine(scene);
+    if (options.engine != "bullet") throw scenes::BadScene("--engine: '" + options.engine + "' is neither taut nor bullet");
+#ifdef TAUT_BENCH_PEERS
+    if (options.solver) throw scenes::BadScene("--solver is for taut only");
+    return make_bullet_engine(scene, options.substeps.value_or(1));
+#else
+    throw scenes::BadScene("--engine bullet: this build has no peers, configure with -DTAUT_BENCH_PEERS=ON");
+#endif
+}
+
+double part_of(const std::vector<double>& sorted, double share) {
+    auto index = static_cast<size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+    return sorted[std::clamp<size_t>(index, 1, sorted.size()) - 1];
+}
+
+void report_times(nlohmann::ordered_json& json, std::vector<double> times) {
+    double sum = 0;
+    for (double t : times) sum += t;
+    std::sort(times.begin(), times.end());
+    json["mean_ms"] = sum / static_cast<double>(times.size());
+    json["median_ms"] = part_of(times, 0.5);
+    json["p99_ms"] = part_of(times, 0.99);
+    json["max_ms"] = times.back();
+}
+
+int run(const Options& options) {
+    scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""});
+    if (options.substeps) scene.world.substeps = *options.substeps;
+    if (options.solver) scene.world.solver = scenes::solver_named(*options.solver);
+    if (!options.geometric_stiffness) scene.world.geometric_stiffness = 0;
+    if (options.threads > 1) std::fprintf(stderr, "--threads: this version steps on one thread\n");
+    uint32_t steps = options.steps.value_or(scene.steps);
+    std::unique_ptr<Engine> engine = make_engine(options, scene);
+    Metrics metrics(scene, *engine, steps);
+    std::vector<double> times;
+    SolveTime solve;
+    for (uint32_t step = 0; step < steps; ++step) {
+        auto begin = std::chrono::steady_clock::now();
+        engine->step();
+        times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+        SolveTime last = engine->solve_time();
+        solve.microseconds += last.microseconds;
+        solve.solves += last.solves;
+        metrics.after_step(step);
+    }
+    char hash[20];
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(engine->state_hash()));
+    nlohmann::ordered_json json;
+    json["engine"] = engine->name();
+    json["scene"] = scene.name;
+    json["threads"] = 1;
+    json["bodies"] = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const scenes::Body& body) { return body.kind != TAUT_BODY_STATIC; });
+    json["steps"] = steps;
+    report_times(json, times);
+    json["finite"] = metrics.finite() ? 1 : 0;
+    json["state_hash"] = hash;
+    metrics.report(json);
+    if (solve.solves > 0) json["solve_us"] = solve.microseconds / solve.solves;
+    json["solver"] = engine->solver();
+    json["substeps"] = engine->substeps();
+    json["seed"] = options.seed;
+    json["geometric_stiffness"] = options.geometric_stiffness ? 1 : 0;
+    std::printf("%s\n", json.dump().c_str());
+    return kFine;
+}
+
+}  // namespace
+
+}  // namespace bench
+
+int main(int argc, char** argv) {
+    try {
+        int code = 0;
+        std::optional<bench::Options> options = bench::read_options(argc, argv, &code);
+        return options ? bench::run(*options) : code;
+    } catch (const scenes::BadScene& error) {
+        std::fprintf(stderr, "taut-bench: %s\n", error.what());
+        return bench::kBadArguments;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "taut-bench: %s\n", error.what());
+        return bench::kRunFailed;
+    }
+}

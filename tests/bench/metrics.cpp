@@ -1,0 +1,234 @@
+#include "metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "overlap.h"
+#include "vector.h"
+
+namespace bench {
+
+namespace {
+
+constexpr double kFallBelow = -0.5;            // a centre this far below the ground has escaped [m]
+constexpr double kStandingDrop = 0.25;         // a top body that sank or moved further no longer stands [m]
+constexpr double kBlownGap = 0.25;             // of a link
+constexpr double kBlownEnergy = 0.02;          // rise over the start
+constexpr double kLeastFall = 0.01;            // of m g L: a start with less hangs already
+
+bool is_finite(const Motion& m) {
+    for (double v : {m.position.x, m.position.y, m.position.z})
+        if (!std::isfinite(v)) return false;
+    for (float v : {m.rotation.x, m.rotation.y, m.rotation.z, m.rotation.w, m.linear_velocity.x, m.linear_velocity.y,
+                    m.linear_velocity.z, m.angular_velocity.x, m.angular_velocity.y, m.angular_velocity.z})
+        if (!std::isfinite(v)) return false;
+    return true;
+}
+
+double kinetic_energy(const Motion& m, const Mass& mass) {
+    Vec v = of(m.linear_velocity), w = rotate_back(m.rotation, of(m.angular_velocity));
+    const taut_sym3& i = mass.inertia;
+    Vec spin = {static_cast<double>(i.xx) * w.x + static_cast<double>(i.xy) * w.y + static_cast<double>(i.xz) * w.z,
+                static_cast<double>(i.xy) * w.x + static_cast<double>(i.yy) * w.y + static_cast<double>(i.yz) * w.z,
+                static_cast<double>(i.xz) * w.x + static_cast<double>(i.yz) * w.y + static_cast<double>(i.zz) * w.z};
+    return 0.5 * mass.mass * dot(v, v) + 0.5 * dot(w, spin);
+}
+
+Vec place(const std::vector<Motion>& motions, int body, taut_pos anchor) {
+    if (body == scenes::kWorld) return of(anchor);
+    const Motion& m = motions[static_cast<size_t>(body)];
+    return of(m.position) + rotate(m.rotation, of(anchor));
+}
+
+uint32_t window(const scenes::Scene& scene, uint32_t steps, double seconds) {
+    auto count = static_cast<uint32_t>(std::lround(seconds / static_cast<double>(scene.world.time_step)));
+    return steps > count ? steps - count : 0;
+}
+
+}  // namespace
+
+const char* const kFieldHelp = R"(JSON fields (one object on one line):
+  engine scene threads bodies steps   what ran; bodies counts dynamic bodies and particles
+  mean_ms median_ms p99_ms max_ms     wall time of one step
+  finite                              1 if every pose and velocity stayed finite
+  state_hash                          of the final state; equal hashes mean equal runs
+ piles: from final poses and true shapes
+  pen_mean_mm pen_max_mm              overlap of the pairs that overlap
+  rest_speed                          mean speed over the last second [m/s]
+  escaped                             bodies outside the bin, below the ground or not finite
+ stacks: the top body against its start
+  drop_mm drop_pct lateral_mm         sinking, the same in % of its height, sideways drift
+  standing                            1 if it sank and drifted by less than 250 mm
+ chains and cables
+  joint_sep_pct                       largest joint gap (rod: length error) of the last 5 s, % of a link
+  stretch_pct                         largest change of the whole chain's length in the last 5 s, %
+  energy_max energy_end               largest and last total energy as (E - E_ref) / (E_start - E_ref), where E_ref
+                                      is everything hanging straight down at rest: 1 is conservation. A chain that
+                                      hangs at the start: 1 + (E - E_start) / (m g L) of its weight
+  blew_up                             1 if not finite, energy_max > 1.02, or a gap was above 25 % of a link
+  first_vertical_s                    when the weight first passes below the anchor (null: never)
+  period_s                            of a swing, mean over the run
+  solve_us                            mean of one substep's assembly and direct solve
+ as run: solver substeps seed geometric_stiffness)";
+
+Metrics::Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps)
+    : scene_(scene),
+      engine_(engine),
+      steps_(steps),
+      last_second_(window(scene, steps, 1)),
+      last_five_seconds_(window(scene, steps, 5)),
+      motions_(scene.bodies.size()),
+      masses_(scene.bodies.size()),
+      hang_height_(scene.bodies.size()) {
+    for (size_t i = 0; i < scene.bodies.size(); ++i) {
+        masses_[i] = engine.mass(i);
+        hang_height_[i] = scene.bodies[i].position.y;
+    }
+    read_motions();
+    start_ = motions_;
+    if (!scene.roles.chain) return;
+    const scenes::Chain& chain = *scene.roles.chain;
+    for (size_t i = 0; i < chain.bodies.size(); ++i)
+        hang_height_[static_cast<size_t>(chain.bodies[i])] = chain.anchor.y - chain.hang_depth[i];
+    energy_start_ = energy_most_ = energy_last_ = energy_above_hanging();
+    double fall = masses_[static_cast<size_t>(chain.bodies.back())].mass * -static_cast<double>(scene.world.gravity.y) * chain.length;
+    energy_unit_ = energy_start_ > kLeastFall * fall ? energy_start_ : fall;
+    side_ = motions_[static_cast<size_t>(chain.bodies.back())].position.x - chain.anchor.x;
+}
+
+void Metrics::read_motions() {
+    for (size_t i = 0; i < motions_.size(); ++i) {
+        motions_[i] = engine_.motion(i);
+        finite_ = finite_ && is_finite(motions_[i]);
+    }
+}
+
+// Total energy over the state in which the chain hangs straight down and all else is where it began [J].
+double Metrics::energy_above_hanging() const {
+    double sum = 0, gravity = -static_cast<double>(scene_.world.gravity.y);
+    for (size_t i = 0; i < motions_.size(); ++i)
+        if (masses_[i].mass > 0)
+            sum += kinetic_energy(motions_[i], masses_[i]) +
+                   masses_[i].mass * gravity * (motions_[i].position.y - hang_height_[i]);
+    return sum;
+}
+
+double Metrics::joint_gap(const scenes::Joint& joint) const {
+    double distance = length(place(motions_, joint.body_b, joint.anchor_b) - place(motions_, joint.body_a, joint.anchor_a));
+    return joint.kind == TAUT_JOINT_DISTANCE ? std::fabs(distance - static_cast<double>(joint.length)) : distance;
+}
+
+void Metrics::follow_chain(uint32_t step) {
+    const scenes::Chain& chain = *scene_.roles.chain;
+    energy_last_ = energy_above_hanging();
+    energy_most_ = std::max(energy_most_, energy_last_);
+    // The chain's length is that of its links and of the gaps between them.
+    double gap = 0, growth = 0, total = 0;
+    for (int index : chain.joints) {
+        const scenes::Joint& joint = scene_.joints[static_cast<size_t>(index)];
+        double distance = length(place(motions_, joint.body_b, joint.anchor_b) - place(motions_, joint.body_a, joint.anchor_a));
+        gap = std::max(gap, joint_gap(joint));
+        growth += distance - static_cast<double>(joint.length);
+        total += chain.link_length;
+    }
+    gap_worst_ = std::max(gap_worst_, gap);
+    if (step >= last_five_seconds_) {
+        gap_late_ = std::max(gap_late_, gap);
+        stretch_late_ = std::max(stretch_late_, std::fabs(growth) / total);
+    }
+    double side = motions_[static_cast<size_t>(chain.bodies.back())].position.x - chain.anchor.x;
+    if (side * side_ < 0 || (side == 0 && side_ != 0))
+        crossings_.push_back((step + side_ / (side_ - side)) * static_cast<double>(scene_.world.time_step));
+    side_ = side;
+}
+
+void Metrics::after_step(uint32_t step) {
+    read_motions();
+    finite_ = finite_ && engine_.quarantined() == 0;
+    if (step >= last_second_)
+        for (int body : scene_.roles.pile) {
+            rest_sum_ += length(of(motions_[static_cast<size_t>(body)].linear_velocity));
+            ++rest_count_;
+        }
+    if (scene_.roles.chain) follow_chain(step);
+}
+
+Metrics::Overlaps Metrics::overlaps() const {
+    std::set<std::pair<int, int>> joined;
+    for (const scenes::Joint& joint : scene_.joints) joined.insert(std::minmax(joint.body_a, joint.body_b));
+    std::vector<bool> in_pile(scene_.bodies.size(), false);
+    for (int body : scene_.roles.pile) in_pile[static_cast<size_t>(body)] = true;
+    auto shape_of = [&](size_t i) { return &scene_.shapes[static_cast<size_t>(scene_.bodies[i].shape)]; };
+    Overlaps result;
+    size_t count = 0;
+    for (size_t i = 0; i < scene_.bodies.size(); ++i)
+        for (size_t k = i + 1; k < scene_.bodies.size(); ++k) {
+            const scenes::Body &a = scene_.bodies[i], &b = scene_.bodies[k];
+            if ((!in_pile[i] && !in_pile[k]) || (a.group < 0 && a.group == b.group)) continue;
+            if (a.shape < 0 || b.shape < 0 || joined.contains({static_cast<int>(i), static_cast<int>(k)})) continue;
+            double near = bounding_radius(*shape_of(i)) + bounding_radius(*shape_of(k));
+            if (length(of(motions_[k].position) - of(motions_[i].position)) > near) continue;
+            double depth = overlap_depth({shape_of(i), motions_[i].position, motions_[i].rotation},
+                                         {shape_of(k), motions_[k].position, motions_[k].rotation});
+            if (!(depth > 0)) continue;
+            result.mean += depth;
+            result.max = std::max(result.max, depth);
+            ++count;
+        }
+    if (count > 0) result.mean /= static_cast<double>(count);
+    return result;
+}
+
+uint32_t Metrics::escaped() const {
+    uint32_t count = 0;
+    for (int body : scene_.roles.pile) {
+        const Motion& m = motions_[static_cast<size_t>(body)];
+        bool out = !is_finite(m) || m.position.y < kFallBelow;
+        if (const auto& bin = scene_.roles.bin)
+            out = out || m.position.x < bin->low.x || m.position.x > bin->high.x || m.position.z < bin->low.z ||
+                  m.position.z > bin->high.z || m.position.y > bin->high.y;
+        count += out;
+    }
+    return count;
+}
+
+void Metrics::report_pile(nlohmann::ordered_json& json) const {
+    Overlaps found = overlaps();
+    json["pen_mean_mm"] = 1e3 * found.mean;
+    json["pen_max_mm"] = 1e3 * found.max;
+    json["rest_speed"] = rest_count_ > 0 ? rest_sum_ / static_cast<double>(rest_count_) : 0.0;
+    json["escaped"] = escaped();
+}
+
+void Metrics::report_stack(nlohmann::ordered_json& json) const {
+    auto top = static_cast<size_t>(scene_.roles.top_body);
+    Vec moved = of(motions_[top].position) - of(start_[top].position);
+    double lateral = std::hypot(moved.x, moved.z);
+    json["drop_mm"] = -1e3 * moved.y;
+    json["drop_pct"] = -100 * moved.y / start_[top].position.y;
+    json["lateral_mm"] = 1e3 * lateral;
+    json["standing"] = std::fabs(moved.y) < kStandingDrop && lateral < kStandingDrop ? 1 : 0;
+}
+
+void Metrics::report_chain(nlohmann::ordered_json& json) const {
+    const scenes::Chain& chain = *scene_.roles.chain;
+    double most = 1 + (energy_most_ - energy_start_) / energy_unit_;
+    json["joint_sep_pct"] = 100 * gap_late_ / chain.link_length;
+    json["stretch_pct"] = 100 * stretch_late_;
+    json["blew_up"] = finite_ && most <= 1 + kBlownEnergy && gap_worst_ <= kBlownGap * chain.link_length ? 0 : 1;
+    json["energy_max"] = most;
+    json["energy_end"] = 1 + (energy_last_ - energy_start_) / energy_unit_;
+    json["first_vertical_s"] = nullptr;
+    if (!crossings_.empty()) json["first_vertical_s"] = crossings_.front();
+    if (scene_.roles.swings && crossings_.size() > 1)
+        json["period_s"] = 2 * (crossings_.back() - crossings_.front()) / static_cast<double>(crossings_.size() - 1);
+}
+
+void Metrics::report(nlohmann::ordered_json& json) const {
+    if (!scene_.roles.pile.empty()) report_pile(json);
+    if (scene_.roles.top_body >= 0) report_stack(json);
+    if (scene_.roles.chain) report_chain(json);
+}
+
+}  // namespace bench

@@ -1,0 +1,53 @@
+// Figures of a run, taken from poses and velocities alone: the same for every engine.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "engine.h"
+
+namespace bench {
+
+// Meaning of each JSON field, for --help.
+extern const char* const kFieldHelp;
+
+class Metrics {
+public:
+    Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps);
+
+    void after_step(uint32_t step);  // counted from 0
+    bool finite() const { return finite_; }
+    void report(nlohmann::ordered_json& json) const;
+
+private:
+    struct Overlaps {
+        double mean = 0, max = 0;  // [m]
+    };
+
+    void read_motions();
+    double energy_above_hanging() const;
+    void follow_chain(uint32_t step);
+    double joint_gap(const scenes::Joint& joint) const;
+    Overlaps overlaps() const;
+    uint32_t escaped() const;
+    void report_chain(nlohmann::ordered_json& json) const;
+    void report_pile(nlohmann::ordered_json& json) const;
+    void report_stack(nlohmann::ordered_json& json) const;
+
+    const scenes::Scene& scene_;
+    const Engine& engine_;
+    uint32_t steps_, last_second_, last_five_seconds_;  // first steps of the windows
+    std::vector<Motion> motions_, start_;
+    std::vector<Mass> masses_;
+    std::vector<double> hang_height_;  // of each body's centre in the state that energies are counted from [m]
+    bool finite_ = true;
+    double rest_sum_ = 0;
+    uint64_t rest_count_ = 0;
+    // chain
+    double energy_start_ = 0, energy_most_ = 0, energy_last_ = 0, energy_unit_ = 1;  // [J]
+    double gap_worst_ = 0, gap_late_ = 0, stretch_late_ = 0;                         // [m], [m], [1]
+    std::vector<double> crossings_;  // times at which the weight passes below the anchor [s]
+    double side_ = 0;                // of the weight at the last step [m]
+};
+
+}  // namespace bench

@@ -1,0 +1,62 @@
+#include "engine.h"
+#include "scenes/taut_world.h"
+
+namespace bench {
+
+namespace {
+
+class TautEngine : public Engine {
+public:
+    explicit TautEngine(const scenes::Scene& scene) : def_(scene.world), world_(scene) {}
+
+    const char* name() const override { return "taut"; }
+    const char* solver() const override { return scenes::solver_name(def_.solver); }
+    uint32_t substeps() const override { return def_.substeps; }
+    void step() override { scenes::check(taut_world_step(world_.world), "taking a step"); }
+
+    Motion motion(size_t body) const override {
+        Motion motion;
+        taut_pose pose = world_.pose(body);
+        motion.position = pose.position;
+        motion.rotation = pose.rotation;
+        scenes::check(taut_body_get_velocity(world_.bodies[body], &motion.linear_velocity, &motion.angular_velocity),
+                      "reading a velocity");
+        return motion;
+    }
+
+    Mass mass(size_t body) const override {
+        float mass = 0;
+        taut_vec3 centre{};
+        Mass result;
+        scenes::check(taut_body_get_mass(world_.bodies[body], &mass, &centre, &result.inertia), "reading a mass");
+        result.mass = mass;
+        return result;
+    }
+
+    uint64_t state_hash() const override {
+        uint64_t hash = 0;
+        scenes::check(taut_world_get_state_hash(world_.world, &hash), "reading the state hash");
+        return hash;
+    }
+
+    SolveTime solve_time() const override {
+        taut_profile profile = world_.profile();
+        return {static_cast<double>(profile.assemble_us) + static_cast<double>(profile.factor_us), profile.solves};
+    }
+
+    uint32_t quarantined() const override {
+        taut_events events{};
+        scenes::check(taut_world_get_events(world_.world, &events), "reading the events");
+        return events.quarantined_count;
+    }
+
+private:
+    taut_world_def def_;
+    scenes::TautWorld world_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_taut_engine(const scenes::Scene& scene) { return std::make_unique<TautEngine>(scene); }
+
+}  // namespace bench

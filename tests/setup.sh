@@ -1,0 +1,69 @@
+# Sourced by demos/run and tests/run: what they need from Debian, and how they build.
+# shellcheck shell=bash disable=SC2034
+# What is installed or built is reported on standard error.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+library_packages=(g++ cmake ninja-build libeigen3-dev libbullet-dev libccd-dev)
+demo_packages=(pkgconf libegl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev libpng-dev libcli11-dev
+    nlohmann-json3-dev libtinyobjloader-dev)
+test_packages=(pkgconf libgtest-dev libgmock-dev libbenchmark-dev)
+
+say() { printf '%s\n' "$*" >&2; }
+fail() {
+    say "$(basename "$(dirname "$0")")/$(basename "$0"): $*"
+    exit 1
+}
+
+# need PACKAGE... installs those that are missing; without any it touches neither network nor system.
+need() {
+    local package missing=() as_root=()
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+        command -v cmake >/dev/null && command -v ninja >/dev/null && return
+        fail "this is not a Debian system. Please install what these Debian packages hold and run it again:
+  $*
+At least cmake 3.25 and ninja are missing; cmake will name the libraries that are."
+    fi
+    for package in "$@"; do
+        [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true) == installed ]] ||
+            missing+=("$package")
+    done
+    ((${#missing[@]})) || return 0
+
+    if (($(id -u) != 0)); then
+        command -v sudo >/dev/null || fail "missing packages, and neither root nor sudo to install them. As root:
+  apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
+        as_root=(sudo)
+    fi
+    say "Installing ${missing[*]}"
+    "${as_root[@]}" apt-get update -qq >&2 || fail "apt-get update failed: is there a network?"
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2 ||
+        fail "apt-get could not install ${missing[*]}"
+}
+
+# Jobs at once: every core, but 1.5 GB for each.
+job_count() {
+    local kib='' limit cores
+    cores=$(nproc)
+    [[ ! -r /proc/meminfo ]] || kib=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo)
+    if [[ -r /sys/fs/cgroup/memory.max ]]; then
+        read -r limit </sys/fs/cgroup/memory.max || true
+        [[ ! $limit =~ ^[0-9]+$ || -n $kib && $((limit / 1024)) -ge $kib ]] || kib=$((limit / 1024))
+    fi
+    if [[ -n $kib ]] && ((kib / 1572864 < cores)); then cores=$((kib / 1572864)); fi
+    echo $((cores > 1 ? cores : 1))
+}
+
+# build PRESET "CONFIGURE OPTION..." [TARGET...]
+build() {
+    local preset=$1 options=$2 target=()
+    shift 2
+    (($#)) && target=(--target "$@")
+    (
+        cd "$root"
+        # shellcheck disable=SC2086 # options are words
+        cmake --preset "$preset" $options >&2
+        cmake --build --preset "$preset" --parallel "$(job_count)" "${target[@]}" >&2
+    ) || fail "the build of preset $preset failed"
+}

@@ -1,0 +1,51 @@
+// Answers from elsewhere for the collision tests: random shapes and poses, and the exact separation of two shapes
+// by libccd's GJK, Bullet's GJK and a search over all axes in double precision.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "collision/collide.h"
+
+namespace taut::collision::oracle {
+
+class Random {
+public:
+    explicit Random(uint32_t seed) : engine_(seed) {}
+    double uniform(double lo, double hi) { return lo + (hi - lo) * double(engine_()) / 4294967296.0; }
+    Vec3 unit();
+    Mat3f rotation();
+
+private:
+    std::mt19937 engine_;
+};
+
+Shape box(float hx, float hy, float hz);
+Shape sphere(float radius);
+Shape capsule(float radius, float half_length);
+Shape plane(const Vec3f& normal);
+Shape hull(const std::vector<Vec3f>& points);
+Shape random_shape(ShapeKind kind, Random& random);
+
+const char* name(ShapeKind kind);
+
+// A shape as points in the world grown by a radius; triangles and edges where the points span a volume.
+struct Core {
+    std::vector<Vec3> points;
+    double radius = 0;
+    std::vector<Vec3> normals;  // outward
+    std::vector<Vec3> edges;    // directions
+    double reach(const Vec3& direction) const;  // max direction . p, without the radius
+};
+Core core(const Shape& shape, const Placement& at);
+
+// Signed distance of two cores less their radii: exact distance where the cores are apart, least push where
+// they overlap. Not for planes.
+double separation(const Core& a, const Core& b);
+bool cores_overlap(const Core& a, const Core& b);  // libccd's GJK, without the radii
+
+// Signed distance of a point from a shape, at least: exact for round shapes and planes, by the faces for others.
+double distance_at_least(const Shape& shape, const Placement& at, const Vec3& point);
+
+}  // namespace taut::collision::oracle

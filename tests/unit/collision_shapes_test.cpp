@@ -1,0 +1,270 @@
+// Mass, bounds and hulls against formulas, sums over tetrahedra and sampled supports.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "collision/hull.h"
+#include "collision_oracle.h"
+
+namespace taut::collision {
+namespace {
+
+using oracle::Random;
+
+constexpr uint32_t kSeed = 20240611;
+
+std::vector<Vec3f> cube_points(float half) {
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 8; ++i) points.push_back(Vec3f(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
+    return points;
+}
+
+// ---------------------------------------------------------------- mass
+
+// Moments by midpoint quadrature over a grid: independent of every formula in use.
+MassProperties by_quadrature(const Shape& shape, double density, double reach, int cells) {
+    const double h = 2 * reach / cells;
+    const Placement still{Vec3::Zero(), Mat3f::Identity()};
+    MassProperties out;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+    for (int i = 0; i < cells; ++i) {
+        for (int j = 0; j < cells; ++j) {
+            for (int k = 0; k < cells; ++k) {
+                const Vec3 p = Vec3(i + 0.5, j + 0.5, k + 0.5) * h - Vec3::Constant(reach);
+                const double distance = oracle::distance_at_least(shape, still, p);
+                // Cells on the surface count in part.
+                const double part = std::clamp(0.5 - distance / h, 0.0, 1.0);
+                out.mass += part;
+                first += part * p;
+                second += part * p * p.transpose();
+            }
+        }
+    }
+    const double cell = density * h * h * h;
+    out.mass *= cell;
+    out.centre = cell * first / out.mass;
+    second = cell * second - out.mass * out.centre * out.centre.transpose();
+    out.inertia = Sym3::of(second.trace() * Mat3::Identity() - second);
+    return out;
+}
+
+TEST(CollisionMass, RoundShapesMatchQuadrature) {
+    for (const Shape& shape : {oracle::sphere(0.5f), oracle::capsule(0.3f, 0.4f), oracle::capsule(0.5f, 0.05f)}) {
+        const double reach = shape.size.x() + shape.size.y() + 0.05;
+        const MassProperties want = by_quadrature(shape, 800, reach, 80);
+        const MassProperties got = mass_properties(shape, 800);
+        EXPECT_NEAR(got.mass, want.mass, 2e-3 * want.mass);
+        EXPECT_TRUE(got.inertia.matrix().isApprox(want.inertia.matrix(), 4e-3))
+            << got.inertia.matrix() << "\n\n" << want.inertia.matrix();
+    }
+}
+
+TEST(CollisionMass, BoxIsExact) {
+    const MassProperties got = mass_properties(oracle::box(0.5f, 1.0f, 1.5f), 10);
+    EXPECT_DOUBLE_EQ(got.mass, 10 * 1 * 2 * 3);
+    EXPECT_NEAR(got.inertia.xx, 60.0 / 12 * (4 + 9), 1e-12);
+    EXPECT_NEAR(got.inertia.yy, 60.0 / 12 * (1 + 9), 1e-12);
+    EXPECT_NEAR(got.inertia.zz, 60.0 / 12 * (1 + 4), 1e-12);
+    EXPECT_EQ(got.inertia.xy, 0);
+    EXPECT_EQ(mass_properties(oracle::plane(Vec3f::UnitY()), 10).mass, 0);
+}
+
+// A box given as points, shifted and turned: parallel axes and rotation of the analytic answer.
+TEST(CollisionMass, HullOfTurnedBoxMatchesBox) {
+    Random random(kSeed);
+    for (int run = 0; run < 20; ++run) {
+        const Vec3f half(float(random.uniform(0.1, 1)), float(random.uniform(0.1, 1)), float(random.uniform(0.1, 1)));
+        const Mat3f turn = random.rotation();
+        const Vec3f shift = (2 * random.unit()).cast<float>();
+        std::vector<Vec3f> points;
+        for (const Vec3f& p : cube_points(1)) points.push_back(turn * p.cwiseProduct(half) + shift);
+        const Shape hull = oracle::hull(points);
+        ASSERT_TRUE(hull.hull);
+        const MassProperties box = mass_properties(oracle::box(half.x(), half.y(), half.z()), 500);
+        const MassProperties got = mass_properties(hull, 500);
+        const Mat3 r = turn.cast<double>();
+        EXPECT_NEAR(got.mass, box.mass, 1e-5 * box.mass);
+        EXPECT_TRUE(got.centre.isApprox(shift.cast<double>(), 1e-5));
+        EXPECT_TRUE(got.inertia.matrix().isApprox(r * box.inertia.matrix() * r.transpose(), 1e-4));
+    }
+}
+
+TEST(CollisionMass, RandomHullMatchesQuadrature) {
+    Random random(kSeed + 1);
+    const Shape hull = oracle::random_shape(ShapeKind::hull, random);
+    const MassProperties want = by_quadrature(hull, 1000, 0.8, 64);
+    const MassProperties got = mass_properties(hull, 1000);
+    EXPECT_NEAR(got.mass, want.mass, 0.02 * want.mass);
+    EXPECT_LT((got.centre - want.centre).norm(), 0.003);
+    EXPECT_TRUE(got.inertia.matrix().isApprox(want.inertia.matrix(), 0.03));
+}
+
+// ---------------------------------------------------------------- bounds
+
+TEST(CollisionBounds, TouchTheShapeOnEverySide) {
+    Random random(kSeed + 2);
+    for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::hull}) {
+        for (int run = 0; run < 100; ++run) {
+            const Shape shape = oracle::random_shape(kind, random);
+            const double far = run % 2 == 0 ? 1 : 10000;
+            const Placement at{far * random.unit(), random.rotation()};
+            const oracle::Core core = oracle::core(shape, at);
+            const Box box = bounds(shape, at);
+            const double ulp = far * 2.4e-7 + 1e-6;
+            for (int k = 0; k < 3; ++k) {
+                const double hi = core.reach(Vec3::Unit(k)) + core.radius;
+                const double lo = -core.reach(-Vec3::Unit(k)) - core.radius;
+                EXPECT_GE(box.hi[k], hi - 1e-6) << oracle::name(kind);
+                EXPECT_LE(box.hi[k], hi + ulp) << oracle::name(kind);
+                EXPECT_LE(box.lo[k], lo + 1e-6) << oracle::name(kind);
+                EXPECT_GE(box.lo[k], lo - ulp) << oracle::name(kind);
+            }
+        }
+    }
+}
+
+// ---------------------------------------------------------------- hulls
+
+TEST(CollisionHull, CubeWithInnerPointsIsACube) {
+    Random random(kSeed + 3);
+    std::vector<Vec3f> points = cube_points(0.5f);
+    for (int i = 0; i < 200; ++i) points.push_back((random.uniform(0, 0.49) * random.unit()).cast<float>());
+    for (int i = 0; i < 50; ++i) {  // on faces and edges
+        points.push_back(Vec3f(float(random.uniform(-0.5, 0.5)), 0.5f, float(random.uniform(-0.5, 0.5))));
+        points.push_back(Vec3f(0.5f, -0.5f, float(random.uniform(-0.5, 0.5))));
+    }
+    for (const bool turned : {false, true}) {
+        const Mat3f turn = turned ? random.rotation() : Mat3f(Mat3f::Identity());
+        for (Vec3f& p : points) p = turn * p;
+        const Shape shape = oracle::hull(points);
+        ASSERT_TRUE(shape.hull);
+        EXPECT_EQ(shape.hull->vertices.size(), 8u);
+        EXPECT_EQ(shape.hull->faces.size(), 6u);
+        EXPECT_EQ(shape.hull->edges.size(), 12u);
+    }
+}
+
+// Closed, convex, outward, and every edge between its two faces.
+void check_hull(const Hull& hull, double tolerance) {
+    const Polytope p = hull.view();
+    EXPECT_EQ(p.vertices.size() + p.faces.size(), p.edges.size() + 2);
+    for (const Face& face : p.faces) {
+        EXPECT_NEAR(face.normal.norm(), 1, 1e-5);
+        EXPECT_GT(face.offset, face.normal.dot(p.centre));
+        for (const Vec3f& v : p.vertices) EXPECT_LE(face.normal.dot(v), face.offset);
+        for (const int corner : p.loop_of(face)) {
+            EXPECT_NEAR(face.normal.dot(p.vertices[size_t(corner)]), face.offset, tolerance);
+        }
+    }
+    for (const Edge& edge : p.edges) {
+        const Vec3f across = p.faces[edge.left].normal.cross(p.faces[edge.right].normal);
+        EXPECT_GT(across.dot(p.direction(edge)), 0);
+    }
+}
+
+TEST(CollisionHull, SpherePointsAreReducedWithLittleLoss) {
+    Random random(kSeed + 4);
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 1000; ++i) points.push_back(random.unit().cast<float>());
+    const Shape shape = oracle::hull(points);
+    ASSERT_TRUE(shape.hull);
+    EXPECT_LE(shape.hull->vertices.size(), 64u);
+    EXPECT_GE(shape.hull->vertices.size(), 60u);
+    check_hull(*shape.hull, 1e-3);
+    const double volume = mass_properties(shape, 1).mass;
+    // 64 points spread evenly span 0.884 of the ball; ours must lose no more than 16 %.
+    EXPECT_GT(volume, 0.84 * 4.18879);
+    EXPECT_LT(volume, 4.18879);
+    for (const int most : {4, 8, 20}) {
+        const auto small = build_hull(points, most, 1e-3f, nullptr);
+        ASSERT_TRUE(small);
+        EXPECT_LE(int(small->vertices.size()), most);
+        check_hull(*small, 1e-3);
+    }
+}
+
+TEST(CollisionHull, RandomHullsAreConvexAndOrderedByThePointsAlone) {
+    Random random(kSeed + 5);
+    for (int run = 0; run < 200; ++run) {
+        std::vector<Vec3f> points;
+        const Vec3 stretch(random.uniform(0.02, 2), random.uniform(0.02, 2), random.uniform(0.02, 2));
+        const int count = int(random.uniform(5, 60));
+        for (int i = 0; i < count; ++i) points.push_back(random.unit().cwiseProduct(stretch).cast<float>());
+        const char* reason = "";
+        const auto hull = build_hull(points, 64, 1e-3f, &reason);
+        ASSERT_TRUE(hull) << run << ": " << reason;
+        check_hull(*hull, 2e-3);
+        for (const Vec3f& p : points) {
+            for (const Face& face : hull->faces) ASSERT_LT(face.normal.dot(p) - face.offset, 2e-3) << run;
+        }
+        std::vector<Vec3f> reversed(points.rbegin(), points.rend());
+        reversed.push_back(points[0]);
+        const auto again = build_hull(reversed, 64, 1e-3f, nullptr);
+        ASSERT_TRUE(again);
+        EXPECT_EQ(hull->vertices, again->vertices);
+        EXPECT_EQ(hull->loops, again->loops);
+    }
+}
+
+TEST(CollisionHull, PrismKeepsItsPolygons) {
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 32; ++i) {
+        const double angle = 2 * 3.14159265358979 * i / 32;
+        for (const float y : {-0.5f, 0.5f}) points.push_back(Vec3f(float(std::cos(angle)), y, float(std::sin(angle))));
+    }
+    const Shape shape = oracle::hull(points);
+    ASSERT_TRUE(shape.hull);
+    EXPECT_EQ(shape.hull->vertices.size(), 64u);
+    EXPECT_EQ(shape.hull->faces.size(), 34u);
+    check_hull(*shape.hull, 1e-5);
+}
+
+TEST(CollisionHull, FlatHullsKeepTheirRim) {
+    Random random(kSeed + 6);
+    for (int run = 0; run < 50; ++run) {
+        const Mat3f turn = random.rotation();
+        std::vector<Vec3f> points;
+        for (const Vec3f& p : cube_points(1)) points.push_back(turn * p.cwiseProduct(Vec3f(1, 0.01f, 1)));
+        const Shape shape = oracle::hull(points);
+        ASSERT_TRUE(shape.hull) << run;
+        EXPECT_EQ(shape.hull->vertices.size(), 8u) << run;
+        EXPECT_EQ(shape.hull->faces.size(), 6u) << run;
+    }
+}
+
+TEST(CollisionHull, RefusesWhatHasNoVolume) {
+    Random random(kSeed + 7);
+    const auto refused = [](const std::vector<Vec3f>& points) {
+        const char* reason = nullptr;
+        const auto hull = build_hull(points, 64, 1e-3f, &reason);
+        EXPECT_FALSE(hull);
+        return std::string(reason ? reason : "no reason");
+    };
+    EXPECT_EQ(refused({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0)}), "fewer than 4 points");
+    EXPECT_EQ(refused(std::vector<Vec3f>(10, Vec3f(1, 2, 3))), "fewer than 4 distinct points");
+    std::vector<Vec3f> flat, line, tiny;
+    const Mat3f turn = random.rotation();
+    for (int i = 0; i < 30; ++i) {
+        const float x = float(random.uniform(-1, 1)), y = float(random.uniform(-1, 1));
+        flat.push_back(turn * Vec3f(x, y, 0));
+        line.push_back(turn * Vec3f(x, 0, 0));
+        tiny.push_back((1e-4 * random.unit()).cast<float>());
+    }
+    EXPECT_EQ(refused(flat), "points lie in one plane");
+    EXPECT_EQ(refused(line), "points lie on one line");
+    EXPECT_EQ(refused(tiny), "points lie in one place");
+    std::vector<Vec3f> broken = cube_points(1);
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        broken[3].y() = bad;
+        EXPECT_EQ(refused(broken), "a point is not finite");
+    }
+    EXPECT_TRUE(build_hull(cube_points(1), 64, 1e-3f, nullptr));
+}
+
+TEST(CollisionLibrary, BulletIsSinglePrecision) { EXPECT_TRUE(precision_matches()); }
+
+}  // namespace
+}  // namespace taut::collision
