@@ -49,6 +49,10 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         solver.solve(substep);
         w.profile.sweep_us += watch.lap();
         commit(system, group, w.nodes);
+        if (solver.settle) {
+            solver.settle(substep);
+            correct(system, group, w.partition.blocks, w.nodes);
+        }
         w.profile.commit_us += watch.lap();
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();

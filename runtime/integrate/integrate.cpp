@@ -31,6 +31,14 @@ void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
     for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
 }
 
+void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const Vec3& dtheta) {
+    NodeMotion& m = nodes.motion[node];
+    m.x += dx;
+    if (nodes.info[node].kind == NodeKind::dynamic) m.q = (rotation_from_vector(dtheta) * m.q).normalized();
+    const System::Found& found = system.found[node + 1];
+    set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
+}
+
 }  // namespace
 
 void begin_frame(System& system, const Nodes& nodes) {
@@ -38,6 +46,7 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.pose.resize(slots + 1);
     system.exact.resize(slots + 1);
     system.free.resize(slots + 1);
+    system.correction.resize(slots + 1);
     system.start.resize(slots + 1);
     system.inertia.resize(slots + 1);
     system.found.resize(slots + 1);
@@ -88,14 +97,17 @@ void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravi
 }
 
 void commit(System& system, const Group& group, Nodes& nodes) {
-    const double h = system.h;
     for (uint32_t node : group.nodes) {
-        NodeMotion& m = nodes.motion[node];
         const Velocity& u = system.exact[node + 1];
-        m.x += h * u.v;
-        if (nodes.info[node].kind == NodeKind::dynamic) m.q = (rotation_from_vector(h * u.w) * m.q).normalized();
-        const System::Found& found = system.found[node + 1];
-        set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
+        displace(system, nodes, node, system.h * u.v, system.h * u.w);
+    }
+}
+
+void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
+    for (uint32_t b : group.blocks) {
+        if (!blocks[b].corrected) continue;
+        for (uint32_t node : blocks[b].nodes)
+            displace(system, nodes, node, system.correction[node + 1].v, system.correction[node + 1].w);
     }
 }
 

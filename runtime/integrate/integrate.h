@@ -15,6 +15,9 @@ void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravi
 // x += h v, q = exp(h w) q; what the contacts' anchors need to follow.
 void commit(System& system, const Group& group, Nodes& nodes);
 
+// x += dx, q = exp(dq) q for nodes of blocks marked corrected.
+void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes);
+
 // The kept velocity back into the state; s += kappa (v - s) for nodes in blocks.
 void store_velocity(const System& system, const Group& group, Nodes& nodes, double velocity_filter);
 

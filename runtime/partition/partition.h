@@ -32,6 +32,7 @@ struct Block {
     Array<double> solution, known, force;  // scratch of its solve
     bool looped = false;     // more joints than a tree
     bool failed = false;     // this substep's matrix could not be factored
+    bool corrected = false;  // this substep's positions get a correction
     double mass_ratio = 1;   // heaviest over lightest node
     uint32_t first_row_block = 0;  // its joints' rows in System::rows, of this frame
 

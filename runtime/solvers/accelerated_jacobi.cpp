@@ -168,6 +168,6 @@ void relax(Substep& s) {
 
 }  // namespace
 
-const Solver kAcceleratedJacobi{"accelerated_jacobi", false, false, solve, relax};
+const Solver kAcceleratedJacobi{"accelerated_jacobi", false, false, solve, nullptr, relax};
 
 }  // namespace taut

@@ -203,6 +203,6 @@ void sweep_relaxed(Substep& s, uint32_t sweeps) {
     publish(s);
 }
 
-const Solver kProjectedGaussSeidel{"projected_gauss_seidel", false, true, solve, relax};
+const Solver kProjectedGaussSeidel{"projected_gauss_seidel", false, true, solve, nullptr, relax};
 
 }  // namespace taut

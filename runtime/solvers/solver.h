@@ -40,7 +40,10 @@ struct Solver {
     bool wide_contacts;  // contacts come in lanes; else as rows after those of the joints
     // From system.exact = v* to the velocity that moves the positions, with the push of overlapping contacts.
     void (*solve)(Substep&);
-    // From there to the velocity that is kept, without that push.
+    // After the positions moved, may be null: what the linearisation left of the position error, as displacements in
+    // System::correction of the blocks marked corrected.
+    void (*settle)(Substep&);
+    // From the velocity that moved the positions to the one that is kept, without that push.
     void (*relax)(Substep&);
 };
 

@@ -54,7 +54,7 @@ struct System {
     };
 
     explicit System(Memory& memory)
-        : pose(memory), exact(memory), free(memory), start(memory), inertia(memory), found(memory), kinematic(memory), in_block(memory), velocity(memory), inverse_mass(memory),
+        : pose(memory), exact(memory), free(memory), correction(memory), start(memory), inertia(memory), found(memory), kinematic(memory), in_block(memory), velocity(memory), inverse_mass(memory),
           shift(memory), rows(memory), contacts(memory) {}
 
     double h = 0;  // substep [s]
@@ -63,6 +63,7 @@ struct System {
     Array<Pose> pose;            // at the start of the substep; predict()
     Array<Velocity> exact;       // predict(): v* = v + h a; solvers: v+
     Array<Velocity> free;        // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> correction;  // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
     Array<Velocity> start;       // v before forces, for energy balances; predict()
     Array<Mat3> inertia;         // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;          // begin_frame()

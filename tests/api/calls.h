@@ -22,19 +22,37 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
     return {
         {"taut_world_step", [](taut_world w) { return taut_world_step(w); }},
         {"taut_world_advance", [](taut_world w) { return taut_world_advance(w, 0, nullptr); }},
-        {"taut_world_get_gravity", [](taut_world w) { taut_vec3 out; return taut_world_get_gravity(w, &out); }},
-        {"taut_world_set_gravity", [](taut_world w) { return taut_world_set_gravity(w, {0, -1, 0}); }},
-        {"taut_world_get_counts",
-         [](taut_world w) { return taut_world_get_counts(w, nullptr, nullptr, nullptr); }},
-        {"taut_world_get_bytes", [](taut_world w) { uint64_t out; return taut_world_get_bytes(w, &out); }},
-        {"taut_world_get_state_hash", [](taut_world w) { uint64_t out; return taut_world_get_state_hash(w, &out); }},
+        {"taut_world_get_gravity",
+         [](taut_world w) {
+             taut_vec3 out;
+             return taut_world_get_gravity(w, &out);
+         }},
+        {"taut_world_set_gravity",
+         [](taut_world w) {
+             return taut_world_set_gravity(w, {0, -1, 0});
+         }},
+        {"taut_world_get_counts", [](taut_world w) { return taut_world_get_counts(w, nullptr, nullptr, nullptr); }},
+        {"taut_world_get_bytes",
+         [](taut_world w) {
+             uint64_t out;
+             return taut_world_get_bytes(w, &out);
+         }},
+        {"taut_world_get_state_hash",
+         [](taut_world w) {
+             uint64_t out;
+             return taut_world_get_state_hash(w, &out);
+         }},
         {"taut_world_get_profile",
          [](taut_world w) {
              taut_profile out;
              out.struct_size = sizeof out;
              return taut_world_get_profile(w, &out);
          }},
-        {"taut_world_get_events", [](taut_world w) { taut_events out; return taut_world_get_events(w, &out); }},
+        {"taut_world_get_events",
+         [](taut_world w) {
+             taut_events out;
+             return taut_world_get_events(w, &out);
+         }},
         {"taut_world_get_contacts",
          [](taut_world w) {
              taut_contact out[64];
@@ -116,8 +134,16 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
 // The kind of body that each call works on is in the comment; a stale handle fails before that matters.
 inline std::vector<Call<taut_body>> body_calls() {
     return {
-        {"taut_body_get_kind", [](taut_body b) { taut_body_kind out; return taut_body_get_kind(b, &out); }},
-        {"taut_body_get_user_data", [](taut_body b) { uint64_t out; return taut_body_get_user_data(b, &out); }},
+        {"taut_body_get_kind",
+         [](taut_body b) {
+             taut_body_kind out;
+             return taut_body_get_kind(b, &out);
+         }},
+        {"taut_body_get_user_data",
+         [](taut_body b) {
+             uint64_t out;
+             return taut_body_get_user_data(b, &out);
+         }},
         {"taut_body_set_user_data", [](taut_body b) { return taut_body_set_user_data(b, 7); }},
         {"taut_body_get_mass",
          [](taut_body b) {
@@ -126,23 +152,49 @@ inline std::vector<Call<taut_body>> body_calls() {
              taut_sym3 inertia;
              return taut_body_get_mass(b, &mass, &centre, &inertia);
          }},
-        {"taut_body_get_material", [](taut_body b) { taut_material out; return taut_body_get_material(b, &out); }},
+        {"taut_body_get_material",
+         [](taut_body b) {
+             taut_material out;
+             return taut_body_get_material(b, &out);
+         }},
         {"taut_body_set_material",
          [](taut_body b) {
              const taut_material material = {0.5f, 0};
              return taut_body_set_material(b, &material);
          }},
-        {"taut_body_get_pose", [](taut_body b) { taut_pose out; return taut_body_get_pose(b, &out); }},
+        {"taut_body_get_pose",
+         [](taut_body b) {
+             taut_pose out;
+             return taut_body_get_pose(b, &out);
+         }},
         {"taut_body_set_pose", [](taut_body b) { return taut_body_set_pose(b, &kIdentity); }},
-        {"taut_body_get_render_pose", [](taut_body b) { taut_pose out; return taut_body_get_render_pose(b, &out); }},
+        {"taut_body_get_render_pose",
+         [](taut_body b) {
+             taut_pose out;
+             return taut_body_get_render_pose(b, &out);
+         }},
         {"taut_body_get_velocity", [](taut_body b) { return taut_body_get_velocity(b, nullptr, nullptr); }},
-        {"taut_body_set_velocity", [](taut_body b) { return taut_body_set_velocity(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_set_velocity",
+         [](taut_body b) {
+             return taut_body_set_velocity(b, {1, 0, 0}, {0, 0, 0});
+         }},
         {"taut_body_move_kinematic", [](taut_body b) { return taut_body_move_kinematic(b, &kIdentity); }},
-        {"taut_body_apply_force", [](taut_body b) { return taut_body_apply_force(b, {1, 0, 0}, {0, 0, 0}); }},
-        {"taut_body_apply_force_at", [](taut_body b) { return taut_body_apply_force_at(b, {1, 0, 0}, {0, 0, 0}); }},
-        {"taut_body_apply_impulse", [](taut_body b) { return taut_body_apply_impulse(b, {1, 0, 0}, {0, 0, 0}); }},
+        {"taut_body_apply_force",
+         [](taut_body b) {
+             return taut_body_apply_force(b, {1, 0, 0}, {0, 0, 0});
+         }},
+        {"taut_body_apply_force_at",
+         [](taut_body b) {
+             return taut_body_apply_force_at(b, {1, 0, 0}, {0, 0, 0});
+         }},
+        {"taut_body_apply_impulse",
+         [](taut_body b) {
+             return taut_body_apply_impulse(b, {1, 0, 0}, {0, 0, 0});
+         }},
         {"taut_body_apply_impulse_at",
-         [](taut_body b) { return taut_body_apply_impulse_at(b, {1, 0, 0}, {0, 0, 0}); }},
+         [](taut_body b) {
+             return taut_body_apply_impulse_at(b, {1, 0, 0}, {0, 0, 0});
+         }},
         {"taut_body_remove", [](taut_body b) { return taut_body_remove(b); }},
     };
 }
@@ -150,7 +202,10 @@ inline std::vector<Call<taut_body>> body_calls() {
 inline std::vector<Call<taut_shape>> shape_calls() {
     return {
         {"taut_shape_mass_properties",
-         [](taut_shape s) { taut_mass_properties out; return taut_shape_mass_properties(s, 1000, &out); }},
+         [](taut_shape s) {
+             taut_mass_properties out;
+             return taut_shape_mass_properties(s, 1000, &out);
+         }},
         {"taut_shape_hull_triangles",
          [](taut_shape s) {
              taut_vec3 out[400];
@@ -163,12 +218,36 @@ inline std::vector<Call<taut_shape>> shape_calls() {
 
 inline std::vector<Call<taut_joint>> joint_calls() {
     return {
-        {"taut_joint_get_kind", [](taut_joint j) { taut_joint_kind out; return taut_joint_get_kind(j, &out); }},
-        {"taut_joint_get_user_data", [](taut_joint j) { uint64_t out; return taut_joint_get_user_data(j, &out); }},
-        {"taut_joint_get_bodies", [](taut_joint j) { taut_body a, b; return taut_joint_get_bodies(j, &a, &b); }},
-        {"taut_joint_get_anchors", [](taut_joint j) { taut_pos a, b; return taut_joint_get_anchors(j, &a, &b); }},
-        {"taut_joint_get_force", [](taut_joint j) { taut_vec3 out; return taut_joint_get_force(j, &out); }},
-        {"taut_joint_get_error", [](taut_joint j) { float out; return taut_joint_get_error(j, &out); }},
+        {"taut_joint_get_kind",
+         [](taut_joint j) {
+             taut_joint_kind out;
+             return taut_joint_get_kind(j, &out);
+         }},
+        {"taut_joint_get_user_data",
+         [](taut_joint j) {
+             uint64_t out;
+             return taut_joint_get_user_data(j, &out);
+         }},
+        {"taut_joint_get_bodies",
+         [](taut_joint j) {
+             taut_body a, b;
+             return taut_joint_get_bodies(j, &a, &b);
+         }},
+        {"taut_joint_get_anchors",
+         [](taut_joint j) {
+             taut_pos a, b;
+             return taut_joint_get_anchors(j, &a, &b);
+         }},
+        {"taut_joint_get_force",
+         [](taut_joint j) {
+             taut_vec3 out;
+             return taut_joint_get_force(j, &out);
+         }},
+        {"taut_joint_get_error",
+         [](taut_joint j) {
+             float out;
+             return taut_joint_get_error(j, &out);
+         }},
         {"taut_joint_set_compliance", [](taut_joint j) { return taut_joint_set_compliance(j, 1e-6f, 0); }},
         {"taut_joint_set_length", [](taut_joint j) { return taut_joint_set_length(j, 2); }},
         {"taut_joint_remove", [](taut_joint j) { return taut_joint_remove(j); }},

@@ -20,7 +20,8 @@ struct Field {
     enum Edges { closed, open_below, unchecked } edges = closed;  // unchecked: other fields decide about the limits
 };
 
-#define FIELD(def, member, ...) {#member, offsetof(def, member), sizeof(def::member), __VA_ARGS__}
+#define FIELD(def, member, ...) \
+    { #member, offsetof(def, member), sizeof(def::member), __VA_ARGS__ }
 #define FIELD3(def, member, ...) \
     FIELD(def, member.x, __VA_ARGS__), FIELD(def, member.y, __VA_ARGS__), FIELD(def, member.z, __VA_ARGS__)
 
@@ -67,7 +68,8 @@ public:
                 expect_refused(&def, TAUT_INVALID_ARGUMENT, field.name);
             }
             for (double value : {field.lo, field.hi}) {
-                if (field.edges == Field::unchecked || (field.edges == Field::open_below && value == field.lo)) continue;
+                if (field.edges == Field::unchecked || (field.edges == Field::open_below && value == field.lo))
+                    continue;
                 const Def def = with(good, field, value);
                 Handle out = {0};
                 EXPECT_EQ(add_(world_, &def, &out), TAUT_OK) << field.name << ": " << taut_last_error();

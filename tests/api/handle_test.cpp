@@ -18,8 +18,8 @@ void expect_stale(const std::vector<Call<Handle>>& calls, Handle handle, const c
 }
 
 // Bits that no world gave out.
-const uint64_t kInvented[] = {1, 0xffff, 0x100000, 0xfffffffff, uint64_t{1} << 36, uint64_t{1} << 63, UINT64_MAX,
-                              0x123456789abcdef0};
+const uint64_t kInvented[] = {
+    1, 0xffff, 0x100000, 0xfffffffff, uint64_t{1} << 36, uint64_t{1} << 63, UINT64_MAX, 0x123456789abcdef0};
 
 struct Handles : testing::Test {
     Populated p;

@@ -190,6 +190,10 @@ inline taut_joint add_rod(taut_world world, taut_body a, taut_body b, taut_pos a
     return joint;
 }
 
+inline taut_pose at(double x, double y, double z, taut_quat q = {0, 0, 0, 1}) { return {{x, y, z}, q, {0, 0}}; }
+inline taut_result set_pose(taut_body body, const taut_pose& pose) { return taut_body_set_pose(body, &pose); }
+inline taut_result move_to(taut_body body, const taut_pose& pose) { return taut_body_move_kinematic(body, &pose); }
+
 // A world with one of everything, a box at rest on a plane and a pendulum; destroyed with the object.
 struct Populated {
     explicit Populated(const taut_hooks& hooks = {}) : world(make_world(hooks)) {

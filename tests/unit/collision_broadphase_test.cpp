@@ -1,0 +1,169 @@
+// Pairs against brute force over random motion.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "collision_oracle.h"
+
+namespace taut::collision {
+namespace {
+
+using oracle::Random;
+
+constexpr int kBodies = 300;
+constexpr float kFat = 0.05f;  // what broadphase.cpp grows boxes by
+
+bool overlap(const Box& p, const Box& q) {
+    return (p.lo.array() <= q.hi.array()).all() && (q.lo.array() <= p.hi.array()).all();
+}
+
+bool contains(const Box& outer, const Box& inner) {
+    return (outer.lo.array() <= inner.lo.array()).all() && (outer.hi.array() >= inner.hi.array()).all();
+}
+
+Box grown(const Box& box, float by) { return {box.lo - Vec3f::Constant(by), box.hi + Vec3f::Constant(by)}; }
+
+uint64_t key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 32 | std::max(i, j); }
+
+struct Crowd {
+    explicit Crowd(uint32_t seed) : random(seed) {
+        for (int i = 0; i < kBodies; ++i) {
+            centre.push_back((random.uniform(0, 4) * random.unit()).cast<float>());
+            velocity.push_back((random.uniform(0, 0.1) * random.unit()).cast<float>());
+            half.push_back(Vec3f(float(random.uniform(0.1, 0.4)), float(random.uniform(0.1, 0.4)), 0.2f));
+            moves.push_back(random.uniform(0, 1) < 0.7);
+        }
+    }
+    Box tight(size_t i) const { return {centre[i] - half[i], centre[i] + half[i]}; }
+    void step() {
+        for (size_t i = 0; i < kBodies; ++i) {
+            if (!moves[i]) continue;
+            if (random.uniform(0, 1) < 0.05) velocity[i] = (random.uniform(0, 0.1) * random.unit()).cast<float>();
+            centre[i] += velocity[i];
+            if (centre[i].norm() > 4) velocity[i] = -0.05f * centre[i].normalized();
+        }
+    }
+    std::vector<uint64_t> pairs_of(const std::vector<Box>& boxes) const {
+        std::vector<uint64_t> out;
+        for (uint32_t i = 0; i < kBodies; ++i) {
+            for (uint32_t j = i + 1; j < kBodies; ++j) {
+                if ((moves[i] || moves[j]) && overlap(boxes[i], boxes[j])) out.push_back(key(i, j));
+            }
+        }
+        return out;
+    }
+
+    Random random;
+    std::vector<Vec3f> centre, velocity, half;
+    std::vector<bool> moves;
+};
+
+std::vector<uint64_t> copy(const Broadphase& broadphase) {
+    return {broadphase.pairs().begin(), broadphase.pairs().end()};
+}
+
+// Without displacement the fat boxes are known: each is the tight box it was made for, grown.
+TEST(CollisionBroadphase, PairsAreBruteForceOnFatBoxes) {
+    Crowd crowd(101);
+    Memory memory(taut_hooks{});
+    Broadphase broadphase(memory);
+    std::vector<Box> fat;
+    for (uint32_t i = 0; i < kBodies; ++i) {
+        fat.push_back(grown(crowd.tight(i), kFat));
+        broadphase.add(i, crowd.tight(i), crowd.moves[i]);
+    }
+    std::vector<uint64_t> before;
+    for (int step = 0; step < 200; ++step) {
+        const bool changed = broadphase.refresh_pairs();
+        const std::vector<uint64_t> want = crowd.pairs_of(fat);
+        ASSERT_EQ(copy(broadphase), want) << "seed 101 step " << step;
+        ASSERT_EQ(changed, want != before);
+        before = want;
+        crowd.step();
+        for (uint32_t i = 0; i < kBodies; ++i) {
+            if (!contains(fat[i], crowd.tight(i))) fat[i] = grown(crowd.tight(i), kFat);
+            broadphase.update(i, crowd.tight(i), Vec3f::Zero());
+        }
+    }
+    EXPECT_GT(before.size(), 500u);
+}
+
+TEST(CollisionBroadphase, OrderOfInsertionDoesNotMatterAndNothingIsMissed) {
+    Crowd crowd(102);
+    Memory memory(taut_hooks{});
+    Broadphase forward(memory), shuffled(memory);
+    std::vector<uint32_t> order(kBodies);
+    std::iota(order.begin(), order.end(), 0u);
+    for (uint32_t i = 0; i < kBodies; ++i) std::swap(order[i], order[size_t(crowd.random.uniform(0, kBodies - 0.5))]);
+    for (uint32_t i = 0; i < kBodies; ++i) {
+        forward.add(i, crowd.tight(i), crowd.moves[i]);
+        shuffled.add(order[i], crowd.tight(order[i]), crowd.moves[order[i]]);
+    }
+    size_t reinserted = 0;
+    for (int step = 0; step < 200; ++step) {
+        forward.refresh_pairs();
+        shuffled.refresh_pairs();
+        const std::vector<uint64_t> pairs = copy(forward);
+        ASSERT_EQ(pairs, copy(shuffled)) << "seed 102 step " << step;
+        std::vector<Box> tight, reach;
+        for (uint32_t i = 0; i < kBodies; ++i) {
+            tight.push_back(crowd.tight(i));
+            // Fat boxes: 5 cm on each side, the steps since, and four steps ahead.
+            reach.push_back(grown(crowd.tight(i), 2 * kFat + 8 * 0.1f));
+        }
+        const auto must = crowd.pairs_of(tight);
+        const auto may = crowd.pairs_of(reach);
+        ASSERT_TRUE(std::includes(pairs.begin(), pairs.end(), must.begin(), must.end()));
+        ASSERT_TRUE(std::includes(may.begin(), may.end(), pairs.begin(), pairs.end()));
+        crowd.step();
+        for (uint32_t i = 0; i < kBodies; ++i) {
+            forward.update(i, crowd.tight(i), 4 * crowd.velocity[i]);
+            shuffled.update(order[i], crowd.tight(order[i]), 4 * crowd.velocity[order[i]]);
+        }
+        reinserted += forward.refresh_pairs();
+    }
+    EXPECT_GT(reinserted, 100u);
+}
+
+TEST(CollisionBroadphase, StaticBodiesNeverPairUntilTheyMove) {
+    Memory memory(taut_hooks{});
+    Broadphase broadphase(memory);
+    const Box box{Vec3f::Constant(-1), Vec3f::Constant(1)};
+    broadphase.add(3, box, false);
+    broadphase.add(1, box, false);
+    EXPECT_FALSE(broadphase.refresh_pairs());
+    EXPECT_TRUE(broadphase.pairs().empty());
+    broadphase.set_moves(3, true);
+    EXPECT_TRUE(broadphase.refresh_pairs());
+    EXPECT_EQ(copy(broadphase), std::vector<uint64_t>{key(1, 3)});
+    EXPECT_FALSE(broadphase.refresh_pairs());
+    broadphase.set_moves(3, false);
+    EXPECT_TRUE(broadphase.refresh_pairs());
+    EXPECT_TRUE(broadphase.pairs().empty());
+}
+
+TEST(CollisionBroadphase, RemovedIdsLeaveAndMayComeBack) {
+    Memory memory(taut_hooks{});
+    {
+        Broadphase broadphase(memory);
+        const Box box{Vec3f::Constant(-1), Vec3f::Constant(1)};
+        const Box away{Vec3f::Constant(5), Vec3f::Constant(6)};
+        for (const uint32_t id : {0u, 1u, 2u}) broadphase.add(id, box, true);
+        broadphase.refresh_pairs();
+        EXPECT_EQ(broadphase.pairs().size(), 3u);
+        broadphase.remove(1);
+        EXPECT_TRUE(broadphase.refresh_pairs());
+        EXPECT_EQ(copy(broadphase), std::vector<uint64_t>{key(0, 2)});
+        broadphase.remove(2);
+        broadphase.add(2, away, true);  // a new body under the old id
+        broadphase.add(1, box, true);
+        EXPECT_TRUE(broadphase.refresh_pairs());
+        EXPECT_EQ(copy(broadphase), std::vector<uint64_t>{key(0, 1)});
+        EXPECT_GT(memory.bytes(), 0u);
+    }
+    EXPECT_EQ(memory.bytes(), 0u);
+}
+
+}  // namespace
+}  // namespace taut::collision
