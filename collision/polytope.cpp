@@ -1,7 +1,5 @@
 #include "collision/polytope.h"
 
-#include <cmath>
-
 namespace taut::collision {
 namespace {
 
@@ -44,30 +42,44 @@ constexpr std::array<Edge, 12> box_edges() {
 constexpr std::array<uint8_t, 24> kLoops = box_loops();
 constexpr std::array<Edge, 12> kEdges = box_edges();
 
-}  // namespace
-
-BoxPolytope::BoxPolytope(const Vec3f& half) {
-    for (int i = 0; i < 8; ++i) {
-        vertices_[size_t(i)] =
-            Vec3f(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z());
-    }
-    const Eigen::Array4f x(-half.x(), half.x(), -half.x(), half.x());
-    const Eigen::Array4f y(-half.y(), -half.y(), half.y(), half.y());
-    const Eigen::Array4f z = Eigen::Array4f::Constant(half.z());
-    packs_[0] = {x, y, -z};
-    packs_[1] = {x, y, z};
+// All but the offsets, which are the half extents.
+std::array<Face, 6> unit_faces() {
+    std::array<Face, 6> faces;
     for (int face = 0; face < 6; ++face) {
         const int axis = face / 2;
-        const int positive = face % 2;
-        const int u = positive ? (axis + 1) % 3 : (axis + 2) % 3;
-        const int v = positive ? (axis + 2) % 3 : (axis + 1) % 3;
-        faces_[size_t(face)] = {Vec3f::Unit(axis) * (positive ? 1.0f : -1.0f), Vec3f::Unit(u), Vec3f::Unit(v),
-                                half[axis], uint16_t(4 * face), 4};
-        Side* sides = &sides_[size_t(4 * face)];
-        sides[0] = {0, -1, half[v]};
-        sides[1] = {1, 0, half[u]};
-        sides[2] = {0, 1, half[v]};
-        sides[3] = {-1, 0, half[u]};
+        const int u = face % 2 ? (axis + 1) % 3 : (axis + 2) % 3;
+        const int v = face % 2 ? (axis + 2) % 3 : (axis + 1) % 3;
+        faces[size_t(face)] = {Vec3f::Unit(axis) * (face % 2 ? 1.0f : -1.0f), Vec3f::Unit(u), Vec3f::Unit(v), 1.0f,
+                               uint16_t(4 * face), 4};
+    }
+    return faces;
+}
+
+const std::array<Face, 6> kFaces = unit_faces();
+
+}  // namespace
+
+BoxPolytope::BoxPolytope(const Vec3f& half) : faces_(kFaces) {
+    const float hx = half.x(), hy = half.y(), hz = half.z();
+    vertices_ = {Vec3f(-hx, -hy, -hz), Vec3f(hx, -hy, -hz), Vec3f(-hx, hy, -hz), Vec3f(hx, hy, -hz),
+                 Vec3f(-hx, -hy, hz),  Vec3f(hx, -hy, hz),  Vec3f(-hx, hy, hz),  Vec3f(hx, hy, hz)};
+    const Eigen::Array4f x(-hx, hx, -hx, hx);
+    const Eigen::Array4f y(-hy, -hy, hy, hy);
+    packs_ = {VertexPack{x, y, Eigen::Array4f::Constant(-hz)}, VertexPack{x, y, Eigen::Array4f::Constant(hz)}};
+    for (int axis = 0; axis < 3; ++axis) {
+        const float p = half[(axis + 1) % 3];
+        const float q = half[(axis + 2) % 3];
+        Side* minus = &sides_[size_t(8 * axis)];
+        Side* plus = minus + 4;
+        faces_[size_t(2 * axis)].offset = faces_[size_t(2 * axis + 1)].offset = half[axis];
+        minus[0] = {0, -1, p};
+        minus[1] = {1, 0, q};
+        minus[2] = {0, 1, p};
+        minus[3] = {-1, 0, q};
+        plus[0] = {0, -1, q};
+        plus[1] = {1, 0, p};
+        plus[2] = {0, 1, q};
+        plus[3] = {-1, 0, p};
     }
     view_ = {vertices_, packs_, faces_, kLoops, sides_, kEdges, Vec3f::Zero(), half.minCoeff(), half.norm()};
 }

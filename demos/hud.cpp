@@ -46,15 +46,15 @@ std::string distance_of(double metres) {
 void add_hud(render::DrawList& list, const HudFigures& f) {
     constexpr float kLine = 19;
     float x = kMargin + kPadding, y = kMargin + kPadding;
-    float width = std::max(372.0f, static_cast<float>(f.description.size()) * 9 * kAdvance + 2 * kPadding);
-    float height = kTitle + 14 + 9 + 16 + 2 * kLine + 16 + (f.has_joints ? 2 : 1) * kLine + 2 * kPadding - 6;
+    float width = std::max(372.0f, static_cast<float>(f.description.size()) * 8 * kAdvance + 2 * kPadding);
+    float height = kTitle + 14 + 8 + 16 + 2 * kLine + 16 + (f.has_joints ? 2 : 1) * kLine + 2 * kPadding - 6;
     list.rects.push_back({kMargin, kMargin, width, height, kRadius, kPanel, kPanel, kPanelAlpha});
     auto line = [&](std::string text, float cap, Colour colour, float step) {
         list.texts.push_back({x, y, cap, std::move(text), colour, 1});
         y += step;
     };
     line(f.scene, kTitle, kWhite, kTitle + 14);
-    line(f.description, 9, kDim, 9 + 16);
+    line(f.description, 8, kDim, 8 + 16);
     line(text_of("frame %u/%u   t = %.2f s", f.frame, f.frames, f.time), kText, kWhite, kLine);
     line(text_of("step %.2f ms of %.2f ms", f.step_ms, f.budget_ms), kText, kWhite, kLine - 2);
     float full = width - 2 * kPadding, share = static_cast<float>(std::clamp(f.step_ms / f.budget_ms, 0.0, 1.0));

@@ -51,7 +51,8 @@ void write(Axis axis, bool touching, const PolytopePair& pair, PairCache& cache)
 
 bool still(const Kept& kept, const PolytopePair& pair) {
     const float limit = std::min(kStill, 0.02f * pair.size());
-    if ((pair.b_in_a * pair.b.centre - kept.centre).squaredNorm() > limit * limit) return false;
+    // Written so that not-a-number is motion.
+    if (!((pair.b_in_a * pair.b.centre - kept.centre).squaredNorm() <= limit * limit)) return false;
     float turned = 0;
     for (int i = 0; i < 6; ++i) {
         const float change = pair.b_in_a.rotation(i / 2, i % 2) - float(kept.columns[i]) * (1.0f / 32767.0f);

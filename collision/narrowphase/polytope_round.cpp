@@ -25,11 +25,11 @@ struct Faces {
 bool above(const Faces& faces, int face) { return faces.from[face] > 0 || faces.to[face] > 0; }
 
 // False if one face alone is further than reach; cached is the face that was, and is tried first.
-bool find_faces(const Polytope& polytope, const Segment& axis, float reach, int cached, Faces& faces) {
+bool find_faces(const Polytope& polytope, const Segment& axis, float reach, uint32_t cached, Faces& faces) {
     const Vec3f end = axis.at(1);
-    if (cached < int(polytope.faces.size())) {
-        const Face& face = polytope.faces[size_t(cached)];
-        faces.best = cached;
+    if (cached < polytope.faces.size()) {
+        const Face& face = polytope.faces[cached];
+        faces.best = int(cached);
         if (std::min(face.normal.dot(axis.from), face.normal.dot(end)) - face.offset > reach) return false;
     }
     float enter = 0;
@@ -74,7 +74,19 @@ bool over(const Polytope& polytope, const Face& face, const Vec3f& p) {
 // edge's two faces then sees an end of the axis above itself.
 Nearest nearest_outside(const Polytope& polytope, const Segment& axis, const Faces& faces) {
     Nearest nearest;
-    float least = 1e30f;
+    for (size_t i = 0; i < polytope.faces.size(); ++i) {
+        const Face& face = polytope.faces[i];
+        for (const float t : {0.0f, 1.0f}) {
+            const float height = t == 0 ? faces.from[i] : faces.to[i];
+            if (height > 0 && height < nearest.separation && over(polytope, face, axis.at(t))) {
+                nearest = {height, t, face.normal};
+            }
+        }
+    }
+    // No distance is less than what one face alone separates.
+    if (nearest.separation <= faces.separation) return nearest;
+    float least = nearest.separation * nearest.separation;
+    bool on_edge = false;
     for (const Edge& edge : polytope.edges) {
         if (!above(faces, edge.left) && !above(faces, edge.right)) continue;
         const Segment line = {polytope.vertices[edge.from], polytope.direction(edge)};
@@ -85,19 +97,12 @@ Nearest nearest_outside(const Polytope& polytope, const Segment& axis, const Fac
             least = squared;
             nearest.t = points.t;
             nearest.normal = between;
+            on_edge = true;
         }
     }
+    if (!on_edge) return nearest;
     nearest.separation = std::sqrt(least);
     nearest.normal /= std::max(nearest.separation, 1e-20f);
-    for (size_t i = 0; i < polytope.faces.size(); ++i) {
-        const Face& face = polytope.faces[i];
-        for (const float t : {0.0f, 1.0f}) {
-            const float height = t == 0 ? faces.from[i] : faces.to[i];
-            if (height > 0 && height < nearest.separation && over(polytope, face, axis.at(t))) {
-                nearest = {height, t, face.normal};
-            }
-        }
-    }
     return nearest;
 }
 
@@ -179,7 +184,7 @@ void polytope_round(const Pair& pair, Manifold& out) {
 
     // Word 0 of the cache: the face that separated most.
     Faces faces;
-    const bool near = find_faces(polytope, round.axis, round.radius + pair.margin, int(pair.cache.words[0]), faces);
+    const bool near = find_faces(polytope, round.axis, round.radius + pair.margin, pair.cache.words[0], faces);
     pair.cache.words[0] = uint32_t(faces.best);
     if (!near) return;
 

@@ -9,7 +9,7 @@ uniform vec3 sun, eye;
 uniform mat4 sun_clip, zenith_clip;
 uniform sampler2DShadow sun_map, zenith_map;
 uniform vec2 texel;  // size of a shadow map texel in the world [m]: sun, zenith
-const vec3 kHorizon = vec3(0.74, 0.86, 1.00), kZenith = vec3(0.12, 0.30, 0.62);
+const vec3 kHorizon = vec3(0.80, 0.98, 1.18), kZenith = vec3(0.07, 0.25, 0.66);
 const vec3 kSunLight = vec3(3.30, 3.00, 2.55), kSkyLight = vec3(0.55, 0.70, 0.95);
 const vec3 kGroundLight = vec3(0.30, 0.28, 0.25);
 vec3 sky_colour(vec3 d) {
@@ -148,10 +148,10 @@ float lines(vec2 p, float period, float half_width) {
 }
 void main() {
     float r = length(world - eye);
-    vec3 albedo = vec3(0.250, 0.275, 0.310);
+    vec3 albedo = vec3(0.215, 0.245, 0.285);
     float minor = lines(world.xz, 1.0, 0.012) * exp(-r / 22.0);
     float major = lines(world.xz, 10.0, 0.03) * exp(-r / 70.0);
-    albedo = mix(albedo, vec3(0.42, 0.45, 0.50), 0.55 * minor);
+    albedo = mix(albedo, vec3(0.48, 0.52, 0.58), 0.70 * minor);
     albedo = mix(albedo, vec3(0.52, 0.56, 0.62), 0.75 * major);
     colour = vec4(lit_colour(albedo, world, vec3(0.0, 1.0, 0.0), 0.10), 1.0);
 }

@@ -109,7 +109,7 @@ Scene build_main(double, double, const Options& options) {
         }
     perturb(scene, options.seed);
     decorate_with_crane(scene, plan.anchor);
-    scene.camera = {{8.6, 4.4, 12.4}, {0.4, 3.3, 0}, 42};
+    scene.camera = {{7.4, 5.2, 15.6}, {0.2, 4.5, 0}, 42};
     scene.stage = {{-8, 0, -8}, {12, 9, 8}};
     return scene;
 }

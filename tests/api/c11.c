@@ -1,0 +1,56 @@
+/* The headers as a C11 compiler sees them, each before any other of its kind, and a world that falls. */
+#include <taut/profile.h>
+#include <taut/joint.h>
+#include <taut/event.h>
+#include <taut/body.h>
+#include <taut/shape.h>
+#include <taut/world.h>
+#include <taut/math.h>
+#include <taut/base.h>
+#include <taut/taut.h>
+
+#include <stddef.h>
+
+/* The ABI: what a binding in another language relies on. */
+_Static_assert(sizeof(taut_body) == 8 && sizeof(taut_world) == 8, "handles are one word");
+_Static_assert(sizeof(taut_result) == 4 && sizeof(taut_body_kind) == 4, "enums are 32 bits");
+_Static_assert(sizeof(taut_pos) == 24 && sizeof(taut_vec3) == 12 && sizeof(taut_quat) == 16, "plain values");
+_Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
+_Static_assert(offsetof(taut_body_def, struct_size) == 0 && offsetof(taut_world_def, struct_size) == 0, "size first");
+
+int taut_c11_run(void);
+
+/* 0, or the line that failed. */
+#define CHECK(condition) \
+    if (!(condition)) return __LINE__
+
+int taut_c11_run(void) {
+    taut_world_def world_def;
+    taut_world world;
+    taut_world_def_init(&world_def);
+    CHECK(taut_world_create(&world_def, &world) == TAUT_OK);
+
+    taut_sphere_def sphere_def;
+    taut_shape sphere;
+    taut_sphere_def_init(&sphere_def);
+    CHECK(taut_world_add_sphere(world, &sphere_def, &sphere) == TAUT_OK);
+
+    taut_body_def body_def;
+    taut_body body;
+    taut_body_def_init(&body_def);
+    body_def.shape = sphere;
+    body_def.position = (taut_pos){0.0, 10.0, 0.0};
+    CHECK(taut_world_add_body(world, &body_def, &body) == TAUT_OK);
+
+    for (int i = 0; i < 60; ++i) CHECK(taut_world_step(world) == TAUT_OK);
+    taut_pose pose;
+    CHECK(taut_body_get_pose(body, &pose) == TAUT_OK);
+    CHECK(pose.position.y > 4.9 && pose.position.y < 5.2); /* g t^2 / 2 after one second */
+
+    body_def.density = -1.0f;
+    CHECK(taut_world_add_body(world, &body_def, &body) == TAUT_INVALID_ARGUMENT);
+    CHECK(taut_last_error()[0] == 't');
+    CHECK(taut_world_destroy(world) == TAUT_OK);
+    CHECK(!taut_body_is_valid(body));
+    return 0;
+}
