@@ -50,7 +50,7 @@ struct Broadphase::State {
 
     btDbvt tree;
     btNodeStack stack;
-    Array<Leaf> leaves;      // by id
+    Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
     Array<uint64_t> pairs;   // sorted
     Array<uint64_t> fresh;   // found by this refresh, then sorted

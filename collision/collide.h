@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "base/math.h"
 #include "base/memory.h"
@@ -15,26 +16,28 @@ namespace taut::collision {
 
 // ---------------------------------------------------------------- shapes
 
-struct Hull;  // vertices, merged faces, edges with their two faces; see shapes.cpp
+struct Hull;  // vertices, merged faces, edges with their two faces; see hull.h
 
 enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
 constexpr int kShapeKinds = 5;
 
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
-    Vec3f size = Vec3f::Zero();  // box: half extents; sphere: (radius,,); capsule: (radius, half length,); plane: unit normal
+    Vec3f size =
+        Vec3f::Zero();  // box: half extents; sphere: (radius,,); capsule: (radius, half length,); plane: unit normal
     std::shared_ptr<const Hull> hull;  // hull only
 };
 
 struct MassProperties {
-    double mass = 0;            // [kg]
+    double mass = 0;             // [kg]
     Vec3 centre = Vec3::Zero();  // [m], body frame
-    Sym3 inertia;               // about the centre, body axes [kg m^2]
+    Sym3 inertia;                // about the centre, body axes [kg m^2]
 };
 
-// Builds the hull of count points [m]: at most max_vertices of them, coplanar faces merged, vertices and
-// faces in an order that depends on the points alone. Returns null and a reason (static text) for fewer
-// than 4 points, non-finite points, or points thinner than thickness [m].
+// Builds the hull of points [m]: at most max_vertices of them (never more than 64), coplanar faces merged,
+// vertices and faces in an order that depends on the points alone. Faces may lie off the points by 2e-4 of their
+// extent. Returns null and a reason (static text) for fewer than 4 points, non-finite points, or points thinner
+// than thickness [m].
 std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> points, int max_vertices, float thickness,
                                        const char** reason);
 std::span<const Vec3f> hull_vertices(const Hull& hull);
@@ -99,19 +102,23 @@ struct Manifold {
     ContactPoint points[4];
 };
 
-// What a pair remembers between calls: the axis that last separated or touched. Zero is a fresh pair; the
-// result of collide() may depend on it only within the tolerance of the axis choice, and it is part of the state hash.
+// What a pair remembers between calls: the axis that last separated or touched, and the relative pose it was found at.
+// Zero is a fresh pair; the result of collide() may depend on it only within the tolerance of the axis choice, and it
+// is part of the state hash. It belongs to the pair in one order of a and b.
 struct PairCache {
     uint32_t words[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 };
 
 // Contact points of two shapes that are closer than margin [m] (speculative points have positive separation).
-// At most four points, chosen for area and depth. The kinds may come in any order; two planes never touch.
+// At most four points, chosen for area and depth. The kinds may come in any order; two planes never touch. A plane
+// is best b: positions are relative to a, and a plane's own origin may be far off.
+// Of out, normal and points beyond count are written only where count > 0.
 void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
              PairCache& cache, Manifold& out);
 
 // General convex pair by libccd's MPR on support functions with face clipping: the path for shapes without a kernel
-// of their own, and an oracle for tests. Same contract as collide(); the normal and depth are MPR's.
+// of their own, and an oracle for tests. Same contract as collide(), but for planes, which have no support; the normal
+// and depth are MPR's: the depth is not the least, on the mean some 10 % more. Round shapes get one point.
 void collide_support_mapped(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
                             Manifold& out);
 

@@ -14,14 +14,12 @@ struct Hull {
     std::vector<Face> faces;  // sorted by their loops, each loop from its smallest vertex on
     std::vector<uint8_t> loops;
     std::vector<Side> sides;
-    std::vector<Edge> edges;  // sorted by (from, to), from < to
+    std::vector<Edge> edges;       // sorted by (from, to), from < to
     Vec3f centre = Vec3f::Zero();  // mean of the vertices [m]
     float inner_radius = 0;
     float outer_radius = 0;
 
-    Polytope view() const {
-        return {vertices, packs, faces, loops, sides, edges, centre, inner_radius, outer_radius};
-    }
+    Polytope view() const { return {vertices, packs, faces, loops, sides, edges, centre, inner_radius, outer_radius}; }
 };
 
 // Corner loops of a closed convex surface, counter-clockwise from outside; indices into some list of points.

@@ -49,8 +49,8 @@ std::array<Face, 6> unit_faces() {
         const int axis = face / 2;
         const int u = face % 2 ? (axis + 1) % 3 : (axis + 2) % 3;
         const int v = face % 2 ? (axis + 2) % 3 : (axis + 1) % 3;
-        faces[size_t(face)] = {Vec3f::Unit(axis) * (face % 2 ? 1.0f : -1.0f), Vec3f::Unit(u), Vec3f::Unit(v), 1.0f,
-                               uint16_t(4 * face), 4};
+        faces[size_t(face)] = {
+            Vec3f::Unit(axis) * (face % 2 ? 1.0f : -1.0f), Vec3f::Unit(u), Vec3f::Unit(v), 1.0f, uint16_t(4 * face), 4};
     }
     return faces;
 }

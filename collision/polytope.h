@@ -20,8 +20,8 @@ struct VertexPack {
 
 // A point p of a face has the plane coordinates (u . p, v . p) and the height normal . p - offset.
 struct Face {
-    Vec3f normal, u, v;  // right-handed, unit
-    float offset;        // [m]
+    Vec3f normal, u, v;     // right-handed, unit
+    float offset;           // [m]
     uint16_t first, count;  // corners, counter-clockwise from outside, in loops and sides
 };
 

@@ -109,8 +109,8 @@ Box sphere_bounds(const Shape& shape, const Placement& at) {
 }
 
 Box capsule_bounds(const Shape& shape, const Placement& at) {
-    const Vec3 reach = at.rotation.col(1).cwiseAbs().cast<double>() * double(shape.size.y()) +
-                       Vec3::Constant(shape.size.x());
+    const Vec3 reach =
+        at.rotation.col(1).cwiseAbs().cast<double>() * double(shape.size.y()) + Vec3::Constant(shape.size.x());
     return rounded(at.position, -reach, reach);
 }
 

@@ -101,8 +101,8 @@ bool clip_faces(const Placed& a, const Placed& b, float margin, Manifold& out) {
         ++polygon.count;
     }
     clip(polygon, polytope_a.sides_of(*reference), flush_slack(polytope_a.inner_radius));
-    const uint32_t base = face_base(false, int(reference - polytope_a.faces.data()),
-                                    int(incident - polytope_b.faces.data()));
+    const uint32_t base =
+        face_base(false, int(reference - polytope_a.faces.data()), int(incident - polytope_b.faces.data()));
     add_points(polygon, {reference->u, reference->v, reference->normal, reference->offset}, base, margin, out);
     for (int i = 0; i < out.count; ++i) out.points[i].position = axes_a * out.points[i].position;
     return out.count > 0;
@@ -130,7 +130,7 @@ void collide_support_mapped(const Shape& shape_a, const Placement& at_a, const S
     if (has_faces(shape_a) && has_faces(shape_b) && clip_faces(a, b, margin, out)) return;
     const Vec3f middle = Vec3(position.v[0], position.v[1], position.v[2]).cast<float>();
     out.count = 1;
-    out.points[0] = {middle, float(depth) - margin, vertex_feature(0)};
+    out.points[0] = {middle, margin - float(depth), vertex_feature(0)};
 }
 
 }  // namespace taut::collision

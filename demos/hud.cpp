@@ -15,7 +15,7 @@ const Colour kPanel = from_srgb(0x10161F), kWhite = from_srgb(0xFFFFFF), kDim = 
 const Colour kTrack = from_srgb(0x33404F), kGood = from_srgb(0x4FC28B), kBusy = from_srgb(0xF3A712), kLate = from_srgb(0xE4572E);
 constexpr float kPanelAlpha = 0.88f, kRadius = 8, kMargin = 16, kPadding = 16;
 constexpr float kTitle = 15, kText = 10;                 // heights of capitals
-constexpr float kAdvance = 5.9f / 6.0f;                  // width of a character, of its height
+constexpr float kAdvance = 1.02f;                        // width of a character, of its height
 
 [[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
     char buffer[160];
@@ -68,10 +68,10 @@ void add_hud(render::DrawList& list, const HudFigures& f) {
     line(text_of("%u bodies  %u joints  %u contacts", f.bodies, f.joints, f.points), kText, kDim, kLine);
 }
 
-void add_tension_legend(render::DrawList& list, const TensionScale& scale) {
-    constexpr float kWidth = 372, kHeight = 66, kBar = 12, kBottom = 720 - kMargin;
+void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas) {
+    constexpr float kWidth = 372, kHeight = 66, kBar = 12;
     constexpr int kSpans = 15;
-    float left = kMargin, top = kBottom - kHeight, x = left + kPadding, full = kWidth - 2 * kPadding;
+    float left = kMargin, top = canvas.height - kMargin - kHeight, x = left + kPadding, full = kWidth - 2 * kPadding;
     list.rects.push_back({left, top, kWidth, kHeight, kRadius, kPanel, kPanel, kPanelAlpha});
     list.texts.push_back({x, top + 12, kText, "joint force", kWhite, 1});
     for (int i = 0; i < kSpans; ++i) {

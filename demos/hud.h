@@ -20,6 +20,6 @@ struct HudFigures {
 };
 
 void add_hud(render::DrawList& list, const HudFigures& figures);
-void add_tension_legend(render::DrawList& list, const TensionScale& scale);
+void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas);
 
 }  // namespace demo

@@ -99,7 +99,7 @@ private:
         view_->add_joints(list_, tension);
         if (options_.contacts) view_->add_contacts(list_);
         if (options_.hud) add_figures(frame);
-        if (options_.hud && tension && !scene_.joints.empty()) add_tension_legend(list_, view_->tension_scale());
+        if (options_.hud && tension && !scene_.joints.empty()) add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
         const render::Picture& picture = renderer_->draw(list_);
         figures_.draw_sum_ms += ms_since(begin);
         begin = Clock::now();

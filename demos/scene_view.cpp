@@ -15,7 +15,7 @@ using render::Vec3;
 using scenes::Look;
 using scenes::ShapeKind;
 
-constexpr float kRodRadius = 0.03f, kPointRadius = 0.05f, kCableWeightRadius = 0.30f;  // drawn sizes [m]
+constexpr float kRodRadius = 0.04f, kPointRadius = 0.05f, kCableWeightRadius = 0.30f;  // drawn sizes [m]
 constexpr float kContactRadius = 0.03f, kNormalLength = 0.30f;
 
 const Colour kCrates[] = {from_srgb(0xE4572E), from_srgb(0xF3A712), from_srgb(0xF2E3BC),
@@ -138,7 +138,6 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
     instance.rotation = {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w};
     instance.colour = colour;
     instance.gloss = body.look == Look::steel ? 0.9f : 0.22f;
-    if (body.look == Look::wall) instance.pass = render::Pass::cutaway;
     if (body.kind == TAUT_BODY_PARTICLE) {
         float radius = body.look == Look::steel ? kCableWeightRadius : kPointRadius;
         list.instances.push_back(ball(instance.position, radius, colour, instance.gloss));
@@ -178,8 +177,9 @@ void SceneView::add_bodies(render::DrawList& list, bool tension) const {
                 }
     for (size_t i = 0; i < scene_.bodies.size(); ++i) {
         Look look = scene_.bodies[i].look;
-        if (look == Look::hidden || look == Look::ground) continue;
-        add_body(list, i, tension && look == Look::link ? scale_.colour(force[i]) : colour_of(look, i));
+        if (look == Look::hidden || look == Look::ground || is_in_the_way(i)) continue;
+        bool shows_force = tension && (look == Look::link || look == Look::particle);
+        add_body(list, i, shows_force ? scale_.colour(force[i]) : colour_of(look, i));
     }
     for (const scenes::Decoration& decoration : scene_.decorations) {
         Instance instance;
@@ -188,6 +188,14 @@ void SceneView::add_bodies(render::DrawList& list, bool tension) const {
         instance.colour = kDecoration;
         list.instances.push_back(instance);
     }
+}
+
+// Walls between the viewer and what they hold.
+bool SceneView::is_in_the_way(size_t index) const {
+    if (scene_.bodies[index].look != Look::wall) return false;
+    Vec3 middle = vec(scene_.camera.target), wall = vec(scene_.bodies[index].position) - middle;
+    Vec3 viewer = vec(scene_.camera.eye) - middle;
+    return wall.x * viewer.x + wall.z * viewer.z > 0;
 }
 
 float SceneView::thickness_at(const scenes::Joint& joint) const {

@@ -35,6 +35,7 @@ public:
 
 private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
+    bool is_in_the_way(size_t index) const;
     float thickness_at(const scenes::Joint& joint) const;
 
     const scenes::Scene& scene_;

@@ -35,7 +35,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
     for (uint32_t b : group.blocks)
         for (uint32_t node : w.partition.blocks[b].nodes) system.in_block[node + 1] = 1;
     build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, solver);
-    if (solver.wide_contacts) build_lanes(system, group, w.pairs, w.nodes);
+    if (solver.wide_contacts) build_lanes(system, group, w.pairs, w.nodes, *settings.kernels);
     w.profile.predict_us += watch.lap();
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
@@ -45,8 +45,10 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         w.profile.predict_us += watch.lap();
         evaluate_rows(system);
         w.profile.assemble_us += watch.lap();
-        Substep substep{system, group, w.partition.blocks, w.nodes, settings, report, i + 1 == group.substeps};
+        Substep substep{system, group, w.partition.blocks, w.nodes,   settings,
+                        report, w.scratch, i + 1 == group.substeps};
         solver.solve(substep);
+        if (substep.last) report.residual = std::max(report.residual, row_residual(system));
         w.profile.sweep_us += watch.lap();
         commit(system, group, w.nodes);
         if (solver.settle) {

@@ -13,6 +13,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       pairs(memory),
       partition(memory),
       system(memory),
+      scratch(memory),
       contact_begin(memory),
       contact_end(memory),
       moved(memory),

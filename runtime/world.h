@@ -10,6 +10,7 @@
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
+#include "solvers/solver.h"
 #include "system/system.h"
 
 namespace taut {
@@ -32,6 +33,7 @@ struct World {
     // derived: rebuilt by each step from the state, kept for its memory and for what blocks remember
     Partition partition;
     System system;
+    SolverScratch scratch;
 
     // results of the last step
     Array<taut_contact_event> contact_begin, contact_end;

@@ -18,18 +18,20 @@ constexpr uint32_t kTouching = 1u << 8;
 constexpr int next(int axis) { return axis == 2 ? 0 : axis + 1; }
 
 struct Boxes {
-    Vec3f a, b;        // half extents
-    Mat3f r, q;        // b's axes in a's frame, and their magnitudes
-    Vec3f t, t_in_b;   // from a's centre to b's, in a's and in b's frame
+    Vec3f a, b;       // half extents
+    Mat3f r, q;       // b's axes in a's frame, and their magnitudes
+    Vec3f t, t_in_b;  // from a's centre to b's, in a's and in b's frame
 
     explicit Boxes(const Pair& pair)
-        : a(pair.a.size), b(pair.b.size), r(pair.b_in_a.rotation), q(r.cwiseAbs()), t(pair.b_in_a.position),
+        : a(pair.a.size),
+          b(pair.b.size),
+          r(pair.b_in_a.rotation),
+          q(r.cwiseAbs()),
+          t(pair.b_in_a.position),
           t_in_b(r.transpose() * t) {}
 
     // |t . n| - (reach of a) - (reach of b) along the unit axis n; negative is overlap.
-    float face_a(int i) const {
-        return std::fabs(t[i]) - a[i] - (q(i, 0) * b[0] + q(i, 1) * b[1] + q(i, 2) * b[2]);
-    }
+    float face_a(int i) const { return std::fabs(t[i]) - a[i] - (q(i, 0) * b[0] + q(i, 1) * b[1] + q(i, 2) * b[2]); }
     float face_b(int j) const {
         return std::fabs(t_in_b[j]) - b[j] - (q(0, j) * a[0] + q(1, j) * a[1] + q(2, j) * a[2]);
     }

@@ -134,8 +134,8 @@ struct Round {
 
 // Midway between the polytope's surface and the round one along the normal; height of the axis' point.
 void add_point(const Round& round, float t, float height, uint32_t feature, Manifold& out) {
-    out.points[out.count++] = {round.axis.at(t) - out.normal * (0.5f * (height + round.radius)),
-                               height - round.radius, feature};
+    out.points[out.count++] = {round.axis.at(t) - out.normal * (0.5f * (height + round.radius)), height - round.radius,
+                               feature};
 }
 
 // The stretch of the axis over the face; false if none is, or none as deep as the nearest point.
@@ -195,8 +195,8 @@ void polytope_round(const Pair& pair, Manifold& out) {
         nearest = nearest_inside(polytope, round.axis, faces);
     }
     if (nearest.separation - round.radius > pair.margin) return;
-    const bool lies = round.axis.step.squaredNorm() > 0 &&
-                      lie_on_face(polytope, round, faces, nearest, pair.margin, out);
+    const bool lies =
+        round.axis.step.squaredNorm() > 0 && lie_on_face(polytope, round, faces, nearest, pair.margin, out);
     if (lies) return;
     out.normal = nearest.normal;
     add_point(round, nearest.t, nearest.separation, kAlone, out);

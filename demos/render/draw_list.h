@@ -33,7 +33,6 @@ enum BuiltinMesh : uint32_t { kMeshBox = 0, kMeshSphere = 1, kMeshCylinder = 2, 
 // How an instance is drawn.
 enum class Pass : uint8_t {
     solid,    // lit, throws and receives shadows
-    cutaway,  // only the faces turned away from the viewer, no shadow thrown: walls one looks into
     overlay,  // unlit, pulled towards the viewer so that points inside touching bodies stay visible
 };
 
@@ -48,7 +47,7 @@ struct Instance {
     Pass pass = Pass::solid;
 };
 
-// Rectangle or text over the picture, in pixels of a 1280x720 picture, y down.
+// Rectangle or text over the picture, in units of the canvas, y down.
 struct HudRect {
     float x = 0, y = 0, width = 0, height = 0, radius = 0;
     Colour left, right;  // blends from left to right
@@ -60,6 +59,17 @@ struct HudText {
     std::string text;
     Colour colour{1, 1, 1};
     float alpha = 1;
+};
+
+// The HUD's units: pixels of a 1280x720 picture, enlarged with it, and a little larger in small ones.
+struct HudCanvas {
+    HudCanvas(int picture_width, int picture_height)
+        : scale(std::fmax(0.8f, std::fmin(static_cast<float>(picture_width) / 1280.0f,
+                                          static_cast<float>(picture_height) / 720.0f))),
+          width(static_cast<float>(picture_width) / scale),
+          height(static_cast<float>(picture_height) / scale) {}
+
+    float scale, width, height;
 };
 
 struct DrawList {

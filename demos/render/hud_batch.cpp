@@ -31,7 +31,7 @@ GLuint upload(const FontImage& image) {
 HudBatch::HudBatch(int width, int height)
     : width_(width),
       height_(height),
-      scale_(std::min(static_cast<float>(width) / 1280.0f, static_cast<float>(height) / 720.0f)),
+      scale_(HudCanvas(width, height).scale),
       program_({shaders::kHudVertex}, {shaders::kHudFragment}) {
     glGenVertexArrays(1, &array_);
     glGenBuffers(1, &buffer_);

@@ -29,7 +29,7 @@ private:
     void add_quad(const Corner (&corners)[4]);
 
     int width_, height_;
-    float scale_;  // pixels of the picture per pixel of a 1280x720 one
+    float scale_;  // pixels of a unit of the canvas
     Program program_;
     GLuint array_ = 0, buffer_ = 0;
     struct Font {

@@ -214,12 +214,7 @@ void Renderer::Inside::draw_world(const Camera& camera) {
     solid.set("viewer", camera.eye);
     solid.set("unlit", 0);
     solid.set("pull", 0.0f);
-    solid.set("side", 1.0f);
     draw_pass(solid, Pass::solid);
-    glCullFace(GL_FRONT);
-    solid.set("side", -1.0f);
-    draw_pass(solid, Pass::cutaway);
-    glCullFace(GL_BACK);
 
     glDisable(GL_CULL_FACE);
     set_light(ground, camera);

@@ -96,7 +96,6 @@ const char* const kSolidFragment = R"(
 in vec3 world, local, local_normal, half_size;
 flat in vec4 paint, turn;
 uniform int bevelled, unlit;
-uniform float side;  // 1: faces towards the viewer, -1: faces seen from inside
 out vec4 colour;
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 void main() {
@@ -115,7 +114,7 @@ void main() {
         n = normalize(n + lean * (0.8 * shown));
         albedo *= 1.0 + 0.12 * shown * min(length(lean), 1.0);
     }
-    colour = vec4(lit_colour(albedo, world, turned(turn, n) * side, paint.a), 1.0);
+    colour = vec4(lit_colour(albedo, world, turned(turn, n), paint.a), 1.0);
 }
 )";
 

@@ -54,7 +54,7 @@ Scene build_chain_over_edge(double, double r, const Options& options) {
     add_chain(scene, plan);
     scene.roles.pile = scene.roles.chain->bodies;
     perturb(scene, options.seed, ChainStart::laid_out);
-    scene.camera = {{5.6, 6.8, 8.6}, {-0.2, 4.0, 0}, 38};
+    scene.camera = {{6.4, 8.6, 9.4}, {-0.7, 4.0, 0}, 42};
     scene.stage = {{-8.5, 0, -4}, {5, 7, 4}};
     return scene;
 }
@@ -80,7 +80,7 @@ Scene build_wrecking_ball(double, double, const Options& options) {
     }
     perturb(scene, options.seed);
     decorate_with_crane(scene, plan.anchor);
-    scene.camera = {{9.5, 5.6, 12.5}, {0.6, 3.3, 0}, 40};
+    scene.camera = {{9.8, 5.8, 14.2}, {0.4, 4.5, 0}, 42};
     scene.stage = {{-8, 0, -7}, {10, 10, 7}};
     return scene;
 }
@@ -109,7 +109,7 @@ Scene build_main(double, double, const Options& options) {
         }
     perturb(scene, options.seed);
     decorate_with_crane(scene, plan.anchor);
-    scene.camera = {{7.4, 5.2, 15.6}, {0.2, 4.5, 0}, 42};
+    scene.camera = {{9.2, 5.3, 14.4}, {0.2, 4.4, 0}, 42};
     scene.stage = {{-8, 0, -8}, {12, 9, 8}};
     return scene;
 }

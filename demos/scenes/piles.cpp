@@ -11,7 +11,7 @@ constexpr double kCubeMass = 125;  // density 1000 [kg]
 
 void frame_stack(Scene& scene, double height) {
     scene.camera.target = {0, 0.5 * height, 0};
-    double distance = 3.0 + 1.55 * height;
+    double distance = 3.0 + 1.45 * height;
     scene.camera.eye = {0.55 * distance, 0.35 * height + 0.22 * distance, 0.83 * distance};
     scene.stage = {{-4, 0, -4}, {4, height + 1, 4}};
 }
@@ -61,7 +61,7 @@ Scene build_pyramid(double n, double, const Options& options) {
     scene.roles.top_body = scene.roles.pile.back();
     perturb(scene, options.seed);
     double height = base * kSide;
-    scene.camera = {{0.55 * height + 1, 0.55 * height + 1.2, 1.35 * height + 2}, {0, 0.40 * height, 0}, 38};
+    scene.camera = {{0.7 * height + 1, 0.62 * height + 1.2, 1.75 * height + 2}, {0, 0.48 * height, 0}, 40};
     scene.stage = {{-0.65 * height - 2, 0, -4}, {0.65 * height + 2, height + 1, 4}};
     return scene;
 }

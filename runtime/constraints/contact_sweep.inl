@@ -49,6 +49,9 @@ struct ContactSweep {
             for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
             F::transpose_back(velocity, row);
         }
+        V turn(const V& l) const {  // I^-1 l
+            return {xx * l.x + xy * l.y + xz * l.z, xy * l.x + yy * l.y + yz * l.z, xz * l.x + yz * l.y + zz * l.z};
+        }
         V at(const V& r) const {  // v + w x r
             return V{velocity[0], velocity[1], velocity[2]} + cross(V{velocity[4], velocity[5], velocity[6]}, r);
         }
@@ -56,10 +59,10 @@ struct ContactSweep {
             velocity[0] = velocity[0] + inv_mass * p.x;
             velocity[1] = velocity[1] + inv_mass * p.y;
             velocity[2] = velocity[2] + inv_mass * p.z;
-            const V l = cross(r, p);
-            velocity[4] = velocity[4] + (xx * l.x + xy * l.y + xz * l.z);
-            velocity[5] = velocity[5] + (xy * l.x + yy * l.y + yz * l.z);
-            velocity[6] = velocity[6] + (xz * l.x + yz * l.y + zz * l.z);
+            const V spin = turn(cross(r, p));
+            velocity[4] = velocity[4] + spin.x;
+            velocity[5] = velocity[5] + spin.y;
+            velocity[6] = velocity[6] + spin.z;
         }
     };
 
@@ -128,6 +131,40 @@ struct ContactSweep {
         const V push = (q1 - old1) * f.t1 + (q2 - old2) * f.t2;
         b.add(push, rb);
         a.add(zero_minus(push), ra);
+    }
+
+    // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue.
+    static void prepare(LaneView contacts, uint32_t begin, uint32_t end, const SweepVelocity* velocities,
+                        const SweepMass* masses) {
+        const F half = F::all(0.5f), zero = F::all(0), tiny = F::all(1e-30f);
+        for (uint32_t i = begin; i < end; ++i) {
+            const LaneGroup& g = contacts.group[i];
+            const Frame f(g);
+            Side a, b;
+            a.gather(g.a, velocities, masses);
+            b.gather(g.b, velocities, masses);
+            const F inv_mass = a.inv_mass + b.inv_mass;
+            for (uint32_t k = 0; k < g.points; ++k) {
+                LanePoint& p = contacts.point[g.first_point + k];
+                const V ra = load(p.ra), rb = load(p.rb);
+                const V an = cross(ra, f.n), bn = cross(rb, f.n), a1 = cross(ra, f.t1), b1 = cross(rb, f.t1);
+                const V a2 = cross(ra, f.t2), b2 = cross(rb, f.t2), wa1 = a.turn(a1), wb1 = b.turn(b1);
+                const F used = F::load(p.normal_mass);  // 1 in a filled place
+                const F kn = inv_mass + dot(an, a.turn(an)) + dot(bn, b.turn(bn));
+                const F k11 = inv_mass + dot(a1, wa1) + dot(b1, wb1);
+                const F k22 = inv_mass + dot(a2, a.turn(a2)) + dot(b2, b.turn(b2));
+                const F k12 = dot(a2, wa1) + dot(b2, wb1);
+                const F mean = half * (k11 + k22), diff = half * (k11 - k22);
+                const F largest = mean + F::sqrt(diff * diff + k12 * k12);
+                const F det = k11 * k22 - k12 * k12, inv_det = used / F::max(det, tiny);
+                (used / F::max(kn, tiny)).store(p.normal_mass);
+                (k22 * inv_det).store(p.friction_mass[0]);
+                (k11 * inv_det).store(p.friction_mass[1]);
+                (zero - k12 * inv_det).store(p.friction_mass[2]);
+                (used / F::max(largest, tiny)).store(p.isotropic_mass);
+                dot(b.at(rb) - a.at(ra), f.n).store(p.approach);
+            }
+        }
     }
 
     static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
@@ -220,7 +257,7 @@ struct ContactSweep {
     }
 
     static constexpr ContactKernels table(const char* name) {
-        return {name, warm_start, sweep_biased, sweep_relaxed, restitute};
+        return {name, prepare, warm_start, sweep_biased, sweep_relaxed, restitute};
     }
 };
 

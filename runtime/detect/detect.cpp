@@ -115,16 +115,28 @@ void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, doubl
     pairs.placement.resize(nodes.slots());
     for (uint32_t node = 0; node < nodes.slots(); ++node)
         if (nodes.info[node].shape != kNone) pairs.placement[node] = placement_of(nodes, node);
-    for (Pair& pair : pairs.list) {
+    pairs.active.clear();
+    for (uint32_t i = 0; i < pairs.list.size(); ++i) {
+        Pair& pair = pairs.list[i];
         if (pair.filtered) continue;
         const uint32_t a = pair.a(), b = pair.b();
         const collision::Manifold old = pair.manifold;
-        Impulse before[4];
-        std::copy(pair.impulse, pair.impulse + 4, before);
         collision::collide(shapes.record[nodes.info[a].shape].shape, pairs.placement[a],
                            shapes.record[nodes.info[b].shape].shape, pairs.placement[b],
                            margin_of(nodes.motion[a], nodes.motion[b], time_step), pair.cache, pair.manifold);
-        if (pair.manifold.count > 0) carry_impulses(old, before, pair.manifold, pair.impulse);
+        if (pair.manifold.count == 0) {
+            if (pair.touching) report_end(pairs, nodes, pair);
+            pair.touching = false;
+            continue;
+        }
+        pairs.active.push_back({a, b, i, static_cast<uint32_t>(pair.manifold.count)});
+        if (old.count == 0) {
+            std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+            continue;
+        }
+        Impulse before[4];
+        std::copy(pair.impulse, pair.impulse + 4, before);
+        carry_impulses(old, before, pair.manifold, pair.impulse);
     }
 }
 

@@ -90,8 +90,8 @@ void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& p
     for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
         if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1])) unite(joint.node[0], joint.node[1]);
-    for (const Pair& pair : pairs.list)
-        if (pair.manifold.count > 0 && moving(nodes, pair.a()) && moving(nodes, pair.b())) unite(pair.a(), pair.b());
+    for (const ActivePair& pair : pairs.active)
+        if (moving(nodes, pair.a) && moving(nodes, pair.b)) unite(pair.a, pair.b);
 
     island_of_.assign(slots, kNone);
     island_.clear();
@@ -119,15 +119,13 @@ void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
     adjacency_begin_.assign(slots + 1, 0);
     level_.assign(slots, 0);
     queue_.clear();
-    auto touching = [](const Pair& pair) { return pair.manifold.count > 0; };
-    for (const Pair& pair : pairs.list) {
-        if (!touching(pair)) continue;
-        const bool a = moving(nodes, pair.a()), b = moving(nodes, pair.b());
+    for (const ActivePair& pair : pairs.active) {
+        const bool a = moving(nodes, pair.a), b = moving(nodes, pair.b);
         if (a && b) {
-            ++adjacency_begin_[pair.a() + 1];
-            ++adjacency_begin_[pair.b() + 1];
+            ++adjacency_begin_[pair.a + 1];
+            ++adjacency_begin_[pair.b + 1];
         } else if (a != b) {
-            const uint32_t node = a ? pair.a() : pair.b();
+            const uint32_t node = a ? pair.a : pair.b;
             if (level_[node] == 0) queue_.push_back(node);
             level_[node] = 1;
         }
@@ -135,10 +133,10 @@ void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
     for (uint32_t i = 0; i < slots; ++i) adjacency_begin_[i + 1] += adjacency_begin_[i];
     adjacency_.resize(adjacency_begin_[slots]);
     scratch_.assign(adjacency_begin_.begin(), adjacency_begin_.end());
-    for (const Pair& pair : pairs.list) {
-        if (!touching(pair) || !moving(nodes, pair.a()) || !moving(nodes, pair.b())) continue;
-        adjacency_[scratch_[pair.a()]++] = pair.b();
-        adjacency_[scratch_[pair.b()]++] = pair.a();
+    for (const ActivePair& pair : pairs.active) {
+        if (!moving(nodes, pair.a) || !moving(nodes, pair.b)) continue;
+        adjacency_[scratch_[pair.a]++] = pair.b;
+        adjacency_[scratch_[pair.b]++] = pair.a;
     }
     for (size_t head = 0; head < queue_.size(); ++head) {
         const uint32_t node = queue_[head];
@@ -177,6 +175,42 @@ void Partition::choose_substeps(const PartitionRules& rules) {
 }
 
 void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules) {
+    make_groups();
+    for (uint32_t i = 0; i < nodes.slots(); ++i)
+        if (island_of_[i] != kNone) groups[group_of(i)].nodes.push_back(i);
+    for (uint32_t b = 0; b < blocks.size(); ++b) groups[group_of(blocks[b].nodes[0])].blocks.push_back(b);
+
+    used_.resize(nodes.slots());
+    colours = 0;
+    Array<uint32_t>& items = queue_;
+    for (uint32_t g = 0; g < group_count; ++g) {
+        Group& group = groups[g];
+        auto here = [&](uint32_t a, uint32_t b) {
+            const uint32_t node = moving(nodes, a) ? a : b;
+            return moving(nodes, node) && group_of(node) == g;
+        };
+        items.clear();
+        if (!rules.direct_joints)
+            for (uint32_t j = 0; j < joints.record.size(); ++j) {
+                const Joint& joint = joints.record[j];
+                if (joint.type && here(joint.node[0], joint.node[1])) items.push_back(j);
+            }
+        for (uint32_t node : group.nodes) used_[node] = 0;
+        const uint32_t of_joints = colour(items, group.joints, group.joint_colour_begin, [&](uint32_t j) {
+            return std::pair(joints.record[j].node[0], joints.record[j].node[1]);
+        });
+        items.clear();
+        for (uint32_t p = 0; p < pairs.active.size(); ++p)
+            if (here(pairs.active[p].a, pairs.active[p].b)) items.push_back(p);
+        for (uint32_t node : group.nodes) used_[node] = 0;
+        const uint32_t of_pairs = colour(items, group.pairs, group.pair_colour_begin,
+                                         [&](uint32_t p) { return std::pair(pairs.active[p].a, pairs.active[p].b); });
+        colours = std::max({colours, of_joints, of_pairs});
+    }
+}
+
+// One group for each substep count that occurs, in ascending order.
+void Partition::make_groups() {
     Memory& memory = *groups.get_allocator().memory;
     scratch_.clear();
     for (const Island& island : island_) {
@@ -185,49 +219,13 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
     }
     group_count = static_cast<uint32_t>(scratch_.size());
     while (groups.size() < group_count) groups.emplace_back(memory);
+    for (Island& island : island_)
+        island.group = static_cast<uint32_t>(std::lower_bound(scratch_.begin(), scratch_.end(), island.substeps) -
+                                             scratch_.begin());
     for (uint32_t g = 0; g < group_count; ++g) {
         groups[g].substeps = scratch_[g];
         groups[g].nodes.clear();
         groups[g].blocks.clear();
-    }
-    auto group_of = [&](uint32_t node) -> Group& {
-        const uint32_t substeps = island_[island_of_[node]].substeps;
-        uint32_t g = 0;
-        while (groups[g].substeps != substeps) ++g;
-        return groups[g];
-    };
-    for (uint32_t i = 0; i < nodes.slots(); ++i)
-        if (island_of_[i] != kNone) group_of(i).nodes.push_back(i);
-    for (uint32_t b = 0; b < blocks.size(); ++b) group_of(blocks[b].nodes[0]).blocks.push_back(b);
-
-    used_.resize(nodes.slots());
-    colours = 0;
-    Array<uint32_t>& items = queue_;
-    for (uint32_t g = 0; g < group_count; ++g) {
-        Group& group = groups[g];
-        for (uint32_t node : group.nodes) used_[node] = 0;
-        auto here = [&](uint32_t a, uint32_t b) {
-            const uint32_t node = moving(nodes, a) ? a : b;
-            return moving(nodes, node) && &group_of(node) == &group;
-        };
-        items.clear();
-        if (!rules.direct_joints)
-            for (uint32_t j = 0; j < joints.record.size(); ++j) {
-                const Joint& joint = joints.record[j];
-                if (joint.type && here(joint.node[0], joint.node[1])) items.push_back(j);
-            }
-        const uint32_t of_joints = colour(items, group.joints, group.joint_colour_begin, [&](uint32_t j) {
-            return std::pair(joints.record[j].node[0], joints.record[j].node[1]);
-        });
-        for (uint32_t node : group.nodes) used_[node] = 0;
-        items.clear();
-        for (uint32_t p = 0; p < pairs.list.size(); ++p) {
-            const Pair& pair = pairs.list[p];
-            if (pair.manifold.count > 0 && here(pair.a(), pair.b())) items.push_back(p);
-        }
-        const uint32_t of_pairs = colour(items, group.pairs, group.pair_colour_begin,
-                                         [&](uint32_t p) { return std::pair(pairs.list[p].a(), pairs.list[p].b()); });
-        colours = std::max({colours, of_joints, of_pairs});
     }
 }
 

@@ -47,7 +47,7 @@ struct Group {
     uint32_t substeps = 0;
     Array<uint32_t> nodes;   // moved by forces, ascending
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one.
-    Array<uint32_t> pairs, pair_colour_begin;
+    Array<uint32_t> pairs, pair_colour_begin;    // index into Pairs::active
     Array<uint32_t> joints, joint_colour_begin;
     Array<uint32_t> blocks;  // index into Partition::blocks
 };
@@ -75,7 +75,7 @@ public:
 
 private:
     struct Island {
-        uint32_t nodes = 0, levels = 0, substeps = 0;
+        uint32_t nodes = 0, levels = 0, substeps = 0, group = 0;
         float ratio = 1;  // heaviest load over its support
         bool jointed = false;
     };
@@ -84,6 +84,8 @@ private:
     void connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void measure_towers(const Nodes& nodes, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);
+    void make_groups();
+    uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
     void distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     template <class Ends>
     uint32_t colour(const Array<uint32_t>& items, Array<uint32_t>& sorted, Array<uint32_t>& begin, Ends ends);

@@ -25,10 +25,11 @@ void publish_contacts(World& world) {
     world.contact_begin.clear();
     world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
     world.pairs.ended.clear();
-    for (Pair& pair : world.pairs.list) {
-        pair.was_touching = pair.touching;
-        pair.touching = !pair.filtered && touches(pair);
-        if (pair.touching == pair.was_touching) continue;
+    for (const ActivePair& active : world.pairs.active) {
+        Pair& pair = world.pairs.list[active.pair];
+        const bool before = pair.touching;
+        pair.touching = touches(pair);
+        if (pair.touching == before) continue;
         const taut_contact_event event{world.body_handle(pair.a()), world.body_handle(pair.b())};
         (pair.touching ? world.contact_begin : world.contact_end).push_back(event);
     }
@@ -52,11 +53,11 @@ void publish_motion(World& world, const Array<uint32_t>& frozen) {
 void publish_profile(World& world) {
     taut_profile& p = world.profile;
     p.pairs = static_cast<uint32_t>(world.pairs.list.size());
-    for (const Pair& pair : world.pairs.list) {
-        p.touching += pair.manifold.count > 0;
-        p.points += static_cast<uint32_t>(pair.manifold.count);
-        for (int k = 0; k < pair.manifold.count; ++k)
-            p.penetration = std::max(p.penetration, -pair.manifold.points[k].separation);
+    p.touching = static_cast<uint32_t>(world.pairs.active.size());
+    for (const ActivePair& active : world.pairs.active) {
+        p.points += active.points;
+        for (uint32_t k = 0; k < active.points; ++k)
+            p.penetration = std::max(p.penetration, -world.pairs.list[active.pair].manifold.points[k].separation);
     }
     for (const NodeInfo& info : world.nodes.info) p.bodies += moves_by_forces(info.kind);
     for (const Joint& joint : world.joints.record) {

@@ -26,8 +26,11 @@ using ConstMap = Eigen::Map<const ShortVector>;
 class Iteration {
 public:
     explicit Iteration(Substep& s)
-        : s_(s), sys_(s.system), memory_(*sys_.rows.impulse.get_allocator().memory), count_(sys_.pose.size(), 0, memory_),
-          inverse_(memory_), previous_(sys_.rows.impulse, memory_), next_(sys_.rows.impulse, memory_), soft_(soft_terms(sys_.h)) {
+        : sys_(s.system), count_(s.scratch.count), inverse_(s.scratch.inverse), previous_(s.scratch.previous),
+          next_(s.scratch.next), soft_(soft_terms(sys_.h)) {
+        count_.assign(sys_.pose.size(), 0);
+        inverse_.clear();
+        next_.resize(sys_.rows.impulse.size());
         for (const RowBlock& block : sys_.rows.block)
             for (int n = 0; n < block.type->nodes; ++n) ++count_[block.node[n]];
         for (const RowBlock& block : sys_.rows.block) {
@@ -141,12 +144,10 @@ private:
                 kDof};
     }
 
-    Substep& s_;
     System& sys_;
-    Memory& memory_;
-    Array<uint32_t> count_;  // row blocks on each node
-    Array<double> inverse_;  // of the split diagonal, rows x rows a block
-    Array<double> previous_, next_;
+    Array<uint32_t>& count_;  // row blocks on each node
+    Array<double>& inverse_;  // of the split diagonal, rows x rows a block
+    Array<double>&previous_, &next_;
     SweepTerms soft_;
 };
 

@@ -23,6 +23,14 @@ struct SolverReport {
     double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
 };
 
+// Memory that iterative solvers use during a substep, kept so that steady scenes allocate nothing.
+struct SolverScratch {
+    explicit SolverScratch(Memory& memory) : count(memory), inverse(memory), previous(memory), next(memory) {}
+
+    Array<uint32_t> count;
+    Array<double> inverse, previous, next;
+};
+
 // One substep of one group.
 struct Substep {
     System& system;
@@ -31,6 +39,7 @@ struct Substep {
     const Nodes& nodes;
     const SolverSettings& settings;
     SolverReport& report;
+    SolverScratch& scratch;
     bool last;  // of the frame: bounces happen now
 };
 

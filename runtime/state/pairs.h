@@ -22,7 +22,6 @@ struct Pair {
     Impulse impulse[4];            // by point: carried in, updated by the solver
     bool filtered = false;         // never collides (filter, joint); kept to remember the answer
     bool touching = false;         // had a point at the end of the last step
-    bool was_touching = false;     // before this step
 
     uint32_t a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t b() const { return static_cast<uint32_t>(key); }
@@ -34,11 +33,19 @@ inline Vec3f tangent_of(const Vec3f& n) {
     return n.cross(axis).normalized();
 }
 
+// A pair with contact points in this frame, in brief: what partition and assembly go through.
+struct ActivePair {
+    uint32_t a, b;   // nodes
+    uint32_t pair;   // index into Pairs::list
+    uint32_t points;
+};
+
 struct Pairs {
-    explicit Pairs(Memory& memory) : list(memory), scratch(memory), ended(memory), joined(memory), placement(memory) {}
+    explicit Pairs(Memory& memory) : list(memory), scratch(memory), active(memory), ended(memory), joined(memory), placement(memory) {}
 
     Array<Pair> list;                 // sorted by key
     Array<Pair> scratch;              // for the merge with the broadphase's list
+    Array<ActivePair> active;         // sorted as list is; find_contacts()
     Array<taut_contact_event> ended;  // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;               // id of the world, for the handles in ended
     Array<uint64_t> joined;           // keys of bodies whose joint forbids contacts, sorted

@@ -12,11 +12,13 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
                 const Nodes& nodes, const Solver& solver);
 // Once a substep: C and J at system.pose; impulses from the forces of the last substep.
 void evaluate_rows(System& system);
+// Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
+double row_residual(const System& system);
 // Once a frame and group, after the last substep: contact impulses back into the pairs.
 void store_contact_rows(const System& system, const Group& group, Pairs& pairs);
 
 // Once a frame and group: contacts by colour into lanes, with effective masses.
-void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes);
+void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes, const ContactKernels& kernels);
 void store_lanes(const System& system, Pairs& pairs);
 
 }  // namespace taut

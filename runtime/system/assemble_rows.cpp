@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "system/assemble.h"
 
 namespace taut {
@@ -46,10 +49,10 @@ void add_contacts(System& system, const Group& group, const Pairs& pairs, const 
     Rows& rows = system.rows;
     rows.data.clear();
     size_t points = 0;
-    for (uint32_t p : group.pairs) points += pairs.list[p].manifold.count;
+    for (uint32_t p : group.pairs) points += pairs.active[p].points;
     rows.data.reserve(points);  // addresses below must not move
     for (uint32_t p : group.pairs) {
-        const Pair& pair = pairs.list[p];
+        const Pair& pair = pairs.list[pairs.active[p].pair];
         const auto& ma = nodes.info[pair.a()].material;
         const auto& mb = nodes.info[pair.b()].material;
         for (int k = 0; k < pair.manifold.count; ++k) {
@@ -100,12 +103,31 @@ void store_contact_rows(const System& system, const Group& group, Pairs& pairs) 
     const auto& blocks = system.rows.block;
     while (next < blocks.size() && blocks[next].force) ++next;  // joints come first
     for (uint32_t p : group.pairs) {
-        Pair& pair = pairs.list[p];
+        Pair& pair = pairs.list[pairs.active[p].pair];
         for (int k = 0; k < pair.manifold.count && next < blocks.size(); ++k, ++next) {
             const double* mu = &system.rows.impulse[blocks[next].row];
             pair.impulse[k] = {static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(mu[2])};
         }
     }
+}
+
+double row_residual(const System& system) {
+    double largest = 0;
+    for (const RowBlock& block : system.rows.block) {
+        if (block.type->bound != Bound::free) continue;
+        const RowTerms terms = row_terms(block, system.h);
+        const int rows = block.type->rows;
+        for (int r = 0; r < rows; ++r) {
+            double sum = terms.rate * system.rows.error[block.row + r] + terms.compliance * system.rows.impulse[block.row + r];
+            for (int n = 0; n < block.type->nodes; ++n) {
+                const double* j = &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((n * rows + r) * kDof)];
+                const Velocity& u = system.exact[block.node[n]];
+                sum += Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w);
+            }
+            largest = std::max(largest, std::abs(sum));
+        }
+    }
+    return largest;
 }
 
 }  // namespace taut

@@ -77,6 +77,8 @@ struct SweepTerms {
 // Three builds of one source give the same bits: scalar, SSE2, AVX2.
 struct ContactKernels {
     const char* name;
+    // Effective masses and approach speeds from the geometry that assembly filled in.
+    void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
     void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
     // Gap from the shifts, then soft normal rows and friction on the cone.
     void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepShift*,

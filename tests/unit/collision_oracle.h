@@ -34,8 +34,8 @@ const char* name(ShapeKind kind);
 struct Core {
     std::vector<Vec3> points;
     double radius = 0;
-    std::vector<Vec3> normals;  // outward
-    std::vector<Vec3> edges;    // directions
+    std::vector<Vec3> normals;                  // outward
+    std::vector<Vec3> edges;                    // directions
     double reach(const Vec3& direction) const;  // max direction . p, without the radius
 };
 Core core(const Shape& shape, const Placement& at);

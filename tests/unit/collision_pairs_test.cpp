@@ -242,9 +242,9 @@ TEST_P(CollisionPairs, IdsSurviveTinyMotion) {
         collide(s.a, s.at_a, s.b, s.at_b, kMargin, cache, before);
         for (int step = 0; step < 10; ++step) {
             s.at_b.position += 1e-4 * random.unit();
-            s.at_b.rotation = (rotation_from_vector(1e-4 * random.unit()).toRotationMatrix() *
-                               s.at_b.rotation.cast<double>())
-                                  .cast<float>();
+            s.at_b.rotation =
+                (rotation_from_vector(1e-4 * random.unit()).toRotationMatrix() * s.at_b.rotation.cast<double>())
+                    .cast<float>();
             Manifold after;
             collide(s.a, s.at_a, s.b, s.at_b, kMargin, cache, after);
             for (int i = 0; i < after.count; ++i) {

@@ -17,7 +17,8 @@ constexpr uint32_t kSeed = 20240611;
 
 std::vector<Vec3f> cube_points(float half) {
     std::vector<Vec3f> points;
-    for (int i = 0; i < 8; ++i) points.push_back(Vec3f(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
+    for (int i = 0; i < 8; ++i)
+        points.push_back(Vec3f(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
     return points;
 }
 
@@ -57,8 +58,8 @@ TEST(CollisionMass, RoundShapesMatchQuadrature) {
         const MassProperties want = by_quadrature(shape, 800, reach, 80);
         const MassProperties got = mass_properties(shape, 800);
         EXPECT_NEAR(got.mass, want.mass, 2e-3 * want.mass);
-        EXPECT_TRUE(got.inertia.matrix().isApprox(want.inertia.matrix(), 4e-3))
-            << got.inertia.matrix() << "\n\n" << want.inertia.matrix();
+        EXPECT_TRUE(got.inertia.matrix().isApprox(want.inertia.matrix(), 4e-3)) << got.inertia.matrix() << "\n\n"
+                                                                                << want.inertia.matrix();
     }
 }
 
