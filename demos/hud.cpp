@@ -12,10 +12,11 @@ using render::Colour;
 using render::from_srgb;
 
 const Colour kPanel = from_srgb(0x10161F), kWhite = from_srgb(0xFFFFFF), kDim = from_srgb(0xAEBBCB);
-const Colour kTrack = from_srgb(0x33404F), kGood = from_srgb(0x4FC28B), kBusy = from_srgb(0xF3A712), kLate = from_srgb(0xE4572E);
+const Colour kTrack = from_srgb(0x33404F), kGood = from_srgb(0x4FC28B), kBusy = from_srgb(0xF3A712),
+             kLate = from_srgb(0xE4572E);
 constexpr float kPanelAlpha = 0.88f, kRadius = 8, kMargin = 16, kPadding = 16;
-constexpr float kTitle = 15, kText = 10;                 // heights of capitals
-constexpr float kAdvance = 1.02f;                        // width of a character, of its height
+constexpr float kTitle = 15, kText = 10;  // heights of capitals
+constexpr float kAdvance = 1.02f;         // width of a character, of its height
 
 [[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
     char buffer[160];
@@ -36,8 +37,9 @@ std::string newtons(int decade) {
 
 // "12.3 um", in the unit that suits.
 std::string distance_of(double metres) {
-    if (metres < 1e-6) return text_of("%.2g nm", metres * 1e9);
-    if (metres < 1e-4) return text_of("%.2f um", metres * 1e6);
+    if (metres < 1e-8) return text_of("%.2g nm", metres * 1e9);
+    if (metres < 1e-6) return text_of("%.0f nm", metres * 1e9);
+    if (metres < 1e-4) return text_of("%.1f um", metres * 1e6);
     return text_of("%.2f mm", metres * 1e3);
 }
 
@@ -46,7 +48,7 @@ std::string distance_of(double metres) {
 void add_hud(render::DrawList& list, const HudFigures& f) {
     constexpr float kLine = 19;
     float x = kMargin + kPadding, y = kMargin + kPadding;
-    float width = std::max(372.0f, static_cast<float>(f.description.size()) * 8 * kAdvance + 2 * kPadding);
+    float width = std::max(396.0f, static_cast<float>(f.description.size()) * 8 * kAdvance + 2 * kPadding);
     float height = kTitle + 14 + 8 + 16 + 2 * kLine + 16 + (f.has_joints ? 2 : 1) * kLine + 2 * kPadding - 6;
     list.rects.push_back({kMargin, kMargin, width, height, kRadius, kPanel, kPanel, kPanelAlpha});
     auto line = [&](std::string text, float cap, Colour colour, float step) {

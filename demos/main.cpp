@@ -25,7 +25,9 @@ enum ExitCode { kFine = 0, kRunFailed = 1, kBadArguments = 2, kNoEgl = 3 };
 
 using Clock = std::chrono::steady_clock;
 
-double ms_since(Clock::time_point begin) { return std::chrono::duration<double, std::milli>(Clock::now() - begin).count(); }
+double ms_since(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
 
 // Figures over all frames so far.
 struct Figures {
@@ -36,7 +38,11 @@ struct Figures {
 };
 
 void print_log(taut_log_level level, const char* text, void*) {
-    std::fprintf(stderr, "taut %s: %s\n", level == TAUT_LOG_ERROR ? "error" : level == TAUT_LOG_WARNING ? "warning" : "info", text);
+    std::fprintf(stderr, "taut %s: %s\n",
+                 level == TAUT_LOG_ERROR     ? "error"
+                 : level == TAUT_LOG_WARNING ? "warning"
+                                             : "info",
+                 text);
 }
 
 scenes::Scene scene_of(const Options& options) {
@@ -99,7 +105,8 @@ private:
         view_->add_joints(list_, tension);
         if (options_.contacts) view_->add_contacts(list_);
         if (options_.hud) add_figures(frame);
-        if (options_.hud && tension && !scene_.joints.empty()) add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
+        if (options_.hud && tension && !scene_.joints.empty())
+            add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
         const render::Picture& picture = renderer_->draw(list_);
         figures_.draw_sum_ms += ms_since(begin);
         begin = Clock::now();

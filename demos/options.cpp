@@ -38,20 +38,23 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     uint32_t frames = 0, substeps = 0;
     std::string solver;
     bool list = false, no_render = false, no_hud = false, tension = true;
-    CLI::App app{"Runs a scene of Taut and renders it without a window.\n"
-                 "Exit codes: 0 fine, 1 the run failed, 2 bad arguments, 3 no usable EGL device."};
+    CLI::App app{
+        "Runs a scene of Taut and renders it without a window.\n"
+        "Exit codes: 0 fine, 1 the run failed, 2 bad arguments, 3 no usable EGL device."};
     CLI::Option* scene_flag = app.add_option("--scene", options.scene, "scene by name, see --list (default: main)");
     app.add_flag("--list", list, "print all scenes");
-    CLI::Option* frames_flag =
-        app.add_option("--frames", frames, "frames, one step each (default: the scene's)")->check(CLI::Range(1, 1000000));
+    CLI::Option* frames_flag = app.add_option("--frames", frames, "frames, one step each (default: the scene's)")
+                                   ->check(CLI::Range(1, 1000000));
     app.add_option("--out", options.out, "folder for PNG frames (default: out; none with --video alone)");
     app.add_option("--size", size, "picture size, WxH (default: 1280x720)");
     app.add_option("--video", options.video, "film, made by ffmpeg");
     app.add_option("--json", options.json, "also write the figures to this file");
-    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")->check(CLI::Range(1, 256));
+    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")
+        ->check(CLI::Range(1, 256));
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_option("--mesh", options.mesh, "OBJ file of the scene mesh_drop");
-    CLI::Option* substeps_flag = app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
+    CLI::Option* substeps_flag =
+        app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
     CLI::Option* solver_flag =
         app.add_option("--solver", solver, "block_ldlt, projected_gauss_seidel or accelerated_jacobi");
     app.add_flag("--no-render", no_render, "simulate only");
@@ -71,7 +74,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
         return std::nullopt;
     }
     if (!read_size(size, options)) {
-        std::fprintf(stderr, "--size: '%s' is not WxH with even numbers from %d to %d\n", size.c_str(), kLeastSide, kMostSide);
+        std::fprintf(stderr, "--size: '%s' is not WxH with even numbers from %d to %d\n", size.c_str(), kLeastSide,
+                     kMostSide);
         *exit_code = kBadArguments;
         return std::nullopt;
     }

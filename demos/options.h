@@ -21,7 +21,7 @@ struct Options {
     bool render = true;
     bool hud = true;
     bool contacts = false;
-    std::optional<bool> tension;     // else on for scenes with joints
+    std::optional<bool> tension;  // else on for scenes with joints
 };
 
 // Reads the command line. Returns no options when the program is done already (--help, --list, bad arguments),

@@ -35,15 +35,22 @@ Colour pick(const Colour (&colours)[N], size_t index) {
 
 Colour colour_of(Look look, size_t index) {
     switch (look) {
-        case Look::brick: return pick(kBricks, index);
-        case Look::steel: return kSteel;
-        case Look::link: return kLinkGrey;
-        case Look::particle: return kPin;
-        case Look::stone: return kStone;
-        case Look::wall: return kWall;
+        case Look::brick:
+            return pick(kBricks, index);
+        case Look::steel:
+            return kSteel;
+        case Look::link:
+            return kLinkGrey;
+        case Look::particle:
+            return kPin;
+        case Look::stone:
+            return kStone;
+        case Look::wall:
+            return kWall;
         case Look::crate:
         case Look::hidden:
-        case Look::ground: break;
+        case Look::ground:
+            break;
     }
     return pick(kCrates, index);
 }
@@ -92,8 +99,8 @@ TensionScale::TensionScale(const scenes::Scene& scene) {
 }
 
 Colour TensionScale::ramp(float t) {
-    static const Colour stops[] = {from_srgb(0x2447C9), from_srgb(0x2FA4C7), from_srgb(0x7CC46B), from_srgb(0xF5C542),
-                                   from_srgb(0xEE6C2C), from_srgb(0xD01B2E)};
+    static const Colour stops[] = {from_srgb(0x2447C9), from_srgb(0x2FA4C7), from_srgb(0x7CC46B),
+                                   from_srgb(0xF5C542), from_srgb(0xEE6C2C), from_srgb(0xD01B2E)};
     constexpr int kSpans = 5;
     float at = std::clamp(t, 0.0f, 1.0f) * kSpans;
     int span = std::min(static_cast<int>(at), kSpans - 1);
@@ -140,7 +147,9 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
     instance.gloss = body.look == Look::steel ? 0.9f : 0.22f;
     if (body.kind == TAUT_BODY_PARTICLE) {
         float radius = body.look == Look::steel ? kCableWeightRadius : kPointRadius;
-        list.instances.push_back(ball(instance.position, radius, colour, instance.gloss));
+        instance.mesh = body.look == Look::steel ? render::kMeshSphere : render::kMeshDot;
+        instance.scale = {radius, radius, radius};
+        list.instances.push_back(instance);
         return;
     }
     if (body.shape < 0) return;
@@ -148,12 +157,16 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
     instance.mesh = meshes_[static_cast<size_t>(body.shape)];
     float r = shape.radius;
     switch (shape.kind) {
-        case ShapeKind::plane: return;  // the renderer's ground
+        case ShapeKind::plane:
+            return;  // the renderer's ground
         case ShapeKind::box:
             instance.scale = {shape.half_extents.x, shape.half_extents.y, shape.half_extents.z};
             break;
-        case ShapeKind::sphere: instance.scale = {r, r, r}; break;
-        case ShapeKind::hull: break;
+        case ShapeKind::sphere:
+            instance.scale = {r, r, r};
+            break;
+        case ShapeKind::hull:
+            break;
         case ShapeKind::capsule: {
             Vec3 half = rotate(instance.rotation, {0, shape.half_length, 0});
             list.instances.push_back(rod(instance.position - half, instance.position + half, r, colour));
@@ -221,8 +234,8 @@ void SceneView::add_joints(render::DrawList& list, bool tension) const {
 
 void SceneView::add_contacts(render::DrawList& list) {
     uint32_t count = 0;
-    taut_result result = taut_world_get_contacts(world_.world, contacts_.data(),
-                                                 static_cast<uint32_t>(contacts_.size()), &count);
+    taut_result result =
+        taut_world_get_contacts(world_.world, contacts_.data(), static_cast<uint32_t>(contacts_.size()), &count);
     if (result == TAUT_TOO_SMALL) {
         contacts_.resize(count);
         result = taut_world_get_contacts(world_.world, contacts_.data(), count, &count);
@@ -233,6 +246,8 @@ void SceneView::add_contacts(render::DrawList& list) {
         Vec3 at = vec(contact.position), normal = {contact.normal.x, contact.normal.y, contact.normal.z};
         Instance point = ball(at, kContactRadius, kContact, 0);
         Instance needle = rod(at, at + normal * kNormalLength, 0.3f * kContactRadius, kNormal);
+        point.mesh = render::kMeshDot;
+        needle.mesh = render::kMeshBox;
         point.pass = needle.pass = render::Pass::overlay;
         list.instances.push_back(point);
         list.instances.push_back(needle);

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
@@ -34,18 +35,21 @@ std::string find_on_path(const std::string& program) {
 Video::Video(const std::string& path, int width, int height, double frames_per_second) : path_(path) {
     std::string ffmpeg = find_on_path("ffmpeg");
     if (ffmpeg.empty())
-        throw std::runtime_error("--video needs ffmpeg, which is not on PATH (Debian: apt-get install ffmpeg); "
-                                 "--out writes PNG frames without it");
+        throw std::runtime_error(
+            "--video needs ffmpeg, which is not on PATH (Debian: apt-get install ffmpeg); "
+            "--out writes PNG frames without it");
     std::string size = std::to_string(width) + "x" + std::to_string(height);
-    std::string rate = std::to_string(frames_per_second);
-    std::vector<std::string> words = {ffmpeg, "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgb24",
-                                      "-video_size", size, "-framerate", rate, "-i", "-", "-pix_fmt", "yuv420p",
-                                      "-crf", "18", "file:" + path};
+    char rate[32];
+    std::snprintf(rate, sizeof rate, "%.6g", frames_per_second);
+    std::vector<std::string> words = {
+        ffmpeg,       "-loglevel", "error", "-y", "-f",       "rawvideo", "-pixel_format", "rgb24", "-video_size", size,
+        "-framerate", rate,        "-i",    "-",  "-pix_fmt", "yuv420p",  "-crf",          "18",    "file:" + path};
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
+    if (pipe2(ends, O_CLOEXEC) != 0)
+        throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/log.h"
 #include "check/quarantine.h"
 #include "detect/detect.h"
 #include "integrate/integrate.h"
@@ -45,8 +46,8 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         w.profile.predict_us += watch.lap();
         evaluate_rows(system);
         w.profile.assemble_us += watch.lap();
-        Substep substep{system, group, w.partition.blocks, w.nodes,   settings,
-                        report, w.scratch, i + 1 == group.substeps};
+        Substep substep{system,   group,  w.partition.blocks, w.nodes,
+                        settings, report, w.scratch,          i + 1 == group.substeps};
         solver.solve(substep);
         if (substep.last) report.residual = std::max(report.residual, row_residual(system));
         w.profile.sweep_us += watch.lap();
@@ -61,8 +62,10 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         store_velocity(system, group, w.nodes, settings.velocity_filter);
         w.profile.commit_us += watch.lap();
     }
-    if (solver.wide_contacts) store_lanes(system, w.pairs);
-    else store_contact_rows(system, group, w.pairs);
+    if (solver.wide_contacts)
+        store_lanes(system, w.pairs);
+    else
+        store_contact_rows(system, group, w.pairs);
 }
 
 void solve(World& w, Stopwatch& watch) {
@@ -79,7 +82,10 @@ void solve(World& w, Stopwatch& watch) {
         w.profile.substeps = std::max(w.profile.substeps, group.substeps);
     }
     for (uint32_t i = 0; i < w.partition.group_count; ++i) quarantine(w.nodes, w.partition.groups[i].nodes, w.frozen);
+    if (report.failures > 0)
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", report.failures);
     if (!w.frozen.empty()) {
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%zu bodies quarantined: their motion was not finite", w.frozen.size());
         drop_bad_impulses(w.pairs, w.joints);
         ++w.joints.version;  // blocks lose the frozen nodes
     }

@@ -28,7 +28,12 @@ struct Camera {
 };
 
 // Meshes that always exist; add_mesh() returns further ones.
-enum BuiltinMesh : uint32_t { kMeshBox = 0, kMeshSphere = 1, kMeshCylinder = 2, kMeshCone = 3, kBuiltinMeshes = 4 };
+enum BuiltinMesh : uint32_t {
+    kMeshBox,
+    kMeshSphere,
+    kMeshDot,  // a coarse sphere, for thousands of small ones
+    kMeshCylinder,
+};
 
 // How an instance is drawn.
 enum class Pass : uint8_t {
@@ -36,13 +41,13 @@ enum class Pass : uint8_t {
     overlay,  // unlit, pulled towards the viewer so that points inside touching bodies stay visible
 };
 
-// One mesh placed in the world. Unit meshes (box, sphere, cylinder, cone along y) reach from -1 to 1.
+// One mesh placed in the world. Builtin meshes (the cylinder along y) reach from -1 to 1.
 struct Instance {
-    Vec3 position;         // [m]
-    Vec3 scale{1, 1, 1};   // half size along each local axis [m]
+    Vec3 position;        // [m]
+    Vec3 scale{1, 1, 1};  // half size along each local axis [m]
     Quat rotation;
     Colour colour{0.5f, 0.5f, 0.5f};
-    float gloss = 0.25f;   // strength of the highlight, [0, 1]
+    float gloss = 0.25f;  // strength of the highlight, [0, 1]
     uint32_t mesh = kMeshBox;
     Pass pass = Pass::solid;
 };
@@ -64,7 +69,7 @@ struct HudText {
 // The HUD's units: pixels of a 1280x720 picture, enlarged with it, and a little larger in small ones.
 struct HudCanvas {
     HudCanvas(int picture_width, int picture_height)
-        : scale(std::fmax(0.8f, std::fmin(static_cast<float>(picture_width) / 1280.0f,
+        : scale(std::fmax(0.6f, std::fmin(static_cast<float>(picture_width) / 1280.0f,
                                           static_cast<float>(picture_height) / 720.0f))),
           width(static_cast<float>(picture_width) / scale),
           height(static_cast<float>(picture_height) / scale) {}

@@ -4,8 +4,8 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
-#include <cstdio>
 #include <array>
+#include <cstdio>
 
 namespace render {
 
@@ -13,15 +13,24 @@ namespace {
 
 std::string egl_error() {
     switch (EGLint code = eglGetError(); code) {
-        case EGL_SUCCESS: return "no EGL error given";
-        case EGL_NOT_INITIALIZED: return "EGL_NOT_INITIALIZED: no driver could start";
-        case EGL_BAD_ALLOC: return "EGL_BAD_ALLOC";
-        case EGL_BAD_CONFIG: return "EGL_BAD_CONFIG";
-        case EGL_BAD_MATCH: return "EGL_BAD_MATCH";
-        case EGL_BAD_PARAMETER: return "EGL_BAD_PARAMETER: platform not known to the driver";
-        case EGL_BAD_DISPLAY: return "EGL_BAD_DISPLAY";
-        case EGL_BAD_ATTRIBUTE: return "EGL_BAD_ATTRIBUTE";
-        case EGL_BAD_ACCESS: return "EGL_BAD_ACCESS: no permission";
+        case EGL_SUCCESS:
+            return "no EGL error given";
+        case EGL_NOT_INITIALIZED:
+            return "EGL_NOT_INITIALIZED: no driver could start";
+        case EGL_BAD_ALLOC:
+            return "EGL_BAD_ALLOC";
+        case EGL_BAD_CONFIG:
+            return "EGL_BAD_CONFIG";
+        case EGL_BAD_MATCH:
+            return "EGL_BAD_MATCH";
+        case EGL_BAD_PARAMETER:
+            return "EGL_BAD_PARAMETER: platform not known to the driver";
+        case EGL_BAD_DISPLAY:
+            return "EGL_BAD_DISPLAY";
+        case EGL_BAD_ATTRIBUTE:
+            return "EGL_BAD_ATTRIBUTE";
+        case EGL_BAD_ACCESS:
+            return "EGL_BAD_ACCESS: no permission";
         default: {
             std::array<char, 16> text{};
             std::snprintf(text.data(), text.size(), "0x%x", static_cast<unsigned>(code));
@@ -113,10 +122,9 @@ bool EglContext::open(void* display, const std::string& platform) {
     EGLConfig config = nullptr;
     EGLint config_count = 0;
     eglChooseConfig(display, wanted, &config, 1, &config_count);
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,       3,
-                                 EGL_CONTEXT_MINOR_VERSION,       3,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_NONE};
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     EGLContext context =
         eglCreateContext(display, config_count > 0 ? config : EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     if (context == EGL_NO_CONTEXT) return abandon("no OpenGL 3.3 core context (" + egl_error() + ")");

@@ -17,8 +17,8 @@ constexpr std::string_view kStrokes[kGlyphs] = {
     "2626", "4006",
     // digits
     "o1030414536160501", "012026|1636", "~01103041420633|0646", "~01103041423323|~233344453616 05", "36300444",
-    "4000 03|~03123243453616 05", "~312010010516364544331304", "004016",
-    "o1302011030414233|o1304051636454433", "~152636454130100102133342",
+    "4000 03|~03123243453616 05", "~312010010516364544331304", "004016", "o1302011030414233|o1304051636454433",
+    "~152636454130100102133342",
     // : ; < = > ? @
     "2323|2626", "2323|2617", "410345", "0242|0444", "014305", "~0110304142232 4|2626",
     "~3423121324344445|~3424|~44413010010516 36",
@@ -90,7 +90,8 @@ float distance_to_glyph(Point p, const std::vector<std::vector<Point>>& lines) {
     for (const auto& line : lines) {
         // A dot is drawn a little fatter than a stroke.
         if (line.size() == 1) best = std::min(best, distance_to_segment(p, line[0], line[0]) - 0.25f);
-        for (size_t i = 0; i + 1 < line.size(); ++i) best = std::min(best, distance_to_segment(p, line[i], line[i + 1]));
+        for (size_t i = 0; i + 1 < line.size(); ++i)
+            best = std::min(best, distance_to_segment(p, line[i], line[i + 1]));
     }
     return best;
 }
@@ -99,8 +100,8 @@ float distance_to_glyph(Point p, const std::vector<std::vector<Point>>& lines) {
 
 FontImage draw_font(float cap_height) {
     FontImage image;
-    float unit = cap_height / 6.0f;                              // pixels of one grid step
-    float half_stroke = std::max(0.42f * unit, 0.62f);           // [pixels]
+    float unit = cap_height / 6.0f;                     // pixels of one grid step
+    float half_stroke = std::max(0.42f * unit, 0.62f);  // [pixels]
     float margin = std::ceil(half_stroke + 1.0f);
     image.origin_x = image.origin_y = margin;
     image.advance = std::round(5.9f * unit);
@@ -114,7 +115,8 @@ FontImage draw_font(float cap_height) {
         int left = glyph % kGlyphColumns * image.cell_width, top = glyph / kGlyphColumns * image.cell_height;
         for (int y = 0; y < image.cell_height; ++y)
             for (int x = 0; x < image.cell_width; ++x) {
-                Point p = {(static_cast<float>(x) + 0.5f - margin) / unit, (static_cast<float>(y) + 0.5f - margin) / unit};
+                Point p = {(static_cast<float>(x) + 0.5f - margin) / unit,
+                           (static_cast<float>(y) + 0.5f - margin) / unit};
                 float coverage = std::clamp(half_stroke + 0.5f - distance_to_glyph(p, lines) * unit, 0.0f, 1.0f);
                 image.coverage[static_cast<size_t>((top + y) * image.width + left + x)] =
                     static_cast<uint8_t>(std::lround(255.0f * coverage));

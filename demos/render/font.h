@@ -13,9 +13,9 @@ constexpr int kGlyphColumns = 16;
 struct FontImage {
     int cell_width = 0, cell_height = 0;  // [pixels]
     int width = 0, height = 0;
-    float origin_x = 0, origin_y = 0;     // of the glyph's left end and top of capitals inside its cell
-    float advance = 0;                    // from one character to the next
-    std::vector<uint8_t> coverage;        // width * height, top row first
+    float origin_x = 0, origin_y = 0;  // of the glyph's left end and top of capitals inside its cell
+    float advance = 0;                 // from one character to the next
+    std::vector<uint8_t> coverage;     // width * height, top row first
 };
 
 // Capitals are cap_height pixels high.

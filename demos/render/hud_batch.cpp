@@ -40,7 +40,10 @@ HudBatch::HudBatch(int width, int height)
     const struct {
         GLint count;
         size_t offset;
-    } fields[] = {{2, offsetof(Corner, pixel)}, {2, offsetof(Corner, inside)}, {4, offsetof(Corner, tint)}, {4, offsetof(Corner, form)}};
+    } fields[] = {{2, offsetof(Corner, pixel)},
+                  {2, offsetof(Corner, inside)},
+                  {4, offsetof(Corner, tint)},
+                  {4, offsetof(Corner, form)}};
     for (GLuint i = 0; i < 4; ++i) {
         glEnableVertexAttribArray(i);
         glVertexAttribPointer(i, fields[i].count, GL_FLOAT, GL_FALSE, sizeof(Corner),
@@ -93,8 +96,10 @@ void HudBatch::add_text(const HudText& text) {
             float cell[2] = {static_cast<float>(font.cell_width), static_cast<float>(font.cell_height)};
             corners[i].pixel[0] = pen - font.origin_x + u * cell[0];
             corners[i].pixel[1] = top - font.origin_y + v * cell[1];
-            corners[i].inside[0] = (static_cast<float>(glyph % kGlyphColumns) + u) * cell[0] / static_cast<float>(font.width);
-            corners[i].inside[1] = (static_cast<float>(glyph / kGlyphColumns) + v) * cell[1] / static_cast<float>(font.height);
+            corners[i].inside[0] =
+                (static_cast<float>(glyph % kGlyphColumns) + u) * cell[0] / static_cast<float>(font.width);
+            corners[i].inside[1] =
+                (static_cast<float>(glyph / kGlyphColumns) + v) * cell[1] / static_cast<float>(font.height);
             blend(corners[i].tint, text.colour, text.alpha);
             corners[i].form[0] = corners[i].form[1] = corners[i].form[2] = 0, corners[i].form[3] = 1;
         }
@@ -128,7 +133,8 @@ void HudBatch::draw(const DrawList& list) {
     glActiveTexture(GL_TEXTURE0);
     glBindVertexArray(array_);
     glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners_.size() * sizeof(Corner)), corners_.data(), GL_STREAM_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners_.size() * sizeof(Corner)), corners_.data(),
+                 GL_STREAM_DRAW);
     for (size_t i = 0; i + 1 < runs.size(); ++i) {
         if (runs[i].texture) glBindTexture(GL_TEXTURE_2D, runs[i].texture);
         glDrawArrays(GL_TRIANGLES, runs[i].first, runs[i + 1].first - runs[i].first);

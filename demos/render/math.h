@@ -52,7 +52,8 @@ inline Mat4 operator*(const Mat4& a, const Mat4& b) {
 inline Mat4 perspective(float vertical_fov, float aspect, float near, float far) {
     float t = 1.0f / std::tan(0.5f * vertical_fov);
     Mat4 r;
-    r.m = {t / aspect, 0, 0, 0, 0, t, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0};
+    r.m = {t / aspect, 0, 0, 0, 0, t, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far),
+           0};
     return r;
 }
 
@@ -60,8 +61,22 @@ inline Mat4 perspective(float vertical_fov, float aspect, float near, float far)
 inline Mat4 orthographic(Vec3 low, Vec3 high) {
     Vec3 s = {2 / (high.x - low.x), 2 / (high.y - low.y), 2 / (high.z - low.z)};
     Mat4 r;
-    r.m = {s.x, 0, 0, 0, 0, s.y, 0, 0, 0, 0, -s.z, 0,
-           -(high.x + low.x) / (high.x - low.x), -(high.y + low.y) / (high.y - low.y), (high.z + low.z) / (high.z - low.z), 1};
+    r.m = {s.x,
+           0,
+           0,
+           0,
+           0,
+           s.y,
+           0,
+           0,
+           0,
+           0,
+           -s.z,
+           0,
+           -(high.x + low.x) / (high.x - low.x),
+           -(high.y + low.y) / (high.y - low.y),
+           (high.z + low.z) / (high.z - low.z),
+           1};
     return r;
 }
 
@@ -78,8 +93,8 @@ inline ViewAxes view_axes(Vec3 forward) {
 
 inline Mat4 view_matrix(Vec3 eye, const ViewAxes& a) {
     Mat4 r;
-    r.m = {a.right.x, a.up.x, a.back.x, 0, a.right.y, a.up.y, a.back.y, 0, a.right.z, a.up.z, a.back.z, 0,
-           -dot(a.right, eye), -dot(a.up, eye), -dot(a.back, eye), 1};
+    r.m = {a.right.x, a.up.x, a.back.x, 0, a.right.y,          a.up.y,          a.back.y,          0,
+           a.right.z, a.up.z, a.back.z, 0, -dot(a.right, eye), -dot(a.up, eye), -dot(a.back, eye), 1};
     return r;
 }
 

@@ -53,18 +53,6 @@ std::vector<Vertex> cylinder_mesh(int sides) {
     return mesh;
 }
 
-std::vector<Vertex> cone_mesh(int sides) {
-    std::vector<Vertex> mesh;
-    const Vec3 up = {0, 1, 0}, down = {0, -1, 0};
-    for (int i = 0; i < sides; ++i) {
-        Vec3 a = on_circle(i, sides), b = on_circle(i + 1, sides);
-        Vec3 na = normalised(a + up * 0.5f), nb = normalised(b + up * 0.5f);
-        mesh.insert(mesh.end(), {{a + down, na}, {b + down, nb}, {up, normalised(na + nb)}});
-        mesh.insert(mesh.end(), {{down, down}, {b + down, down}, {a + down, down}});
-    }
-    return mesh;
-}
-
 std::vector<Vertex> flat_mesh(const std::vector<Vec3>& points) {
     std::vector<Vertex> mesh;
     for (size_t i = 0; i + 2 < points.size(); i += 3) {

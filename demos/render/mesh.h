@@ -15,7 +15,6 @@ struct Vertex {
 std::vector<Vertex> box_mesh();
 std::vector<Vertex> sphere_mesh(int rings);
 std::vector<Vertex> cylinder_mesh(int sides);
-std::vector<Vertex> cone_mesh(int sides);  // tip at +y
 
 // Flat shaded triangles from points, three a triangle.
 std::vector<Vertex> flat_mesh(const std::vector<Vec3>& points);

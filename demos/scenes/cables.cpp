@@ -9,12 +9,12 @@ namespace {
 
 struct CablePlan {
     int count;
-    double length;       // [m]
-    double point_mass;   // [kg]
-    double end_mass;     // [kg]
+    double length;      // [m]
+    double point_mass;  // [kg]
+    double end_mass;    // [kg]
     taut_pos anchor;
     taut_vec3 direction;
-    float time_step;     // [s]
+    float time_step;  // [s]
 };
 
 Scene cable(const CablePlan& plan, const Options& options) {

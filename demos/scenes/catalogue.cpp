@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "builders.h"
@@ -39,8 +40,9 @@ bool match(const std::string& pattern, const std::string& name, double& n, doubl
 
 void check_range(const std::string& scene, const char* what, double value, double low, double high) {
     if (value >= low && value <= high) return;
-    throw BadScene("scene '" + scene + "': " + what + " must lie between " + std::to_string(low) + " and " +
-                   std::to_string(high));
+    char range[64];
+    std::snprintf(range, sizeof range, "between %g and %g", low, high);
+    throw BadScene("scene '" + scene + "': " + what + " must lie " + range);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace scenes {
 
 namespace {
 
-constexpr double kSize = 0.6;        // largest side of a body [m]
-constexpr double kThinnest = 1e-3;   // of kSize; flatter pieces have no volume
+constexpr double kSize = 0.6;       // largest side of a body [m]
+constexpr double kThinnest = 1e-3;  // of kSize; flatter pieces have no volume
 
 Shape hull_of(const ObjPiece& piece, const std::string& path) {
     Shape shape;
@@ -43,13 +43,15 @@ Scene build_mesh_drop(double, double, const Options& options) {
     add_ground(scene);
     for (int i = 0; i < kSteps; ++i) {
         double half_height = 0.5 * kRise * (kSteps - i);
-        add_static_box(scene, {(i - 0.5 * kSteps) * kRun, half_height, 0}, kRun / 2, half_height, kHalfWidth, Look::stone);
+        add_static_box(scene, {(i - 0.5 * kSteps) * kRun, half_height, 0}, kRun / 2, half_height, kHalfWidth,
+                       Look::stone);
     }
     Random random(1);
     for (int i = 0; i < kBodies; ++i) {
         int column = i % 5, row = i / 5 % 5, layer = i / 25;
-        Body body = crate(hulls[static_cast<size_t>(i) % hulls.size()],
-                          {-0.45 * kSteps * kRun + column * 0.75, kRise * kSteps + 0.8 + layer * 0.75, (row - 2) * 0.85}, 0);
+        Body body =
+            crate(hulls[static_cast<size_t>(i) % hulls.size()],
+                  {-0.45 * kSteps * kRun + column * 0.75, kRise * kSteps + 0.8 + layer * 0.75, (row - 2) * 0.85}, 0);
         taut_vec3 axis = random.direction();
         body.rotation = turn(axis, 3 * random.uniform());
         body.linear_velocity = {1.0f, 0, 0};

@@ -6,7 +6,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -59,11 +61,11 @@ Lines scan_lines(const std::string& path, const std::string& text) {
 
 std::string read_text(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) refuse(path, 0, std::string("cannot be read: ") + std::strerror(errno));
-    std::ostringstream text;
-    text << file.rdbuf();
-    if (!file || !text) refuse(path, 0, "cannot be read (a folder, or a read error)");
-    return text.str();
+    if (!file) refuse(path, 1, std::string("cannot be read: ") + std::strerror(errno));
+    if (std::filesystem::is_directory(path)) refuse(path, 1, "cannot be read: it is a folder");
+    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (file.bad()) refuse(path, 1, "cannot be read: read error");
+    return text;
 }
 
 std::string one_line(std::string text) {
@@ -76,7 +78,7 @@ std::string one_line(std::string text) {
 
 std::vector<ObjPiece> read_obj(const std::string& path) {
     std::string text = read_text(path);
-    if (text.empty()) refuse(path, 0, "the file is empty");
+    if (text.empty()) refuse(path, 1, "the file is empty");
     Lines lines = scan_lines(path, text);
     tinyobj::ObjReader reader;
     tinyobj::ObjReaderConfig config;

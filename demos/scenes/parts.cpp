@@ -138,10 +138,12 @@ void perturb(Scene& scene, uint64_t seed, ChainStart start) {
 void decorate_with_crane(Scene& scene, taut_pos anchor) {
     constexpr double kBack = 3.0, kHalf = 0.16;  // [m]
     double top = anchor.y + 2 * kHalf;
-    scene.decorations.push_back({{anchor.x, anchor.y + kHalf, anchor.z - kBack / 2 + 0.1},
-                                 {static_cast<float>(kHalf), static_cast<float>(kHalf), static_cast<float>(kBack / 2 + 0.2)}});
-    scene.decorations.push_back({{anchor.x, top / 2, anchor.z - kBack},
-                                 {static_cast<float>(1.3 * kHalf), static_cast<float>(top / 2), static_cast<float>(1.3 * kHalf)}});
+    scene.decorations.push_back(
+        {{anchor.x, anchor.y + kHalf, anchor.z - kBack / 2 + 0.1},
+         {static_cast<float>(kHalf), static_cast<float>(kHalf), static_cast<float>(kBack / 2 + 0.2)}});
+    scene.decorations.push_back(
+        {{anchor.x, top / 2, anchor.z - kBack},
+         {static_cast<float>(1.3 * kHalf), static_cast<float>(top / 2), static_cast<float>(1.3 * kHalf)}});
     scene.decorations.push_back({{anchor.x, 0.1, anchor.z - kBack}, {0.7f, 0.1f, 0.7f}});
 }
 

@@ -25,8 +25,8 @@ struct ChainPlan {
     double link_length = 0.5, link_thickness = 0.2;  // [m]
     double link_mass = 1, weight_mass = 1000;        // [kg]
     int weight_shape = -1;
-    double weight_reach = 0.25;                      // from the last joint to the weight's centre [m]
-    double angle = 0;                                // of the chain against the x axis, about z [rad]
+    double weight_reach = 0.25;  // from the last joint to the weight's centre [m]
+    double angle = 0;            // of the chain against the x axis, about z [rad]
 };
 void add_chain(Scene& scene, const ChainPlan& plan);
 

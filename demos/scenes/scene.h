@@ -18,12 +18,12 @@ enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
 
 struct Shape {
     ShapeKind kind = ShapeKind::box;
-    taut_vec3 half_extents{};        // box [m]
-    taut_vec3 normal{0, 1, 0};       // plane
-    float radius = 0;                // sphere, capsule [m]
-    float half_length = 0;           // capsule, along y [m]
-    std::vector<taut_vec3> points;   // hull [m]
-    std::string source;              // where it came from, for messages ("cow.obj:12: group 'horn'")
+    taut_vec3 half_extents{};       // box [m]
+    taut_vec3 normal{0, 1, 0};      // plane
+    float radius = 0;               // sphere, capsule [m]
+    float half_length = 0;          // capsule, along y [m]
+    std::vector<taut_vec3> points;  // hull [m]
+    std::string source;             // where it came from, for messages ("cow.obj:12: group 'horn'")
 };
 
 // How a body looks; physics doesn't read it.
@@ -35,10 +35,10 @@ struct Body {
     taut_pos position{};
     taut_quat rotation{0, 0, 0, 1};
     taut_vec3 linear_velocity{}, angular_velocity{};
-    float mass = 0;          // [kg], 0: from density
-    float density = 1000;    // [kg/m^3]
+    float mass = 0;        // [kg], 0: from density
+    float density = 1000;  // [kg/m^3]
     float friction = 0.5f;
-    int32_t group = 0;       // bodies of the same negative group don't collide
+    int32_t group = 0;  // bodies of the same negative group don't collide
     Look look = Look::crate;
 };
 
@@ -54,8 +54,8 @@ struct Chain {
     std::vector<int> joints, bodies;  // in order; the last body is the weight
     std::vector<double> hang_depth;   // depth of each body's centre below the anchor when all hangs straight [m]
     taut_pos anchor{};
-    double link_length = 0;           // [m]
-    double length = 0;                // from the anchor to the weight's centre, straight [m]
+    double link_length = 0;  // [m]
+    double length = 0;       // from the anchor to the weight's centre, straight [m]
 };
 
 struct Bounds {
@@ -64,11 +64,11 @@ struct Bounds {
 
 // What the figures of taut-bench and the tests are taken from.
 struct Roles {
-    std::vector<int> pile;          // bodies whose overlap and rest are measured
-    int top_body = -1;              // of a stack
+    std::vector<int> pile;  // bodies whose overlap and rest are measured
+    int top_body = -1;      // of a stack
     std::optional<Chain> chain;
-    std::optional<Bounds> bin;      // centres outside count as escaped
-    bool swings = false;            // the chain swings freely: measure its period
+    std::optional<Bounds> bin;  // centres outside count as escaped
+    bool swings = false;        // the chain swings freely: measure its period
 };
 
 struct Camera {

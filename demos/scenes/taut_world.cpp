@@ -31,7 +31,8 @@ taut_result add_shape(taut_world world, const Shape& shape, taut_shape* out) {
             def.half_length = shape.half_length;
             return taut_world_add_capsule(world, &def, out);
         }
-        case ShapeKind::hull: break;
+        case ShapeKind::hull:
+            break;
     }
     taut_hull_def def;
     taut_hull_def_init(&def);

@@ -77,7 +77,7 @@ typedef enum taut_log_level {
     TAUT_LOG_LEVEL_MAX = 0x7fffffff
 } taut_log_level;
 
-/** Receives a log line (UTF-8, no newline). Called on the thread that called the API. */
+/** Receives a log line (UTF-8, no newline), on the thread that called the API: what a step could not do as asked. */
 typedef void (*taut_log_fn)(taut_log_level level, const char *text, void *user_data);
 
 /** Allocates size bytes at alignment (a power of two, at most 64). Null means out of memory. */

@@ -1,5 +1,7 @@
 #include "base/math.h"
 
+#include <cmath>
+
 namespace taut {
 
 double sinc(double x) {
@@ -24,6 +26,7 @@ Quat rotation_from_vector(const Vec3& theta) {
         const double k = 0.5 * sinc(half);
         return Quat(cosine(half), k * theta.x(), k * theta.y(), k * theta.z());
     }
+    if (!std::isfinite(half)) return Quat(half, half, half, half);  // for quarantine to find
     const Quat q = rotation_from_vector(0.5 * theta);
     return q * q;
 }

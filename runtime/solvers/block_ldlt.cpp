@@ -5,23 +5,19 @@
 //
 // K is formed from the force lambda of the last substep. Where a force grew by more than 30 % the block is solved
 // once more with K(old) + K(new), which is never too soft; a block's first substep is solved twice, with K(new).
-// Guard: a block whose internal energy grows by more than forces explain loses s (plain implicit damping) and is
-// solved twice for a while; tripping twice within that time asks for more substeps.
-#include <Eigen/LU>
+// A block that gains energy is solved without s and twice for a while: see energy_guard.cpp.
 #include <algorithm>
 
 #include "base/clock.h"
+#include "solvers/energy_guard.h"
 #include "solvers/projected_gauss_seidel.h"
 
 namespace taut {
 namespace {
 
-constexpr double kGrowth = 1.3;         // of a force, above which K is formed again
-constexpr double kNegligible = 1e-3;    // of the block's largest force: smaller ones do not count
+constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
+constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
 constexpr double kLoopCompliance = 1e-9;  // of a row's own effective inverse mass: makes redundant loops solvable
-constexpr uint32_t kGuardSubsteps = 60;
-constexpr uint32_t kGuardWarmup = 3;
-constexpr double kGuardMassRatio = 10;
 
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
 // exceeds this part of the lever, positions (not velocities) are projected once more on the same factor. Heavy loads
@@ -63,9 +59,6 @@ private:
     void right_hand_side();
     void take_solution();
     bool force_grew() const;
-    void guard();
-    double internal_energy(double kinetic) const;
-    double kinetic(const Array<Velocity>& u) const;
 
     double* node_known(uint32_t i) { return &b_.known[i * kLd]; }
     double* joint_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
@@ -95,11 +88,11 @@ void BlockSolve::analyse() {
             }
         }
     }
-    matrix.analyse();
-    b_.looped = looped();
     b_.solution.resize((nodes_ + joints()) * kLd);
     b_.known.resize(nodes_ * kLd);
     b_.force.resize(joints() * kMaxRows);
+    matrix.analyse();
+    b_.looped = looped();
 }
 
 // More joints than a tree on the nodes (and the ground, where something is held) can have.
@@ -238,7 +231,8 @@ bool BlockSolve::force_grew() const {
     };
     for (uint32_t j = 0; j < joints(); ++j) largest = std::max(largest, squared(joint_force(j), row(j).type->rows));
     for (uint32_t j = 0; j < joints(); ++j) {
-        const double now = squared(joint_force(j), row(j).type->rows), before = squared(row(j).force, row(j).type->rows);
+        const double now = squared(joint_force(j), row(j).type->rows),
+                     before = squared(row(j).force, row(j).type->rows);
         if (now > kGrowth * kGrowth * before && now > kNegligible * kNegligible * largest) return true;
     }
     return false;
@@ -272,75 +266,8 @@ void BlockSolve::finish() {
             row(j).force[r] = f;
             sys_.rows.impulse[row(j).row + r] = sys_.h * f;
         }
-    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) guard();
+    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) guard_energy(s_, b_);
     ++b_.memory.solved;
-}
-
-double BlockSolve::kinetic(const Array<Velocity>& u) const {
-    double sum = 0;
-    for (uint32_t node : b_.nodes) {
-        const Velocity& v = u[node + 1];
-        sum += 0.5 * s_.nodes.mass[node].mass * v.v.squaredNorm();
-        if (s_.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * v.w.dot(sys_.inertia[node + 1] * v.w);
-    }
-    return sum;
-}
-
-// Kinetic energy beyond that of the rigid motion with the block's linear and angular momentum: the projection of
-// its velocities on rigid motions, orthogonal in the mass metric.
-double BlockSolve::internal_energy(double kinetic) const {
-    double mass = 0;
-    Vec3 centre = Vec3::Zero(), momentum = Vec3::Zero();
-    for (uint32_t node : b_.nodes) {
-        const double m = s_.nodes.mass[node].mass;
-        mass += m;
-        centre += m * sys_.pose[node + 1].x;
-        momentum += m * sys_.exact[node + 1].v;
-    }
-    centre /= mass;
-    const Vec3 drift = momentum / mass;
-    Mat3 inertia = Mat3::Zero();
-    Vec3 spin = Vec3::Zero();
-    for (uint32_t node : b_.nodes) {
-        const double m = s_.nodes.mass[node].mass;
-        const Vec3 d = sys_.pose[node + 1].x - centre;
-        const Velocity& u = sys_.exact[node + 1];
-        inertia += m * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
-        spin += m * d.cross(u.v - drift);
-        if (s_.nodes.info[node].kind != NodeKind::dynamic) continue;
-        inertia += sys_.inertia[node + 1];
-        spin += sys_.inertia[node + 1] * u.w;
-    }
-    inertia.diagonal().array() += 1e-12 * inertia.trace() + 1e-300;
-    const Vec3 w = inertia.inverse() * spin;
-    return std::max(0.0, kinetic - 0.5 * mass * drift.squaredNorm() - 0.5 * w.dot(inertia * w));
-}
-
-void BlockSolve::guard() {
-    BlockMemory& memory = b_.memory;
-    if (memory.guard_left > 0) --memory.guard_left;
-    if (memory.since_trip < 1u << 30) ++memory.since_trip;
-    if (b_.mass_ratio < kGuardMassRatio || memory.solved < kGuardWarmup) return;
-
-    const double before = kinetic(sys_.start), after = kinetic(sys_.exact);
-    double work = 0, mass = 0;  // of everything that is not a joint: forces, gyroscopic torque, contacts
-    for (uint32_t node : b_.nodes) {
-        const double m = s_.nodes.mass[node].mass;
-        const Velocity &v0 = sys_.start[node + 1], &free = sys_.free[node + 1], &v1 = sys_.exact[node + 1];
-        mass += m;
-        work += 0.5 * m * (free.v - v0.v).dot(v0.v + v1.v);
-        if (s_.nodes.info[node].kind == NodeKind::dynamic)
-            work += 0.5 * (sys_.inertia[node + 1] * (free.w - v0.w)).dot(v0.w + v1.w);
-    }
-    const double h = sys_.h;
-    memory.excess_energy = std::max(0.0, 0.9 * memory.excess_energy + after - before - work);
-    const double scale = before + std::abs(work) + 0.5 * mass * s_.settings.gravity_squared * h * h;
-    const double tolerance = 0.05 * internal_energy(after) + 1e-4 * (240 * h) * (240 * h) * scale;
-    if (!(memory.excess_energy > tolerance)) return;
-    ++s_.report.guard_trips;
-    if (memory.since_trip < kGuardSubsteps) memory.escalated = true;
-    memory.since_trip = 0;
-    memory.guard_left = kGuardSubsteps;
 }
 
 // The velocity that the sweeps left on a node of a block, relative to the one they were given: contact impulses.

@@ -8,11 +8,11 @@ uint32_t Nodes::add() {
     // Grow everything first: the part below cannot fail.
     if (info.capacity() < slots) {
         const size_t room = 2 * slots + 14;
-        info.reserve(room);
         motion.reserve(room);
         mass.reserve(room);
         load.reserve(room);
         before.reserve(room);
+        info.reserve(room);
     }
     const uint32_t node = ids.create();
     if (node == info.size()) {

@@ -244,6 +244,31 @@ TEST_F(Bodies, ForcesLastOneStep) {
     EXPECT_NEAR(velocity_of(pushed).linear.x, 60.0 / 60 / 6, 1e-5);
 }
 
+// Accepted, however absurd: the body ends at a finite place, in quarantine if need be, and the rest goes on.
+TEST_F(Bodies, SurviveTheLargestForces) {
+    for (float size : {1e8f, 1e16f, 1e24f}) {
+        Populated q;
+        taut_body_def def = body_def(TAUT_BODY_DYNAMIC, q.box, 30, 30, 0);
+        def.mass = 1e-6f;
+        def.inertia = {1e-20f, 2e-20f, 2.5e-20f, 0, 0, 0};
+        const taut_body light = add_body(q.world, def);
+        for (int i = 0; i < 10; ++i) {
+            for (taut_body body : {q.crate, q.wedge, light}) {
+                taut_body_kind kind;
+                ASSERT_OK(taut_body_get_kind(body, &kind));
+                if (kind != TAUT_BODY_DYNAMIC) continue;
+                ASSERT_OK(taut_body_apply_force(body, {size, -size, size}, {size, size, -size}));
+            }
+            ASSERT_OK(taut_world_step(q.world));
+            for (taut_body body : {q.crate, q.wedge, q.bob, light}) {
+                const taut_pose pose = pose_of(body);
+                ASSERT_TRUE(std::isfinite(pose.position.x + pose.position.y + pose.position.z)) << size;
+                ASSERT_TRUE(std::isfinite(pose.rotation.w)) << size;
+            }
+        }
+    }
+}
+
 TEST_F(Bodies, KinematicReachesItsTargetInOneStep) {
     const float half = 0.75f;  // [rad], half the turn
     const taut_pose target = at(5.2, 3.1, -0.3, {0, std::sin(half), 0, std::cos(half)});

@@ -23,11 +23,16 @@ btVector3 vec(taut_pos p) {
 // Boxes keep their true size: btBoxShape takes its margin off the inside.
 std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
     switch (shape.kind) {
-        case scenes::ShapeKind::plane: return std::make_unique<btStaticPlaneShape>(vec(shape.normal), 0);
-        case scenes::ShapeKind::box: return std::make_unique<btBoxShape>(vec(shape.half_extents));
-        case scenes::ShapeKind::sphere: return std::make_unique<btSphereShape>(shape.radius);
-        case scenes::ShapeKind::capsule: return std::make_unique<btCapsuleShape>(shape.radius, 2 * shape.half_length);
-        case scenes::ShapeKind::hull: break;
+        case scenes::ShapeKind::plane:
+            return std::make_unique<btStaticPlaneShape>(vec(shape.normal), 0);
+        case scenes::ShapeKind::box:
+            return std::make_unique<btBoxShape>(vec(shape.half_extents));
+        case scenes::ShapeKind::sphere:
+            return std::make_unique<btSphereShape>(shape.radius);
+        case scenes::ShapeKind::capsule:
+            return std::make_unique<btCapsuleShape>(shape.radius, 2 * shape.half_length);
+        case scenes::ShapeKind::hull:
+            break;
     }
     throw scenes::BadScene("--engine bullet does not run scenes with hulls: Bullet's margin would change their size");
 }
@@ -38,7 +43,9 @@ double volume_of(const scenes::Shape& shape) {
         return 8.0 * static_cast<double>(shape.half_extents.x) * static_cast<double>(shape.half_extents.y) *
                static_cast<double>(shape.half_extents.z);
     double ball = 4.0 / 3.0 * SIMD_PI * r * r * r;
-    return shape.kind == scenes::ShapeKind::sphere ? ball : ball + 2 * SIMD_PI * r * r * static_cast<double>(shape.half_length);
+    return shape.kind == scenes::ShapeKind::sphere
+               ? ball
+               : ball + 2 * SIMD_PI * r * r * static_cast<double>(shape.half_length);
 }
 
 class BulletEngine : public Engine {
@@ -67,7 +74,8 @@ public:
     Motion motion(size_t body) const override {
         const btTransform& t = bodies_[body]->getWorldTransform();
         btQuaternion q = t.getRotation();
-        const btVector3 &p = t.getOrigin(), &v = bodies_[body]->getLinearVelocity(), &w = bodies_[body]->getAngularVelocity();
+        const btVector3 &p = t.getOrigin(), &v = bodies_[body]->getLinearVelocity(),
+                        &w = bodies_[body]->getAngularVelocity();
         return {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
     }
 
@@ -81,10 +89,19 @@ public:
         uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over poses and velocities
         for (size_t i = 0; i < bodies_.size(); ++i) {
             Motion m = motion(i);
-            std::array<float, 13> values = {static_cast<float>(m.position.x), static_cast<float>(m.position.y),
-                                            static_cast<float>(m.position.z), m.rotation.x, m.rotation.y, m.rotation.z,
-                                            m.rotation.w, m.linear_velocity.x, m.linear_velocity.y, m.linear_velocity.z,
-                                            m.angular_velocity.x, m.angular_velocity.y, m.angular_velocity.z};
+            std::array<float, 13> values = {static_cast<float>(m.position.x),
+                                            static_cast<float>(m.position.y),
+                                            static_cast<float>(m.position.z),
+                                            m.rotation.x,
+                                            m.rotation.y,
+                                            m.rotation.z,
+                                            m.rotation.w,
+                                            m.linear_velocity.x,
+                                            m.linear_velocity.y,
+                                            m.linear_velocity.z,
+                                            m.angular_velocity.x,
+                                            m.angular_velocity.y,
+                                            m.angular_velocity.z};
             std::array<unsigned char, sizeof values> bytes;
             std::memcpy(bytes.data(), values.data(), bytes.size());
             for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
@@ -95,7 +112,8 @@ public:
 private:
     void add(const scenes::Scene& scene, const scenes::Body& body) {
         if (body.kind == TAUT_BODY_PARTICLE)
-            throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' needs particles and rods, which Bullet lacks");
+            throw scenes::BadScene("--engine bullet: scene '" + scene.name +
+                                   "' needs particles and rods, which Bullet lacks");
         btCollisionShape* shape = shapes_[static_cast<size_t>(body.shape)].get();
         btScalar mass = 0;
         btVector3 inertia(0, 0, 0);

@@ -29,7 +29,8 @@ struct Options {
 void print_scenes() {
     for (const scenes::Family& family : scenes::families())
         if (!family.needs_mesh)
-            std::printf("%-22s %4u steps  %s (as in %s)\n", family.pattern, family.steps, family.description, family.example);
+            std::printf("%-22s %4u steps  %s (as in %s)\n", family.pattern, family.steps, family.description,
+                        family.example);
 }
 
 std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
@@ -37,14 +38,17 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     uint32_t steps = 0, substeps = 0;
     std::string solver;
     bool list = false, no_stiffness = false;
-    CLI::App app{"Runs a scene without pictures and prints its figures as one JSON object on one line.\n"
-                 "Exit codes: 0 fine, 1 the run failed, 2 bad arguments."};
+    CLI::App app{
+        "Runs a scene without pictures and prints its figures as one JSON object on one line.\n"
+        "Exit codes: 0 fine, 1 the run failed, 2 bad arguments."};
     app.add_option("--scene", options.scene, "scene by name, see --list");
     CLI::Option* steps_flag =
         app.add_option("--steps", steps, "steps (default: the scene's)")->check(CLI::Range(1, 10000000));
-    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")->check(CLI::Range(1, 256));
+    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")
+        ->check(CLI::Range(1, 256));
     app.add_option("--engine", options.engine, "taut, or bullet in builds with TAUT_BENCH_PEERS");
-    CLI::Option* substeps_flag = app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
+    CLI::Option* substeps_flag =
+        app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
     CLI::Option* solver_flag =
         app.add_option("--solver", solver, "block_ldlt, projected_gauss_seidel or accelerated_jacobi");
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
@@ -72,7 +76,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
 
 std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene& scene) {
     if (options.engine == "taut") return make_taut_engine(scene);
-    if (options.engine != "bullet") throw scenes::BadScene("--engine: '" + options.engine + "' is neither taut nor bullet");
+    if (options.engine != "bullet")
+        throw scenes::BadScene("--engine: '" + options.engine + "' is neither taut nor bullet");
 #ifdef TAUT_BENCH_PEERS
     if (options.solver) throw scenes::BadScene("--solver is for taut only");
     return make_bullet_engine(scene, options.substeps.value_or(1));

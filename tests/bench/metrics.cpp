@@ -11,11 +11,11 @@ namespace bench {
 
 namespace {
 
-constexpr double kFallBelow = -0.5;            // a centre this far below the ground has escaped [m]
-constexpr double kStandingDrop = 0.25;         // a top body that sank or moved further no longer stands [m]
-constexpr double kBlownGap = 0.25;             // of a link
-constexpr double kBlownEnergy = 0.02;          // rise over the start
-constexpr double kLeastFall = 0.01;            // of m g L: a start with less hangs already
+constexpr double kFallBelow = -0.5;     // a centre this far below the ground has escaped [m]
+constexpr double kStandingDrop = 0.25;  // a top body that sank or moved further no longer stands [m]
+constexpr double kBlownGap = 0.25;      // of a link
+constexpr double kBlownEnergy = 0.02;   // rise over the start
+constexpr double kLeastFall = 0.01;     // of m g L: a start with less hangs already
 
 bool is_finite(const Motion& m) {
     for (double v : {m.position.x, m.position.y, m.position.z})
@@ -92,7 +92,8 @@ Metrics::Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t step
     for (size_t i = 0; i < chain.bodies.size(); ++i)
         hang_height_[static_cast<size_t>(chain.bodies[i])] = chain.anchor.y - chain.hang_depth[i];
     energy_start_ = energy_most_ = energy_last_ = energy_above_hanging();
-    double fall = masses_[static_cast<size_t>(chain.bodies.back())].mass * -static_cast<double>(scene.world.gravity.y) * chain.length;
+    double fall = masses_[static_cast<size_t>(chain.bodies.back())].mass * -static_cast<double>(scene.world.gravity.y) *
+                  chain.length;
     energy_unit_ = energy_start_ > kLeastFall * fall ? energy_start_ : fall;
     side_ = motions_[static_cast<size_t>(chain.bodies.back())].position.x - chain.anchor.x;
 }
@@ -115,7 +116,8 @@ double Metrics::energy_above_hanging() const {
 }
 
 double Metrics::joint_gap(const scenes::Joint& joint) const {
-    double distance = length(place(motions_, joint.body_b, joint.anchor_b) - place(motions_, joint.body_a, joint.anchor_a));
+    double distance =
+        length(place(motions_, joint.body_b, joint.anchor_b) - place(motions_, joint.body_a, joint.anchor_a));
     return joint.kind == TAUT_JOINT_DISTANCE ? std::fabs(distance - static_cast<double>(joint.length)) : distance;
 }
 
@@ -127,7 +129,8 @@ void Metrics::follow_chain(uint32_t step) {
     double gap = 0, growth = 0, total = 0;
     for (int index : chain.joints) {
         const scenes::Joint& joint = scene_.joints[static_cast<size_t>(index)];
-        double distance = length(place(motions_, joint.body_b, joint.anchor_b) - place(motions_, joint.body_a, joint.anchor_a));
+        double distance =
+            length(place(motions_, joint.body_b, joint.anchor_b) - place(motions_, joint.body_a, joint.anchor_a));
         gap = std::max(gap, joint_gap(joint));
         growth += distance - static_cast<double>(joint.length);
         total += chain.link_length;

@@ -28,17 +28,21 @@ double half_width(const Vec& half, const std::array<Vec, 3>& axes, Vec direction
 double reach(const Placed& p, Vec direction) {
     const Shape& shape = *p.shape;
     switch (shape.kind) {
-        case ShapeKind::box: return half_width(of(shape.half_extents), axes_of(p), direction);
-        case ShapeKind::sphere: return shape.radius;
+        case ShapeKind::box:
+            return half_width(of(shape.half_extents), axes_of(p), direction);
+        case ShapeKind::sphere:
+            return shape.radius;
         case ShapeKind::capsule:
             return static_cast<double>(shape.radius) +
                    static_cast<double>(shape.half_length) * std::fabs(dot(rotate(p.rotation, {0, 1, 0}), direction));
         case ShapeKind::hull: {
             double most = -std::numeric_limits<double>::infinity();
-            for (const taut_vec3& point : shape.points) most = std::max(most, dot(rotate(p.rotation, of(point)), direction));
+            for (const taut_vec3& point : shape.points)
+                most = std::max(most, dot(rotate(p.rotation, of(point)), direction));
             return most;
         }
-        case ShapeKind::plane: break;
+        case ShapeKind::plane:
+            break;
     }
     throw std::invalid_argument("two planes have no overlap depth");
 }
@@ -67,10 +71,12 @@ double box_sphere_depth(const Placed& box, const Placed& sphere) {
 double box_depth(const Placed& a, const Placed& b) {
     constexpr double kParallel = 1e-6;  // edges whose cross product is shorter give no direction of their own
     std::array<Vec, 3> axes_a = axes_of(a), axes_b = axes_of(b);
-    Vec half_a = of(a.shape->half_extents), half_b = of(b.shape->half_extents), offset = of(b.position) - of(a.position);
+    Vec half_a = of(a.shape->half_extents), half_b = of(b.shape->half_extents),
+        offset = of(b.position) - of(a.position);
     double least = std::numeric_limits<double>::infinity();
     auto try_axis = [&](Vec axis) {
-        least = std::min(least, half_width(half_a, axes_a, axis) + half_width(half_b, axes_b, axis) - std::fabs(dot(axis, offset)));
+        least = std::min(
+            least, half_width(half_a, axes_a, axis) + half_width(half_b, axes_b, axis) - std::fabs(dot(axis, offset)));
     };
     for (const Vec& axis : axes_a) try_axis(axis);
     for (const Vec& axis : axes_b) try_axis(axis);
@@ -98,11 +104,16 @@ double overlap_depth(const Placed& a, const Placed& b) {
 
 double bounding_radius(const Shape& shape) {
     switch (shape.kind) {
-        case ShapeKind::plane: return std::numeric_limits<double>::infinity();
-        case ShapeKind::box: return length(of(shape.half_extents));
-        case ShapeKind::sphere: return shape.radius;
-        case ShapeKind::capsule: return static_cast<double>(shape.radius) + static_cast<double>(shape.half_length);
-        case ShapeKind::hull: break;
+        case ShapeKind::plane:
+            return std::numeric_limits<double>::infinity();
+        case ShapeKind::box:
+            return length(of(shape.half_extents));
+        case ShapeKind::sphere:
+            return shape.radius;
+        case ShapeKind::capsule:
+            return static_cast<double>(shape.radius) + static_cast<double>(shape.half_length);
+        case ShapeKind::hull:
+            break;
     }
     double most = 0;
     for (const taut_vec3& point : shape.points) most = std::max(most, length(of(point)));

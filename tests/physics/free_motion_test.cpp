@@ -1,6 +1,4 @@
 // Bodies that nothing touches: parabola, tumbling, and chains in free space.
-#include <random>
-
 #include "physics/lab.h"
 
 namespace {
@@ -13,6 +11,8 @@ struct Throw {
     uint32_t substeps;
     double gravity_scale;
 };
+
+void PrintTo(const Throw& t, std::ostream* out) { *out << t.name; }
 
 class Projectile : public testing::TestWithParam<Throw> {};
 
@@ -47,6 +47,8 @@ struct Tumble {
     Vec axis;  // body axes
 };
 
+void PrintTo(const Tumble& t, std::ostream* out) { *out << t.name; }
+
 class FreeSpin : public testing::TestWithParam<Tumble> {};
 
 TEST_P(FreeSpin, KeepsMomentaAndEnergy) {
@@ -56,18 +58,19 @@ TEST_P(FreeSpin, KeepsMomentaAndEnergy) {
     const taut_body body = world.add({.shape = world.box({0.5, 0.3, 0.1}), .position = x0, .rotation = turn,
                                       .velocity = v0, .spin = turn.rotate(GetParam().axis), .mass = 7});
     const Totals start = totals({body});
+    auto energy = [](const Totals& t) { return t.kinetic - dot(t.momentum, t.momentum) / (2 * t.mass); };  // of the spin
     double worst_l = 0, worst_e = 0;
     for (int frame = 1; frame <= 600; ++frame) {
         world.step();
         const Totals now = totals({body});
         worst_l = std::max(worst_l, norm(now.spin - start.spin) / norm(start.spin));
-        worst_e = std::max(worst_e, std::abs(now.kinetic / start.kinetic - 1));
+        worst_e = std::max(worst_e, std::abs(energy(now) / energy(start) - 1));
         ASSERT_LT(norm(now.momentum - start.momentum), 1e-6 * norm(start.momentum));
         ASSERT_LT(norm(now.centre - x0 - frame * world.frame() * v0), 1e-9);
     }
     const Totals end = totals({body});
     EXPECT_NEAR(norm(end.spin) / norm(start.spin), 1, 0.005);
-    EXPECT_NEAR(end.kinetic / start.kinetic, 1, 0.02);
+    EXPECT_NEAR(energy(end) / energy(start), 1, 0.02);
     RecordProperty("momentum_vector_error", std::to_string(worst_l));
     RecordProperty("energy_error", std::to_string(worst_e));
 }
@@ -99,6 +102,8 @@ struct FreeChain {
     bool sphere, tumbles;
     double last_mass;
 };
+
+void PrintTo(const FreeChain& c, std::ostream* out) { *out << c.name; }
 
 class ChainInSpace : public testing::TestWithParam<FreeChain> {};
 
@@ -137,7 +142,7 @@ TEST_P(ChainInSpace, KeepsMomentaAndEnergyForTenSeconds) {
     const Totals end = totals(links);
     EXPECT_NEAR(norm(end.spin) / norm(start.spin), 1, 0.005);
     EXPECT_NEAR(end.kinetic / start.kinetic, 1, 0.02);
-    EXPECT_LT(norm(end.centre - start.centre - 600 * world.frame() * speed), 2e-6) << "linear momentum";
+    EXPECT_LT(norm(end.centre - start.centre - 600 * world.frame() * speed), 1e-9) << "linear momentum";
     RecordProperty("spin_ratio", std::to_string(norm(end.spin) / norm(start.spin)));
     RecordProperty("energy_ratio", std::to_string(end.kinetic / start.kinetic));
     RecordProperty("centre_moved", std::to_string(1e12 * norm(end.centre - start.centre - 600 * world.frame() * speed)));

@@ -14,8 +14,8 @@ struct ChainBody {
 
 class ReferenceChain {
 public:
-    ReferenceChain(const std::vector<ChainBody>& bodies, double gravity, double angle)
-        : n_(bodies.size()), bodies_(bodies), a_(n_ * n_), c_(n_), angle(n_, angle), rate(n_, 0.0) {
+    ReferenceChain(const std::vector<ChainBody>& bodies, double gravity, double start)
+        : n_(bodies.size()), bodies_(bodies), a_(n_ * n_), c_(n_), angle(n_, start), rate(n_, 0.0) {
         std::vector<double> below(n_, 0.0);  // mass beyond the body's far hinge
         for (size_t i = n_ - 1; i-- > 0;) below[i] = below[i + 1] + bodies[i + 1].mass;
         for (size_t i = 0; i < n_; ++i) {

@@ -210,8 +210,8 @@ TEST_P(CollisionPairs, CacheMissesNothingAlongAPath) {
     Random random(seed() + 5000);
     for (int run = 0; run < 40; ++run) {
         Scene s = random_scene(GetParam(), random);
-        const Vec3 push = 0.01 * random.unit();
-        const Vec3 turn = 0.02 * random.unit();
+        const Vec3 push = random.uniform(0.0005, 0.01) * random.unit();
+        const Vec3 turn = random.uniform(0.0005, 0.02) * random.unit();
         PairCache cache;
         s.at_b.position -= 10 * push;
         for (int step = 0; step < 20; ++step) {

@@ -1,0 +1,87 @@
+// Each substep, with W the work of all that is not a joint (forces, contacts, gyroscopic torque):
+//   W = sum m (free - v).(v + v+)/2,   account = max(0, 0.9 account + KE+ - KE - W)
+//   trips if account > 0.05 KE_internal + 1e-4 (240 h)^2 (KE + |W| + M g^2 h^2 / 2)
+// The total energy would be blind at high mass ratios: 1 % of a heavy weight's is 100 m/s on a light link.
+#include "solvers/energy_guard.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kGuardSubsteps = 60;  // how long a trip lasts
+constexpr uint32_t kWarmup = 3;          // substeps of a new block: its forces are still settling
+constexpr double kLeastMassRatio = 10;   // below, the plain scheme does not gain energy
+
+double kinetic_energy(const Substep& s, const Block& block, const Array<Velocity>& velocity) {
+    double sum = 0;
+    for (uint32_t node : block.nodes) {
+        const Velocity& u = velocity[node + 1];
+        sum += 0.5 * s.nodes.mass[node].mass * u.v.squaredNorm();
+        if (s.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * u.w.dot(s.system.inertia[node + 1] * u.w);
+    }
+    return sum;
+}
+
+// Kinetic energy beyond that of the rigid motion with the block's linear and angular momentum: the projection of
+// its velocities on rigid motions, orthogonal in the mass metric.
+double internal_energy(const Substep& s, const Block& block, double kinetic) {
+    double mass = 0;
+    Vec3 centre = Vec3::Zero(), momentum = Vec3::Zero();
+    for (uint32_t node : block.nodes) {
+        const double m = s.nodes.mass[node].mass;
+        mass += m;
+        centre += m * s.system.pose[node + 1].x;
+        momentum += m * s.system.exact[node + 1].v;
+    }
+    centre /= mass;
+    const Vec3 drift = momentum / mass;
+    Mat3 inertia = Mat3::Zero();
+    Vec3 spin = Vec3::Zero();
+    for (uint32_t node : block.nodes) {
+        const double m = s.nodes.mass[node].mass;
+        const Vec3 d = s.system.pose[node + 1].x - centre;
+        const Velocity& u = s.system.exact[node + 1];
+        inertia += m * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+        spin += m * d.cross(u.v - drift);
+        if (s.nodes.info[node].kind != NodeKind::dynamic) continue;
+        inertia += s.system.inertia[node + 1];
+        spin += s.system.inertia[node + 1] * u.w;
+    }
+    inertia.diagonal().array() += 1e-12 * inertia.trace() + 1e-300;
+    const Vec3 w = inertia.inverse() * spin;
+    return std::max(0.0, kinetic - 0.5 * mass * drift.squaredNorm() - 0.5 * w.dot(inertia * w));
+}
+
+}  // namespace
+
+void guard_energy(Substep& s, Block& block) {
+    BlockMemory& memory = block.memory;
+    if (memory.guard_left > 0) --memory.guard_left;
+    if (memory.since_trip < 1u << 30) ++memory.since_trip;
+    if (block.mass_ratio < kLeastMassRatio || memory.solved < kWarmup) return;
+
+    const double before = kinetic_energy(s, block, s.system.start), after = kinetic_energy(s, block, s.system.exact);
+    double work = 0, mass = 0;  // of everything that is not a joint: forces, gyroscopic torque, contacts
+    for (uint32_t node : block.nodes) {
+        const double m = s.nodes.mass[node].mass;
+        const Velocity &v0 = s.system.start[node + 1], &free = s.system.free[node + 1], &v1 = s.system.exact[node + 1];
+        mass += m;
+        work += 0.5 * m * (free.v - v0.v).dot(v0.v + v1.v);
+        if (s.nodes.info[node].kind == NodeKind::dynamic)
+            work += 0.5 * (s.system.inertia[node + 1] * (free.w - v0.w)).dot(v0.w + v1.w);
+    }
+    const double h = s.system.h;
+    memory.excess_energy = std::max(0.0, 0.9 * memory.excess_energy + after - before - work);
+    const double scale = before + std::abs(work) + 0.5 * mass * s.settings.gravity_squared * h * h;
+    const double tolerance = 0.05 * internal_energy(s, block, after) + 1e-4 * (240 * h) * (240 * h) * scale;
+    if (!(memory.excess_energy > tolerance)) return;
+    ++s.report.guard_trips;
+    if (memory.since_trip < kGuardSubsteps) memory.escalated = true;
+    memory.since_trip = 0;
+    memory.guard_left = kGuardSubsteps;
+}
+
+}  // namespace taut

@@ -1,0 +1,77 @@
+// The same scene gives the same bits: twice in a row, between other worlds, and on another thread.
+#include <memory>
+#include <thread>
+
+#include "scenes/running_scene.h"
+
+namespace {
+
+using namespace lab;
+
+uint64_t hash_of(const RunningScene& run) {
+    uint64_t hash = 0;
+    ok(taut_world_get_state_hash(run.world.world, &hash));
+    return hash;
+}
+
+std::vector<uint64_t> hashes(const scenes::Scene& scene, int steps) {
+    RunningScene run(scene);
+    std::vector<uint64_t> out;
+    for (int i = 0; i < steps; ++i) {
+        run.step();
+        out.push_back(hash_of(run));
+    }
+    return out;
+}
+
+class SameBits : public testing::TestWithParam<scenes::Family> {};
+
+TEST_P(SameBits, InEveryStepOfTwoRuns) {
+    constexpr int kSteps = 120;
+    const scenes::Scene scene = example_of(GetParam());
+    const auto first = hashes(scene, kSteps), second = hashes(scene, kSteps);
+    for (size_t i = 0; i < first.size(); ++i) ASSERT_EQ(first[i], second[i]) << "step " << i;
+    EXPECT_NE(first.front(), first.back()) << "the hash does not see the motion";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SameBits, testing::ValuesIn(scenes::families()),
+                         [](const auto& tested) -> std::string { return tested.param.example; });
+
+const char* const kMixed[] = {"pyramid10", "wrecking_ball", "chain10_r1000", "heavy_on_light_r100"};
+
+TEST(SameBits, InInterleavedWorlds) {
+    constexpr int kSteps = 120;
+    std::vector<std::vector<uint64_t>> alone;
+    std::vector<std::unique_ptr<RunningScene>> together;
+    for (const char* name : kMixed) {
+        alone.push_back(hashes(scenes::make_scene(name), kSteps));
+        together.push_back(std::make_unique<RunningScene>(name));
+    }
+    for (size_t step = 0; step < kSteps; ++step)
+        for (size_t w = 0; w < together.size(); ++w) {
+            together[w]->step();
+            ASSERT_EQ(hash_of(*together[w]), alone[w][step]) << kMixed[w] << ", step " << step;
+        }
+}
+
+TEST(SameBits, OnThreadsAtOnce) {
+    constexpr int kSteps = 120;
+    std::vector<std::vector<uint64_t>> found(std::size(kMixed));
+    std::vector<std::thread> threads;
+    for (size_t w = 0; w < found.size(); ++w)
+        threads.emplace_back([&, w] { found[w] = hashes(scenes::make_scene(kMixed[w]), kSteps); });
+    for (std::thread& thread : threads) thread.join();
+    for (size_t w = 0; w < found.size(); ++w) EXPECT_EQ(found[w], hashes(scenes::make_scene(kMixed[w]), kSteps)) << kMixed[w];
+}
+
+// A difference of one part in 2^24 in one velocity must show, at once and after a while.
+TEST(StateHash, SeesTheLeastDifference) {
+    scenes::Scene scene = scenes::make_scene("stack10");
+    const auto before = hashes(scene, 30);
+    scene.bodies.back().linear_velocity.x = 1e-7f;
+    const auto after = hashes(scene, 30);
+    EXPECT_NE(before.front(), after.front());
+    EXPECT_NE(before.back(), after.back());
+}
+
+}  // namespace

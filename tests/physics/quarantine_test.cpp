@@ -1,0 +1,79 @@
+// A body whose state bursts is frozen and reported; the others go on.
+#include "physics/lab.h"
+
+namespace {
+
+using namespace lab;
+
+struct Burst {
+    const char* name;
+    int body;  // of the pile, or a link of the chain beside it
+    bool link;
+};
+
+void PrintTo(const Burst& b, std::ostream* out) { *out << b.name; }
+
+class Quarantine : public testing::TestWithParam<Burst> {};
+
+TEST_P(Quarantine, FreezesTheBodyAndThePileGoesOn) {
+    constexpr size_t kSide = 4;
+    World world;
+    world.add_ground();
+    std::vector<taut_body> pile, chain;
+    const taut_shape cube = world.box({0.25, 0.25, 0.25});
+    for (size_t i = 0; i < kSide * kSide * 2; ++i)
+        pile.push_back(world.add({.shape = cube, .mass = 5}));
+    for (size_t i = 0; i < pile.size(); ++i) {
+        taut_pose pose{};
+        pose.position = {0.55 * static_cast<double>(i % kSide), 0.3 + 0.55 * static_cast<double>(i / (kSide * kSide)),
+                         0.55 * static_cast<double>(i / kSide % kSide)};
+        pose.rotation = Quat().narrow();
+        ok(taut_body_set_pose(pile[i], &pose));
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        chain.push_back(world.add({.position = {0.3 * static_cast<double>(i) + 5.15, 4, 0}, .mass = 1, .inertia = {0.01, 0.01, 0.01}}));
+        if (i == 0) world.ball({}, {5, 4, 0}, chain[0], {-0.15, 0, 0});
+        else world.ball(chain[i - 1], {0.15, 0, 0}, chain[i], {-0.15, 0, 0});
+    }
+    world.step(20);
+
+    const taut_body victim = (GetParam().link ? chain : pile)[static_cast<size_t>(GetParam().body)];
+    const Vec before = position(victim);
+    // The interface refuses impulses beyond all speed; a force of that size it cannot judge beforehand.
+    EXPECT_EQ(taut_body_apply_impulse(victim, {3e38f, 1e38f, 0}, {0, 0, 0}), TAUT_INVALID_ARGUMENT);
+    EXPECT_LT(norm(velocity(victim)), 30);
+    ok(taut_body_apply_force(victim, {1e24f, 3e23f, 0}, {0, 0, 0}));
+    bool reported = false;
+    double fastest = 0;
+    for (int frame = 0; frame < 240; ++frame) {
+        world.step();
+        taut_events events{};
+        ok(taut_world_get_events(world.handle, &events));
+        for (uint32_t i = 0; i < events.quarantined_count; ++i) {
+            reported = reported || events.quarantined[i].body.bits == victim.bits;
+            EXPECT_EQ(events.quarantined[i].body.bits, victim.bits) << "an innocent body was frozen in frame " << frame;
+        }
+        for (const auto* group : {&pile, &chain})
+            for (taut_body body : *group) {
+                ASSERT_TRUE(finite(body)) << "frame " << frame;
+                if (body.bits != victim.bits) fastest = std::max(fastest, norm(velocity(body)));
+            }
+    }
+    EXPECT_TRUE(reported);
+    EXPECT_LT(norm(position(victim) - before), 0.5) << "not put back";
+    taut_body_kind kind{};
+    ok(taut_body_get_kind(victim, &kind));
+    EXPECT_EQ(kind, TAUT_BODY_STATIC);
+    EXPECT_LT(fastest, 30) << "the burst threw others about";
+    double slowest_fall = 0;
+    for (taut_body body : pile)
+        if (body.bits != victim.bits) slowest_fall = std::max(slowest_fall, norm(velocity(body)));
+    EXPECT_LT(slowest_fall, 0.05) << "the pile should have come to rest";
+    for (taut_body body : pile) EXPECT_GT(position(body).y, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Quarantine,
+                         testing::Values(Burst{"top_box", 21, false}, Burst{"bottom_box", 5, false}, Burst{"link", 3, true}),
+                         [](const auto& tested) { return tested.param.name; });
+
+}  // namespace

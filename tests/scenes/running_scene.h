@@ -1,0 +1,96 @@
+// A scene of the catalogue in a world, and what the tests read off it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "physics/lab.h"
+#include "scenes/catalogue.h"
+#include "scenes/taut_world.h"
+
+namespace scenes {
+
+inline void PrintTo(const Family& family, std::ostream* out) { *out << family.example; }
+
+}  // namespace scenes
+
+namespace lab {
+
+// Two pieces for mesh_drop: a tetrahedron and a wedge. Returns the file's path.
+inline std::string small_mesh() {
+    std::string path = testing::TempDir() + "taut_pieces_" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) + ".obj";
+    std::ofstream(path) << "g tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+                           "g wedge\nv 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 0 1 1\n"
+                           "f 5 7 6\nf 8 9 10\nf 5 6 9 8\nf 6 7 10 9\nf 7 5 8 10\n";
+    return path;
+}
+
+// Each family's example, with what it needs.
+inline scenes::Scene example_of(const scenes::Family& family, uint64_t seed = 0) {
+    scenes::Options options;
+    options.seed = seed;
+    if (family.needs_mesh) options.mesh = small_mesh();
+    return scenes::make_scene(family.example, options);
+}
+
+class RunningScene {
+public:
+    explicit RunningScene(scenes::Scene plan) : scene(std::move(plan)), world(scene) {
+        for (size_t i = 0; i < scene.bodies.size(); ++i) start.push_back(body(i));
+    }
+    explicit RunningScene(const std::string& name) : RunningScene(scenes::make_scene(name)) {}
+
+    void step() {
+        world.step();
+        taut_events events{};
+        ok(taut_world_get_events(world.world, &events));
+        quarantined += events.quarantined_count;
+    }
+    BodyState body(size_t i) const { return state(world.bodies[i]); }
+    bool sound() const {
+        if (quarantined > 0) return false;
+        return std::all_of(world.bodies.begin(), world.bodies.end(), [](taut_body b) { return finite(b); });
+    }
+    double pile_speed() const {  // fastest
+        double most = 0;
+        for (int i : scene.roles.pile) most = std::max(most, norm(body(static_cast<size_t>(i)).velocity));
+        return most;
+    }
+    double pile_shift() const {  // furthest from its start [m]
+        double most = 0;
+        for (int i : scene.roles.pile)
+            most = std::max(most, norm(body(static_cast<size_t>(i)).position - start[static_cast<size_t>(i)].position));
+        return most;
+    }
+    double joint_error() const {  // [m]
+        float most = 0;
+        for (taut_joint joint : world.joints) {
+            float error = 0;
+            ok(taut_joint_get_error(joint, &error));
+            most = std::isnan(error) ? INFINITY : std::max(most, error);
+        }
+        return static_cast<double>(most);
+    }
+    // From the anchor along the points of a cable [m].
+    double cable_length() const {
+        const scenes::Chain& chain = *scene.roles.chain;
+        Vec last = chain.anchor;
+        double sum = 0;
+        for (int i : chain.bodies) {
+            const Vec at = position(world.bodies[static_cast<size_t>(i)]);
+            sum += norm(at - last);
+            last = at;
+        }
+        return sum;
+    }
+
+    scenes::Scene scene;
+    scenes::TautWorld world;
+    std::vector<BodyState> start;
+    uint32_t quarantined = 0;
+};
+
+}  // namespace lab

@@ -1,0 +1,278 @@
+// The fused contact sweep: the same bits from its three builds, and the same impulses as the generic rows.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numeric>
+#include <random>
+
+#include "constraints/random.h"
+#include "rig.h"
+#include "solvers/projected_gauss_seidel.h"
+#include "system/soft_contact.h"
+
+namespace taut::test {
+namespace {
+
+// ---------------------------------------------------------------- builds
+
+constexpr uint32_t kGroups = 64, kNodes = 120;
+
+// Lane groups of random contacts, with empty lanes, empty places and the world among the nodes.
+struct Data {
+    std::vector<LaneGroup> group;
+    std::vector<LanePoint> point;
+    std::vector<SweepVelocity> velocity;
+    std::vector<SweepMass> mass;
+    std::vector<SweepShift> shift;
+
+    explicit Data(uint64_t seed) : velocity(kNodes), mass(kNodes), shift(kNodes) {
+        std::mt19937_64 engine(seed);
+        std::uniform_real_distribution<double> number(-1, 1);
+        auto any = [&] { return static_cast<float>(number(engine)); };
+        auto decade = [&] { return static_cast<float>(std::pow(10, 3 * number(engine))); };
+        for (uint32_t node = 1; node < kNodes; ++node) {
+            for (int k = 0; k < 3; ++k) {
+                velocity[node].v[k] = 3 * any();
+                velocity[node].w[k] = 3 * any();
+                shift[node].dx[k] = 0.01f * any();
+            }
+            const Quat q = rotation_from_vector(0.02 * Vec3(number(engine), number(engine), number(engine)));
+            for (int k = 0; k < 4; ++k) shift[node].dq[k] = static_cast<float>(q.coeffs()[k]);
+            mass[node].inv_mass = decade();
+            for (int k = 0; k < 6; ++k) mass[node].inv_inertia[k] = mass[node].inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
+        }
+        std::vector<uint32_t> order(kNodes - 1);
+        std::iota(order.begin(), order.end(), 1);
+        for (uint32_t i = 0; i < kGroups; ++i) {
+            std::shuffle(order.begin(), order.end(), engine);
+            LaneGroup g{};
+            g.first_point = static_cast<uint32_t>(point.size());
+            g.points = 1 + static_cast<uint32_t>(engine() % 4);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const bool empty = engine() % 8 == 0;
+                g.pair[lane] = empty ? kNone : static_cast<uint32_t>(lane);
+                g.a[lane] = empty || engine() % 8 == 0 ? 0 : order[static_cast<size_t>(2 * lane)];
+                g.b[lane] = empty ? 0 : order[static_cast<size_t>(2 * lane + 1)];
+                const Vec3f n = Vec3f(any(), any(), any()).normalized(), t = tangent_of(n);
+                for (int k = 0; k < 3; ++k) {
+                    g.normal[k][lane] = empty ? 0 : n[k];
+                    g.tangent[k][lane] = empty ? 0 : t[k];
+                }
+                g.friction[lane] = empty ? 0 : std::abs(any());
+            }
+            for (uint32_t k = 0; k < g.points; ++k) {
+                LanePoint p{};
+                for (int lane = 0; lane < kLanes; ++lane) {
+                    if (g.pair[lane] == kNone || engine() % 8 == 0) continue;
+                    for (int c = 0; c < 3; ++c) {
+                        p.ra[c][lane] = any();
+                        p.rb[c][lane] = any();
+                    }
+                    p.gap0[lane] = p.gap[lane] = 0.02f * any();
+                    p.normal_mass[lane] = 1;
+                    p.impulse[0][lane] = std::abs(any());
+                    p.impulse[1][lane] = 0.3f * any();
+                    p.impulse[2][lane] = 0.3f * any();
+                    p.restitution[lane] = engine() % 2 ? std::abs(any()) : 0;
+                }
+                point.push_back(p);
+            }
+            group.push_back(g);
+        }
+    }
+
+    // Everything that a step calls, over and over.
+    void run(const ContactKernels& kernels) {
+        const LaneView view{group.data(), point.data()};
+        const SweepTerms terms = soft_terms(1.0 / 240);
+        kernels.prepare(view, 0, kGroups, velocity.data(), mass.data());
+        kernels.warm_start(view, 0, kGroups, velocity.data(), mass.data());
+        for (int i = 0; i < 4; ++i) kernels.sweep_biased(view, 0, kGroups, velocity.data(), mass.data(), shift.data(), terms);
+        for (int i = 0; i < 2; ++i) kernels.sweep_relaxed(view, 0, kGroups, velocity.data(), mass.data(), terms);
+        kernels.restitute(view, 0, kGroups, velocity.data(), mass.data(), 1.0f);
+    }
+};
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same_bits(const ContactKernels& kernels) {
+    for (uint64_t seed = 1; seed <= 50; ++seed) {
+        SCOPED_TRACE(testing::Message() << kernels.name << ", seed " << seed);
+        Data scalar(seed), other(seed);
+        scalar.run(kContactKernelsScalar);
+        other.run(kernels);
+        float sum = 0;
+        for (const SweepVelocity& u : scalar.velocity) sum += u.v[0] + u.w[2];
+        ASSERT_TRUE(std::isfinite(sum));
+        ASSERT_TRUE(same_bits(scalar.velocity, other.velocity));
+        ASSERT_TRUE(same_bits(scalar.point, other.point));
+    }
+}
+
+TEST(ContactKernels, Sse2HasTheBitsOfTheScalarBuild) { expect_same_bits(kContactKernelsSse2); }
+
+TEST(ContactKernels, Avx2HasTheBitsOfTheScalarBuild) {
+    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
+    expect_same_bits(kContactKernelsAvx2);
+}
+
+TEST(ContactKernels, TheWidestOfTheMachineIsChosen) {
+    EXPECT_STREQ(contact_kernels().name, __builtin_cpu_supports("avx2") ? "avx2" : "sse2");
+}
+
+// Lanes and places without a contact stay as they are, and so does the world.
+TEST(ContactKernels, EmptyPlacesStayEmpty) {
+    Data data(9);
+    data.run(kContactKernelsSse2);
+    for (const LaneGroup& g : data.group)
+        for (uint32_t k = 0; k < g.points; ++k)
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const LanePoint& p = data.point[g.first_point + k];
+                if (p.ra[0][lane] != 0 || g.pair[lane] != kNone) continue;
+                EXPECT_EQ(p.impulse[0][lane], 0);
+                EXPECT_EQ(p.impulse[1][lane], 0);
+                EXPECT_EQ(p.normal_mass[lane], 0);
+            }
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(data.velocity[0].v[k], 0);
+        EXPECT_EQ(data.velocity[0].w[k], 0);
+    }
+}
+
+// ---------------------------------------------------------------- rows
+
+// Bodies of many masses touching at random, with impulses carried in: a few colours, none of them the last.
+void build_pile(Rig& rig, uint64_t seed) {
+    Random random(seed);
+    constexpr uint32_t kBodies = 16;
+    rig.fixed();
+    for (uint32_t i = 0; i < kBodies; ++i) {
+        const double mass = std::pow(10.0, 1.5 * random.unit());
+        const Vec3 x = 2 * random.vector(), v = random.vector(), spin = random.vector();
+        const double a = 0.5 + random.unit(), b = 0.5 + random.unit(), c = (a + b) * (0.6 + 0.4 * random.unit());
+        rig.body(mass, 0.1 * mass * Vec3(a, b, c), x, random.rotation(), v, spin);
+        rig.w.nodes.info[i + 1].material.friction = static_cast<float>(random.unit());
+    }
+    for (uint32_t a = 0; a < kBodies; ++a) {
+        for (uint32_t b : {a + 1, a + 1 + static_cast<uint32_t>(random.unit() * (kBodies - a))}) {
+            if (a > 0 && b == a) continue;
+            const uint64_t key = static_cast<uint64_t>(a) << 32 | b;
+            bool known = false;
+            for (const Pair& pair : rig.w.pairs.list) known = known || pair.key == key;
+            if (known) continue;
+            std::vector<std::pair<Vec3, double>> points;
+            const Vec3 at = rig.w.nodes.motion[b].x + 0.5 * random.vector();
+            const uint32_t count = 1 + static_cast<uint32_t>(random.unit() * 4);
+            for (uint32_t k = 0; k < count; ++k) {
+                const Vec3 beside = at + 0.3 * random.vector();
+                points.push_back({beside, 0.01 * (2 * random.unit() - 1)});
+            }
+            rig.contact(a, b, random.vector().normalized().cast<float>(), points);
+            for (Pair& pair : rig.w.pairs.list) {
+                if (pair.key != key) continue;
+                for (int k = 0; k < pair.manifold.count; ++k) {
+                    pair.impulse[k].normal = static_cast<float>(random.unit());
+                    pair.impulse[k].tangent1 = static_cast<float>(0.2 * random.unit());
+                    pair.impulse[k].tangent2 = static_cast<float>(-0.2 * random.unit());
+                }
+            }
+        }
+    }
+}
+
+std::vector<Vec3> impulses(const Rig& rig) {
+    std::vector<Vec3> out;
+    for (const Pair& pair : rig.w.pairs.list)
+        for (int k = 0; k < pair.manifold.count; ++k)
+            out.push_back(Vec3(pair.impulse[k].normal, pair.impulse[k].tangent1, pair.impulse[k].tangent2));
+    return out;
+}
+
+void expect_same(const Rig& lanes, const Rig& rows) {
+    const std::vector<Vec3> a = impulses(lanes), b = impulses(rows);
+    ASSERT_EQ(a.size(), b.size());
+    double largest = 0;
+    for (const Vec3& p : b) largest = std::max(largest, p.norm());
+    ASSERT_GT(largest, 0);
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_LE((a[i] - b[i]).norm(), 1e-4 * largest) << "point " << i;
+    const Eigen::VectorXd u = velocities(lanes), v = velocities(rows);
+    EXPECT_LE((u - v).norm(), 1e-4 * v.norm());
+}
+
+class FusedSweep : public testing::TestWithParam<uint64_t> {
+protected:
+    // The same pile, in lanes and as rows.
+    void SetUp() override {
+        Solver by_rows = kProjectedGaussSeidel;
+        by_rows.wide_contacts = false;
+        for (Rig* rig : {&lanes, &rows}) {
+            build_pile(*rig, GetParam());
+            rig->settings.sweeps = 3;
+            rig->begin(rig == &lanes ? kProjectedGaussSeidel : by_rows);
+            rig->predict();
+        }
+        ASSERT_FALSE(lanes.w.system.contacts.group.empty());
+        ASSERT_TRUE(rows.w.system.contacts.group.empty());
+        ASSERT_LT(lanes.w.partition.colours, kMaxColours);
+    }
+
+    Rig lanes, rows;
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, FusedSweep, testing::Range<uint64_t>(1, 41));
+
+TEST_P(FusedSweep, HasTheImpulsesOfTheGenericRows) {
+    for (Rig* rig : {&lanes, &rows}) {
+        rig->solve();
+        rig->store_contacts();
+    }
+    expect_same(lanes, rows);
+    for (Rig* rig : {&lanes, &rows}) {
+        rig->move();
+        rig->relax();
+        rig->store_contacts();
+    }
+    expect_same(lanes, rows);
+}
+
+// Between detections the anchors turn with their bodies: gap0 + n . (shift of b - shift of a) is C at the new poses.
+TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
+    for (int substep = 0; substep < 3; ++substep) {
+        for (Rig* rig : {&lanes, &rows}) {
+            if (substep > 0) rig->predict();
+            rig->solve();
+            rig->move();
+            rig->relax();
+        }
+    }
+    // Gap of the last substep's start, each at its own poses: compared within the lanes' rig.
+    Rig& rig = lanes;
+    rig.predict();
+    Substep s = rig.substep();
+    sweep_biased(s, 1);
+    for (const LaneGroup& g : rig.w.system.contacts.group)
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (g.pair[lane] == kNone) continue;
+            const Pair& pair = rig.w.pairs.list[g.pair[lane]];
+            for (int k = 0; k < pair.manifold.count; ++k) {
+                const collision::ContactPoint& point = pair.manifold.points[k];
+                double moved[2];
+                for (int end = 0; end < 2; ++end) {
+                    const uint32_t node = end == 0 ? pair.a() : pair.b();
+                    const System::Found& found = rig.w.system.found[node + 1];
+                    const System::Found& of_a = rig.w.system.found[pair.a() + 1];  // its centre is its origin here
+                    const Vec3 at = of_a.x + point.position.cast<double>();
+                    const NodeMotion& m = rig.w.nodes.motion[node];
+                    const Vec3 now = m.x + m.q * (found.q.conjugate() * (at - found.x));
+                    moved[end] = pair.manifold.normal.cast<double>().dot(now - at);
+                }
+                const double gap = point.separation + moved[1] - moved[0];
+                EXPECT_NEAR(rig.w.system.contacts.point[g.first_point + static_cast<uint32_t>(k)].gap[lane], gap, 1e-6);
+            }
+        }
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,333 @@
+// The sparse factorisation on random graphs of nodes and multipliers, against Eigen's dense LU.
+#include "solvers/sparse_block_ldlt.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <ctime>
+#include <limits>
+#include <map>
+#include <random>
+
+namespace taut::test {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// [H J^T; J -c I] by blocks.
+struct Problem {
+    struct Unknown {
+        int size;
+        bool multiplier;
+    };
+    std::vector<Unknown> unknown;
+    std::map<std::pair<uint32_t, uint32_t>, RowMajor> block;  // one of each pair (i, j)
+    std::mt19937_64 engine;
+
+    explicit Problem(uint64_t seed) : engine(seed) {}
+
+    uint32_t pick(uint32_t count) { return std::uniform_int_distribution<uint32_t>(0, count - 1)(engine); }
+    RowMajor random(int rows, int columns) {
+        std::uniform_real_distribution<double> number(-1, 1);
+        return RowMajor::NullaryExpr(rows, columns, [&] { return number(engine); });
+    }
+    // Masses over three decades.
+    uint32_t add_node(int size) {
+        const RowMajor a = random(size, size);
+        const auto i = add({size, false});
+        block[{i, i}] = std::pow(10.0, 3 * random(1, 1)(0, 0) / 2) * (a * a.transpose() + RowMajor::Identity(size, size));
+        return i;
+    }
+    uint32_t add_multiplier(int size, double compliance) {
+        const auto i = add({size, true});
+        block[{i, i}] = -compliance * RowMajor::Identity(size, size);
+        return i;
+    }
+    // A joint between two nodes, with stiffness between them if coupled.
+    void join(uint32_t a, uint32_t b, double compliance, bool coupled) {
+        const bool wide = unknown[a].size == 6 && unknown[b].size == 6 && pick(2) == 0;
+        const uint32_t m = add_multiplier(wide ? 6 : 3, compliance);
+        link(m, a);
+        if (pick(2) == 0) link(m, b);  // in either direction
+        else link(b, m);
+        if (!coupled) return;
+        const RowMajor k = 0.01 * random(unknown[a].size, unknown[b].size);  // stays positive: the diagonals are 1 and more
+        const double scale = std::min(block[{a, a}].norm(), block[{b, b}].norm()) / 10;
+        block[{a, b}] = scale * k;
+    }
+    // Well-conditioned, as levers are, in either direction.
+    void link(uint32_t i, uint32_t j) {
+        const int rows = unknown[i].size, columns = unknown[j].size;
+        block[{i, j}] = RowMajor::Identity(rows, columns) + 0.3 * random(rows, columns);
+    }
+    void hold(uint32_t node, double compliance = 0) { link(add_multiplier(3, compliance), node); }  // on the world
+
+    Array<double> solve(SparseBlockLdlt& matrix, const Vector& b, bool& done) {
+        matrix.begin(static_cast<uint32_t>(unknown.size()));
+        for (uint32_t i = 0; i < unknown.size(); ++i) matrix.set_unknown(i, unknown[i].size, unknown[i].multiplier);
+        for (const auto& [at, m] : block) matrix.link(at.first, at.second);
+        matrix.analyse();
+        Array<double> x(6 * unknown.size(), 0.0, memory);
+        for (size_t i = 0, row = 0; i < unknown.size(); ++i)
+            for (int k = 0; k < unknown[i].size; ++k) x[6 * i + static_cast<size_t>(k)] = b[static_cast<long>(row++)];
+        fill(matrix);
+        done = matrix.factor();
+        if (done) matrix.solve(x.data());
+        return x;
+    }
+    void fill(SparseBlockLdlt& matrix) const {
+        matrix.clear();
+        for (const auto& [at, m] : block)
+            matrix.add(at.first, at.second, m.data(), static_cast<int>(m.rows()), static_cast<int>(m.cols()),
+                       static_cast<int>(m.cols()));
+    }
+
+    std::vector<long> offsets() const {
+        std::vector<long> begin{0};
+        for (const Unknown& u : unknown) begin.push_back(begin.back() + u.size);
+        return begin;
+    }
+    Matrix dense() const {
+        const std::vector<long> begin = offsets();
+        Matrix a = Matrix::Zero(begin.back(), begin.back());
+        for (const auto& [at, m] : block) {
+            a.block(begin[at.first], begin[at.second], m.rows(), m.cols()) = m;
+            a.block(begin[at.second], begin[at.first], m.cols(), m.rows()) = m.transpose();
+        }
+        return a;
+    }
+    uint32_t links() const {
+        uint32_t count = 0;
+        for (const auto& [at, m] : block) count += at.first != at.second;
+        return count;
+    }
+
+    Memory memory{taut_hooks{}};
+
+private:
+    uint32_t add(Unknown u) {
+        unknown.push_back(u);
+        return static_cast<uint32_t>(unknown.size() - 1);
+    }
+};
+
+// Solves with a random right-hand side and compares with LU.
+void expect_like_dense(Problem& p, double tolerance) {
+    const Matrix a = p.dense();
+    const Vector b = p.random(static_cast<int>(a.rows()), 1);
+    SparseBlockLdlt matrix(p.memory);
+    bool done = false;
+    const Array<double> blocks = p.solve(matrix, b, done);
+    ASSERT_TRUE(done);
+    Vector x(a.rows());
+    const std::vector<long> begin = p.offsets();
+    for (size_t i = 0; i < p.unknown.size(); ++i) {
+        for (int k = 0; k < p.unknown[i].size; ++k) x[begin[i] + k] = blocks[6 * i + static_cast<size_t>(k)];
+        for (int k = p.unknown[i].size; k < 6; ++k) EXPECT_EQ(blocks[6 * i + static_cast<size_t>(k)], 0);
+    }
+    const Vector exact = a.partialPivLu().solve(b);
+    EXPECT_LE((a * x - b).norm(), tolerance * (b.norm() + a.norm() * x.norm()));
+    EXPECT_LE((x - exact).norm(), 1e3 * tolerance * exact.norm());
+}
+
+int random_size(Problem& p) { return p.pick(2) ? 6 : 3; }
+
+TEST(SparseBlockLdlt, SolvesTreesWithoutFill) {
+    for (uint64_t seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Problem p(seed);
+        std::vector<uint32_t> nodes{p.add_node(random_size(p))};
+        const uint32_t count = 2 + p.pick(40);
+        for (uint32_t i = 1; i < count; ++i) {
+            const uint32_t parent = nodes[p.pick(i)];
+            nodes.push_back(p.add_node(random_size(p)));
+            p.join(parent, nodes.back(), 0, p.pick(3) == 0);
+        }
+        if (p.pick(2)) p.hold(nodes[p.pick(count)]);
+        expect_like_dense(p, 1e-10);
+        SparseBlockLdlt matrix(p.memory);
+        bool done = false;
+        p.solve(matrix, Vector::Zero(p.dense().rows()), done);
+        EXPECT_EQ(matrix.blocks(), p.links());
+        if (HasFailure()) break;
+    }
+}
+
+TEST(SparseBlockLdlt, SolvesForests) {
+    Problem p(11);
+    for (int tree = 0; tree < 5; ++tree) {
+        uint32_t last = p.add_node(6);
+        for (int i = 0; i < tree; ++i) {
+            const uint32_t next = p.add_node(3);
+            p.join(last, next, 0, false);
+            last = next;
+        }
+    }
+    expect_like_dense(p, 1e-10);
+}
+
+// Rows of a loop may be redundant, which is what their compliance is for.
+TEST(SparseBlockLdlt, SolvesLoops) {
+    for (uint64_t seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Problem p(seed);
+        const uint32_t count = 3 + p.pick(30);
+        std::vector<uint32_t> nodes;
+        for (uint32_t i = 0; i < count; ++i) nodes.push_back(p.add_node(random_size(p)));
+        for (uint32_t i = 0; i < count; ++i) p.join(nodes[i], nodes[(i + 1) % count], 1e-3, p.pick(2) == 0);
+        for (uint32_t chord = p.pick(4); chord > 0; --chord) {
+            const uint32_t a = p.pick(count), b = p.pick(count);
+            if (a != b && !p.block.count({nodes[a], nodes[b]}) && !p.block.count({nodes[b], nodes[a]}))
+                p.join(nodes[a], nodes[b], 1e-3, false);
+        }
+        expect_like_dense(p, 1e-10);
+        if (HasFailure()) break;
+    }
+}
+
+TEST(SparseBlockLdlt, SolvesChainsHeldAtBothEnds) {
+    for (int count : {1, 2, 3, 10, 50}) {
+        Problem p(static_cast<uint64_t>(count));
+        std::vector<uint32_t> nodes;
+        for (int i = 0; i < count; ++i) {
+            nodes.push_back(p.add_node(6));
+            if (i > 0) p.join(nodes[static_cast<size_t>(i - 1)], nodes.back(), 1e-3, false);
+        }
+        p.hold(nodes.front(), 1e-3);
+        if (count > 1) p.hold(nodes.back(), 1e-3);
+        expect_like_dense(p, 1e-10);
+    }
+}
+
+TEST(SparseBlockLdlt, SolvesNets) {
+    for (int side : {2, 4, 9}) {
+        Problem p(static_cast<uint64_t>(side));
+        std::vector<uint32_t> nodes;
+        for (int i = 0; i < side * side; ++i) nodes.push_back(p.add_node(3));
+        for (int i = 0; i < side; ++i)
+            for (int k = 0; k < side; ++k) {
+                const auto here = static_cast<size_t>(i * side + k), n = static_cast<size_t>(side);
+                if (k + 1 < side) p.join(nodes[here], nodes[here + 1], 1e-3, true);
+                if (i + 1 < side) p.join(nodes[here], nodes[here + n], 1e-3, true);
+            }
+        p.hold(nodes[0]);
+        expect_like_dense(p, 1e-10);
+    }
+}
+
+// The order is found once; numbers may change under it, and may come in pieces and in either triangle.
+TEST(SparseBlockLdlt, FactorsAgainAfterTheNumbersChanged) {
+    Problem p(21);
+    const uint32_t a = p.add_node(6), b = p.add_node(3), c = p.add_node(6);
+    p.join(a, b, 0, true);
+    p.join(b, c, 0, false);
+    SparseBlockLdlt matrix(p.memory);
+    bool done = false;
+    Vector rhs = p.random(static_cast<int>(p.dense().rows()), 1);
+    const Array<double> once = p.solve(matrix, rhs, done);
+    ASSERT_TRUE(done);
+
+    matrix.clear();
+    for (const auto& [at, m] : p.block) {
+        const RowMajor mirrored = 2 * m.transpose();  // twice the matrix, by the other triangle
+        for (int r = 0; r < m.cols(); r += 3)
+            for (int k = 0; k < m.rows(); k += 3)
+                matrix.add(at.second, at.first, mirrored.data() + r * m.rows() + k, 3, 3, static_cast<int>(m.rows()), r, k);
+    }
+    ASSERT_TRUE(matrix.factor());
+    Array<double> x(once.size(), 0.0, p.memory);
+    for (size_t i = 0, row = 0; i < p.unknown.size(); ++i)
+        for (int k = 0; k < p.unknown[i].size; ++k) x[6 * i + static_cast<size_t>(k)] = 2 * rhs[static_cast<long>(row++)];
+    matrix.solve(x.data());
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], once[i], 1e-12 * (1 + std::abs(once[i])));
+}
+
+TEST(SparseBlockLdlt, RefusesPivotsOfTheWrongSign) {
+    struct Case {
+        const char* what;
+        bool node;
+        double value;
+    };
+    for (const Case& c : {Case{"an indefinite node", true, -5}, Case{"a node without mass", true, 0},
+                          Case{"a node that is not a number", true, std::numeric_limits<double>::quiet_NaN()},
+                          Case{"an infinite node", true, std::numeric_limits<double>::infinity()},
+                          Case{"a multiplier that pushes back", false, 1e6}}) {
+        SCOPED_TRACE(c.what);
+        Problem p(31);
+        const uint32_t a = p.add_node(6), b = p.add_node(6);
+        p.join(a, b, 0, false);
+        const uint32_t bad = c.node ? b : 2;
+        const RowMajor good = p.block[{bad, bad}];
+        p.block[{bad, bad}](1, 1) = c.value;
+        SparseBlockLdlt matrix(p.memory);
+        bool done = true;
+        p.solve(matrix, Vector::Zero(p.dense().rows()), done);
+        EXPECT_FALSE(done);
+        p.block[{bad, bad}] = good;  // and is as good as new
+        p.fill(matrix);
+        EXPECT_TRUE(matrix.factor());
+    }
+}
+
+// Two rows for one freedom, with no compliance to share them out.
+TEST(SparseBlockLdlt, RefusesRedundantRows) {
+    Problem p(41);
+    const uint32_t particle = p.add_node(3);
+    p.hold(particle);
+    p.hold(particle);
+    SparseBlockLdlt matrix(p.memory);
+    bool done = true;
+    const Array<double> x = p.solve(matrix, Vector::Ones(9), done);
+    if (done) {  // rounding may leave a pivot of either sign: then nothing promises more than finite numbers
+        for (double value : x) EXPECT_TRUE(std::isfinite(value));
+    }
+}
+
+// Seconds of processor time for one factorisation and solve of a chain; symbolic: with its analysis.
+double chain_seconds(uint32_t count, bool symbolic) {
+    Problem p(count);
+    uint32_t last = p.add_node(6);
+    for (uint32_t i = 1; i < count; ++i) {
+        const uint32_t next = p.add_node(6);
+        p.join(last, next, 0, false);
+        last = next;
+    }
+    long rows = 0;
+    for (const auto& u : p.unknown) rows += u.size;
+    SparseBlockLdlt matrix(p.memory);
+    bool done = false;
+    Array<double> x = p.solve(matrix, Vector::Ones(rows), done);
+    EXPECT_TRUE(done);
+    const uint32_t repeats = std::max(1u, 3200 / count);
+    double best = 1e300;
+    for (int attempt = 0; attempt < 5; ++attempt) {
+        const std::clock_t start = std::clock();
+        for (uint32_t i = 0; i < repeats; ++i) {
+            if (symbolic) {
+                matrix.analyse();
+            } else {
+                p.fill(matrix);
+                matrix.factor();
+                matrix.solve(x.data());
+            }
+        }
+        best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / repeats);
+    }
+    return best;
+}
+
+// 32 times the links take 32 times the time; three times that leaves room for caches and neighbours.
+TEST(SparseBlockLdlt, TimeGrowsLinearlyAlongChains) {
+    for (bool symbolic : {false, true}) {
+        const double small = chain_seconds(100, symbolic), medium = chain_seconds(800, symbolic),
+                     large = chain_seconds(3200, symbolic);
+        RecordProperty(symbolic ? "analysis_us_per_link" : "solve_us_per_link", std::to_string(1e6 * large / 3200));
+        EXPECT_LE(large, 3 * 32 * small) << (symbolic ? "analysis" : "solve");
+        EXPECT_LE(large, 3 * 4 * medium) << (symbolic ? "analysis" : "solve");
+    }
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,45 @@
+// Every operation of the lanes on given numbers, as a template over the build. Include after simd/lanes.h.
+#pragma once
+
+#include <cstddef>
+
+namespace taut::test {
+
+constexpr std::size_t kOperations = 7, kTransposed = 64;
+
+// a, b, c, d: eight numbers each, aligned to 32; out: kOperations times eight.
+template <class F>
+void run_operations(const float* a, const float* b, const float* c, const float* d, float* out) {
+    const F x = F::load(a), y = F::load(b);
+    (x + y).store(out);
+    (x - y).store(out + 8);
+    (x * y).store(out + 16);
+    (x / y).store(out + 24);
+    F::max(x, y).store(out + 32);
+    F::sqrt(F::max(x, F::all(0))).store(out + 40);
+    F::if_greater(x, y, F::load(c), F::load(d)).store(out + 48);
+}
+
+// rows: eight rows of eight at a stride. columns: what lane k of component c holds; back: the rows again.
+template <class F>
+void run_transpose(const float* rows, std::size_t stride, float* columns, float* back) {
+    const float* from[8];
+    float* to[8];
+    for (std::size_t i = 0; i < 8; ++i) {
+        from[i] = rows + i * stride;
+        to[i] = back + i * stride;
+    }
+    F lanes[8];
+    F::transpose(from, lanes);
+    for (std::size_t i = 0; i < 8; ++i) lanes[i].store(columns + 8 * i);
+    F::transpose_back(lanes, to);
+}
+
+struct LanesBuild {
+    void (*operations)(const float*, const float*, const float*, const float*, float*);
+    void (*transpose)(const float*, std::size_t, float*, float*);
+};
+// Null where the compiler cannot build it here.
+LanesBuild avx2_build();
+
+}  // namespace taut::test

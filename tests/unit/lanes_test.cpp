@@ -1,0 +1,126 @@
+// Eight lanes in three builds: the same bits for every operation.
+#include "simd/lanes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "lanes_operations.h"
+
+namespace taut::test {
+namespace {
+
+constexpr LanesBuild kScalar{run_operations<ScalarLanes>, run_transpose<ScalarLanes>};
+#if defined(__SSE2__)
+constexpr LanesBuild kSse2{run_operations<Sse2Lanes>, run_transpose<Sse2Lanes>};
+#endif
+
+struct alignas(32) Eight {
+    float f[8];
+};
+
+// Numbers of every size, with zeros of both signs, equal pairs, denormals and infinities among them.
+class Numbers {
+public:
+    explicit Numbers(uint64_t seed) : engine_(seed) {}
+    float next() {
+        constexpr float kSpecial[] = {0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, -1e-40f, 3e38f, std::numeric_limits<float>::infinity()};
+        if (engine_() % 8 == 0) return kSpecial[engine_() % 8];
+        std::uniform_real_distribution<float> number(-1, 1), exponent(-20, 20);
+        return number(engine_) * std::exp2(exponent(engine_));
+    }
+    Eight eight() {
+        Eight e;
+        for (float& f : e.f) f = next();
+        return e;
+    }
+
+private:
+    std::mt19937_64 engine_;
+};
+
+// The bits, except that one NaN is as good as another.
+void expect_same(const float* a, const float* b, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        if (std::isnan(a[i]) && std::isnan(b[i])) continue;
+        uint32_t x, y;
+        std::memcpy(&x, a + i, sizeof x);
+        std::memcpy(&y, b + i, sizeof y);
+        ASSERT_EQ(x, y) << "entry " << i << ": " << a[i] << " and " << b[i];
+    }
+}
+
+void expect_same_build(const LanesBuild& build) {
+    Numbers numbers(1);
+    for (int i = 0; i < 20000; ++i) {
+        const Eight a = numbers.eight(), b = i % 4 ? numbers.eight() : a, c = numbers.eight(), d = numbers.eight();
+        alignas(32) float expected[8 * kOperations], got[8 * kOperations];
+        kScalar.operations(a.f, b.f, c.f, d.f, expected);
+        build.operations(a.f, b.f, c.f, d.f, got);
+        expect_same(expected, got, 8 * kOperations);
+        if (testing::Test::HasFatalFailure()) return;
+    }
+    for (size_t stride : {8, 16}) {
+        alignas(32) float rows[128], columns[2][64], back[2][128] = {};
+        for (float& f : rows) f = numbers.next();
+        kScalar.transpose(rows, stride, columns[0], back[0]);
+        build.transpose(rows, stride, columns[1], back[1]);
+        expect_same(columns[0], columns[1], 64);
+        expect_same(back[0], back[1], 128);
+    }
+}
+
+TEST(ScalarLanes, ComputeWhatEachNumberDoes) {
+    Numbers numbers(2);
+    for (int i = 0; i < 5000; ++i) {
+        const Eight a = numbers.eight(), b = numbers.eight(), c = numbers.eight(), d = numbers.eight();
+        alignas(32) float out[8 * kOperations], expected[8 * kOperations];
+        kScalar.operations(a.f, b.f, c.f, d.f, out);
+        for (int k = 0; k < 8; ++k) {
+            expected[k] = a.f[k] + b.f[k];
+            expected[8 + k] = a.f[k] - b.f[k];
+            expected[16 + k] = a.f[k] * b.f[k];
+            expected[24 + k] = a.f[k] / b.f[k];
+            expected[32 + k] = a.f[k] > b.f[k] ? a.f[k] : b.f[k];
+            expected[40 + k] = std::sqrt(a.f[k] > 0 ? a.f[k] : 0.0f);
+            expected[48 + k] = a.f[k] > b.f[k] ? c.f[k] : d.f[k];
+        }
+        expect_same(expected, out, 8 * kOperations);
+    }
+}
+
+TEST(ScalarLanes, TransposeThereAndBack) {
+    for (size_t stride : {8, 16}) {
+        alignas(32) float rows[128], columns[64], back[128];
+        for (int i = 0; i < 128; ++i) rows[i] = back[i] = static_cast<float>(i);
+        for (size_t r = 0; r < 8; ++r)
+            for (size_t c = 0; c < 8; ++c) back[r * stride + c] = -1;
+        kScalar.transpose(rows, stride, columns, back);
+        for (size_t r = 0; r < 8; ++r)
+            for (size_t c = 0; c < 8; ++c) {
+                EXPECT_EQ(columns[8 * c + r], rows[r * stride + c]);
+                EXPECT_EQ(back[r * stride + c], rows[r * stride + c]);
+            }
+    }
+}
+
+TEST(Sse2Lanes, HaveTheBitsOfTheScalarOnes) {
+#if defined(__SSE2__)
+    expect_same_build(kSse2);
+#else
+    GTEST_SKIP() << "not compiled for SSE2";
+#endif
+}
+
+TEST(Avx2Lanes, HaveTheBitsOfTheScalarOnes) {
+    const LanesBuild build = avx2_build();
+    if (!build.operations) GTEST_SKIP() << "this compiler builds no single file for AVX2";
+    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
+    expect_same_build(build);
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,142 @@
+// The world's memory: what the hooks see and what the books say.
+#include "base/memory.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <map>
+
+namespace taut::test {
+namespace {
+
+// A host's allocator that remembers what it gave.
+struct Host {
+    struct Given {
+        size_t size, alignment;
+    };
+    std::map<void*, Given> live;
+    uint64_t calls = 0, frees = 0, mistakes = 0;
+    bool empty_handed = false;
+
+    taut_hooks hooks() {
+        taut_hooks h{};
+        h.allocate = [](size_t size, size_t alignment, void* self) -> void* {
+            Host& host = *static_cast<Host*>(self);
+            ++host.calls;
+            if (host.empty_handed) return nullptr;
+            void* pointer = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+            host.live[pointer] = {size, alignment};
+            return pointer;
+        };
+        h.free = [](void* pointer, size_t size, size_t alignment, void* self) {
+            Host& host = *static_cast<Host*>(self);
+            ++host.frees;
+            const auto at = host.live.find(pointer);
+            if (at == host.live.end() || at->second.size != size || at->second.alignment != alignment) {
+                ++host.mistakes;
+                return;
+            }
+            host.live.erase(at);
+            std::free(pointer);
+        };
+        h.memory_user_data = this;
+        return h;
+    }
+    uint64_t bytes() const {
+        uint64_t sum = 0;
+        for (const auto& [pointer, given] : live) sum += given.size;
+        return sum;
+    }
+};
+
+TEST(Memory, KeepsTheBooksOfItsHost) {
+    Host host;
+    Memory memory(host.hooks());
+    void* a = memory.allocate(100, 16);
+    void* b = memory.allocate(7, 64);
+    EXPECT_EQ(memory.bytes(), 107u);
+    EXPECT_EQ(memory.bytes(), host.bytes());
+    EXPECT_EQ(memory.calls(), 2u);
+    EXPECT_EQ(reinterpret_cast<uintptr_t>(b) % 64, 0u);
+    memory.release(a, 100, 16);
+    EXPECT_EQ(memory.bytes(), 7u);
+    memory.release(b, 7, 64);
+    EXPECT_EQ(memory.bytes(), 0u);
+    EXPECT_EQ(memory.calls(), 2u);  // of allocate alone
+    EXPECT_EQ(host.frees, 2u);
+    EXPECT_EQ(host.mistakes, 0u);
+    EXPECT_TRUE(host.live.empty());
+}
+
+TEST(Memory, AsksForAtLeastAByte) {
+    Host host;
+    Memory memory(host.hooks());
+    void* nothing = memory.allocate(0, 16);
+    ASSERT_NE(nothing, nullptr);
+    EXPECT_EQ(host.bytes(), 1u);
+    EXPECT_EQ(memory.bytes(), 1u);
+    memory.release(nothing, 0, 16);
+    EXPECT_EQ(memory.bytes(), 0u);
+    EXPECT_EQ(host.mistakes, 0u);
+}
+
+TEST(Memory, ThrowsWhenTheHostHasNoneAndBooksNothing) {
+    Host host;
+    Memory memory(host.hooks());
+    host.empty_handed = true;
+    EXPECT_THROW(memory.allocate(8, 8), std::bad_alloc);
+    EXPECT_EQ(memory.bytes(), 0u);
+    EXPECT_EQ(memory.calls(), 0u);
+}
+
+TEST(Memory, ForgivesReleasingNull) {
+    Host host;
+    Memory memory(host.hooks());
+    memory.release(nullptr, 100, 16);
+    EXPECT_EQ(memory.bytes(), 0u);
+    EXPECT_EQ(host.frees, 0u);
+}
+
+TEST(Memory, TakesTheRuntimesWithoutHooks) {
+    Memory memory(taut_hooks{});
+    for (size_t alignment : {8, 16, 32, 64}) {
+        void* p = memory.allocate(33, alignment);
+        ASSERT_NE(p, nullptr);
+        EXPECT_EQ(reinterpret_cast<uintptr_t>(p) % alignment, 0u);
+        std::memset(p, 1, 33);
+        EXPECT_EQ(memory.bytes(), 33u);
+        memory.release(p, 33, alignment);
+    }
+    EXPECT_EQ(memory.bytes(), 0u);
+}
+
+struct alignas(64) Wide {
+    float f[16];
+};
+
+TEST(Array, TakesEverythingFromItsMemory) {
+    Host host;
+    {
+        Memory memory(host.hooks());
+        Array<int> numbers(memory);
+        for (int i = 0; i < 1000; ++i) numbers.push_back(i);
+        EXPECT_GE(memory.bytes(), 1000 * sizeof(int));
+        Array<Wide> wide(3, Wide{}, memory);
+        EXPECT_EQ(reinterpret_cast<uintptr_t>(wide.data()) % 64, 0u);
+        Array<Array<int>> nested(4, Array<int>(memory), memory);
+        for (auto& inner : nested) inner.assign(10, 1);
+        EXPECT_EQ(memory.bytes(), host.bytes());
+        Array<int> other(memory);
+        other.swap(numbers);
+        EXPECT_EQ(other.size(), 1000u);
+        Array<int> moved = std::move(other);
+        EXPECT_EQ(moved[999], 999);
+        EXPECT_EQ(memory.bytes(), host.bytes());
+    }
+    EXPECT_TRUE(host.live.empty());
+    EXPECT_EQ(host.mistakes, 0u);
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,407 @@
+// Who is solved with whom, against brute force on random graphs, and the rules that give an island more substeps.
+#include "partition/partition.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "constraints/constraint.h"
+
+namespace taut::test {
+namespace {
+
+// A world's state as far as the partition looks at it.
+struct Graph {
+    Memory memory{taut_hooks{}};
+    Nodes nodes{memory};
+    Joints joints{memory};
+    Pairs pairs{memory};
+    Partition partition{memory};
+    PartitionRules rules{4, false, true};
+
+    uint32_t add(NodeKind kind, double mass = 1) {
+        const uint32_t node = nodes.add();
+        nodes.info[node].kind = kind;
+        if (!moves_by_forces(kind)) mass = 0;
+        nodes.mass[node].mass = mass;
+        nodes.mass[node].inv_mass = mass > 0 ? 1 / mass : 0;
+        return node;
+    }
+    uint32_t join(uint32_t a, uint32_t b, const ConstraintType& type = kBall) {
+        Joint joint;
+        joint.type = &type;
+        joint.node[0] = a;
+        joint.node[1] = b;
+        return joints.add(joint);
+    }
+    void touch(uint32_t a, uint32_t b) {
+        Pair& pair = pairs.list.emplace_back();
+        pair.key = static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+        pair.manifold.normal = Vec3f::UnitY();
+        pair.manifold.count = 1;
+    }
+    void build() {
+        std::sort(pairs.list.begin(), pairs.list.end(), [](const Pair& p, const Pair& q) { return p.key < q.key; });
+        pairs.active.clear();
+        for (uint32_t i = 0; i < pairs.list.size(); ++i)
+            pairs.active.push_back({pairs.list[i].a(), pairs.list[i].b(), i, 1});
+        partition.build(nodes, joints, pairs, rules);
+    }
+    bool moving(uint32_t node) const { return node != kNone && moves_by_forces(nodes.info[node].kind); }
+    uint32_t substeps_of(uint32_t node) const {
+        for (uint32_t g = 0; g < partition.group_count; ++g)
+            for (uint32_t member : partition.groups[g].nodes)
+                if (member == node) return partition.groups[g].substeps;
+        return 0;
+    }
+    // A column of boxes on the ground.
+    std::vector<uint32_t> tower(uint32_t count, double mass = 1) {
+        uint32_t below = add(NodeKind::fixed);
+        std::vector<uint32_t> boxes;
+        for (uint32_t i = 0; i < count; ++i) {
+            boxes.push_back(add(NodeKind::dynamic, mass));
+            touch(below, boxes.back());
+            below = boxes.back();
+        }
+        return boxes;
+    }
+};
+
+struct PartitionTest : testing::Test, Graph {};
+
+// Smallest node reached from each moving node through moving nodes.
+std::vector<uint32_t> components(uint32_t count, const std::vector<std::pair<uint32_t, uint32_t>>& edges) {
+    std::vector<uint32_t> label(count);
+    for (uint32_t i = 0; i < count; ++i) label[i] = i;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const auto& [a, b] : edges)
+            if (label[a] != label[b]) {
+                label[a] = label[b] = std::min(label[a], label[b]);
+                changed = true;
+            }
+    }
+    return label;
+}
+
+class RandomGraph : public testing::TestWithParam<uint32_t>, protected Graph {};
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomGraph, testing::Range(1u, 201u));
+
+TEST_P(RandomGraph, HasItsComponentsAsIslandsAndBlocks) {
+    std::mt19937 engine(GetParam());
+    const uint32_t count = 2 + engine() % 60;
+    for (uint32_t i = 0; i < count; ++i) {
+        constexpr NodeKind kKinds[] = {NodeKind::dynamic, NodeKind::dynamic, NodeKind::particle, NodeKind::fixed,
+                                       NodeKind::kinematic};
+        add(kKinds[engine() % 5]);
+    }
+    for (uint32_t dead = engine() % 4; dead > 0; --dead) {
+        const uint32_t node = engine() % count;
+        if (nodes.info[node].kind != NodeKind::dead) nodes.remove(node);
+    }
+    std::vector<std::pair<uint32_t, uint32_t>> joint_edges, all_edges;
+    std::set<std::pair<uint32_t, uint32_t>> touched;
+    for (uint32_t i = engine() % (count + 1); i > 0; --i) {
+        uint32_t a = engine() % count, b = engine() % count;
+        if (a == b || nodes.info[a].kind == NodeKind::dead || nodes.info[b].kind == NodeKind::dead) continue;
+        if (engine() % 2) {
+            if (!moving(a) && !moving(b)) continue;
+            if (engine() % 6 == 0 && moving(a)) b = kNone;
+            join(a, b);
+            if (moving(a) && moving(b)) joint_edges.push_back({a, b});
+        } else if (moving(a) || moving(b)) {
+            if (!touched.insert({std::min(a, b), std::max(a, b)}).second) continue;
+            touch(a, b);
+            if (moving(a) && moving(b)) all_edges.push_back({a, b});
+        }
+    }
+    all_edges.insert(all_edges.end(), joint_edges.begin(), joint_edges.end());
+    build();
+
+    const std::vector<uint32_t> island = components(count, all_edges), block = components(count, joint_edges);
+    std::set<uint32_t> islands;
+    std::map<uint32_t, std::vector<uint32_t>> block_joints, block_nodes;
+    for (uint32_t i = 0; i < count; ++i)
+        if (moving(i)) islands.insert(island[i]);
+    for (uint32_t j = 0; j < joints.record.size(); ++j) {
+        const Joint& joint = joints.record[j];
+        block_joints[block[moving(joint.node[0]) ? joint.node[0] : joint.node[1]]].push_back(j);
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        if (moving(i) && block_joints.count(block[i])) block_nodes[block[i]].push_back(i);
+    EXPECT_EQ(partition.islands, islands.size());
+    ASSERT_EQ(partition.blocks.size(), block_joints.size());
+    for (const Block& b : partition.blocks) {
+        ASSERT_FALSE(b.nodes.empty());
+        const uint32_t label = block[b.nodes[0]];
+        EXPECT_TRUE(std::equal(b.nodes.begin(), b.nodes.end(), block_nodes[label].begin(), block_nodes[label].end()));
+        EXPECT_TRUE(std::equal(b.joints.begin(), b.joints.end(), block_joints[label].begin(), block_joints[label].end()));
+    }
+    // Every moving node, block and pair of a moving node in one group; islands whole.
+    std::map<uint32_t, uint32_t> group_of;
+    size_t members = 0, grouped_blocks = 0, grouped_pairs = 0;
+    for (uint32_t g = 0; g < partition.group_count; ++g) {
+        const Group& group = partition.groups[g];
+        EXPECT_TRUE(std::is_sorted(group.nodes.begin(), group.nodes.end()));
+        EXPECT_TRUE(g == 0 || partition.groups[g - 1].substeps < group.substeps);
+        for (uint32_t node : group.nodes) {
+            const auto [at, added] = group_of.insert({island[node], g});
+            EXPECT_EQ(at->second, g);
+        }
+        members += group.nodes.size();
+        grouped_blocks += group.blocks.size();
+        grouped_pairs += group.pairs.size();
+    }
+    size_t expected_members = 0;
+    for (uint32_t i = 0; i < count; ++i) expected_members += moving(i);
+    EXPECT_EQ(members, expected_members);
+    EXPECT_EQ(grouped_blocks, partition.blocks.size());
+    EXPECT_EQ(grouped_pairs, pairs.list.size());
+}
+
+TEST_F(PartitionTest, FixedAndKinematicNodesPartIslands) {
+    const uint32_t ground = add(NodeKind::fixed), lift = add(NodeKind::kinematic);
+    for (int i = 0; i < 3; ++i) touch(ground, add(NodeKind::dynamic));
+    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic);
+    touch(lift, a);
+    join(lift, b);
+    build();
+    EXPECT_EQ(partition.islands, 5u);
+    EXPECT_EQ(partition.blocks.size(), 1u);
+}
+
+// ---------------------------------------------------------------- colours
+
+// Ends of a swept constraint by group index, and whether each colour but the last is free of common moving nodes.
+template <class Ends>
+void expect_valid_colours(const Graph& test, const Array<uint32_t>& items, const Array<uint32_t>& begin, Ends ends) {
+    ASSERT_EQ(begin.size(), kMaxColours + 1);
+    ASSERT_EQ(begin[0], 0u);
+    ASSERT_EQ(begin[kMaxColours], items.size());
+    for (uint32_t c = 0; c + 1 < kMaxColours; ++c) {
+        ASSERT_LE(begin[c], begin[c + 1]);
+        std::set<uint32_t> used;
+        for (uint32_t i = begin[c]; i < begin[c + 1]; ++i) {
+            const auto [a, b] = ends(items[i]);
+            for (uint32_t node : {a, b}) EXPECT_TRUE(!test.moving(node) || used.insert(node).second) << "colour " << c;
+        }
+    }
+}
+
+TEST_F(PartitionTest, NoColourHoldsAMovingNodeTwice) {
+    std::mt19937 engine(4);
+    rules.direct_joints = false;
+    const uint32_t ground = add(NodeKind::fixed);
+    constexpr uint32_t kCount = 300;
+    for (uint32_t i = 0; i < kCount; ++i) add(NodeKind::dynamic);
+    std::set<std::pair<uint32_t, uint32_t>> known;
+    for (int i = 0; i < 1500; ++i) {
+        const uint32_t a = engine() % (kCount + 1), b = engine() % (kCount + 1);
+        if (a == b || !known.insert({std::min(a, b), std::max(a, b)}).second) continue;
+        if (engine() % 3) touch(a, b);
+        else join(a, engine() % 10 == 0 && a != ground ? kNone : b);
+    }
+    build();
+    EXPECT_EQ(partition.blocks.size(), 0u);
+    size_t swept_joints = 0, swept_pairs = 0;
+    for (uint32_t g = 0; g < partition.group_count; ++g) {
+        const Group& group = partition.groups[g];
+        expect_valid_colours(*this, group.pairs, group.pair_colour_begin, [&](uint32_t p) {
+            return std::pair(pairs.active[p].a, pairs.active[p].b);
+        });
+        expect_valid_colours(*this, group.joints, group.joint_colour_begin, [&](uint32_t j) {
+            return std::pair(joints.record[j].node[0], joints.record[j].node[1]);
+        });
+        swept_pairs += group.pairs.size();
+        swept_joints += group.joints.size();
+    }
+    EXPECT_EQ(swept_pairs, pairs.list.size());
+    EXPECT_EQ(swept_joints, joints.record.size());
+    EXPECT_GT(partition.colours, 4u);
+    EXPECT_LT(partition.colours, kMaxColours);
+}
+
+// 63 colours for one node, what is left goes to the last, one by one.
+TEST_F(PartitionTest, AHubWithAHundredContactsReachesTheLastColour) {
+    const uint32_t hub = add(NodeKind::dynamic);
+    for (int i = 0; i < 100; ++i) touch(hub, add(NodeKind::dynamic));
+    build();
+    ASSERT_EQ(partition.group_count, 1u);
+    const Group& group = partition.groups[0];
+    EXPECT_EQ(partition.colours, kMaxColours);
+    expect_valid_colours(*this, group.pairs, group.pair_colour_begin, [&](uint32_t p) {
+        return std::pair(pairs.active[p].a, pairs.active[p].b);
+    });
+    for (uint32_t c = 0; c + 1 < kMaxColours; ++c) EXPECT_EQ(group.pair_colour_begin[c + 1] - group.pair_colour_begin[c], 1u);
+    EXPECT_EQ(group.pair_colour_begin[kMaxColours] - group.pair_colour_begin[kMaxColours - 1], 100 - (kMaxColours - 1));
+}
+
+TEST_F(PartitionTest, AFixedHubNeedsOneColour) {
+    const uint32_t ground = add(NodeKind::fixed);
+    for (int i = 0; i < 100; ++i) touch(ground, add(NodeKind::dynamic));
+    build();
+    EXPECT_EQ(partition.colours, 1u);
+    EXPECT_EQ(partition.islands, 100u);
+}
+
+// ---------------------------------------------------------------- substeps
+
+TEST_F(PartitionTest, TallTowersTakeTwiceTheSubsteps) {
+    const std::vector<uint32_t> low = tower(12), tall = tower(13), taller = tower(20);
+    build();
+    EXPECT_EQ(substeps_of(low[0]), 4u);
+    EXPECT_EQ(substeps_of(tall[0]), 8u);
+    EXPECT_EQ(substeps_of(taller.back()), 8u);
+    EXPECT_EQ(partition.group_count, 2u);
+    EXPECT_EQ(partition.groups[0].substeps, 4u);
+    rules.fixed = true;
+    build();
+    EXPECT_EQ(substeps_of(tall[0]), 4u);
+    EXPECT_EQ(partition.group_count, 1u);
+}
+
+// As tall, but five bodies a level lean on each other.
+TEST_F(PartitionTest, WidePilesDoNot) {
+    std::vector<std::vector<uint32_t>> columns;
+    for (int i = 0; i < 5; ++i) columns.push_back(tower(20));
+    for (size_t level = 0; level < 20; ++level)
+        for (size_t i = 0; i + 1 < 5; ++i) touch(columns[i][level], columns[i + 1][level]);
+    build();
+    EXPECT_EQ(partition.islands, 1u);
+    EXPECT_EQ(substeps_of(columns[0][0]), 4u);
+}
+
+TEST_F(PartitionTest, HeavyOnLightTakesFourTimesTheSubsteps) {
+    auto pile = [&](double below, double above) {
+        std::vector<uint32_t> boxes = tower(1, below);
+        boxes.push_back(add(NodeKind::dynamic, above));
+        touch(boxes[0], boxes[1]);
+        return boxes[0];
+    };
+    const uint32_t heavy = pile(1, 11), not_so = pile(1, 9), light = pile(100, 1);
+    build();
+    EXPECT_EQ(substeps_of(heavy), 16u);
+    EXPECT_EQ(substeps_of(not_so), 4u);
+    EXPECT_EQ(substeps_of(light), 4u);
+    rules.fixed = true;
+    build();
+    EXPECT_EQ(substeps_of(heavy), 4u);
+}
+
+// A load that hangs in the air on a light body stands on nothing.
+TEST_F(PartitionTest, LoadsCountOnlyOnASupport) {
+    const uint32_t light = add(NodeKind::dynamic, 1), heavy = add(NodeKind::dynamic, 1000);
+    touch(light, heavy);
+    build();
+    EXPECT_EQ(substeps_of(light), 4u);
+}
+
+TEST_F(PartitionTest, JointedIslandsDoNotTakeFourTimes) {
+    const std::vector<uint32_t> boxes = tower(1, 1);
+    const uint32_t heavy = add(NodeKind::dynamic, 50);
+    touch(boxes[0], heavy);
+    join(heavy, kNone);
+    build();
+    EXPECT_EQ(substeps_of(heavy), 4u);
+}
+
+TEST_F(PartitionTest, BlocksOfExtremeMassesOrThatTrippedTakeTwice) {
+    const uint32_t a = add(NodeKind::dynamic, 1), b = add(NodeKind::dynamic, 4e4);
+    const uint32_t c = add(NodeKind::dynamic, 1), d = add(NodeKind::dynamic, 2e4);
+    join(a, b);
+    join(c, d);
+    build();
+    EXPECT_EQ(substeps_of(a), 8u);
+    EXPECT_EQ(substeps_of(c), 4u);
+    EXPECT_DOUBLE_EQ(partition.blocks[0].mass_ratio, 4e4);
+    partition.blocks[1].memory.escalated = true;
+    build();
+    EXPECT_EQ(substeps_of(c), 8u);
+    rules.fixed = true;
+    build();
+    EXPECT_EQ(substeps_of(a), 4u);
+    EXPECT_EQ(substeps_of(c), 4u);
+}
+
+// ---------------------------------------------------------------- blocks kept
+
+// As the first solve leaves a block behind.
+void analyse(Block& block) {
+    block.matrix.begin(static_cast<uint32_t>(block.nodes.size() + block.joints.size()));
+    block.matrix.analyse();
+    block.memory.solved = 7;
+}
+bool kept(const Block& block) { return block.matrix.analysed() && block.memory.solved == 7; }
+
+TEST_F(PartitionTest, BlocksStayWhileTheirJointsDo) {
+    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic), d = add(NodeKind::dynamic);
+    join(a, b);
+    const uint32_t other = join(c, d);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 2u);
+    for (Block& block : partition.blocks) analyse(block);
+
+    touch(a, c);  // contacts come and go
+    build();
+    const uint64_t calls = memory.calls();
+    build();
+    EXPECT_EQ(memory.calls(), calls) << "an unchanged scene allocates nothing";
+    EXPECT_TRUE(kept(partition.blocks[0]));
+    EXPECT_TRUE(kept(partition.blocks[1]));
+
+    join(d, add(NodeKind::dynamic));  // somebody else's joint
+    build();
+    ASSERT_EQ(partition.blocks.size(), 2u);
+    EXPECT_TRUE(kept(partition.blocks[0]));
+    EXPECT_FALSE(kept(partition.blocks[1]));
+
+    joints.remove(other);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 2u);
+    EXPECT_TRUE(kept(partition.blocks[0]));
+    EXPECT_FALSE(kept(partition.blocks[1]));
+}
+
+// A joint's slot is used again at once, by a joint between other nodes of the same block or of another type: the
+// numbers in the block are the same, its matrix is not.
+TEST_F(PartitionTest, AReusedSlotIsAnotherJoint) {
+    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic);
+    join(a, b);
+    uint32_t last = join(b, c);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 1u);
+
+    analyse(partition.blocks[0]);
+    joints.remove(last);
+    ASSERT_EQ(join(a, c), last);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 1u);
+    EXPECT_FALSE(kept(partition.blocks[0])) << "joined elsewhere";
+
+    analyse(partition.blocks[0]);
+    joints.remove(last);
+    ASSERT_EQ(join(a, c, kDistance), last);
+    build();
+    EXPECT_FALSE(kept(partition.blocks[0])) << "of another type";
+}
+
+TEST_F(PartitionTest, AReusedSlotIsAnotherNode) {
+    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic);
+    const uint32_t joint = join(a, b);
+    build();
+    analyse(partition.blocks[0]);
+    joints.remove(joint);
+    nodes.remove(b);
+    ASSERT_EQ(add(NodeKind::particle, 50), b);
+    ASSERT_EQ(join(a, b), joint);
+    build();
+    EXPECT_FALSE(kept(partition.blocks[0])) << "three freedoms instead of six";
+    EXPECT_DOUBLE_EQ(partition.blocks[0].mass_ratio, 50);
+}
+
+}  // namespace
+}  // namespace taut::test
