@@ -23,7 +23,7 @@ vec3 film(vec3 c) {  // filmic curve: a toe for contrast, a shoulder for highlig
 vec3 fogged(vec3 c, vec3 p) {
     vec3 d = p - eye;
     float r = length(d);
-    float f = 1.0 - exp(-pow(r * 0.0105, 1.6));
+    float f = 1.0 - exp(-pow(r * 0.0090, 2.0));
     return mix(c, kHorizon, f);
 }
 float sun_visible(vec3 p, vec3 n, float facing) {

@@ -61,7 +61,8 @@ TEST(SameBits, OnThreadsAtOnce) {
     for (size_t w = 0; w < found.size(); ++w)
         threads.emplace_back([&, w] { found[w] = hashes(scenes::make_scene(kMixed[w]), kSteps); });
     for (std::thread& thread : threads) thread.join();
-    for (size_t w = 0; w < found.size(); ++w) EXPECT_EQ(found[w], hashes(scenes::make_scene(kMixed[w]), kSteps)) << kMixed[w];
+    for (size_t w = 0; w < found.size(); ++w)
+        EXPECT_EQ(found[w], hashes(scenes::make_scene(kMixed[w]), kSteps)) << kMixed[w];
 }
 
 // A difference of one part in 2^24 in one velocity must show, at once and after a while.

@@ -35,9 +35,8 @@ TEST_P(DroppedBall, ReboundsToTheSquareOfRestitution) {
     RecordProperty("height", std::to_string(top));
 }
 
-INSTANTIATE_TEST_SUITE_P(Restitution, DroppedBall, testing::Values(0.0, 0.5, 1.0), [](const auto& tested) {
-    return std::to_string(static_cast<int>(100 * tested.param));
-});
+INSTANTIATE_TEST_SUITE_P(Restitution, DroppedBall, testing::Values(0.0, 0.5, 1.0),
+                         [](const auto& tested) { return std::to_string(static_cast<int>(100 * tested.param)); });
 
 // Ten bounces without loss must not gain height.
 TEST(DroppedBall, FullyElasticNeverRisesAboveItsStart) {
@@ -57,8 +56,10 @@ TEST(BallsCollide, ExchangeVelocitiesWhenElastic) {
     for (double e : {0.0, 0.5, 1.0}) {
         World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
         const taut_shape shape = world.sphere(0.25);
-        const taut_body a = world.add({.shape = shape, .position = {-1, 0, 0}, .velocity = {3, 0, 0}, .mass = 2, .restitution = e});
-        const taut_body b = world.add({.shape = shape, .position = {1, 0, 0}, .velocity = {-1, 0, 0}, .mass = 2, .restitution = e});
+        const taut_body a =
+            world.add({.shape = shape, .position = {-1, 0, 0}, .velocity = {3, 0, 0}, .mass = 2, .restitution = e});
+        const taut_body b =
+            world.add({.shape = shape, .position = {1, 0, 0}, .velocity = {-1, 0, 0}, .mass = 2, .restitution = e});
         world.step(60);
         EXPECT_NEAR(velocity(a).x, 1 - 2 * e, 0.02) << "e = " << e;
         EXPECT_NEAR(velocity(b).x, 1 + 2 * e, 0.02) << "e = " << e;

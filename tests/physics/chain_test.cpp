@@ -44,7 +44,8 @@ public:
     bool sound() const {
         taut_events events{};
         ok(taut_world_get_events(world.world, &events));
-        return events.quarantined_count == 0 && std::all_of(bodies.begin(), bodies.end(), [](taut_body b) { return finite(b); });
+        return events.quarantined_count == 0 &&
+               std::all_of(bodies.begin(), bodies.end(), [](taut_body b) { return finite(b); });
     }
 
 private:
@@ -129,14 +130,14 @@ TEST_P(SwingingChain, KeepsItsEnergyAndPeriodForHalfAMinute) {
     EXPECT_GE(late / late_frames / chain.start_energy, 0.99);
     EXPECT_LE(late / late_frames / chain.start_energy, 1.01);
     ASSERT_EQ(found.times.size(), exact.times.size());
-    EXPECT_NEAR(found.period() / exact.period(), 1, 0.0005) << "period " << found.period() << ", exactly " << exact.period();
+    EXPECT_NEAR(found.period() / exact.period(), 1, 0.0005)
+        << "period " << found.period() << ", exactly " << exact.period();
     RecordProperty("energy", std::to_string(late / late_frames / chain.start_energy));
     RecordProperty("period_error_pct", std::to_string(100 * (found.period() / exact.period() - 1)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Ratio, SwingingChain, testing::Values(1.0, 100.0, 10000.0), [](const auto& tested) {
-    return std::to_string(static_cast<int>(tested.param));
-});
+INSTANTIATE_TEST_SUITE_P(Ratio, SwingingChain, testing::Values(1.0, 100.0, 10000.0),
+                         [](const auto& tested) { return std::to_string(static_cast<int>(tested.param)); });
 
 struct Seeds {
     double ratio;
@@ -195,10 +196,14 @@ protected:
         const Quat turn = Quat::turn({0, 0, 1}, 0.15);
         for (size_t i = 0; i < kLinks; ++i) {
             const double along = (static_cast<double>(i) + 0.5) * kLink;
-            links.push_back(world.add({.position = turn.rotate({0, -along, 0}), .rotation = turn, .mass = 0.1,
+            links.push_back(world.add({.position = turn.rotate({0, -along, 0}),
+                                       .rotation = turn,
+                                       .mass = 0.1,
                                        .inertia = 0.1 * Vec(0.0079, 0.0008, 0.0079)}));
-            if (i == 0) world.ball({}, {0, 0, 0}, links[0], {0, kLink / 2, 0});
-            else world.ball(links[i - 1], {0, -kLink / 2, 0}, links[i], {0, kLink / 2, 0});
+            if (i == 0)
+                world.ball({}, {0, 0, 0}, links[0], {0, kLink / 2, 0});
+            else
+                world.ball(links[i - 1], {0, -kLink / 2, 0}, links[i], {0, kLink / 2, 0});
         }
     }
     Vec end() const {
@@ -233,7 +238,8 @@ TEST_F(LightChain, IsNotKickedByAHeavyWeightJoinedOrCut) {
     // can reach no more than v^2 = v0^2 + 2 g (rise of the end).
     const Vec hang = end_velocity();
     const double weight_limit = std::sqrt(dot(hang, hang) + 2 * kG * (end().y + kLinks * kLink + 0.05));
-    const taut_body weight = world.add({.position = end() - Vec(0, 0.25, 0), .velocity = hang, .mass = 1000, .inertia = {42, 42, 42}});
+    const taut_body weight =
+        world.add({.position = end() - Vec(0, 0.25, 0), .velocity = hang, .mass = 1000, .inertia = {42, 42, 42}});
     const taut_joint joint = world.ball(links.back(), {0, -kLink / 2, 0}, weight, {0, 0.25, 0});
     double links_fastest = 0, weight_fastest = 0;
     for (int i = 0; i < 180; ++i) {

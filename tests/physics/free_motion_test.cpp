@@ -22,8 +22,11 @@ TEST_P(Projectile, FollowsTheStepsClosedFormAndTheParabolaToFirstOrder) {
     const Vec x0(1000, 2, -3), v0(3, 8, -1.5);
     World world([&](taut_world_def& def) { def.substeps = t.substeps; });
     const taut_body body = t.particle ? world.particle(2, x0, v0, t.gravity_scale)
-                                      : world.add({.shape = world.box({0.5, 0.3, 0.1}), .position = x0, .velocity = v0,
-                                                   .spin = {1, 2, 3}, .gravity_scale = t.gravity_scale});
+                                      : world.add({.shape = world.box({0.5, 0.3, 0.1}),
+                                                   .position = x0,
+                                                   .velocity = v0,
+                                                   .spin = {1, 2, 3},
+                                                   .gravity_scale = t.gravity_scale});
     const Vec g = t.gravity_scale * Vec(world.def.gravity);
     const double h = world.frame() / t.substeps;
     for (int frame = 1; frame <= 300; ++frame) {
@@ -55,10 +58,16 @@ TEST_P(FreeSpin, KeepsMomentaAndEnergy) {
     World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
     const Quat turn = Quat::turn({1, 2, 3}, 0.7);
     const Vec v0(1, -2, 0.5), x0(3, 1, -2);
-    const taut_body body = world.add({.shape = world.box({0.5, 0.3, 0.1}), .position = x0, .rotation = turn,
-                                      .velocity = v0, .spin = turn.rotate(GetParam().axis), .mass = 7});
+    const taut_body body = world.add({.shape = world.box({0.5, 0.3, 0.1}),
+                                      .position = x0,
+                                      .rotation = turn,
+                                      .velocity = v0,
+                                      .spin = turn.rotate(GetParam().axis),
+                                      .mass = 7});
     const Totals start = totals({body});
-    auto energy = [](const Totals& t) { return t.kinetic - dot(t.momentum, t.momentum) / (2 * t.mass); };  // of the spin
+    auto energy = [](const Totals& t) {
+        return t.kinetic - dot(t.momentum, t.momentum) / (2 * t.mass);
+    };  // of the spin
     double worst_l = 0, worst_e = 0;
     for (int frame = 1; frame <= 600; ++frame) {
         world.step();
@@ -119,7 +128,8 @@ TEST_P(ChainInSpace, KeepsMomentaAndEnergyForTenSeconds) {
     middle /= total;
     // Joint-compatible velocities: each link's own spin, positions strung together, then the drift taken out.
     auto spin = [&](int i) {
-        return plan.tumbles ? Vec(2 * std::sin(1.3 * i), 5 + 3 * std::cos(2.0 * i), 2 * std::cos(0.7 * i)) : Vec(0, 5, 0);
+        return plan.tumbles ? Vec(2 * std::sin(1.3 * i), 5 + 3 * std::cos(2.0 * i), 2 * std::cos(0.7 * i))
+                            : Vec(0, 5, 0);
     };
     std::vector<Vec> velocities;
     Vec at_joint, drift;
@@ -132,8 +142,11 @@ TEST_P(ChainInSpace, KeepsMomentaAndEnergyForTenSeconds) {
     std::vector<taut_body> links;
     for (int i = 0; i < kLinks; ++i) {
         const Vec inertia = mass(i) * (plan.sphere ? Vec(across, across, across) : Vec(along, across, across));
-        links.push_back(world.add({.position = {i * kLink - middle, 0, 0}, .velocity = velocities[static_cast<size_t>(i)] - drift,
-                                   .spin = spin(i), .mass = mass(i), .inertia = inertia}));
+        links.push_back(world.add({.position = {i * kLink - middle, 0, 0},
+                                   .velocity = velocities[static_cast<size_t>(i)] - drift,
+                                   .spin = spin(i),
+                                   .mass = mass(i),
+                                   .inertia = inertia}));
         if (i > 0) world.ball(links[static_cast<size_t>(i - 1)], {kLink / 2, 0, 0}, links.back(), {-kLink / 2, 0, 0});
     }
     const Totals start = totals(links);
@@ -145,12 +158,32 @@ TEST_P(ChainInSpace, KeepsMomentaAndEnergyForTenSeconds) {
     EXPECT_LT(norm(end.centre - start.centre - 600 * world.frame() * speed), 1e-9) << "linear momentum";
     RecordProperty("spin_ratio", std::to_string(norm(end.spin) / norm(start.spin)));
     RecordProperty("energy_ratio", std::to_string(end.kinetic / start.kinetic));
-    RecordProperty("centre_moved", std::to_string(1e12 * norm(end.centre - start.centre - 600 * world.frame() * speed)));
+    RecordProperty("centre_moved",
+                   std::to_string(1e12 * norm(end.centre - start.centre - 600 * world.frame() * speed)));
+}
+
+// Particles on rods: the low-passed velocity that geometric stiffness spares lags behind the turning one, to third
+// order in the substep; that costs half a percent here.
+TEST(ParticlesInSpace, KeepTheirMomenta) {
+    World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+    std::vector<taut_body> points;
+    for (int i = 0; i < 10; ++i) {
+        const double x = 0.5 * (i - 4.5);
+        points.push_back(world.particle(1, {x, 0, 0}, {0, 0, -5 * x}));
+        if (i > 0) world.rod(points[static_cast<size_t>(i - 1)], {}, points.back(), {}, 0.5);
+    }
+    const Totals start = totals(points);
+    world.step(600);
+    const Totals end = totals(points);
+    EXPECT_NEAR(norm(end.spin) / norm(start.spin), 1, 0.01);
+    EXPECT_NEAR(end.kinetic / start.kinetic, 1, 0.02);
+    EXPECT_LT(norm(end.centre - start.centre), 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ChainInSpace,
                          testing::Values(FreeChain{"spheres", true, false, 1}, FreeChain{"rods", false, false, 1},
                                          FreeChain{"tumbling_spheres", true, true, 1},
+                                         FreeChain{"tumbling_rods", false, true, 1},
                                          FreeChain{"spheres_and_1000kg", true, false, 1000},
                                          FreeChain{"rods_and_1000kg", false, false, 1000}),
                          [](const auto& tested) { return tested.param.name; });

@@ -31,8 +31,11 @@ void add_slope(const World& world, const Slope& slope, Ground ground, double fri
         return;
     }
     const Vec half(40, 1, 40);
-    world.add({.kind = ground == Ground::static_box ? TAUT_BODY_STATIC : TAUT_BODY_KINEMATIC, .shape = world.box(half),
-               .position = -half.y * slope.normal, .rotation = slope.turn, .friction = friction});
+    world.add({.kind = ground == Ground::static_box ? TAUT_BODY_STATIC : TAUT_BODY_KINEMATIC,
+               .shape = world.box(half),
+               .position = -half.y * slope.normal,
+               .rotation = slope.turn,
+               .friction = friction});
 }
 
 struct OnSlope {
@@ -54,8 +57,12 @@ protected:
     taut_body place(const World& world, const Slope& slope, const Vec& velocity = {}) const {
         add_slope(world, slope, GetParam().ground, kFriction);
         const Quat own = Quat::turn({0, 1, 0}, GetParam().box_yaw * kPi / 180);
-        return world.add({.shape = world.box({kHalf, kHalf, kHalf}), .position = kHalf * slope.normal,
-                          .rotation = slope.turn * own, .velocity = velocity, .mass = 10, .friction = kFriction});
+        return world.add({.shape = world.box({kHalf, kHalf, kHalf}),
+                          .position = kHalf * slope.normal,
+                          .rotation = slope.turn * own,
+                          .velocity = velocity,
+                          .mass = 10,
+                          .friction = kFriction});
     }
 };
 
@@ -114,8 +121,9 @@ TEST_P(BoxOnSlope, ThrownAcrossComesToRestWhereFrictionSays) {
 INSTANTIATE_TEST_SUITE_P(Turned, BoxOnSlope,
                          testing::Values(OnSlope{0, 0, Ground::static_box}, OnSlope{0, 17, Ground::static_box},
                                          OnSlope{33, 0, Ground::static_box}, OnSlope{45, 45, Ground::static_box},
-                                         OnSlope{90, 30, Ground::kinematic_box}, OnSlope{123, 70, Ground::kinematic_box},
-                                         OnSlope{200, 10, Ground::plane}, OnSlope{301, 45, Ground::plane}));
+                                         OnSlope{90, 30, Ground::kinematic_box},
+                                         OnSlope{123, 70, Ground::kinematic_box}, OnSlope{200, 10, Ground::plane},
+                                         OnSlope{301, 45, Ground::plane}));
 
 class BallRolls : public testing::TestWithParam<Ground> {};
 
@@ -125,7 +133,8 @@ TEST_P(BallRolls, DownASlopeAtFiveSevenths) {
     constexpr double kRadius = 0.3;
     World world;
     add_slope(world, slope, GetParam(), 1);
-    const taut_body ball = world.add({.shape = world.sphere(kRadius), .position = kRadius * slope.normal, .friction = 1});
+    const taut_body ball =
+        world.add({.shape = world.sphere(kRadius), .position = kRadius * slope.normal, .friction = 1});
     const Vec start = position(ball);
     world.step(180);
     const double time = 180 * world.frame(), exact = 5.0 / 7 * kG * std::sin(slope.angle);
@@ -142,8 +151,10 @@ TEST_P(BallRolls, FromSlidingToFiveSeventhsOfItsSpeed) {
     constexpr double kRadius = 0.25, kSpeed = 5, kFriction = 0.3;
     World world;
     add_slope(world, level, GetParam(), kFriction);
-    const taut_body ball = world.add({.shape = world.sphere(kRadius), .position = {0, kRadius, 0},
-                                      .velocity = kSpeed * level.down, .friction = kFriction});
+    const taut_body ball = world.add({.shape = world.sphere(kRadius),
+                                      .position = {0, kRadius, 0},
+                                      .velocity = kSpeed * level.down,
+                                      .friction = kFriction});
     const double slides = 2 * kSpeed / (7 * kFriction * kG);  // [s]
     world.step(static_cast<int>(0.5 * slides / world.frame()));
     EXPECT_GT(dot(velocity(ball), level.down), 5.0 / 7 * kSpeed * 1.1) << "still sliding half-way";

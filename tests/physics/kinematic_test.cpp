@@ -8,8 +8,12 @@ using namespace lab;
 class Platform : public testing::Test {
 protected:
     Platform() {
-        platform = world.add({.kind = TAUT_BODY_KINEMATIC, .shape = world.box({3, 0.25, 3}), .position = {0, -0.25, 0}, .friction = 0.5});
-        box = world.add({.shape = world.box({0.25, 0.25, 0.25}), .position = {0, 0.25, 0}, .mass = 20, .friction = 0.5});
+        platform = world.add({.kind = TAUT_BODY_KINEMATIC,
+                              .shape = world.box({3, 0.25, 3}),
+                              .position = {0, -0.25, 0},
+                              .friction = 0.5});
+        box =
+            world.add({.shape = world.box({0.25, 0.25, 0.25}), .position = {0, 0.25, 0}, .mass = 20, .friction = 0.5});
         world.step(30);
     }
     void drive(const Vec& velocity, const Vec& spin = {}) const {
@@ -70,8 +74,10 @@ TEST_F(Platform, TurnsABoxRound) {
 TEST(KinematicPusher, PushesAHeavyBoxAndKeepsItsSpeed) {
     World world;
     world.add_ground(0.5);
-    const taut_body pusher =
-        world.add({.kind = TAUT_BODY_KINEMATIC, .shape = world.box({0.25, 0.5, 1}), .position = {-1, 0.6, 0}, .velocity = {1, 0, 0}});
+    const taut_body pusher = world.add({.kind = TAUT_BODY_KINEMATIC,
+                                        .shape = world.box({0.25, 0.5, 1}),
+                                        .position = {-1, 0.6, 0},
+                                        .velocity = {1, 0, 0}});
     const taut_body box = world.add({.shape = world.box({0.5, 0.5, 0.5}), .position = {0, 0.5, 0}, .mass = 5000});
     world.step(240);
     const double time = 240 * world.frame();
@@ -83,7 +89,8 @@ TEST(KinematicPusher, PushesAHeavyBoxAndKeepsItsSpeed) {
 
 TEST(KinematicPusher, ReachesTheTargetOfMoveKinematic) {
     World world;
-    const taut_body mover = world.add({.kind = TAUT_BODY_KINEMATIC, .shape = world.box({0.5, 0.5, 0.5}), .position = {4, 2, 1}});
+    const taut_body mover =
+        world.add({.kind = TAUT_BODY_KINEMATIC, .shape = world.box({0.5, 0.5, 0.5}), .position = {4, 2, 1}});
     const Quat turn = Quat::turn({1, 1, 0}, 0.3);
     taut_pose target{};
     target.position = {4.1, 2.05, 0.9};

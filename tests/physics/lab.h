@@ -17,7 +17,7 @@
 
 namespace lab {
 
-constexpr double kG = 9.81;        // [m/s^2], as float in taut_world_def's default
+constexpr double kG = 9.81;  // [m/s^2], as float in taut_world_def's default
 constexpr double kPi = std::numbers::pi;
 
 struct Vec {
@@ -25,7 +25,8 @@ struct Vec {
 
     Vec() = default;
     Vec(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
-    Vec(taut_vec3 v) : x(static_cast<double>(v.x)), y(static_cast<double>(v.y)), z(static_cast<double>(v.z)) {}  // NOLINT
+    Vec(taut_vec3 v)
+        : x(static_cast<double>(v.x)), y(static_cast<double>(v.y)), z(static_cast<double>(v.z)) {}  // NOLINT
     Vec(taut_pos p) : x(p.x), y(p.y), z(p.z) {}  // NOLINT: implicit by design
 
     taut_vec3 narrow() const { return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}; }
@@ -51,7 +52,10 @@ struct Quat {
     Quat() = default;
     Quat(double x_, double y_, double z_, double w_) : x(x_), y(y_), z(z_), w(w_) {}
     Quat(taut_quat q)  // NOLINT: implicit by design
-        : x(static_cast<double>(q.x)), y(static_cast<double>(q.y)), z(static_cast<double>(q.z)), w(static_cast<double>(q.w)) {}
+        : x(static_cast<double>(q.x)),
+          y(static_cast<double>(q.y)),
+          z(static_cast<double>(q.z)),
+          w(static_cast<double>(q.w)) {}
     static Quat turn(const Vec& axis, double angle) {
         const Vec v = std::sin(angle / 2) * unit(axis);
         return {v.x, v.y, v.z, std::cos(angle / 2)};
@@ -82,8 +86,8 @@ struct BodyPlan {
     Vec position{};
     Quat rotation{};
     Vec velocity{}, spin{};
-    double mass = 0;         // [kg], 0: from density
-    Vec inertia{};           // principal, about the centre [kg m^2]; 0: from the shape
+    double mass = 0;  // [kg], 0: from density
+    Vec inertia{};    // principal, about the centre [kg m^2]; 0: from the shape
     double friction = 0.5, restitution = 0;
     double gravity_scale = 1;
     int32_t group = 0;
@@ -140,8 +144,12 @@ public:
         d.linear_velocity = plan.velocity.narrow();
         d.angular_velocity = plan.spin.narrow();
         d.mass = static_cast<float>(plan.mass);
-        d.inertia = {static_cast<float>(plan.inertia.x), static_cast<float>(plan.inertia.y),
-                     static_cast<float>(plan.inertia.z), 0, 0, 0};
+        d.inertia = {static_cast<float>(plan.inertia.x),
+                     static_cast<float>(plan.inertia.y),
+                     static_cast<float>(plan.inertia.z),
+                     0,
+                     0,
+                     0};
         d.material = {static_cast<float>(plan.friction), static_cast<float>(plan.restitution)};
         d.gravity_scale = static_cast<float>(plan.gravity_scale);
         d.filter.group = plan.group;
@@ -195,7 +203,7 @@ public:
         for (int i = 0; i < count; ++i) ok(taut_world_step(handle));
     }
     double frame() const { return static_cast<double>(def.time_step); }  // [s]
-    double substep() const {                                            // of the last frame [s]
+    double substep() const {                                             // of the last frame [s]
         return frame() / profile().substeps;
     }
     taut_profile profile() const {
@@ -251,15 +259,15 @@ inline Vec spin_momentum(const BodyState& s, const taut_sym3& i) {
     const Vec w = s.rotation.rotate_back(s.spin);
     const double xx = static_cast<double>(i.xx), yy = static_cast<double>(i.yy), zz = static_cast<double>(i.zz),
                  xy = static_cast<double>(i.xy), xz = static_cast<double>(i.xz), yz = static_cast<double>(i.yz);
-    return s.rotation.rotate({xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z,
-                              xz * w.x + yz * w.y + zz * w.z});
+    return s.rotation.rotate(
+        {xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z, xz * w.x + yz * w.y + zz * w.z});
 }
 
 // Of a set of bodies whose centres of mass are their origins.
 struct Totals {
     double mass = 0, kinetic = 0;
     Vec centre, momentum;
-    Vec spin;  // angular momentum about the centre of mass
+    Vec spin;           // angular momentum about the centre of mass
     double height = 0;  // sum m y: potential energy over g
 };
 
@@ -299,7 +307,8 @@ inline double elliptic_k(double k) {
 class Crossings {
 public:
     void sample(double time, double value) {
-        if (seen_ && last_ < 0 && value >= 0) times.push_back(last_time_ + (time - last_time_) * last_ / (last_ - value));
+        if (seen_ && last_ < 0 && value >= 0)
+            times.push_back(last_time_ + (time - last_time_) * last_ / (last_ - value));
         seen_ = true;
         last_ = value;
         last_time_ = time;

@@ -18,12 +18,14 @@ std::map<std::pair<uint64_t, uint64_t>, double> pressures(const World& world) {
 }
 
 TEST(Stack, EveryInterfaceCarriesTheWeightAbove) {
-    for (const std::vector<double>& masses : {std::vector<double>{5, 5, 5, 5, 5}, {40, 25, 12, 6, 3}, {10, 20, 15, 30}}) {
+    for (const std::vector<double>& masses :
+         {std::vector<double>{5, 5, 5, 5, 5}, {40, 25, 12, 6, 3}, {10, 20, 15, 30}}) {
         World world;
         std::vector<taut_body> bodies = {world.add_ground()};
         const taut_shape cube = world.box({0.25, 0.25, 0.25});
         for (double mass : masses)
-            bodies.push_back(world.add({.shape = cube, .position = {0, 0.5 * static_cast<double>(bodies.size()) - 0.25, 0}, .mass = mass}));
+            bodies.push_back(world.add(
+                {.shape = cube, .position = {0, 0.5 * static_cast<double>(bodies.size()) - 0.25, 0}, .mass = mass}));
         world.step(300);
         const auto found = pressures(world);
         double above = 0;
@@ -61,9 +63,10 @@ TEST(HangingChain, JointForcesAreTheWeightsBelow) {
     for (double mass : masses) {
         below += mass;
         const bool first = joints.empty();
-        bodies.push_back(world.add({.position = {0, y - 0.25, 0}, .mass = mass,
-                                    .inertia = mass * Vec(0.02, 0.003, 0.02)}));
-        joints.push_back(world.ball(bodies[bodies.size() - 2], first ? Vec(0, y, 0) : Vec(0, -0.25, 0), bodies.back(), {0, 0.25, 0}));
+        bodies.push_back(
+            world.add({.position = {0, y - 0.25, 0}, .mass = mass, .inertia = mass * Vec(0.02, 0.003, 0.02)}));
+        joints.push_back(world.ball(bodies[bodies.size() - 2], first ? Vec(0, y, 0) : Vec(0, -0.25, 0), bodies.back(),
+                                    {0, 0.25, 0}));
         y -= 0.5;
     }
     world.step(120);
@@ -86,7 +89,8 @@ TEST(HangingCable, TakesTheShapeOfACatenary) {
     std::vector<taut_body> points;
     for (int i = 1; i <= kPoints; ++i) {
         const double part = static_cast<double>(i) / (kPoints + 1);
-        points.push_back(world.particle(0.5, {(part - 0.5) * kSpan, kHeight - slope * 2 * std::min(part, 1 - part), 0}));
+        points.push_back(
+            world.particle(0.5, {(part - 0.5) * kSpan, kHeight - slope * 2 * std::min(part, 1 - part), 0}));
     }
     world.rod({}, {-kSpan / 2, kHeight, 0}, points.front(), {}, piece);
     for (size_t i = 1; i < kPoints; ++i) world.rod(points[i - 1], {}, points[i], {}, piece);
@@ -111,7 +115,8 @@ TEST(HangingCable, TakesTheShapeOfACatenary) {
     double worst = 0;
     for (int i = 0; i < kPoints; ++i) {
         const double arc = (i + 1) * piece - kLength / 2, x = a * std::asinh(arc / a);
-        worst = std::max(worst, norm(position(points[static_cast<size_t>(i)]) - Vec(x, lift + a * std::cosh(x / a), 0)));
+        worst =
+            std::max(worst, norm(position(points[static_cast<size_t>(i)]) - Vec(x, lift + a * std::cosh(x / a), 0)));
     }
     EXPECT_LT(worst, 0.005 * kSpan);
     RecordProperty("worst_pct_of_span", std::to_string(100 * worst / kSpan));

@@ -23,7 +23,8 @@ public:
             c_[i] = gravity * (b.mass * b.reach + b.length * below[i]);
             a_[i * n_ + i] = b.inertia + b.mass * b.reach * b.reach + b.length * b.length * below[i];
             for (size_t j = i + 1; j < n_; ++j)
-                a_[i * n_ + j] = a_[j * n_ + i] = b.length * (bodies[j].mass * bodies[j].reach + bodies[j].length * below[j]);
+                a_[i * n_ + j] = a_[j * n_ + i] =
+                    b.length * (bodies[j].mass * bodies[j].reach + bodies[j].length * below[j]);
         }
     }
 

@@ -5,9 +5,9 @@ namespace {
 
 using namespace lab;
 
-constexpr double kMass = 8;        // [kg], a period of 2 s
+constexpr double kMass = 8;               // [kg], a period of 2 s
 constexpr double kCompliance = 1 / 80.0;  // [m/N]
-constexpr double kLength = 1;      // [m]
+constexpr double kLength = 1;             // [m]
 
 double critical() { return 2 * std::sqrt(kMass / kCompliance); }  // [N s/m]
 
@@ -15,7 +15,8 @@ double critical() { return 2 * std::sqrt(kMass / kCompliance); }  // [N s/m]
 struct Hung {
     Hung(World& world, bool particle, double damping, double stretch) {
         const Vec at(0, -kLength - stretch, 0);
-        weight = particle ? world.particle(kMass, at) : world.add({.shape = world.box({0.1, 0.1, 0.1}), .position = at, .mass = kMass});
+        weight = particle ? world.particle(kMass, at)
+                          : world.add({.shape = world.box({0.1, 0.1, 0.1}), .position = at, .mass = kMass});
         spring = world.rod({}, {0, 0, 0}, weight, {}, kLength, kCompliance, damping);
     }
     double stretch() const { return -position(weight).y - kLength; }
@@ -55,7 +56,8 @@ TEST_P(Spring, OscillatesAtItsPeriod) {
 TEST_P(Spring, DampsByItsDampingRatio) {
     for (double ratio : {0.1, 0.2, 0.4}) {
         World world;
-        const double sag = kMass * kG * kCompliance, own = world.frame() / world.def.substeps / 2 / std::sqrt(kMass * kCompliance);
+        const double sag = kMass * kG * kCompliance,
+                     own = world.frame() / world.def.substeps / 2 / std::sqrt(kMass * kCompliance);
         const Hung hung(world, GetParam(), ratio * critical(), sag + 0.2);
         std::vector<double> peaks = {0.2};
         double before = 0.2, last = 0.2;

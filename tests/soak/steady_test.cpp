@@ -88,11 +88,12 @@ TEST_P(SteadyShort, TakesNoMemoryAfterWarmUp) {
     EXPECT_GT(hooked, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scene, SteadyShort,
-                         testing::Values(Steady{"stack10", "stack10", 60}, Steady{"stack20", "stack20", 60},
-                                         Steady{"pyramid10", "pyramid10", 60}, Steady{"chain10_r1000", "chain10_r1000", 60},
-                                         Steady{"swing_r100", "swing_r100", 60}, Steady{"cable50_r1000", "cable50_r1000", 60},
-                                         Steady{"heavy_on_light_r10", "heavy_on_light_r10", 60}, Steady{"bin", nullptr, 60}),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Scene, SteadyShort,
+    testing::Values(Steady{"stack10", "stack10", 60}, Steady{"stack20", "stack20", 60},
+                    Steady{"pyramid10", "pyramid10", 60}, Steady{"chain10_r1000", "chain10_r1000", 60},
+                    Steady{"swing_r100", "swing_r100", 60}, Steady{"cable50_r1000", "cable50_r1000", 60},
+                    Steady{"heavy_on_light_r10", "heavy_on_light_r10", 60}, Steady{"bin", nullptr, 60}),
+    [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
