@@ -5,12 +5,12 @@
 
 #include "collision/collide.h"
 #include "partition/partition.h"
+#include "solvers/solver.h"
 #include "state/handle.h"
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
-#include "solvers/solver.h"
 #include "system/system.h"
 
 namespace taut {

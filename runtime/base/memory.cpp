@@ -23,8 +23,10 @@ void Memory::release(void* pointer, size_t size, size_t alignment) noexcept {
     if (!pointer) return;
     if (size == 0) size = 1;
     bytes_ -= size;
-    if (hooks_.free) hooks_.free(pointer, size, alignment, hooks_.memory_user_data);
-    else std::free(pointer);
+    if (hooks_.free)
+        hooks_.free(pointer, size, alignment, hooks_.memory_user_data);
+    else
+        std::free(pointer);
 }
 
 }  // namespace taut

@@ -42,7 +42,9 @@ struct HostAllocator {
 
     static constexpr size_t alignment() { return alignof(T) > 16 ? alignof(T) : 16; }
     template <class U>
-    bool operator==(const HostAllocator<U>& other) const { return memory == other.memory; }
+    bool operator==(const HostAllocator<U>& other) const {
+        return memory == other.memory;
+    }
 };
 
 // A growing array in the world's memory. Constructed from the world's Memory: Array<int> a(memory);

@@ -35,8 +35,8 @@ enum class Curvature {
 
 // What lambda may be.
 enum class Bound : uint8_t {
-    free,      // equality: any lambda
-    cone,      // row 0 >= 0, rows 1 and 2 within friction * row 0
+    free,  // equality: any lambda
+    cone,  // row 0 >= 0, rows 1 and 2 within friction * row 0
 };
 
 struct ConstraintType {

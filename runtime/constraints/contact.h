@@ -8,7 +8,7 @@ namespace taut {
 struct ContactData {
     Vec3 anchor_a = Vec3::Zero(), anchor_b = Vec3::Zero();  // relative to the centre of mass, body axes [m]
     Vec3 offset = Vec3::Zero();                             // makes C the separation and no slip at detection [m]
-    Mat3 basis = Mat3::Identity();                          // rows: normal from a to b, tangent 1, tangent 2; world axes
+    Mat3 basis = Mat3::Identity();  // rows: normal from a to b, tangent 1, tangent 2; world axes
 };
 
 }  // namespace taut

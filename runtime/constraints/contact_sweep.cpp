@@ -1,5 +1,5 @@
 // Run-time choice of the contact sweep's build.
-#include "system/contact_lanes.h"
+#include "constraints/contact_lanes.h"
 
 namespace taut {
 

@@ -6,8 +6,8 @@
 // which opposes the slip, then projected on the circle.
 #pragma once
 
+#include "constraints/contact_lanes.h"
 #include "simd/lanes.h"
-#include "system/contact_lanes.h"
 
 namespace taut {
 
@@ -70,7 +70,10 @@ struct ContactSweep {
         V n, t1, t2;
         F friction;
         explicit Frame(const LaneGroup& g)
-            : n(ContactSweep::load(g.normal)), t1(ContactSweep::load(g.tangent)), t2(cross(n, t1)), friction(F::load(g.friction)) {}
+            : n(ContactSweep::load(g.normal)),
+              t1(ContactSweep::load(g.tangent)),
+              t2(cross(n, t1)),
+              friction(F::load(g.friction)) {}
     };
 
     struct ShiftLanes {
@@ -177,7 +180,8 @@ struct ContactSweep {
             b.gather(g.b, velocities, masses);
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint& p = contacts.point[g.first_point + k];
-                const V push = F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * f.t2;
+                const V push =
+                    F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * f.t2;
                 b.add(push, load(p.rb));
                 a.add(zero_minus(push), load(p.ra));
             }
@@ -189,7 +193,8 @@ struct ContactSweep {
     static void sweep_biased(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
                              const SweepMass* masses, const SweepShift* shifts, const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
-        const F least = F::all(-terms.push), soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
+        const F least = F::all(-terms.push), soft_mass = F::all(terms.mass_scale),
+                soft_impulse = F::all(terms.impulse_scale);
         for (uint32_t i = begin; i < end; ++i) {
             const LaneGroup& g = contacts.group[i];
             const Frame f(g);

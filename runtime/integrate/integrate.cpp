@@ -1,19 +1,44 @@
 #include "integrate/integrate.h"
 
+#include <Eigen/LU>
+
 namespace taut {
 namespace {
 
-// One Newton step of the implicit Euler equation I (w - w0) + h w x I w = 0 in body axes, where I is constant:
-// unconditionally stable, where the explicit form spins thin bodies up.
-Vec3 gyroscopic(const Vec3& w, const Mat3& inertia, double h) {
-    const Vec3 l = inertia * w;
-    const Mat3 derivative = inertia + h * (hat(w) * inertia - hat(l));
-    return w - derivative.inverse() * (h * w.cross(l));
+// Gyroscopic torque in body axes, where the inertia is constant; the explicit form spins thin bodies up.
+// Implicit midpoint, I (w - w0) + h m x I m = 0 with m = (w + w0)/2, keeps w.I w and |I w| as they are; three Newton
+// steps solve it where a substep turns the body by less than a radian or so.
+bool gyroscopic_midpoint(const Vec3& w0, const Mat3& inertia, double h, Vec3& w) {
+    w = w0;
+    Vec3 residual;
+    for (int i = 0; i <= 3; ++i) {
+        const Vec3 m = 0.5 * (w + w0), l = inertia * m;
+        residual = inertia * (w - w0) + h * m.cross(l);
+        if (i == 3) break;
+        const Mat3 derivative = inertia + 0.5 * h * (hat(m) * inertia - hat(l));
+        w -= derivative.inverse() * residual;
+    }
+    return residual.norm() <= 1e-6 * (inertia * w0).norm();
+}
+
+// One Newton step of implicit Euler, I (w - w0) + h w x I w = 0: damps, and is stable at any speed.
+Vec3 gyroscopic_euler(const Vec3& w0, const Mat3& inertia, double h) {
+    const Vec3 l = inertia * w0;
+    const Mat3 derivative = inertia + h * (hat(w0) * inertia - hat(l));
+    return w0 - derivative.inverse() * (h * w0.cross(l));
+}
+
+// Free bodies keep their energy; links of a block, which whip about thin axes, take the damped form.
+Vec3 gyroscopic(const Vec3& w0, const Mat3& inertia, double h, bool damped) {
+    Vec3 w;
+    if (!damped && gyroscopic_midpoint(w0, inertia, h, w)) return w;
+    return gyroscopic_euler(w0, inertia, h);
 }
 
 void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
     out.inv_mass = static_cast<float>(mass.inv_mass);
-    const Mat3 inverse = mass.isotropic ? mass.inv_inertia.matrix() : Mat3(R * mass.inv_inertia.matrix() * R.transpose());
+    const Mat3 inverse =
+        mass.isotropic ? mass.inv_inertia.matrix() : Mat3(R * mass.inv_inertia.matrix() * R.transpose());
     const Sym3 packed = Sym3::of(inverse);
     const double values[6] = {packed.xx, packed.yy, packed.zz, packed.xy, packed.xz, packed.yz};
     for (int i = 0; i < 6; ++i) out.inv_inertia[i] = static_cast<float>(values[i]);
@@ -84,10 +109,11 @@ void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravi
             pose.R = m.q.toRotationMatrix();
             const Mat3& R = pose.R;
             if (!mass.isotropic) {
-                u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia.matrix(), h);
+                u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia.matrix(), h, system.in_block[node + 1] != 0);
                 set_inverse_mass(system.inverse_mass[node + 1], mass, R);
             }
-            if (load.torque != Vec3::Zero()) u.w += h * (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
+            if (load.torque != Vec3::Zero())
+                u.w += h * (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
             if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
         }
         system.start[node + 1] = {m.v, m.w};

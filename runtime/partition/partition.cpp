@@ -8,18 +8,28 @@ namespace {
 
 // When an island takes more substeps than the world's. A soft column sags as h^2 and buckles under its own or a
 // heavy top's weight; a block of very unequal masses outruns the lag of its forces.
-constexpr uint32_t kTallLevels = 12;         // more bodies above one another than this, and
-constexpr uint32_t kSlenderness = 4;         // at most this many bodies a level: twice the substeps
-constexpr float kHeavyOnLight = 10;          // load over support mass: four times the substeps
-constexpr double kExtremeMassRatio = 3e4;    // within a block: twice the substeps
+constexpr uint32_t kTallLevels = 12;       // more bodies above one another than this, and
+constexpr uint32_t kSlenderness = 4;       // at most this many bodies a level: twice the substeps
+constexpr float kHeavyOnLight = 10;        // load over support mass: four times the substeps
+constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
 
 }  // namespace
 
 Partition::Partition(Memory& memory)
-    : groups(memory), blocks(memory), parent_(memory), island_of_(memory), level_(memory), island_(memory),
-      used_(memory), colour_of_(memory), scratch_(memory), queue_(memory), adjacency_begin_(memory), adjacency_(memory) {}
+    : groups(memory),
+      blocks(memory),
+      parent_(memory),
+      island_of_(memory),
+      level_(memory),
+      island_(memory),
+      used_(memory),
+      colour_of_(memory),
+      scratch_(memory),
+      queue_(memory),
+      adjacency_begin_(memory),
+      adjacency_(memory) {}
 
 uint32_t Partition::find(uint32_t node) {
     while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
@@ -32,8 +42,10 @@ void Partition::unite(uint32_t a, uint32_t b) {
 }
 
 void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules) {
-    if (!rules.direct_joints) blocks.clear();
-    else if (joints_version_ != joints.version) build_blocks(nodes, joints);
+    if (!rules.direct_joints)
+        blocks.clear();
+    else if (joints_version_ != joints.version)
+        build_blocks(nodes, joints);
     joints_version_ = joints.version;
     connect(nodes, joints, pairs);
     measure_towers(nodes, pairs);
@@ -47,7 +59,8 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints) {
     parent_.resize(slots);
     for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
-        if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1])) unite(joint.node[0], joint.node[1]);
+        if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1]))
+            unite(joint.node[0], joint.node[1]);
 
     Memory& memory = *blocks.get_allocator().memory;
     Array<Block> old(memory);
@@ -76,8 +89,11 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints) {
             most = std::max(most, nodes.mass[node].mass);
         }
         block.mass_ratio = most / least;
+        for (uint32_t j : block.joints) block.identity.push_back(joints.record[j].serial);
+        for (uint32_t node : block.nodes)
+            block.identity.push_back(static_cast<uint64_t>(node) << 32 | nodes.ids.generation(node));
         for (Block& before : old) {  // unchanged blocks keep their order and their memory
-            if (before.joints != block.joints || before.nodes != block.nodes) continue;
+            if (before.identity != block.identity) continue;
             block = std::move(before);
             break;
         }
@@ -89,7 +105,8 @@ void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& p
     parent_.resize(slots);
     for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
-        if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1])) unite(joint.node[0], joint.node[1]);
+        if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1]))
+            unite(joint.node[0], joint.node[1]);
     for (const ActivePair& pair : pairs.active)
         if (moving(nodes, pair.a) && moving(nodes, pair.b)) unite(pair.a, pair.b);
 
@@ -154,7 +171,8 @@ void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
         for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k) {
             const uint32_t above = adjacency_[k];
             if (level_[above] <= level_[node]) continue;
-            island.ratio = std::max(island.ratio, static_cast<float>(nodes.mass[above].mass * nodes.mass[node].inv_mass));
+            island.ratio =
+                std::max(island.ratio, static_cast<float>(nodes.mass[above].mass * nodes.mass[node].inv_mass));
         }
     }
 }
@@ -162,8 +180,10 @@ void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
 void Partition::choose_substeps(const PartitionRules& rules) {
     for (Island& island : island_) {
         uint32_t factor = 1;
-        if (island.ratio > kHeavyOnLight && !island.jointed) factor = 4;
-        else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels) factor = 2;
+        if (island.ratio > kHeavyOnLight && !island.jointed)
+            factor = 4;
+        else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels)
+            factor = 2;
         island.substeps = rules.substeps * (rules.fixed ? 1 : factor);
     }
     if (rules.fixed) return;

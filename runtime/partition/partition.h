@@ -6,7 +6,7 @@
 //   colour  constraints of a group of which no two share a moving node
 #pragma once
 
-#include "solvers/sparse_block_ldlt.h"
+#include "linear/sparse_block_ldlt.h"
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
@@ -24,17 +24,18 @@ struct BlockMemory {
 
 // Joint-connected nodes, with what their direct solve remembers over frames.
 struct Block {
-    explicit Block(Memory& m) : nodes(m), joints(m), matrix(m), solution(m), known(m), force(m) {}
+    explicit Block(Memory& m) : nodes(m), joints(m), identity(m), matrix(m), solution(m), known(m), force(m) {}
 
-    Array<uint32_t> nodes;   // moved by forces, ascending
-    Array<uint32_t> joints;  // ascending
-    SparseBlockLdlt matrix;  // unknowns: nodes, then joints
+    Array<uint32_t> nodes;                 // moved by forces, ascending
+    Array<uint32_t> joints;                // ascending
+    Array<uint64_t> identity;              // serials of the joints, slots and generations of the nodes
+    SparseBlockLdlt matrix;                // unknowns: nodes, then joints
     Array<double> solution, known, force;  // scratch of its solve
-    bool looped = false;     // more joints than a tree
-    bool failed = false;     // this substep's matrix could not be factored
-    bool corrected = false;  // this substep's positions get a correction
-    double mass_ratio = 1;   // heaviest over lightest node
-    uint32_t first_row_block = 0;  // its joints' rows in System::rows, of this frame
+    bool looped = false;                   // more joints than a tree
+    bool failed = false;                   // this substep's matrix could not be factored
+    bool corrected = false;                // this substep's positions get a correction
+    double mass_ratio = 1;                 // heaviest over lightest node
+    uint32_t first_row_block = 0;          // its joints' rows in System::rows, of this frame
 
     // What its direct solve keeps over substeps; see solvers/block_ldlt.cpp.
     BlockMemory memory;
@@ -42,12 +43,17 @@ struct Block {
 
 struct Group {
     explicit Group(Memory& memory)
-        : nodes(memory), pairs(memory), pair_colour_begin(memory), joints(memory), joint_colour_begin(memory), blocks(memory) {}
+        : nodes(memory),
+          pairs(memory),
+          pair_colour_begin(memory),
+          joints(memory),
+          joint_colour_begin(memory),
+          blocks(memory) {}
 
     uint32_t substeps = 0;
-    Array<uint32_t> nodes;   // moved by forces, ascending
+    Array<uint32_t> nodes;  // moved by forces, ascending
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one.
-    Array<uint32_t> pairs, pair_colour_begin;    // index into Pairs::active
+    Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
     Array<uint32_t> joints, joint_colour_begin;
     Array<uint32_t> blocks;  // index into Partition::blocks
 };
@@ -55,9 +61,9 @@ struct Group {
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
 
 struct PartitionRules {
-    uint32_t substeps;  // least
-    bool fixed;         // no more than the least
-    bool direct_joints; // joints form blocks; else they are swept
+    uint32_t substeps;   // least
+    bool fixed;          // no more than the least
+    bool direct_joints;  // joints form blocks; else they are swept
 };
 
 class Partition {
@@ -67,11 +73,11 @@ public:
     // Rebuilds islands, groups and colours from the joints and touching pairs of this frame.
     void build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
 
-    Array<Group> groups;    // in ascending order of substeps; the first group_count are used
+    Array<Group> groups;  // in ascending order of substeps; the first group_count are used
     uint32_t group_count = 0;
     Array<Block> blocks;
     uint32_t islands = 0;
-    uint32_t colours = 0;   // most of any group
+    uint32_t colours = 0;  // most of any group
 
 private:
     struct Island {
@@ -94,12 +100,12 @@ private:
     void unite(uint32_t a, uint32_t b);
 
     uint64_t joints_version_ = 0;
-    Array<uint32_t> parent_;      // union-find over slots; roots are the smallest slot
-    Array<uint32_t> island_of_;   // by slot, kNone if not moved by forces
-    Array<uint32_t> level_;       // by slot: bodies between it and a support
+    Array<uint32_t> parent_;     // union-find over slots; roots are the smallest slot
+    Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces
+    Array<uint32_t> level_;      // by slot: bodies between it and a support
     Array<Island> island_;
-    Array<uint64_t> used_;        // by slot: colours taken
-    Array<uint8_t> colour_of_;    // scratch
+    Array<uint64_t> used_;      // by slot: colours taken
+    Array<uint8_t> colour_of_;  // scratch
     Array<uint32_t> scratch_, queue_;
     Array<uint32_t> adjacency_begin_, adjacency_;  // touching pairs by node, for levels
 };

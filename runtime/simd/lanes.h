@@ -50,7 +50,8 @@ struct ScalarLanes {
         return zip(a, a, [](float x, float) { return __builtin_sqrtf(x); });
     }
     // a > b ? yes : no
-    static ScalarLanes if_greater(const ScalarLanes& a, const ScalarLanes& b, const ScalarLanes& yes, const ScalarLanes& no) {
+    static ScalarLanes if_greater(const ScalarLanes& a, const ScalarLanes& b, const ScalarLanes& yes,
+                                  const ScalarLanes& no) {
         ScalarLanes r;
         for (int i = 0; i < 8; ++i) r.f[i] = a.f[i] > b.f[i] ? yes.f[i] : no.f[i];
         return r;

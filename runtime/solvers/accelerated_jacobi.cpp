@@ -16,6 +16,9 @@ namespace {
 
 constexpr uint32_t kDefaultIterations = 30;
 
+// biased: position errors are removed, softly; relaxed: not; bouncing: contacts that were hit part again.
+enum class Phase { biased, relaxed, bouncing };
+
 using NodeVector = Eigen::Matrix<double, kDof, 1>;
 using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>;
@@ -26,8 +29,12 @@ using ConstMap = Eigen::Map<const ShortVector>;
 class Iteration {
 public:
     explicit Iteration(Substep& s)
-        : sys_(s.system), count_(s.scratch.count), inverse_(s.scratch.inverse), previous_(s.scratch.previous),
-          next_(s.scratch.next), soft_(soft_terms(sys_.h)) {
+        : sys_(s.system),
+          count_(s.scratch.count),
+          inverse_(s.scratch.inverse),
+          previous_(s.scratch.previous),
+          next_(s.scratch.next),
+          soft_(soft_terms(sys_.h)) {
         count_.assign(sys_.pose.size(), 0);
         inverse_.clear();
         next_.resize(sys_.rows.impulse.size());
@@ -38,23 +45,25 @@ public:
             RowMatrix split = RowMatrix::Zero(rows, rows);
             for (int n = 0; n < block.type->nodes; ++n)
                 for (int r = 0; r < rows; ++r)
-                    split.col(r) += count_[block.node[n]] *
-                                    (jacobian(block, n) * respond(block.node[n], jacobian(block, n).row(r).transpose()));
-            split.diagonal().array() += softness(block, true) + 1e-12 * split.trace();
+                    split.col(r) +=
+                        count_[block.node[n]] *
+                        (jacobian(block, n) * respond(block.node[n], jacobian(block, n).row(r).transpose()));
+            split.diagonal().array() += softness(block, Phase::biased) + 1e-12 * split.trace();
             const RowMatrix inverse = split.inverse();
             inverse_.insert(inverse_.end(), inverse.data(), inverse.data() + rows * rows);
         }
     }
 
     void apply_all() {  // warm start: J^T mu onto v*
-        for (const RowBlock& block : sys_.rows.block) push(block, ConstMap(&sys_.rows.impulse[block.row], block.type->rows));
+        for (const RowBlock& block : sys_.rows.block)
+            push(block, ConstMap(&sys_.rows.impulse[block.row], block.type->rows));
     }
 
-    void run(uint32_t iterations, bool biased) {
+    void run(uint32_t iterations, Phase phase) {
         double theta = 1, beta = 0;
         previous_ = sys_.rows.impulse;
         for (uint32_t k = 0; k < iterations; ++k) {
-            const bool uphill = advance(beta, biased);
+            const bool uphill = advance(beta, phase);
             const double after = 0.5 * (-theta * theta + theta * std::sqrt(theta * theta + 4));
             beta = theta * (1 - theta) / (theta * theta + after);
             theta = after;
@@ -64,7 +73,7 @@ public:
 
 private:
     // One iteration; true if the momentum pointed against the descent.
-    bool advance(double beta, bool biased) {
+    bool advance(double beta, Phase phase) {
         size_t at = 0;
         double alignment = 0;
         Array<double>& impulse = sys_.rows.impulse;
@@ -73,14 +82,15 @@ private:
             const ConstMap now(&impulse[block.row], rows), before(&previous_[block.row], rows);
             const Eigen::Map<const RowMatrix> inverse(&inverse_[at], rows, rows);
             at += static_cast<size_t>(rows * rows);
-            const ShortVector r = residual(block, now, biased);
+            const ShortVector r = residual(block, now, phase);
             alignment += r.dot(now - before);
             ShortVector next = now - inverse * r + beta * (now - before);
             project(block, next);
             Map(&next_[block.row], rows) = next;
         }
         for (const RowBlock& block : sys_.rows.block)
-            push(block, ConstMap(&next_[block.row], block.type->rows) - ConstMap(&impulse[block.row], block.type->rows));
+            push(block,
+                 ConstMap(&next_[block.row], block.type->rows) - ConstMap(&impulse[block.row], block.type->rows));
         previous_ = impulse;
         impulse = next_;
         return alignment > 0;
@@ -94,9 +104,9 @@ private:
     }
 
     // c of a row: physical, or the soft row's on its own effective mass (see soft_contact.h).
-    double softness(const RowBlock& block, bool biased) const {
+    double softness(const RowBlock& block, Phase phase) const {
         if (block.compliance > 0) return row_terms(block, sys_.h).compliance;
-        if (!biased) return 0;
+        if (phase != Phase::biased) return 0;
         double trace = 0;
         for (int n = 0; n < block.type->nodes; ++n)
             for (int r = 0; r < block.type->rows; ++r)
@@ -104,7 +114,7 @@ private:
         return soft_.impulse_scale / soft_.mass_scale * trace / block.type->rows;
     }
 
-    ShortVector residual(const RowBlock& block, const ConstMap& mu, bool biased) const {
+    ShortVector residual(const RowBlock& block, const ConstMap& mu, Phase phase) const {
         const int rows = block.type->rows;
         const double* error = &sys_.rows.error[block.row];
         ShortVector r = ShortVector::Zero(rows);
@@ -116,12 +126,18 @@ private:
         }
         if (block.type->bound == Bound::cone) {  // only the normal row has a target
             const double gap = error[0];
-            if (gap > 0) r[0] += gap * soft_.inv_h;
-            else if (biased) r[0] += std::max<double>(soft_.bias_rate * gap, -soft_.push) + softness(block, true) * mu[0];
+            if (phase == Phase::bouncing && block.bounce > 0 && mu[0] > 0)
+                r[0] -= block.bounce;
+            else if (gap > 0)
+                r[0] += gap * soft_.inv_h;
+            else if (phase == Phase::biased)
+                r[0] += std::max<double>(soft_.bias_rate * gap, -soft_.push) + softness(block, Phase::biased) * mu[0];
             return r;
         }
-        const double rate = block.compliance > 0 ? row_terms(block, sys_.h).rate : biased ? soft_.bias_rate : 0.0;
-        return r + rate * ConstMap(error, rows) + softness(block, biased) * mu;
+        const double rate = block.compliance > 0     ? row_terms(block, sys_.h).rate
+                            : phase == Phase::biased ? soft_.bias_rate
+                                                     : 0.0;
+        return r + rate * ConstMap(error, rows) + softness(block, phase) * mu;
     }
 
     NodeVector respond(uint32_t node, const NodeVector& p) const {
@@ -140,8 +156,8 @@ private:
         }
     }
     Eigen::Map<const RowJacobian> jacobian(const RowBlock& block, int n) const {
-        return {&sys_.rows.jacobian[block.jacobian + static_cast<uint32_t>(n * block.type->rows * kDof)], block.type->rows,
-                kDof};
+        return {&sys_.rows.jacobian[block.jacobian + static_cast<uint32_t>(n * block.type->rows * kDof)],
+                block.type->rows, kDof};
     }
 
     System& sys_;
@@ -156,15 +172,17 @@ uint32_t iterations(const Substep& s) { return s.settings.sweeps ? s.settings.sw
 void solve(Substep& s) {
     Iteration iteration(s);
     iteration.apply_all();
-    iteration.run(iterations(s), true);
+    iteration.run(iterations(s), Phase::biased);
     for (const RowBlock& block : s.system.rows.block)
         if (block.force)
-            for (int r = 0; r < block.type->rows; ++r) block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
+            for (int r = 0; r < block.type->rows; ++r)
+                block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
 }
 
 void relax(Substep& s) {
     Iteration iteration(s);
-    iteration.run(iterations(s), false);
+    iteration.run(iterations(s), Phase::relaxed);
+    if (s.last) iteration.run(iterations(s), Phase::bouncing);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
 constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
-constexpr double kLoopCompliance = 1e-9;  // of a row's own effective inverse mass: makes redundant loops solvable
+constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
 // exceeds this part of the lever, positions (not velocities) are projected once more on the same factor. Heavy loads
@@ -77,7 +77,7 @@ void BlockSolve::analyse() {
     for (uint32_t i = 0; i < nodes_; ++i) matrix.set_unknown(i, size_of(i), false);
     for (uint32_t j = 0; j < joints(); ++j) {
         const ConstraintType& type = *row(j).type;
-        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true);
+        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, type.rows);
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
@@ -166,7 +166,7 @@ void BlockSolve::add_joint(uint32_t j) {
         b_.matrix.add(nodes_ + j, i, minus, rows, size_of(i), kDof);
     }
     double c = row_terms(block, sys_.h).compliance;
-    if (b_.looped) c += loop_compliance(block);
+    if (b_.looped) c = std::max(c, loop_compliance(block));
     double diagonal[kMaxRows * kMaxRows] = {};
     for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = r < rows ? -c : -1.0;  // unused rows: mu = 0
     b_.matrix.add(nodes_ + j, nodes_ + j, diagonal, padded, padded, padded);
@@ -310,10 +310,10 @@ bool BlockSolve::settle() {
         double* error = &b_.solution[(nodes_ + j) * kLd];
         block.type->evaluate(block.data, poses, error, nullptr);
         const double* jacobian = &sys_.rows.jacobian[block.jacobian];
+        double lever = 0;
+        for (int e = 0; e < block.type->nodes * rows; ++e)
+            lever = std::max(lever, Vec3::Map(jacobian + e * kDof + 3).norm());
         for (int r = 0; r < rows; ++r) {
-            double lever = 0;
-            for (int n = 0; n < block.type->nodes; ++n)
-                lever = std::max(lever, Vec3::Map(jacobian + (n * rows + r) * kDof + 3).norm());
             open = open || std::abs(error[r]) > kSettleGap * lever;
             if (block.compliance > 0) error[r] = 0;  // an elastic error is not a gap
         }

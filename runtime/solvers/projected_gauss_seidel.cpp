@@ -10,8 +10,6 @@
 namespace taut {
 namespace {
 
-constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce [m/s]
-
 using RowVector = Eigen::Matrix<double, kMaxRows, 1>;
 using NodeVector = Eigen::Matrix<double, kDof, 1>;
 using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
@@ -57,7 +55,8 @@ public:
         RowMatrix s = RowMatrix::Zero(rows_, rows_);
         for (int i = 0; i < block_.type->nodes; ++i)
             for (int r = 0; r < rows_; ++r)
-                s.col(r) += jacobian(i) * response(system_.inverse_mass[block_.node[i]], jacobian(i).row(r).transpose());
+                s.col(r) +=
+                    jacobian(i) * response(system_.inverse_mass[block_.node[i]], jacobian(i).row(r).transpose());
         return s;
     }
     ShortVector impulse() const { return Eigen::Map<const ShortVector>(&system_.rows.impulse[block_.row], rows_); }
@@ -133,8 +132,10 @@ void sweep_rows(Substep& s, bool biased) {
     const auto& blocks = s.system.rows.block;
     for (size_t i = first_swept(s); i < blocks.size(); ++i) {
         RowSweep row(s.system, blocks[i]);
-        if (blocks[i].type->bound == Bound::cone) row.solve_cone(soft, biased);
-        else row.solve_free(soft, biased);
+        if (blocks[i].type->bound == Bound::cone)
+            row.solve_cone(soft, biased);
+        else
+            row.solve_free(soft, biased);
     }
 }
 
@@ -154,7 +155,8 @@ void publish(Substep& s) {
 void store_forces(Substep& s) {
     for (const RowBlock& block : s.system.rows.block)
         if (block.force)
-            for (int r = 0; r < block.type->rows; ++r) block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
+            for (int r = 0; r < block.type->rows; ++r)
+                block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
 }
 
 void solve(Substep& s) {
@@ -183,8 +185,9 @@ void sweep_biased(Substep& s, uint32_t sweeps) {
     const SweepTerms soft = soft_terms(s.system.h);
     for (uint32_t i = 0; i < sweeps; ++i) {
         sweep_rows(s, true);
-        s.settings.kernels->sweep_biased(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
-                                         s.system.inverse_mass.data(), s.system.shift.data(), soft);
+        s.settings.kernels->sweep_biased(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
+                                         s.system.velocity.data(), s.system.inverse_mass.data(), s.system.shift.data(),
+                                         soft);
     }
     publish(s);
 }
@@ -194,12 +197,12 @@ void sweep_relaxed(Substep& s, uint32_t sweeps) {
     const SweepTerms soft = soft_terms(s.system.h);
     for (uint32_t i = 0; i < sweeps; ++i) {
         sweep_rows(s, false);
-        s.settings.kernels->sweep_relaxed(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
-                                          s.system.inverse_mass.data(), soft);
+        s.settings.kernels->sweep_relaxed(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
+                                          s.system.velocity.data(), s.system.inverse_mass.data(), soft);
     }
     if (s.last && lanes.bounces)
-        s.settings.kernels->restitute(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
-                                      s.system.inverse_mass.data(), kBounceSpeed);
+        s.settings.kernels->restitute(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
+                                      s.system.velocity.data(), s.system.inverse_mass.data(), kBounceSpeed);
     publish(s);
 }
 

@@ -10,10 +10,10 @@
 namespace taut {
 
 struct SolverSettings {
-    uint32_t sweeps;           // iterations a substep; 0: the solver's own default
+    uint32_t sweeps;  // iterations a substep; 0: the solver's own default
     bool geometric_stiffness;
-    double velocity_filter;    // kappa; 0: the slow velocity is taken as zero
-    double gravity_squared;    // |g|^2 [m^2/s^4], scale of the energy guard
+    double velocity_filter;  // kappa; 0: the slow velocity is taken as zero
+    double gravity_squared;  // |g|^2 [m^2/s^4], scale of the energy guard
     const ContactKernels* kernels;
 };
 

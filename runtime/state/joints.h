@@ -1,9 +1,6 @@
 // Joints: constraints that a user made. Their forces are carried over frames.
 #pragma once
 
-#include <cstring>
-#include <type_traits>
-
 #include "base/id_pool.h"
 #include "constraints/constraint.h"
 #include "state/nodes.h"
@@ -19,19 +16,10 @@ struct Joint {
     double compliance = 0;                 // of each row [m/N]
     double damping = 0;                    // of each row [N s/m]
     bool collide_connected = false;
-    bool fresh = true;                     // not solved yet: lambda means nothing
+    bool fresh = true;  // not solved yet: lambda means nothing
     uint64_t user_data = 0;
+    uint64_t serial = 0;                             // tells joints of one slot apart; Joints::add()
     alignas(16) unsigned char data[kDataSize] = {};  // the type's own
-
-    template <class Data>
-    Data& as() {
-        static_assert(sizeof(Data) <= kDataSize && std::is_trivially_copyable_v<Data>);
-        return *reinterpret_cast<Data*>(data);
-    }
-    template <class Data>
-    const Data& as() const {
-        return const_cast<Joint*>(this)->as<Data>();
-    }
 };
 
 struct Joints {
@@ -41,9 +29,11 @@ struct Joints {
         ids.reserve_one();
         if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
         const uint32_t index = ids.create();
-        if (index == record.size()) record.push_back(joint);
-        else record[index] = joint;
-        ++version;
+        if (index == record.size())
+            record.push_back(joint);
+        else
+            record[index] = joint;
+        record[index].serial = ++version;
         return index;
     }
     void remove(uint32_t index) {

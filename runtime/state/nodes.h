@@ -15,11 +15,11 @@ enum class NodeKind : uint8_t { fixed, kinematic, dynamic, particle, dead };
 inline bool moves_by_forces(NodeKind kind) { return kind == NodeKind::dynamic || kind == NodeKind::particle; }
 
 struct NodeMotion {
-    Vec3 x = Vec3::Zero();         // centre of mass [m]
-    Quat q = Quat::Identity();     // world from body
-    Vec3 v = Vec3::Zero();         // of the centre of mass [m/s]
-    Vec3 w = Vec3::Zero();         // world axes [rad/s]
-    Vec3 slow_v = Vec3::Zero();    // low-passed v and w, which geometric stiffness spares
+    Vec3 x = Vec3::Zero();       // centre of mass [m]
+    Quat q = Quat::Identity();   // world from body
+    Vec3 v = Vec3::Zero();       // of the centre of mass [m/s]
+    Vec3 w = Vec3::Zero();       // world axes [rad/s]
+    Vec3 slow_v = Vec3::Zero();  // low-passed v and w, which geometric stiffness spares
     Vec3 slow_w = Vec3::Zero();
 };
 
@@ -28,10 +28,10 @@ struct NodeMass {
     Sym3 inertia, inv_inertia;      // about the centre of mass, body axes [kg m^2]
     Vec3 centre = Vec3::Zero();     // of mass, in the body's frame [m]
     double gravity_scale = 1;
-    bool isotropic = false;         // inertia is a multiple of the identity: no gyroscopic torque
+    bool isotropic = false;  // inertia is a multiple of the identity: no gyroscopic torque
 };
 
-struct NodeLoad {  // of the next step
+struct NodeLoad {                                      // of the next step
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]
 };
 

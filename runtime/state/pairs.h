@@ -35,21 +35,22 @@ inline Vec3f tangent_of(const Vec3f& n) {
 
 // A pair with contact points in this frame, in brief: what partition and assembly go through.
 struct ActivePair {
-    uint32_t a, b;   // nodes
-    uint32_t pair;   // index into Pairs::list
+    uint32_t a, b;  // nodes
+    uint32_t pair;  // index into Pairs::list
     uint32_t points;
 };
 
 struct Pairs {
-    explicit Pairs(Memory& memory) : list(memory), scratch(memory), active(memory), ended(memory), joined(memory), placement(memory) {}
+    explicit Pairs(Memory& memory)
+        : list(memory), scratch(memory), active(memory), ended(memory), joined(memory), placement(memory) {}
 
-    Array<Pair> list;                 // sorted by key
-    Array<Pair> scratch;              // for the merge with the broadphase's list
-    Array<ActivePair> active;         // sorted as list is; find_contacts()
-    Array<taut_contact_event> ended;  // touching pairs forgotten since the last step; one end may be gone by then
-    uint32_t world = 0;               // id of the world, for the handles in ended
-    Array<uint64_t> joined;           // keys of bodies whose joint forbids contacts, sorted
-    uint64_t joined_version = 0;      // of the joints that they were taken from
+    Array<Pair> list;                       // sorted by key
+    Array<Pair> scratch;                    // for the merge with the broadphase's list
+    Array<ActivePair> active;               // sorted as list is; find_contacts()
+    Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
+    uint32_t world = 0;                     // id of the world, for the handles in ended
+    Array<uint64_t> joined;                 // keys of bodies whose joint forbids contacts, sorted
+    uint64_t joined_version = 0;            // of the joints that they were taken from
     Array<collision::Placement> placement;  // by node; find_contacts()
 };
 

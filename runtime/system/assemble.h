@@ -1,15 +1,15 @@
 // State to system: rows of joints (and of contacts, for solvers without lanes) and contact lanes.
 #pragma once
 
-#include "solvers/solver.h"
-#include "state/joints.h"
+#include "partition/partition.h"
+#include "system/system.h"
 
 namespace taut {
 
 // Once a frame and group: which rows there are, in the order that the solver wants them: block by block when joints
 // are solved directly, colour by colour when they are swept; contact points after them when they come as rows.
 void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, const Pairs& pairs,
-                const Nodes& nodes, const Solver& solver);
+                const Nodes& nodes, bool contacts_as_rows);
 // Once a substep: C and J at system.pose; impulses from the forces of the last substep.
 void evaluate_rows(System& system);
 // Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
@@ -18,7 +18,8 @@ double row_residual(const System& system);
 void store_contact_rows(const System& system, const Group& group, Pairs& pairs);
 
 // Once a frame and group: contacts by colour into lanes, with effective masses.
-void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes, const ContactKernels& kernels);
+void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
+                 const ContactKernels& kernels);
 void store_lanes(const System& system, Pairs& pairs);
 
 }  // namespace taut

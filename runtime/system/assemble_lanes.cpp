@@ -73,7 +73,8 @@ void add_group(System& system, const Pairs& pairs, const Nodes& nodes, const uin
 
 }  // namespace
 
-void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes, const ContactKernels& kernels) {
+void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
+                 const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
     lanes.group.clear();
     lanes.point.clear();

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "system/assemble.h"
+#include "system/soft_contact.h"
 
 namespace taut {
 namespace {
@@ -45,6 +46,17 @@ ContactData contact_data(const System& system, const Nodes& nodes, const Pair& p
     return data;
 }
 
+// Restitution times the speed of approach before the frame's forces, where that is fast enough to bounce.
+double bounce_speed(const System& system, const Pair& pair, const ContactData& point, double restitution) {
+    auto velocity_at = [&](uint32_t node, const Vec3& anchor) {
+        const Velocity& u = system.exact[node + 1];
+        return Vec3(u.v + u.w.cross(system.pose[node + 1].R * anchor));
+    };
+    const Vec3 apart = velocity_at(pair.b(), point.anchor_b) - velocity_at(pair.a(), point.anchor_a);
+    const double approach = -apart.dot(point.basis.row(0));
+    return approach > kBounceSpeed ? restitution * approach : 0.0;
+}
+
 void add_contacts(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes) {
     Rows& rows = system.rows;
     rows.data.clear();
@@ -62,6 +74,7 @@ void add_contacts(System& system, const Group& group, const Pairs& pairs, const 
             block.node[0] = pair.a() + 1;
             block.node[1] = pair.b() + 1;
             block.friction = std::sqrt(static_cast<double>(ma.friction) * mb.friction);
+            block.bounce = bounce_speed(system, pair, rows.data.back(), std::max(ma.restitution, mb.restitution));
             const Impulse& impulse = pair.impulse[k];
             rows.impulse[block.row] = impulse.normal;
             rows.impulse[block.row + 1] = impulse.tangent1;
@@ -73,7 +86,7 @@ void add_contacts(System& system, const Group& group, const Pairs& pairs, const 
 }  // namespace
 
 void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, const Pairs& pairs,
-                const Nodes& nodes, const Solver& solver) {
+                const Nodes& nodes, bool contacts_as_rows) {
     Rows& rows = system.rows;
     rows.block.clear();
     rows.error.clear();
@@ -84,7 +97,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
-    if (!solver.wide_contacts) add_contacts(system, group, pairs, nodes);
+    if (contacts_as_rows) add_contacts(system, group, pairs, nodes);
 }
 
 void evaluate_rows(System& system) {
@@ -118,7 +131,8 @@ double row_residual(const System& system) {
         const RowTerms terms = row_terms(block, system.h);
         const int rows = block.type->rows;
         for (int r = 0; r < rows; ++r) {
-            double sum = terms.rate * system.rows.error[block.row + r] + terms.compliance * system.rows.impulse[block.row + r];
+            double sum =
+                terms.rate * system.rows.error[block.row + r] + terms.compliance * system.rows.impulse[block.row + r];
             for (int n = 0; n < block.type->nodes; ++n) {
                 const double* j = &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((n * rows + r) * kDof)];
                 const Velocity& u = system.exact[block.node[n]];

@@ -5,9 +5,11 @@
 // with mass_scale = a2/(1 + a2), impulse_scale = 1/(1 + a2), bias_rate = om/a1.
 #pragma once
 
-#include "system/contact_lanes.h"
+#include "constraints/contact_lanes.h"
 
 namespace taut {
+
+constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce [m/s]
 
 inline SweepTerms soft_terms(double h) {
     constexpr double kPi = 3.14159265358979323846;

@@ -12,9 +12,9 @@
 
 #include "base/memory.h"
 #include "constraints/constraint.h"
-#include "state/nodes.h"
 #include "constraints/contact.h"
-#include "system/contact_lanes.h"
+#include "constraints/contact_lanes.h"
+#include "state/nodes.h"
 
 namespace taut {
 
@@ -27,24 +27,25 @@ struct Velocity {
 struct RowBlock {
     const ConstraintType* type;
     const void* data;
-    double* force;       // lambda of the last substep, then of this one [N]; type->rows
+    double* force;             // lambda of the last substep, then of this one [N]; type->rows
     uint32_t node[kMaxNodes];  // indices into arrays by node; unused ones 0
-    uint32_t row;        // first row
-    uint32_t jacobian;   // first entry of [node][row][6]
-    double compliance;   // [m/N]
-    double damping;      // [N s/m]
-    double friction;     // of a cone
-    bool fresh;          // lambda of the last substep means nothing yet
+    uint32_t row;              // first row
+    uint32_t jacobian;         // first entry of [node][row][6]
+    double compliance;         // [m/N]
+    double damping;            // [N s/m]
+    double friction;           // of a cone
+    double bounce;             // separation speed wanted at the end of the frame, 0: none [m/s]
+    bool fresh;                // lambda of the last substep means nothing yet
 };
 
 struct Rows {
     explicit Rows(Memory& memory) : block(memory), error(memory), jacobian(memory), impulse(memory), data(memory) {}
 
     Array<RowBlock> block;
-    Array<double> error;     // C(x) [m or rad]           rows; assemble()
-    Array<double> jacobian;  // dC/dx                     assemble()
-    Array<double> impulse;   // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
-    Array<ContactData> data; // of contact rows, where a solver takes contacts as rows
+    Array<double> error;      // C(x) [m or rad]           rows; assemble()
+    Array<double> jacobian;   // dC/dx                     assemble()
+    Array<double> impulse;    // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
+    Array<ContactData> data;  // of contact rows, where a solver takes contacts as rows
 };
 
 struct System {
@@ -54,27 +55,39 @@ struct System {
     };
 
     explicit System(Memory& memory)
-        : pose(memory), exact(memory), free(memory), correction(memory), start(memory), inertia(memory), found(memory), kinematic(memory), in_block(memory), velocity(memory), inverse_mass(memory),
-          shift(memory), rows(memory), contacts(memory) {}
+        : pose(memory),
+          exact(memory),
+          free(memory),
+          correction(memory),
+          start(memory),
+          inertia(memory),
+          found(memory),
+          kinematic(memory),
+          in_block(memory),
+          velocity(memory),
+          inverse_mass(memory),
+          shift(memory),
+          rows(memory),
+          contacts(memory) {}
 
     double h = 0;  // substep [s]
 
     // by node + 1
-    Array<Pose> pose;            // at the start of the substep; predict()
-    Array<Velocity> exact;       // predict(): v* = v + h a; solvers: v+
-    Array<Velocity> free;        // v* with contact impulses, of nodes in blocks; block_ldlt
-    Array<Velocity> correction;  // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
-    Array<Velocity> start;       // v before forces, for energy balances; predict()
-    Array<Mat3> inertia;         // world axes [kg m^2], of nodes in blocks only; predict()
-    Array<Found> found;          // begin_frame()
-    Array<uint32_t> kinematic;   // nodes; begin_frame()
-    Array<uint8_t> in_block;     // 1: a direct solve owns its exact velocity; partition
-    Array<SweepVelocity> velocity;     // float copy for sweeps
-    Array<SweepMass> inverse_mass;     // of sweeps, world axes
-    Array<SweepShift> shift;     // motion since contacts were found; commit()
+    Array<Pose> pose;               // at the start of the substep; predict()
+    Array<Velocity> exact;          // predict(): v* = v + h a; solvers: v+
+    Array<Velocity> free;           // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> correction;     // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
+    Array<Velocity> start;          // v before forces, for energy balances; predict()
+    Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
+    Array<Found> found;             // begin_frame()
+    Array<uint32_t> kinematic;      // nodes; begin_frame()
+    Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; partition
+    Array<SweepVelocity> velocity;  // float copy for sweeps
+    Array<SweepMass> inverse_mass;  // of sweeps, world axes
+    Array<SweepShift> shift;        // motion since contacts were found; commit()
 
-    Rows rows;               // of the group being solved
-    ContactLanes contacts;   // of the group being solved
+    Rows rows;              // of the group being solved
+    ContactLanes contacts;  // of the group being solved
 };
 
 // compliance and target of a row of the block, see above.

@@ -96,7 +96,8 @@ TEST_P(BoxOnSlope, SlidesAboveTheFrictionAngle) {
 Vec thrown_until_rest(const Slope& slope, double friction, Vec velocity) {
     constexpr double kStep = 1e-5;
     Vec at;
-    for (double v = norm(velocity); v > 2e-4; v = norm(velocity)) {
+    while (norm(velocity) > 2e-4) {
+        const double v = norm(velocity);
         velocity += kStep * kG * (std::sin(slope.angle) * slope.down - friction * std::cos(slope.angle) / v * velocity);
         at += kStep * velocity;
     }

@@ -25,9 +25,10 @@ TEST_P(Quarantine, FreezesTheBodyAndThePileGoesOn) {
     const taut_shape cube = world.box({0.25, 0.25, 0.25});
     for (size_t i = 0; i < kSide * kSide * 2; ++i) pile.push_back(world.add({.shape = cube, .mass = 5}));
     for (size_t i = 0; i < pile.size(); ++i) {
+        const size_t column = i % kSide, row = i / kSide % kSide, layer = i / (kSide * kSide);
         taut_pose pose{};
-        pose.position = {0.55 * static_cast<double>(i % kSide), 0.3 + 0.55 * static_cast<double>(i / (kSide * kSide)),
-                         0.55 * static_cast<double>(i / kSide % kSide)};
+        pose.position = {0.55 * static_cast<double>(column), 0.3 + 0.55 * static_cast<double>(layer),
+                         0.55 * static_cast<double>(row)};
         pose.rotation = Quat().narrow();
         ok(taut_body_set_pose(pile[i], &pose));
     }

@@ -102,7 +102,10 @@ public:
             world_.add({.kind = TAUT_BODY_STATIC, .shape = along_z, .position = {0, 8, sign * 3}});
         }
         cube_ = world_.box({0.25, 0.25, 0.25});
-        for (int i = 0; i < kBodies; ++i) drop(i, 0.5 + 0.7 * (i / 36));
+        for (int i = 0; i < kBodies; ++i) {
+            const int layer = i / 36;
+            drop(i, 0.5 + 0.7 * layer);
+        }
     }
     void change() {
         for (int i = 0; i < 10; ++i) {

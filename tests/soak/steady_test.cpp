@@ -54,7 +54,8 @@ scenes::Scene bin() {
     for (int i = 0; i < 100; ++i) {
         scenes::Body body;
         body.shape = cube;
-        body.position = {-1.04 + 0.52 * (i % 5), 0.26 + 0.51 * (i / 25), -1.04 + 0.52 * (i / 5 % 5)};
+        const int column = i % 5, row = i / 5 % 5, layer = i / 25;
+        body.position = {-1.04 + 0.52 * column, 0.26 + 0.51 * layer, -1.04 + 0.52 * row};
         scene.add_body(body);
     }
     return scene;

@@ -1,5 +1,5 @@
 // The sparse factorisation on random graphs of nodes and multipliers, against Eigen's dense LU.
-#include "solvers/sparse_block_ldlt.h"
+#include "linear/sparse_block_ldlt.h"
 
 #include <gtest/gtest.h>
 

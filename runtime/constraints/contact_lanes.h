@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/memory.h"
-#include "state/pairs.h"
 
 namespace taut {
 
@@ -19,21 +18,21 @@ struct alignas(32) SweepMass {
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
     float pad = 0;
 };
-struct alignas(32) SweepShift {  // since the contacts were found
+struct alignas(32) SweepShift {        // since the contacts were found
     float dx[3] = {0, 0, 0}, pad = 0;  // translation [m]
     float dq[4] = {0, 0, 0, 1};        // rotation x, y, z, w
 };
 
 struct alignas(32) LaneGroup {
     uint32_t a[kLanes], b[kLanes];  // index into arrays by node
-    uint32_t pair[kLanes];          // index into Pairs::list, kNone for an empty lane
+    uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
     float normal[3][kLanes], tangent[3][kLanes];
     float friction[kLanes];
     uint32_t first_point;  // in LanePoint, one for each of `points`
     uint32_t points;       // most points of a lane
 };
 
-struct alignas(32) LanePoint {  // empty places have zero masses
+struct alignas(32) LanePoint {           // empty places have zero masses
     float ra[3][kLanes], rb[3][kLanes];  // from the centres of mass, world axes, at detection [m]
     float gap0[kLanes];                  // separation at detection [m]
     float gap[kLanes];                   // at the start of the substep; biased sweep
@@ -59,7 +58,7 @@ struct ContactLanes {
     Array<LanePoint> point;
     Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
 
-    bool bounces = false;          // some point has restitution
+    bool bounces = false;  // some point has restitution
 
     LaneView view() { return {group.data(), point.data()}; }
 };

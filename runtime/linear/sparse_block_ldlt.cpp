@@ -1,9 +1,7 @@
-#include "solvers/sparse_block_ldlt.h"
+#include "linear/sparse_block_ldlt.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <queue>
 
 namespace taut {
 namespace {
@@ -17,7 +15,7 @@ bool invert_positive(const double* m, double sign, double* inverse) {
     for (int j = 0; j < N; ++j) {
         double d = sign * m[j * kLd + j];
         for (int k = 0; k < j; ++k) d -= l[j][k] * l[j][k];
-        if (!(d > 0)) return false;
+        if (!(d > 0 && std::isfinite(d))) return false;
         const double root = std::sqrt(d);
         recip[j] = 1 / root;
         for (int i = j + 1; i < N; ++i) {
@@ -73,20 +71,29 @@ using UpdateTable = void (*[2][2])(double*, const double*, const double*);
 }  // namespace
 
 SparseBlockLdlt::SparseBlockLdlt(Memory& memory)
-    : size_(memory), multiplier_(memory), position_(memory), unknown_at_(memory), size_at_(memory), links_(memory),
-      column_begin_(memory), row_of_(memory), target_begin_(memory), target_(memory), diagonal_(memory),
-      inverse_(memory), below_(memory), scaled_(memory), work_(memory) {}
+    : unknown_(memory),
+      position_(memory),
+      unknown_at_(memory),
+      size_at_(memory),
+      links_(memory),
+      column_begin_(memory),
+      row_of_(memory),
+      target_begin_(memory),
+      target_(memory),
+      diagonal_(memory),
+      inverse_(memory),
+      below_(memory),
+      scaled_(memory),
+      work_(memory) {}
 
 void SparseBlockLdlt::begin(uint32_t unknowns) {
     analysed_ = false;
-    size_.assign(unknowns, 6);
-    multiplier_.assign(unknowns, 0);
+    unknown_.assign(unknowns, Unknown{});
     links_.clear();
 }
 
-void SparseBlockLdlt::set_unknown(uint32_t i, int size, bool multiplier) {
-    size_[i] = static_cast<uint8_t>(size);
-    multiplier_[i] = multiplier;
+void SparseBlockLdlt::set_unknown(uint32_t i, int size, bool multiplier, int rows) {
+    unknown_[i] = {static_cast<uint8_t>(size), multiplier, static_cast<uint8_t>(std::min(rows, size))};
 }
 
 void SparseBlockLdlt::link(uint32_t i, uint32_t j) {
@@ -95,59 +102,19 @@ void SparseBlockLdlt::link(uint32_t i, uint32_t j) {
 
 void SparseBlockLdlt::analyse() {
     const uint32_t n = unknowns();
-    Memory& memory = *size_.get_allocator().memory;
-    Array<Array<uint32_t>> graph(n, Array<uint32_t>(memory), memory);
-    for (uint64_t key : links_) {
-        const auto i = static_cast<uint32_t>(key >> 32), j = static_cast<uint32_t>(key);
-        graph[i].push_back(j);
-        graph[j].push_back(i);
-    }
-    Array<uint8_t> ready(n, 0, memory), done(n, 0, memory);
-    Array<uint64_t> queued(memory);
-    std::priority_queue<uint64_t, Array<uint64_t>, std::greater<>> queue(std::greater<>{}, std::move(queued));
-    auto key_of = [&](uint32_t i) {  // degree, multipliers first, then by number
-        return (static_cast<uint64_t>(2 * graph[i].size() + !multiplier_[i]) << 32) | i;
-    };
-    for (uint32_t i = 0; i < n; ++i) {
-        std::sort(graph[i].begin(), graph[i].end());
-        graph[i].erase(std::unique(graph[i].begin(), graph[i].end()), graph[i].end());
-        ready[i] = !multiplier_[i];
-        if (ready[i]) queue.push(key_of(i));
-    }
-
-    position_.assign(n, 0);
-    unknown_at_.clear();
-    Array<Array<uint32_t>> column(n, Array<uint32_t>(memory), memory);
-    Array<uint32_t> merged(memory);
-    while (!queue.empty()) {
-        const uint64_t key = queue.top();
-        queue.pop();
-        const auto i = static_cast<uint32_t>(key);
-        if (done[i] || key != key_of(i)) continue;
-        done[i] = 1;
-        position_[i] = static_cast<uint32_t>(unknown_at_.size());
-        unknown_at_.push_back(i);
-        column[i] = graph[i];
-        for (uint32_t j : column[i]) {  // eliminating i ties its neighbours together
-            ready[j] = 1;
-            merged.clear();
-            std::set_union(graph[j].begin(), graph[j].end(), column[i].begin(), column[i].end(), std::back_inserter(merged));
-            merged.erase(std::remove_if(merged.begin(), merged.end(), [&](uint32_t k) { return k == i || k == j; }),
-                         merged.end());
-            graph[j].assign(merged.begin(), merged.end());
-            queue.push(key_of(j));
-        }
-        graph[i].clear();
-    }
-
+    const EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
+    unknown_at_.assign(elimination.order.begin(), elimination.order.end());
+    position_.resize(n);
     size_at_.resize(n);
+    for (uint32_t k = 0; k < n; ++k) {
+        position_[unknown_at_[k]] = k;
+        size_at_[k] = unknown_[unknown_at_[k]].size;
+    }
     column_begin_.assign(1, 0);
     row_of_.clear();
     for (uint32_t k = 0; k < n; ++k) {
-        const uint32_t i = unknown_at_[k];
-        size_at_[k] = size_[i];
         const auto first = static_cast<std::ptrdiff_t>(row_of_.size());
-        for (uint32_t j : column[i]) row_of_.push_back(position_[j]);
+        for (uint32_t j : elimination.neighbours[unknown_at_[k]]) row_of_.push_back(position_[j]);
         std::sort(row_of_.begin() + first, row_of_.end());
         column_begin_.push_back(static_cast<uint32_t>(row_of_.size()));
     }
@@ -195,13 +162,15 @@ bool SparseBlockLdlt::eliminate(uint32_t k) {
     constexpr UpdateTable<N> update = {{multiply_subtract<3, N, 3>, multiply_subtract<3, N, 6>},
                                        {multiply_subtract<6, N, 3>, multiply_subtract<6, N, 6>}};
     double* inverse = &inverse_[k * kStride];
-    const double sign = multiplier_[unknown_at_[k]] ? -1.0 : 1.0;
+    const double sign = unknown_[unknown_at_[k]].multiplier ? -1.0 : 1.0;
     if (!invert_positive<N>(&diagonal_[k * kStride], sign, inverse)) return false;
 
     const uint32_t first = column_begin_[k], last = column_begin_[k + 1];
     for (uint32_t p = first; p < last; ++p) {
-        if (size_at_[row_of_[p]] == 3) multiply<3, N>(below(p), inverse, &scaled_[p * kStride]);
-        else multiply<6, N>(below(p), inverse, &scaled_[p * kStride]);
+        if (size_at_[row_of_[p]] == 3)
+            multiply<3, N>(below(p), inverse, &scaled_[p * kStride]);
+        else
+            multiply<6, N>(below(p), inverse, &scaled_[p * kStride]);
     }
     for (uint32_t q = first; q < last; ++q) {  // A_j^T of the block in row j, then every block (i, j), i >= j
         const bool wide_q = size_at_[row_of_[q]] == 6;

@@ -1,0 +1,44 @@
+// Order in which a block matrix is factored, and which blocks each elimination touches.
+#pragma once
+
+#include <span>
+
+#include "base/memory.h"
+
+namespace taut {
+
+// One unknown of the matrix: a node (6 or 3 freedoms) or the multiplier of a joint's rows.
+struct Unknown {
+    uint8_t size = 6;  // 3 or 6
+    bool multiplier = false;
+    uint8_t rows = 6;  // of a multiplier, without padding
+};
+
+// Greedy minimum degree with one rule: a multiplier comes only after a node with freedoms left that no other
+// multiplier claimed (a rigid body has five: two ball joints on one body fix their distance twice), or after all its
+// nodes. On a tree that is leaf to root without fill, on loops a fill-reducing order.
+class EliminationOrder {
+public:
+    // links: pairs of unknowns, smaller << 32 | larger.
+    EliminationOrder(Memory& memory, std::span<const Unknown> unknowns, std::span<const uint64_t> links);
+
+    Array<uint32_t> order;              // unknowns, first eliminated first
+    Array<Array<uint32_t>> neighbours;  // of each unknown when it is eliminated, ascending: its column of L
+
+private:
+    void read_links(std::span<const uint64_t> links);
+    void eliminate(uint32_t i);
+    bool ready(uint32_t i) const;
+    uint32_t node_to_claim(uint32_t multiplier) const;  // or the number of unknowns
+    int need(uint32_t multiplier, uint32_t node) const;
+    bool linked(uint32_t i, uint32_t j) const;
+    uint64_t key(uint32_t i) const;
+
+    std::span<const Unknown> unknowns_;
+    Array<Array<uint32_t>> graph_;    // as elimination leaves it
+    Array<Array<uint32_t>> ends_;     // nodes of a multiplier
+    Array<uint8_t> done_, freedoms_;  // freedoms of a node that no multiplier claimed yet
+    Array<uint32_t> merged_;
+};
+
+}  // namespace taut
