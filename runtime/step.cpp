@@ -40,7 +40,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
     w.profile.predict_us += watch.lap();
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
-        quarantine(w.nodes, group.nodes, w.frozen);
+        quarantine(w.nodes, group.nodes, w.frozen, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(system, group, w.nodes, gravity);
         w.profile.predict_us += watch.lap();

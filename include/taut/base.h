@@ -41,33 +41,41 @@ typedef enum taut_result {
     TAUT_LOCKED = 6,           /**< the world is inside a step (or a second thread is using it) */
     TAUT_TOO_SMALL = 7,        /**< the array is too small; *count holds the number needed */
     TAUT_OUT_OF_MEMORY = 8,
-    TAUT_IN_USE = 9,           /**< a shape that bodies still use cannot be removed */
-    TAUT_LIMIT = 10,           /**< a stated limit is reached (worlds, vertices of a hull) */
-    TAUT_UNSUPPORTED = 11,     /**< this machine or build lacks what is needed; the text says what */
+    TAUT_IN_USE = 9,       /**< a shape that bodies still use cannot be removed */
+    TAUT_LIMIT = 10,       /**< a stated limit is reached (worlds, vertices of a hull) */
+    TAUT_UNSUPPORTED = 11, /**< this machine or build lacks what is needed; the text says what */
     TAUT_RESULT_MAX = 0x7fffffff
 } taut_result;
 
 /** Short name of a result ("TAUT_OK"); "unknown" for other values. Thread safety: any thread. */
-TAUT_API const char *taut_result_name(taut_result result);
+TAUT_API const char* taut_result_name(taut_result result);
 
 /**
  * Text of the last refused call on the calling thread: function, field, value, expectation.
  * UTF-8, never null, valid until the next refused call on this thread; not cleared by success.
  * Thread safety: any thread; each thread has its own text.
  */
-TAUT_API const char *taut_last_error(void);
+TAUT_API const char* taut_last_error(void);
 
 /** Version of the linked library as major * 10000 + minor * 100 + patch. Thread safety: any thread. */
 TAUT_API uint32_t taut_version(void);
 
 /** A world. Zero is null. */
-typedef struct taut_world { uint64_t bits; } taut_world;
+typedef struct taut_world {
+    uint64_t bits;
+} taut_world;
 /** A rigid body or a particle: a node of the one system. Zero is null; where a joint takes it, null means the world. */
-typedef struct taut_body { uint64_t bits; } taut_body;
+typedef struct taut_body {
+    uint64_t bits;
+} taut_body;
 /** A collision shape owned by a world and shared by its bodies. Zero is null. */
-typedef struct taut_shape { uint64_t bits; } taut_shape;
+typedef struct taut_shape {
+    uint64_t bits;
+} taut_shape;
 /** A joint. Zero is null. */
-typedef struct taut_joint { uint64_t bits; } taut_joint;
+typedef struct taut_joint {
+    uint64_t bits;
+} taut_joint;
 
 /** Severity of a log line. */
 typedef enum taut_log_level {
@@ -78,20 +86,20 @@ typedef enum taut_log_level {
 } taut_log_level;
 
 /** Receives a log line (UTF-8, no newline), on the thread that called the API: what a step could not do as asked. */
-typedef void (*taut_log_fn)(taut_log_level level, const char *text, void *user_data);
+typedef void (*taut_log_fn)(taut_log_level level, const char* text, void* user_data);
 
 /** Allocates size bytes at alignment (a power of two, at most 64). Null means out of memory. */
-typedef void *(*taut_allocate_fn)(size_t size, size_t alignment, void *user_data);
+typedef void* (*taut_allocate_fn)(size_t size, size_t alignment, void* user_data);
 /** Frees what taut_allocate_fn returned, with the same size and alignment. */
-typedef void (*taut_free_fn)(void *pointer, size_t size, size_t alignment, void *user_data);
+typedef void (*taut_free_fn)(void* pointer, size_t size, size_t alignment, void* user_data);
 
 /** One unit of a task: runs the half-open index range [begin, end) as worker number worker. */
-typedef void (*taut_task_fn)(uint32_t begin, uint32_t end, uint32_t worker, void *task_data);
+typedef void (*taut_task_fn)(uint32_t begin, uint32_t end, uint32_t worker, void* task_data);
 /** Hands task(range) over [0, count) to the host's workers in ranges of at least grain; returns a token for finish. */
-typedef void *(*taut_enqueue_task_fn)(taut_task_fn task, uint32_t count, uint32_t grain, void *task_data,
-                                      void *user_data);
+typedef void* (*taut_enqueue_task_fn)(taut_task_fn task, uint32_t count, uint32_t grain, void* task_data,
+                                      void* user_data);
 /** Waits until every range of the token has run. */
-typedef void (*taut_finish_task_fn)(void *token, void *user_data);
+typedef void (*taut_finish_task_fn)(void* token, void* user_data);
 
 /**
  * Host hooks of one world. Any pair may be null: log lines are dropped, memory comes from the C runtime,
@@ -100,13 +108,13 @@ typedef void (*taut_finish_task_fn)(void *token, void *user_data);
  */
 typedef struct taut_hooks {
     taut_log_fn log;
-    void *log_user_data;
+    void* log_user_data;
     taut_allocate_fn allocate; /**< allocate and free: both or neither */
     taut_free_fn free;
-    void *memory_user_data;
+    void* memory_user_data;
     taut_enqueue_task_fn enqueue_task; /**< enqueue_task and finish_task: both or neither */
     taut_finish_task_fn finish_task;
-    void *task_user_data;
+    void* task_user_data;
     uint32_t worker_count; /**< workers of the host's task system, 0 without one */
     uint32_t reserved;
 } taut_hooks;

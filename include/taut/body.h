@@ -42,18 +42,19 @@ typedef struct taut_filter {
 /** A rigid body. */
 typedef struct taut_body_def {
     uint32_t struct_size;
-    taut_body_kind kind; /**< default TAUT_BODY_DYNAMIC; particles have their own def */
-    taut_pos position;   /**< of the body's origin [m] */
-    taut_quat rotation;  /**< default identity */
+    taut_body_kind kind;        /**< default TAUT_BODY_DYNAMIC; particles have their own def */
+    taut_pos position;          /**< of the body's origin [m] */
+    taut_quat rotation;         /**< default identity */
     taut_vec3 linear_velocity;  /**< of the centre of mass [m/s]; zero for a static body */
     taut_vec3 angular_velocity; /**< world axes [rad/s]; zero for a static body */
-    taut_shape shape;    /**< null: no collisions; a dynamic body then needs mass and inertia */
+    taut_shape shape;           /**< null: no collisions; a dynamic body then needs mass and inertia */
     taut_material material;
     taut_filter filter;
-    float density;       /**< [kg/m^3], (0, 1e8]. Used when mass is 0. Default 1000 */
-    float mass;          /**< [kg], 0 or [1e-6, 1e15]. 0: from shape and density. Default 0 */
+    float density;            /**< [kg/m^3], (0, 1e8]. Used when mass is 0. Default 1000 */
+    float mass;               /**< [kg], 0 or [1e-6, 1e15]. 0: from shape and density. Default 0 */
     taut_vec3 centre_of_mass; /**< in the body's frame [m]; used when inertia is given. Default 0 */
-    taut_sym3 inertia;   /**< about the centre of mass [kg m^2], positive definite; all zero: from shape, scaled to mass */
+    taut_sym3
+        inertia; /**< about the centre of mass [kg m^2], positive definite; all zero: from shape, scaled to mass */
     float gravity_scale; /**< [-1000, 1000]. Default 1 */
     uint32_t reserved;   /**< zero */
     uint64_t user_data;
@@ -76,45 +77,46 @@ typedef struct taut_pose {
     uint32_t reserved[2]; /**< zero; keeps the size a multiple of 16 */
 } taut_pose;
 
-TAUT_API void taut_body_def_init(taut_body_def *def);
-TAUT_API void taut_particle_def_init(taut_particle_def *def);
+TAUT_API void taut_body_def_init(taut_body_def* def);
+TAUT_API void taut_particle_def_init(taut_particle_def* def);
 
 /**
  * Adds a rigid body. Positions lie within 1e7 m of the origin, speeds within 1e4 m/s and 1e4 rad/s.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names field and value), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
  *         TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE (shape of another world), TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
-TAUT_API taut_result taut_world_add_body(taut_world world, const taut_body_def *def, taut_body *out);
+TAUT_API taut_result taut_world_add_body(taut_world world, const taut_body_def* def, taut_body* out);
 /** Adds a particle; ranges and results as for taut_world_add_body. */
-TAUT_API taut_result taut_world_add_particle(taut_world world, const taut_particle_def *def, taut_body *out);
+TAUT_API taut_result taut_world_add_particle(taut_world world, const taut_particle_def* def, taut_body* out);
 /** Removes a body or particle and every joint that ends on it. Its contacts end with the next step's events. */
 TAUT_API taut_result taut_body_remove(taut_body body);
 /** 1 if the handle names a live body or particle, else 0. */
 TAUT_API int32_t taut_body_is_valid(taut_body body);
 
-TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind *out);
-TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t *out);
+TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind* out);
+TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
 /** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
-TAUT_API taut_result taut_body_get_mass(taut_body body, float *mass, taut_vec3 *centre_of_mass, taut_sym3 *inertia);
-TAUT_API taut_result taut_body_get_material(taut_body body, taut_material *out);
-TAUT_API taut_result taut_body_set_material(taut_body body, const taut_material *material);
+TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia);
+TAUT_API taut_result taut_body_get_material(taut_body body, taut_material* out);
+TAUT_API taut_result taut_body_set_material(taut_body body, const taut_material* material);
 
 /** Pose after the last step. */
-TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose *out);
+TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose* out);
 /** Teleports. A particle ignores the rotation. Carried contact impulses of the body are dropped. */
-TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose *pose);
+TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose* pose);
 /** Pose between the last two steps at the fraction left by taut_world_advance, for rendering. */
-TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose *out);
+TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
 
 /** Velocity of the centre of mass [m/s] and angular velocity [rad/s], world axes. Either pointer may be null. */
-TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3 *linear, taut_vec3 *angular);
+TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3* linear, taut_vec3* angular);
 /** Sets both; refused for a static body, and a non-zero angular velocity for a particle. */
 TAUT_API taut_result taut_body_set_velocity(taut_body body, taut_vec3 linear, taut_vec3 angular);
 /** Gives a kinematic body the velocity that brings it to the pose in one step; it keeps that velocity until changed. */
-TAUT_API taut_result taut_body_move_kinematic(taut_body body, const taut_pose *target);
+TAUT_API taut_result taut_body_move_kinematic(taut_body body, const taut_pose* target);
 
-/** Force [N] at the centre of mass and torque [N m], world axes, during the next step only; calls add up. Dynamic bodies and (force) particles. */
+/** Force [N] at the centre of mass and torque [N m], world axes, during the next step only; calls add up. Dynamic
+ * bodies and (force) particles. */
 TAUT_API taut_result taut_body_apply_force(taut_body body, taut_vec3 force, taut_vec3 torque);
 /** Force [N] at a world point during the next step. */
 TAUT_API taut_result taut_body_apply_force_at(taut_body body, taut_vec3 force, taut_pos point);

@@ -36,10 +36,10 @@ typedef struct taut_quarantine_event {
 
 /** The events of the last step. */
 typedef struct taut_events {
-    const taut_contact_event *begin;
-    const taut_contact_event *end;
-    const taut_moved_event *moved;
-    const taut_quarantine_event *quarantined;
+    const taut_contact_event* begin;
+    const taut_contact_event* end;
+    const taut_moved_event* moved;
+    const taut_quarantine_event* quarantined;
     uint32_t begin_count;
     uint32_t end_count;
     uint32_t moved_count;
@@ -57,13 +57,13 @@ typedef struct taut_contact {
     float friction_impulse; /**< magnitude, of the last substep [N s] */
 } taut_contact;
 
-TAUT_API taut_result taut_world_get_events(taut_world world, taut_events *out);
+TAUT_API taut_result taut_world_get_events(taut_world world, taut_events* out);
 /**
  * Copies the contact points of the last step, sorted by pair.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
-TAUT_API taut_result taut_world_get_contacts(taut_world world, taut_contact *contacts, uint32_t capacity,
-                                             uint32_t *count);
+TAUT_API taut_result taut_world_get_contacts(taut_world world, taut_contact* contacts, uint32_t capacity,
+                                             uint32_t* count);
 
 #ifdef __cplusplus
 }

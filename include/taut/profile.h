@@ -15,24 +15,24 @@ extern "C" {
 typedef struct taut_profile {
     uint32_t struct_size; /**< set by the caller to sizeof(taut_profile) */
     /* time [us] */
-    float step_us;        /**< the whole step */
+    float step_us; /**< the whole step */
     float broadphase_us;
     float narrowphase_us;
-    float partition_us;   /**< islands, blocks, colours */
-    float predict_us;     /**< forces, world inertia, contact preparation */
-    float assemble_us;    /**< rows and geometric stiffness */
-    float factor_us;      /**< direct solves */
-    float sweep_us;       /**< iterative sweeps, biased and relaxed */
-    float commit_us;      /**< positions */
-    float publish_us;     /**< restitution, quarantine, events */
+    float partition_us; /**< islands, blocks, colours */
+    float predict_us;   /**< forces, world inertia, contact preparation */
+    float assemble_us;  /**< rows and geometric stiffness */
+    float factor_us;    /**< direct solves */
+    float sweep_us;     /**< iterative sweeps, biased and relaxed */
+    float commit_us;    /**< positions */
+    float publish_us;   /**< restitution, quarantine, events */
     /* counts */
-    uint32_t bodies;      /**< dynamic bodies and particles */
-    uint32_t pairs;       /**< overlapping fat boxes */
-    uint32_t touching;    /**< pairs with contact points */
-    uint32_t points;      /**< contact points */
+    uint32_t bodies;   /**< dynamic bodies and particles */
+    uint32_t pairs;    /**< overlapping fat boxes */
+    uint32_t touching; /**< pairs with contact points */
+    uint32_t points;   /**< contact points */
     uint32_t joints;
     uint32_t islands;
-    uint32_t blocks;      /**< joint-connected components solved directly */
+    uint32_t blocks; /**< joint-connected components solved directly */
     uint32_t colours;
     uint32_t substeps;    /**< largest number of substeps that an island took */
     uint32_t solves;      /**< direct block solves, all substeps together */
@@ -47,7 +47,7 @@ typedef struct taut_profile {
 } taut_profile;
 
 /** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_STALE_HANDLE, TAUT_LOCKED. Thread safety: as event.h. */
-TAUT_API taut_result taut_world_get_profile(taut_world world, taut_profile *out);
+TAUT_API taut_result taut_world_get_profile(taut_world world, taut_profile* out);
 
 #ifdef __cplusplus
 }

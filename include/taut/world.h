@@ -16,7 +16,7 @@ extern "C" {
 
 /** How constraints are solved. All work on the same assembled system. */
 typedef enum taut_solver {
-    TAUT_SOLVER_BLOCK_LDLT = 0,            /**< joints directly, contacts by sweeps: the default */
+    TAUT_SOLVER_BLOCK_LDLT = 0,             /**< joints directly, contacts by sweeps: the default */
     TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL = 1, /**< everything by coloured sweeps */
     TAUT_SOLVER_ACCELERATED_JACOBI = 2,     /**< everything by accelerated Jacobi */
     TAUT_SOLVER_MAX = 0x7fffffff
@@ -25,36 +25,36 @@ typedef enum taut_solver {
 /** A world. */
 typedef struct taut_world_def {
     uint32_t struct_size;
-    taut_solver solver;       /**< default TAUT_SOLVER_BLOCK_LDLT */
-    taut_vec3 gravity;        /**< [m/s^2], each within 1e4. Default (0, -9.81, 0) */
-    float time_step;          /**< frame [s], [1e-4, 0.1]. Default 1/60 */
-    uint32_t substeps;        /**< least substeps of a frame, [1, 64]; an island may take more. Default 4 */
-    uint32_t fixed_substeps;  /**< 1: no island takes more than substeps. Default 0 */
-    uint32_t sweeps;          /**< iterations a substep of sweeps or Jacobi, [0, 1000]; 0: the solver's own (1 and 30).
-                                   Default 0 */
+    taut_solver solver;      /**< default TAUT_SOLVER_BLOCK_LDLT */
+    taut_vec3 gravity;       /**< [m/s^2], each within 1e4. Default (0, -9.81, 0) */
+    float time_step;         /**< frame [s], [1e-4, 0.1]. Default 1/60 */
+    uint32_t substeps;       /**< least substeps of a frame, [1, 64]; an island may take more. Default 4 */
+    uint32_t fixed_substeps; /**< 1: no island takes more than substeps. Default 0 */
+    uint32_t sweeps;         /**< iterations a substep of sweeps or Jacobi, [0, 1000]; 0: the solver's own (1 and 30).
+                                  Default 0 */
     uint32_t geometric_stiffness; /**< 0 leaves it out (for comparison only). Default 1 */
-    float velocity_filter;    /**< low-pass factor of the velocity that geometric stiffness spares, [0, 1]; 0: plain
-                                   implicit Euler damping (Tournier 2015). Default 0.25 */
-    uint32_t max_catch_up;    /**< most steps in one taut_world_advance, [1, 1000]. Default 4 */
-    uint32_t reserved;        /**< zero */
-    taut_hooks hooks;         /**< default: none */
+    float velocity_filter;        /**< low-pass factor of the velocity that geometric stiffness spares, [0, 1]; 0: plain
+                                       implicit Euler damping (Tournier 2015). Default 0.25 */
+    uint32_t max_catch_up;        /**< most steps in one taut_world_advance, [1, 1000]. Default 4 */
+    uint32_t reserved;            /**< zero */
+    taut_hooks hooks;             /**< default: none */
 } taut_world_def;
 
 /** What taut_world_advance did. */
 typedef struct taut_advance {
-    uint32_t steps;      /**< steps taken */
-    float fraction;      /**< time left over, in steps, [0, 1): weight of the newer pose when rendering */
-    double dropped;      /**< time given up because of max_catch_up [s] */
+    uint32_t steps; /**< steps taken */
+    float fraction; /**< time left over, in steps, [0, 1): weight of the newer pose when rendering */
+    double dropped; /**< time given up because of max_catch_up [s] */
 } taut_advance;
 
-TAUT_API void taut_world_def_init(taut_world_def *def);
+TAUT_API void taut_world_def_init(taut_world_def* def);
 
 /**
  * Creates a world. Thread safety: any thread.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT, TAUT_LIMIT (1023 worlds),
  *         TAUT_OUT_OF_MEMORY, TAUT_UNSUPPORTED (collision library of the wrong precision).
  */
-TAUT_API taut_result taut_world_create(const taut_world_def *def, taut_world *out);
+TAUT_API taut_result taut_world_create(const taut_world_def* def, taut_world* out);
 /** Destroys a world and all in it; every handle into it becomes stale. */
 TAUT_API taut_result taut_world_destroy(taut_world world);
 /** 1 if the handle names a live world, else 0. Thread safety: any thread. */
@@ -66,16 +66,16 @@ TAUT_API taut_result taut_world_step(taut_world world);
  * Adds seconds [0, 1e3] of frame time to an accumulator and takes whole steps from it. out may be null.
  * @return as taut_world_step; TAUT_INVALID_ARGUMENT.
  */
-TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance *out);
+TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
 
-TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3 *out);
+TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
 /** Live bodies and particles, shapes and joints; any pointer may be null. */
-TAUT_API taut_result taut_world_get_counts(taut_world world, uint32_t *bodies, uint32_t *shapes, uint32_t *joints);
+TAUT_API taut_result taut_world_get_counts(taut_world world, uint32_t* bodies, uint32_t* shapes, uint32_t* joints);
 /** Bytes that the world holds from its allocator. */
-TAUT_API taut_result taut_world_get_bytes(taut_world world, uint64_t *out);
+TAUT_API taut_result taut_world_get_bytes(taut_world world, uint64_t* out);
 /** Hash of the whole simulation state (poses, velocities, carried impulses); equal hashes: equal continuation. */
-TAUT_API taut_result taut_world_get_state_hash(taut_world world, uint64_t *out);
+TAUT_API taut_result taut_world_get_state_hash(taut_world world, uint64_t* out);
 
 #ifdef __cplusplus
 }

@@ -4,10 +4,23 @@
 
 namespace taut {
 
-void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen) {
+namespace {
+
+bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& load, double h) {
+    if (load.force == Vec3::Zero() && load.torque == Vec3::Zero()) return false;
+    NodeMotion after = m;
+    after.v += h * mass.inv_mass * load.force;
+    after.w += h * (m.q * (mass.inv_inertia.matrix() * (m.q.conjugate() * load.torque)));
+    return !sane(after);
+}
+
+}  // namespace
+
+void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
     for (uint32_t node : list) {
         NodeMotion& m = nodes.motion[node];
-        if (sane(m)) continue;
+        if (sane(m) && !pushed_too_hard(m, nodes.mass[node], nodes.load[node], h)) continue;
+        nodes.load[node] = {};
         const NodePose& last = nodes.before[node];
         m = {};
         m.q = last.rotation;

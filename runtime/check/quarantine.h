@@ -16,8 +16,9 @@ inline bool sane(const NodeMotion& m) {
            m.w.squaredNorm() <= kMaxSpeed * kMaxSpeed;
 }
 
-// Freezes the insane nodes of a list and appends their numbers to frozen.
-void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen);
+// Freezes the insane nodes of a list, and those that their own load makes so within h, before they drag others along;
+// appends their numbers to frozen.
+void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
 
 // Carried impulses and forces that are not finite become zero.
 void drop_bad_impulses(Pairs& pairs, Joints& joints);

@@ -184,6 +184,8 @@ void Partition::choose_substeps(const PartitionRules& rules) {
             factor = 4;
         else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels)
             factor = 2;
+        else if (island.levels > kTallLevels)
+            island.sweeps = rules.fixed ? 1 : 2;
         island.substeps = rules.substeps * (rules.fixed ? 1 : factor);
     }
     if (rules.fixed) return;
@@ -229,23 +231,25 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
     }
 }
 
-// One group for each substep count that occurs, in ascending order.
+// One group for each effort that occurs, in ascending order.
 void Partition::make_groups() {
     Memory& memory = *groups.get_allocator().memory;
     scratch_.clear();
     for (const Island& island : island_) {
-        const auto at = std::lower_bound(scratch_.begin(), scratch_.end(), island.substeps);
-        if (at == scratch_.end() || *at != island.substeps) scratch_.insert(at, island.substeps);
+        const auto at = std::lower_bound(scratch_.begin(), scratch_.end(), island.effort());
+        if (at == scratch_.end() || *at != island.effort()) scratch_.insert(at, island.effort());
     }
     group_count = static_cast<uint32_t>(scratch_.size());
     while (groups.size() < group_count) groups.emplace_back(memory);
-    for (Island& island : island_)
-        island.group = static_cast<uint32_t>(std::lower_bound(scratch_.begin(), scratch_.end(), island.substeps) -
-                                             scratch_.begin());
     for (uint32_t g = 0; g < group_count; ++g) {
-        groups[g].substeps = scratch_[g];
         groups[g].nodes.clear();
         groups[g].blocks.clear();
+    }
+    for (Island& island : island_) {
+        island.group = static_cast<uint32_t>(std::lower_bound(scratch_.begin(), scratch_.end(), island.effort()) -
+                                             scratch_.begin());
+        groups[island.group].substeps = island.substeps;
+        groups[island.group].sweeps = island.sweeps;
     }
 }
 

@@ -2,7 +2,7 @@
 //
 //   island  nodes connected by joints or touching pairs; independent of every other island during a frame
 //   block   nodes connected by joints: solved directly, its elimination order kept while the joint graph stays
-//   group   all islands that take the same number of substeps; solved together
+//   group   all islands that take the same number of substeps and sweeps; solved together
 //   colour  constraints of a group of which no two share a moving node
 #pragma once
 
@@ -51,6 +51,7 @@ struct Group {
           blocks(memory) {}
 
     uint32_t substeps = 0;
+    uint32_t sweeps = 1;    // least biased sweeps a substep
     Array<uint32_t> nodes;  // moved by forces, ascending
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one.
     Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
@@ -73,7 +74,7 @@ public:
     // Rebuilds islands, groups and colours from the joints and touching pairs of this frame.
     void build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
 
-    Array<Group> groups;  // in ascending order of substeps; the first group_count are used
+    Array<Group> groups;  // in ascending order of effort; the first group_count are used
     uint32_t group_count = 0;
     Array<Block> blocks;
     uint32_t islands = 0;
@@ -81,9 +82,11 @@ public:
 
 private:
     struct Island {
-        uint32_t nodes = 0, levels = 0, substeps = 0, group = 0;
+        uint32_t nodes = 0, levels = 0, substeps = 0, sweeps = 1, group = 0;
         float ratio = 1;  // heaviest load over its support
         bool jointed = false;
+
+        uint32_t effort() const { return substeps << 8 | sweeps; }
     };
 
     void build_blocks(const Nodes& nodes, const Joints& joints);

@@ -310,13 +310,14 @@ bool BlockSolve::settle() {
         double* error = &b_.solution[(nodes_ + j) * kLd];
         block.type->evaluate(block.data, poses, error, nullptr);
         const double* jacobian = &sys_.rows.jacobian[block.jacobian];
-        double lever = 0;
+        double lever = 0, gap = 0;
+        for (int r = 0; r < rows; ++r) {
+            if (block.compliance > 0) error[r] = 0;  // an elastic error is not a gap
+            gap = std::max(gap, std::abs(error[r]));
+        }
         for (int e = 0; e < block.type->nodes * rows; ++e)
             lever = std::max(lever, Vec3::Map(jacobian + e * kDof + 3).norm());
-        for (int r = 0; r < rows; ++r) {
-            open = open || std::abs(error[r]) > kSettleGap * lever;
-            if (block.compliance > 0) error[r] = 0;  // an elastic error is not a gap
-        }
+        open = open || (lever > 0 && gap > kSettleGap * lever);  // particles have no lever, and swing without this
     }
     if (!open) return false;
     b_.matrix.solve(b_.solution.data());
@@ -343,7 +344,7 @@ void solve(Substep& s) {
         give_to_sweeps(s, block);
     }
     s.report.direct_us += watch.lap();
-    sweep_biased(s, s.settings.sweeps ? s.settings.sweeps : kDefaultSweeps);
+    sweep_biased(s);
     watch.lap();
     for (uint32_t b : s.group.blocks) {
         Block& block = s.blocks[b];
@@ -368,7 +369,7 @@ void settle(Substep& s) {
 
 void relax(Substep& s) {
     if (!has_sweeps(s)) return;
-    sweep_relaxed(s, kRelaxSweeps);
+    sweep_relaxed(s);
     for (uint32_t b : s.group.blocks) {  // joints stay as solved; the contacts' push is taken back
         const Block& block = s.blocks[b];
         for (uint32_t node : block.nodes) s.system.free[node + 1] = s.system.exact[node + 1];

@@ -10,6 +10,8 @@
 namespace taut {
 namespace {
 
+constexpr uint32_t kRelaxSweeps = 2;
+
 using RowVector = Eigen::Matrix<double, kMaxRows, 1>;
 using NodeVector = Eigen::Matrix<double, kDof, 1>;
 using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
@@ -161,11 +163,11 @@ void store_forces(Substep& s) {
 
 void solve(Substep& s) {
     warm_start_sweeps(s);
-    sweep_biased(s, s.settings.sweeps ? s.settings.sweeps : kDefaultSweeps);
+    sweep_biased(s);
     store_forces(s);
 }
 
-void relax(Substep& s) { sweep_relaxed(s, kRelaxSweeps); }
+void relax(Substep& s) { sweep_relaxed(s); }
 
 }  // namespace
 
@@ -180,7 +182,8 @@ void warm_start_sweeps(Substep& s) {
     }
 }
 
-void sweep_biased(Substep& s, uint32_t sweeps) {
+void sweep_biased(Substep& s) {
+    const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
     ContactLanes& lanes = s.system.contacts;
     const SweepTerms soft = soft_terms(s.system.h);
     for (uint32_t i = 0; i < sweeps; ++i) {
@@ -192,10 +195,10 @@ void sweep_biased(Substep& s, uint32_t sweeps) {
     publish(s);
 }
 
-void sweep_relaxed(Substep& s, uint32_t sweeps) {
+void sweep_relaxed(Substep& s) {
     ContactLanes& lanes = s.system.contacts;
     const SweepTerms soft = soft_terms(s.system.h);
-    for (uint32_t i = 0; i < sweeps; ++i) {
+    for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
         sweep_rows(s, false);
         s.settings.kernels->sweep_relaxed(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
                                           s.system.velocity.data(), s.system.inverse_mass.data(), soft);

@@ -8,10 +8,8 @@ namespace taut {
 // Impulses of the last substep onto the sweep velocities.
 void warm_start_sweeps(Substep& substep);
 // With the soft bias that removes position errors.
-void sweep_biased(Substep& substep, uint32_t sweeps);
+void sweep_biased(Substep& substep);
 // Without: what the velocity keeps. Bounces at the end of the frame.
-void sweep_relaxed(Substep& substep, uint32_t sweeps);
-
-constexpr uint32_t kDefaultSweeps = 1, kRelaxSweeps = 2;
+void sweep_relaxed(Substep& substep);
 
 }  // namespace taut

@@ -45,7 +45,7 @@ TEST_P(EveryConstraint, SamplesFollowTheirSeed) {
 
 TEST_P(EveryConstraint, JacobianMatchesFiniteDifferencesOfTheError) {
     for_samples([](const Instance& at) {
-        const Matrix j = at.jacobian(), d = derivative(at, [](const Instance& i) { return i.error(); });
+        const Matrix j = at.jacobian(), d = derivative(at, [](const Instance&i) { return i.error(); });
         EXPECT_LE(largest(j - d), 1e-8 * (1 + largest(j))) << "J\n" << j << "\nby differences\n" << d;
     });
 }
@@ -63,7 +63,8 @@ TEST_P(EveryConstraint, ErrorIsTheSameWithAndWithoutJacobian) {
 TEST_P(EveryConstraint, RawStiffnessMatchesFiniteDifferencesOfTheForce) {
     for_samples([](const Instance& at) {
         const Matrix k = at.stiffness(Curvature::raw);
-        const Matrix d = -derivative(at, [](const Instance& i) -> Vector { return i.jacobian().transpose() * i.lambda; });
+        const Matrix d =
+            -derivative(at, [](const Instance& i) -> Vector { return i.jacobian().transpose() * i.lambda; });
         EXPECT_LE(largest(k - d), 1e-8 * (1 + largest(k))) << "K\n" << k << "\nby differences\n" << d;
     });
 }
@@ -122,7 +123,9 @@ TEST_P(EveryConstraint, PositiveStiffnessIsSymmetricAndPositive) {
 TEST_P(EveryConstraint, PositiveStiffnessIsNeverBelowTheExactOne) {
     for_samples([](const Instance& at) {
         const Matrix raw = symmetric(at.stiffness(Curvature::raw)), k = at.stiffness(Curvature::positive);
-        EXPECT_GE(least_eigenvalue(symmetric(k) - raw), -1e-12 * (1 + largest(raw))) << "K\n" << k << "\nexact\n" << raw;
+        EXPECT_GE(least_eigenvalue(symmetric(k) - raw), -1e-12 * (1 + largest(raw))) << "K\n"
+                                                                                     << k << "\nexact\n"
+                                                                                     << raw;
     });
 }
 
@@ -133,7 +136,8 @@ TEST_P(EveryConstraint, PositiveStiffnessOfSingleLeversIsExact) {
         const Matrix raw = symmetric(at.stiffness(Curvature::raw)), k = at.stiffness(Curvature::positive);
         for (int n = 0; n < at.type.nodes; ++n) {
             const Matrix block = raw.block<kDof, kDof>(kDof * n, kDof * n);
-            EXPECT_LE(largest(k.block<kDof, kDof>(kDof * n, kDof * n) - positive_part(block)), 1e-11 * (1 + largest(block)));
+            EXPECT_LE(largest(k.block<kDof, kDof>(kDof * n, kDof * n) - positive_part(block)),
+                      1e-11 * (1 + largest(block)));
         }
     });
 }

@@ -38,7 +38,8 @@ struct Instance {
         Matrix j(type.rows, coordinates());
         for (int n = 0; n < type.nodes; ++n)
             for (int r = 0; r < type.rows; ++r)
-                for (int k = 0; k < kDof; ++k) j(r, n * kDof + k) = raw[static_cast<size_t>((n * type.rows + r) * kDof + k)];
+                for (int k = 0; k < kDof; ++k)
+                    j(r, n * kDof + k) = raw[static_cast<size_t>((n * type.rows + r) * kDof + k)];
         return j;
     }
     Matrix stiffness(Curvature part) const {
@@ -52,8 +53,10 @@ struct Instance {
         Instance to = *this;
         Pose& x = to.pose[static_cast<size_t>(coordinate / kDof)];
         const int k = coordinate % kDof;
-        if (k < 3) x.x[k] += step;
-        else x.R = Eigen::AngleAxisd(step, Vec3::Unit(k - 3)).toRotationMatrix() * x.R;
+        if (k < 3)
+            x.x[k] += step;
+        else
+            x.R = Eigen::AngleAxisd(step, Vec3::Unit(k - 3)).toRotationMatrix() * x.R;
         return to;
     }
 
@@ -68,7 +71,8 @@ inline Matrix derivative(const Instance& at, const std::function<Vector(const In
     constexpr double kStep = 3e-4;
     Matrix d(f(at).size(), at.coordinates());
     for (int k = 0; k < at.coordinates(); ++k)
-        d.col(k) = (8 * (f(at.moved(k, kStep)) - f(at.moved(k, -kStep))) - (f(at.moved(k, 2 * kStep)) - f(at.moved(k, -2 * kStep)))) /
+        d.col(k) = (8 * (f(at.moved(k, kStep)) - f(at.moved(k, -kStep))) -
+                    (f(at.moved(k, 2 * kStep)) - f(at.moved(k, -2 * kStep)))) /
                    (12 * kStep);
     return d;
 }

@@ -178,7 +178,8 @@ TEST_P(EverySolver, AgreesWithDenseEquationsOfAnElasticChain) {
     for (const auto& f : exact.force) size = std::max(size, f.norm());
     for (size_t j = 0; j < exact.force.size(); ++j) {
         const Joint& joint = rig.w.joints.record[j];
-        EXPECT_LE((Eigen::VectorXd::Map(joint.lambda, joint.type->rows) - exact.force[j]).norm(), within(1e-8, 1e-4) * size);
+        EXPECT_LE((Eigen::VectorXd::Map(joint.lambda, joint.type->rows) - exact.force[j]).norm(),
+                  within(1e-8, 1e-4) * size);
     }
 }
 
@@ -201,7 +202,8 @@ TEST_P(EverySolver, AgreesWithDirectOnHangingChain) {
         EXPECT_LE((scene.force(joint[i]) - Vec3(0, below, 0)).norm(), within(1e-6, 1e-3) * below) << "joint " << i;
     }
     const double om = 2 * 3.14159265 * 0.25 / scene.substep;
-    const double give = kLinks * 7.0 * below / (om * om);  // at most: each joint with the whole load, S <= 7/kg with levers
+    const double give =
+        kLinks * 7.0 * below / (om * om);  // at most: each joint with the whole load, S <= 7/kg with levers
     EXPECT_NEAR(scene.position(link.back()).y(), -kLinks + 0.5, within(1e-9, give));
     for (taut_body body : link) EXPECT_LE(scene.speed(body), within(1e-7, 1e-3));
 }
@@ -227,8 +229,8 @@ TEST_P(EverySolver, AgreesWithDirectOnBridge) {
     for (int k = 1; k <= kPlanks; ++k) plank.push_back(scene.particle(kMass, {k * kSpacing, 0, 0}));
     for (int k = 0; k <= kPlanks; ++k)
         rod.push_back(scene.rod(k > 0 ? plank[k - 1] : kWorld, k < kPlanks ? plank[k] : kWorld, {0, 0, 0},
-                                k < kPlanks ? taut_pos{0, 0, 0} : taut_pos{rest.back().x(), rest.back().y(), 0}, length[k],
-                                kCompliance));
+                                k < kPlanks ? taut_pos{0, 0, 0} : taut_pos{rest.back().x(), rest.back().y(), 0},
+                                length[k], kCompliance));
     double before = 0;
     for (int frame = 0; frame < 400; ++frame) {
         scene.step(1);

@@ -39,7 +39,8 @@ struct Data {
             const Quat q = rotation_from_vector(0.02 * Vec3(number(engine), number(engine), number(engine)));
             for (int k = 0; k < 4; ++k) shift[node].dq[k] = static_cast<float>(q.coeffs()[k]);
             mass[node].inv_mass = decade();
-            for (int k = 0; k < 6; ++k) mass[node].inv_inertia[k] = mass[node].inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
+            for (int k = 0; k < 6; ++k)
+                mass[node].inv_inertia[k] = mass[node].inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
         }
         std::vector<uint32_t> order(kNodes - 1);
         std::iota(order.begin(), order.end(), 1);
@@ -87,7 +88,8 @@ struct Data {
         const SweepTerms terms = soft_terms(1.0 / 240);
         kernels.prepare(view, 0, kGroups, velocity.data(), mass.data());
         kernels.warm_start(view, 0, kGroups, velocity.data(), mass.data());
-        for (int i = 0; i < 4; ++i) kernels.sweep_biased(view, 0, kGroups, velocity.data(), mass.data(), shift.data(), terms);
+        for (int i = 0; i < 4; ++i)
+            kernels.sweep_biased(view, 0, kGroups, velocity.data(), mass.data(), shift.data(), terms);
         for (int i = 0; i < 2; ++i) kernels.sweep_relaxed(view, 0, kGroups, velocity.data(), mass.data(), terms);
         kernels.restitute(view, 0, kGroups, velocity.data(), mass.data(), 1.0f);
     }
@@ -251,7 +253,7 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
     Rig& rig = lanes;
     rig.predict();
     Substep s = rig.substep();
-    sweep_biased(s, 1);
+    sweep_biased(s);
     for (const LaneGroup& g : rig.w.system.contacts.group)
         for (int lane = 0; lane < kLanes; ++lane) {
             if (g.pair[lane] == kNone) continue;

@@ -36,15 +36,18 @@ void build_tree(Rig& rig, uint64_t seed, bool rigid) {
         const double mass = std::pow(10.0, 2 * random.unit()), length = 0.5 + random.unit(), soft = softness();
         const Quat q = random.rotation();
         const Vec3 there = anchor(rig, parent, random), here = point ? Vec3(Vec3::Zero()) : random.vector();
-        const Vec3 gap = 1e-3 * random.vector() + (ball ? Vec3(Vec3::Zero()) : Vec3(length * random.vector().normalized()));
+        const Vec3 gap =
+            1e-3 * random.vector() + (ball ? Vec3(Vec3::Zero()) : Vec3(length * random.vector().normalized()));
         const Vec3 x = in_world(rig, parent, there) + gap - (point ? here : q * here);
         const Vec3 v = 0.3 * random.vector(), spin = 0.3 * random.vector();
         nodes.push_back(point ? rig.particle(mass, x, v) : rig.body(mass, mass * inertia_of(random), x, q, v, spin));
         NodeMotion& m = rig.w.nodes.motion[nodes.back()];
         m.slow_v = 0.3 * random.vector();
         if (!point) m.slow_w = 0.3 * random.vector();
-        if (ball) rig.ball(parent, nodes.back(), there, here, soft, 3);
-        else rig.rod(parent, nodes.back(), there, here, length, soft, 5);
+        if (ball)
+            rig.ball(parent, nodes.back(), there, here, soft, 3);
+        else
+            rig.rod(parent, nodes.back(), there, here, length, soft, 5);
     }
 }
 
@@ -104,7 +107,8 @@ TEST_P(BlockLdlt, MakesStiffnessOfTheLastForcesAndOfBothWhereOneGrew) {
         const Forces old = forces(rig);
         const uint32_t resolves = rig.report.resolves;
         const bool tripped = rig.w.partition.blocks[0].memory.guard_left > 0;
-        const DenseSubstep exact = solve_dense(rig, {old}, !tripped), again = solve_dense(rig, {old, exact.force}, !tripped);
+        const DenseSubstep exact = solve_dense(rig, {old}, !tripped),
+                           again = solve_dense(rig, {old, exact.force}, !tripped);
         bool grew = false;
         double size = 0;
         for (const auto& f : exact.force) size = std::max(size, f.norm());
@@ -126,9 +130,12 @@ TEST(BlockLdltOrder, BallBallRodOnTheWorld) {
     Rig rig;
     uint32_t last = kNone;
     for (int i = 0; i < 3; ++i) {
-        const uint32_t link = rig.body(1, Vec3(0.1, 0.2, 0.15), Vec3(i + 0.5, 0, 0), Quat::Identity(), Vec3(0, 0, 0.1 * i));
-        if (i < 2) rig.ball(last, link, Vec3(i == 0 ? 0 : 0.5, 0, 0), Vec3(-0.5, 0, 0));
-        else rig.rod(last, link, Vec3(0.4, 0, 0), Vec3(-0.4, 0, 0), 0.2);
+        const uint32_t link =
+            rig.body(1, Vec3(0.1, 0.2, 0.15), Vec3(i + 0.5, 0, 0), Quat::Identity(), Vec3(0, 0, 0.1 * i));
+        if (i < 2)
+            rig.ball(last, link, Vec3(i == 0 ? 0 : 0.5, 0, 0), Vec3(-0.5, 0, 0));
+        else
+            rig.rod(last, link, Vec3(0.4, 0, 0), Vec3(-0.4, 0, 0), 0.2);
         last = link;
     }
     rig.begin(kBlockLdlt);
@@ -174,7 +181,8 @@ TEST(BlockLdltLoops, AreSolvedToTheirCompliance) {
     Rig rig;
     std::vector<uint32_t> node;
     for (int i = 0; i < 4; ++i)
-        node.push_back(rig.body(1 + i, Vec3(0.1, 0.2, 0.15), Vec3(i % 2, i / 2, 0), Quat::Identity(), Vec3(0, 0, 0.3 * i)));
+        node.push_back(
+            rig.body(1 + i, Vec3(0.1, 0.2, 0.15), Vec3(i % 2, i / 2, 0), Quat::Identity(), Vec3(0, 0, 0.3 * i)));
     const int ring[4] = {0, 1, 3, 2};
     for (int i = 0; i < 4; ++i) {
         const uint32_t a = node[static_cast<size_t>(ring[i])], b = node[static_cast<size_t>(ring[(i + 1) % 4])];
@@ -195,21 +203,26 @@ TEST(BlockLdltLoops, NetsAreSolvedToTheirCompliance) {
     for (bool bodies : {true, false})
         for (bool bent : {true, false})
             for (int side : {2, 3, 5, 7}) {
-                SCOPED_TRACE(testing::Message() << (bodies ? "bodies" : "particles") << (bent ? ", bent, " : ", flat, ") << side);
+                SCOPED_TRACE(testing::Message()
+                             << (bodies ? "bodies" : "particles") << (bent ? ", bent, " : ", flat, ") << side);
                 Rig rig;
                 auto at = [&](int i, int k) { return Vec3(k, -i, bent ? 0.1 * std::sin(1.7 * i + 0.9 * k * k) : 0.0); };
                 std::vector<uint32_t> node;
                 for (int i = 0; i < side; ++i)
                     for (int k = 0; k < side; ++k) {
                         const double mass = 1 + (i + k) % 3;
-                        node.push_back(bodies ? rig.body(mass, Vec3(0.1, 0.2, 0.15), at(i, k), Quat::Identity(), Vec3(0, 0, 0.1 * i))
+                        node.push_back(bodies ? rig.body(mass, Vec3(0.1, 0.2, 0.15), at(i, k), Quat::Identity(),
+                                                         Vec3(0, 0, 0.1 * i))
                                               : rig.particle(mass, at(i, k), Vec3(0.1 * k, 0, 0.1 * i)));
                     }
                 auto tie = [&](int i, int k, int to_i, int to_k) {
                     const Vec3 d = at(to_i, to_k) - at(i, k);
-                    const uint32_t a = node[static_cast<size_t>(i * side + k)], b = node[static_cast<size_t>(to_i * side + to_k)];
-                    if (bodies) rig.ball(a, b, 0.5 * d, -0.5 * d);
-                    else rig.rod(a, b, Vec3::Zero(), Vec3::Zero(), d.norm());
+                    const uint32_t a = node[static_cast<size_t>(i * side + k)],
+                                   b = node[static_cast<size_t>(to_i * side + to_k)];
+                    if (bodies)
+                        rig.ball(a, b, 0.5 * d, -0.5 * d);
+                    else
+                        rig.rod(a, b, Vec3::Zero(), Vec3::Zero(), d.norm());
                 };
                 rig.ball(kNone, node[0], at(0, 0), Vec3::Zero());
                 for (int i = 0; i < side; ++i)

@@ -48,11 +48,12 @@ public:
         m.w = spin;
         return node;
     }
-    uint32_t ball(uint32_t a, uint32_t b, const Vec3& anchor_a, const Vec3& anchor_b, double compliance = 0, double damping = 0) {
+    uint32_t ball(uint32_t a, uint32_t b, const Vec3& anchor_a, const Vec3& anchor_b, double compliance = 0,
+                  double damping = 0) {
         return join(kBall, a, b, BallData{anchor_a, anchor_b}, compliance, damping);
     }
-    uint32_t rod(uint32_t a, uint32_t b, const Vec3& anchor_a, const Vec3& anchor_b, double length, double compliance = 0,
-                 double damping = 0) {
+    uint32_t rod(uint32_t a, uint32_t b, const Vec3& anchor_a, const Vec3& anchor_b, double length,
+                 double compliance = 0, double damping = 0) {
         return join(kDistance, a, b, DistanceData{anchor_a, anchor_b, length}, compliance, damping);
     }
     // Contact points in the world; a < b.
@@ -62,8 +63,8 @@ public:
         pair.manifold.normal = normal;
         pair.manifold.count = static_cast<int>(points.size());
         for (size_t i = 0; i < points.size(); ++i)
-            pair.manifold.points[i] = {(points[i].first - w.nodes.origin(a)).cast<float>(), static_cast<float>(points[i].second),
-                                       static_cast<uint32_t>(i)};
+            pair.manifold.points[i] = {(points[i].first - w.nodes.origin(a)).cast<float>(),
+                                       static_cast<float>(points[i].second), static_cast<uint32_t>(i)};
         std::sort(w.pairs.list.begin(), w.pairs.list.end(), [](const Pair& p, const Pair& q) { return p.key < q.key; });
         w.pairs.active.clear();
         for (uint32_t i = 0; i < w.pairs.list.size(); ++i) {
@@ -101,8 +102,10 @@ public:
         store_velocity(w.system, group(), w.nodes, settings.velocity_filter);
     }
     void store_contacts() {
-        if (solver.wide_contacts) store_lanes(w.system, w.pairs);
-        else store_contact_rows(w.system, group(), w.pairs);
+        if (solver.wide_contacts)
+            store_lanes(w.system, w.pairs);
+        else
+            store_contact_rows(w.system, group(), w.pairs);
     }
     Group& group() { return w.partition.groups[0]; }
     Substep substep() { return {w.system, group(), w.partition.blocks, w.nodes, settings, report, w.scratch, false}; }
@@ -129,7 +132,8 @@ private:
         return node;
     }
     template <class Data>
-    uint32_t join(const ConstraintType& type, uint32_t a, uint32_t b, const Data& data, double compliance, double damping) {
+    uint32_t join(const ConstraintType& type, uint32_t a, uint32_t b, const Data& data, double compliance,
+                  double damping) {
         Joint joint;
         joint.type = &type;
         joint.node[0] = a;

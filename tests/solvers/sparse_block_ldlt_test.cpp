@@ -37,7 +37,8 @@ struct Problem {
     uint32_t add_node(int size) {
         const RowMajor a = random(size, size);
         const auto i = add({size, false});
-        block[{i, i}] = std::pow(10.0, 3 * random(1, 1)(0, 0) / 2) * (a * a.transpose() + RowMajor::Identity(size, size));
+        block[{i, i}] =
+            std::pow(10.0, 3 * random(1, 1)(0, 0) / 2) * (a * a.transpose() + RowMajor::Identity(size, size));
         return i;
     }
     uint32_t add_multiplier(int size, double compliance) {
@@ -50,10 +51,13 @@ struct Problem {
         const bool wide = unknown[a].size == 6 && unknown[b].size == 6 && pick(2) == 0;
         const uint32_t m = add_multiplier(wide ? 6 : 3, compliance);
         link(m, a);
-        if (pick(2) == 0) link(m, b);  // in either direction
-        else link(b, m);
+        if (pick(2) == 0)
+            link(m, b);  // in either direction
+        else
+            link(b, m);
         if (!coupled) return;
-        const RowMajor k = 0.01 * random(unknown[a].size, unknown[b].size);  // stays positive: the diagonals are 1 and more
+        const RowMajor k =
+            0.01 * random(unknown[a].size, unknown[b].size);  // stays positive: the diagonals are 1 and more
         const double scale = std::min(block[{a, a}].norm(), block[{b, b}].norm()) / 10;
         block[{a, b}] = scale * k;
     }
@@ -234,12 +238,14 @@ TEST(SparseBlockLdlt, FactorsAgainAfterTheNumbersChanged) {
         const RowMajor mirrored = 2 * m.transpose();  // twice the matrix, by the other triangle
         for (int r = 0; r < m.cols(); r += 3)
             for (int k = 0; k < m.rows(); k += 3)
-                matrix.add(at.second, at.first, mirrored.data() + r * m.rows() + k, 3, 3, static_cast<int>(m.rows()), r, k);
+                matrix.add(at.second, at.first, mirrored.data() + r * m.rows() + k, 3, 3, static_cast<int>(m.rows()), r,
+                           k);
     }
     ASSERT_TRUE(matrix.factor());
     Array<double> x(once.size(), 0.0, p.memory);
     for (size_t i = 0, row = 0; i < p.unknown.size(); ++i)
-        for (int k = 0; k < p.unknown[i].size; ++k) x[6 * i + static_cast<size_t>(k)] = 2 * rhs[static_cast<long>(row++)];
+        for (int k = 0; k < p.unknown[i].size; ++k)
+            x[6 * i + static_cast<size_t>(k)] = 2 * rhs[static_cast<long>(row++)];
     matrix.solve(x.data());
     for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], once[i], 1e-12 * (1 + std::abs(once[i])));
 }

@@ -27,7 +27,8 @@ class Numbers {
 public:
     explicit Numbers(uint64_t seed) : engine_(seed) {}
     float next() {
-        constexpr float kSpecial[] = {0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, -1e-40f, 3e38f, std::numeric_limits<float>::infinity()};
+        constexpr float kSpecial[] = {0.0f,   -0.0f,   1.0f,  -1.0f,
+                                      1e-40f, -1e-40f, 3e38f, std::numeric_limits<float>::infinity()};
         if (engine_() % 8 == 0) return kSpecial[engine_() % 8];
         std::uniform_real_distribution<float> number(-1, 1), exponent(-20, 20);
         return number(engine_) * std::exp2(exponent(engine_));

@@ -48,8 +48,8 @@ TEST(RotationFromVector, IsTheRotationByItsLengthAboutItsDirection) {
         for (int i = 0; i < 100; ++i) {
             const Vec3 axis = direction(engine);
             const Quat q = rotation_from_vector(angle * axis);
-            worst = std::max({worst, std::abs(q.w() - std::cos(angle / 2)), (q.vec() - std::sin(angle / 2) * axis).norm(),
-                              std::abs(q.norm() - 1)});
+            worst = std::max({worst, std::abs(q.w() - std::cos(angle / 2)),
+                              (q.vec() - std::sin(angle / 2) * axis).norm(), std::abs(q.norm() - 1)});
         }
         EXPECT_LE(worst, kClose * (1 + angle)) << "angle " << angle;
     }

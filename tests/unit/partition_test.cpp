@@ -139,7 +139,8 @@ TEST_P(RandomGraph, HasItsComponentsAsIslandsAndBlocks) {
         ASSERT_FALSE(b.nodes.empty());
         const uint32_t label = block[b.nodes[0]];
         EXPECT_TRUE(std::equal(b.nodes.begin(), b.nodes.end(), block_nodes[label].begin(), block_nodes[label].end()));
-        EXPECT_TRUE(std::equal(b.joints.begin(), b.joints.end(), block_joints[label].begin(), block_joints[label].end()));
+        EXPECT_TRUE(
+            std::equal(b.joints.begin(), b.joints.end(), block_joints[label].begin(), block_joints[label].end()));
     }
     // Every moving node, block and pair of a moving node in one group; islands whole.
     std::map<uint32_t, uint32_t> group_of;
@@ -202,20 +203,20 @@ TEST_F(PartitionTest, NoColourHoldsAMovingNodeTwice) {
     for (int i = 0; i < 1500; ++i) {
         const uint32_t a = engine() % (kCount + 1), b = engine() % (kCount + 1);
         if (a == b || !known.insert({std::min(a, b), std::max(a, b)}).second) continue;
-        if (engine() % 3) touch(a, b);
-        else join(a, engine() % 10 == 0 && a != ground ? kNone : b);
+        if (engine() % 3)
+            touch(a, b);
+        else
+            join(a, engine() % 10 == 0 && a != ground ? kNone : b);
     }
     build();
     EXPECT_EQ(partition.blocks.size(), 0u);
     size_t swept_joints = 0, swept_pairs = 0;
     for (uint32_t g = 0; g < partition.group_count; ++g) {
         const Group& group = partition.groups[g];
-        expect_valid_colours(*this, group.pairs, group.pair_colour_begin, [&](uint32_t p) {
-            return std::pair(pairs.active[p].a, pairs.active[p].b);
-        });
-        expect_valid_colours(*this, group.joints, group.joint_colour_begin, [&](uint32_t j) {
-            return std::pair(joints.record[j].node[0], joints.record[j].node[1]);
-        });
+        expect_valid_colours(*this, group.pairs, group.pair_colour_begin,
+                             [&](uint32_t p) { return std::pair(pairs.active[p].a, pairs.active[p].b); });
+        expect_valid_colours(*this, group.joints, group.joint_colour_begin,
+                             [&](uint32_t j) { return std::pair(joints.record[j].node[0], joints.record[j].node[1]); });
         swept_pairs += group.pairs.size();
         swept_joints += group.joints.size();
     }
@@ -233,10 +234,10 @@ TEST_F(PartitionTest, AHubWithAHundredContactsReachesTheLastColour) {
     ASSERT_EQ(partition.group_count, 1u);
     const Group& group = partition.groups[0];
     EXPECT_EQ(partition.colours, kMaxColours);
-    expect_valid_colours(*this, group.pairs, group.pair_colour_begin, [&](uint32_t p) {
-        return std::pair(pairs.active[p].a, pairs.active[p].b);
-    });
-    for (uint32_t c = 0; c + 1 < kMaxColours; ++c) EXPECT_EQ(group.pair_colour_begin[c + 1] - group.pair_colour_begin[c], 1u);
+    expect_valid_colours(*this, group.pairs, group.pair_colour_begin,
+                         [&](uint32_t p) { return std::pair(pairs.active[p].a, pairs.active[p].b); });
+    for (uint32_t c = 0; c + 1 < kMaxColours; ++c)
+        EXPECT_EQ(group.pair_colour_begin[c + 1] - group.pair_colour_begin[c], 1u);
     EXPECT_EQ(group.pair_colour_begin[kMaxColours] - group.pair_colour_begin[kMaxColours - 1], 100 - (kMaxColours - 1));
 }
 
@@ -338,7 +339,8 @@ void analyse(Block& block) {
 bool kept(const Block& block) { return block.matrix.analysed() && block.memory.solved == 7; }
 
 TEST_F(PartitionTest, BlocksStayWhileTheirJointsDo) {
-    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic), d = add(NodeKind::dynamic);
+    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic),
+                   d = add(NodeKind::dynamic);
     join(a, b);
     const uint32_t other = join(c, d);
     build();
