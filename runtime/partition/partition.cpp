@@ -53,15 +53,19 @@ void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pai
     distribute(nodes, joints, pairs, rules);
 }
 
-// Components of the joint graph. Symbolic work happens at a block's first solve.
-void Partition::build_blocks(const Nodes& nodes, const Joints& joints) {
-    const uint32_t slots = nodes.slots();
-    parent_.resize(slots);
-    for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
+// Union-find of the joint graph alone.
+void Partition::connect_joints(const Nodes& nodes, const Joints& joints) {
+    parent_.resize(nodes.slots());
+    for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
         if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1]))
             unite(joint.node[0], joint.node[1]);
+}
 
+// Components of the joint graph. Symbolic work happens at a block's first solve.
+void Partition::build_blocks(const Nodes& nodes, const Joints& joints) {
+    const uint32_t slots = nodes.slots();
+    connect_joints(nodes, joints);
     Memory& memory = *blocks.get_allocator().memory;
     Array<Block> old(memory);
     old.swap(blocks);
@@ -102,11 +106,7 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints) {
 
 void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
-    parent_.resize(slots);
-    for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
-    for (const Joint& joint : joints.record)
-        if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1]))
-            unite(joint.node[0], joint.node[1]);
+    connect_joints(nodes, joints);
     for (const ActivePair& pair : pairs.active)
         if (moving(nodes, pair.a) && moving(nodes, pair.b)) unite(pair.a, pair.b);
 

@@ -90,6 +90,7 @@ private:
     };
 
     void build_blocks(const Nodes& nodes, const Joints& joints);
+    void connect_joints(const Nodes& nodes, const Joints& joints);
     void connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void measure_towers(const Nodes& nodes, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "solvers/solver.h"
+#include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
 namespace taut {
@@ -19,44 +20,27 @@ constexpr uint32_t kDefaultIterations = 30;
 // biased: position errors are removed, softly; relaxed: not; bouncing: contacts that were hit part again.
 enum class Phase { biased, relaxed, bouncing };
 
-using NodeVector = Eigen::Matrix<double, kDof, 1>;
-using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>;
-using ShortVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
-using Map = Eigen::Map<ShortVector>;
-using ConstMap = Eigen::Map<const ShortVector>;
-
 class Iteration {
 public:
     explicit Iteration(Substep& s)
         : sys_(s.system),
           count_(s.scratch.count),
           inverse_(s.scratch.inverse),
+          softness_(s.scratch.softness),
           previous_(s.scratch.previous),
           next_(s.scratch.next),
           soft_(soft_terms(sys_.h)) {
         count_.assign(sys_.pose.size(), 0);
         inverse_.clear();
+        softness_.clear();
         next_.resize(sys_.rows.impulse.size());
         for (const RowBlock& block : sys_.rows.block)
             for (int n = 0; n < block.type->nodes; ++n) ++count_[block.node[n]];
-        for (const RowBlock& block : sys_.rows.block) {
-            const int rows = block.type->rows;
-            RowMatrix split = RowMatrix::Zero(rows, rows);
-            for (int n = 0; n < block.type->nodes; ++n)
-                for (int r = 0; r < rows; ++r)
-                    split.col(r) +=
-                        count_[block.node[n]] *
-                        (jacobian(block, n) * respond(block.node[n], jacobian(block, n).row(r).transpose()));
-            split.diagonal().array() += softness(block, Phase::biased) + 1e-12 * split.trace();
-            const RowMatrix inverse = split.inverse();
-            inverse_.insert(inverse_.end(), inverse.data(), inverse.data() + rows * rows);
-        }
+        for (const RowBlock& block : sys_.rows.block) prepare(block);
     }
 
     void apply_all() {  // warm start: J^T mu onto v*
-        for (const RowBlock& block : sys_.rows.block)
-            push(block, ConstMap(&sys_.rows.impulse[block.row], block.type->rows));
+        for (const RowBlock& block : sys_.rows.block) push(block, impulse_of(sys_, block));
     }
 
     void run(uint32_t iterations, Phase phase) {
@@ -72,6 +56,25 @@ public:
     }
 
 private:
+    // Inverse of the split diagonal, and the compliance c that the biased phase gives the block: physical, or a soft
+    // row's share of its own effective mass (see soft_contact.h).
+    void prepare(const RowBlock& block) {
+        const int rows = block.type->rows;
+        RowMatrix split = RowMatrix::Zero(rows, rows), own = split;
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const RowMatrix s = effective_mass(sys_, block, n);
+            own += s;
+            split += count_[block.node[n]] * s;
+        }
+        const RowMatrix softness =
+            block.compliance > 0 ? RowMatrix(row_terms(block, sys_.h).compliance * RowMatrix::Identity(rows, rows))
+                                 : RowMatrix(soft_.impulse_scale / soft_.mass_scale * own);
+        split.diagonal().array() += 1e-12 * split.trace();
+        const RowMatrix inverse = (split + softness).inverse();
+        inverse_.insert(inverse_.end(), inverse.data(), inverse.data() + rows * rows);
+        softness_.insert(softness_.end(), softness.data(), softness.data() + rows * rows);
+    }
+
     // One iteration; true if the momentum pointed against the descent.
     bool advance(double beta, Phase phase) {
         size_t at = 0;
@@ -79,51 +82,37 @@ private:
         Array<double>& impulse = sys_.rows.impulse;
         for (const RowBlock& block : sys_.rows.block) {
             const int rows = block.type->rows;
-            const ConstMap now(&impulse[block.row], rows), before(&previous_[block.row], rows);
-            const Eigen::Map<const RowMatrix> inverse(&inverse_[at], rows, rows);
+            const Eigen::Map<const RowVector> now(&impulse[block.row], rows), before(&previous_[block.row], rows);
+            const Eigen::Map<const RowMatrix> inverse(&inverse_[at], rows, rows), softness(&softness_[at], rows, rows);
             at += static_cast<size_t>(rows * rows);
-            const ShortVector r = residual(block, now, phase);
+            const RowVector r = residual(block, now, softness, phase);
             alignment += r.dot(now - before);
-            ShortVector next = now - inverse * r + beta * (now - before);
+            RowVector next = now - inverse * r + beta * (now - before);
             project(block, next);
-            Map(&next_[block.row], rows) = next;
+            Eigen::Map<RowVector>(&next_[block.row], rows) = next;
         }
         for (const RowBlock& block : sys_.rows.block)
-            push(block,
-                 ConstMap(&next_[block.row], block.type->rows) - ConstMap(&impulse[block.row], block.type->rows));
+            push(block, Eigen::Map<const RowVector>(&next_[block.row], block.type->rows) - impulse_of(sys_, block));
         previous_ = impulse;
         impulse = next_;
         return alignment > 0;
     }
 
-    static void project(const RowBlock& block, ShortVector& mu) {
+    static void project(const RowBlock& block, RowVector& mu) {
         if (block.type->bound != Bound::cone) return;
         mu[0] = std::max(0.0, mu[0]);
         const double limit = block.friction * mu[0], size = std::sqrt(mu[1] * mu[1] + mu[2] * mu[2]);
         if (size > limit) mu.tail(2) *= limit / size;
     }
 
-    // c of a row: physical, or the soft row's on its own effective mass (see soft_contact.h).
-    double softness(const RowBlock& block, Phase phase) const {
-        if (block.compliance > 0) return row_terms(block, sys_.h).compliance;
-        if (phase != Phase::biased) return 0;
-        double trace = 0;
-        for (int n = 0; n < block.type->nodes; ++n)
-            for (int r = 0; r < block.type->rows; ++r)
-                trace += jacobian(block, n).row(r).dot(respond(block.node[n], jacobian(block, n).row(r).transpose()));
-        return soft_.impulse_scale / soft_.mass_scale * trace / block.type->rows;
-    }
-
-    ShortVector residual(const RowBlock& block, const ConstMap& mu, Phase phase) const {
-        const int rows = block.type->rows;
-        const double* error = &sys_.rows.error[block.row];
-        ShortVector r = ShortVector::Zero(rows);
+    RowVector residual(const RowBlock& block, const RowVector& mu, const RowMatrix& softness, Phase phase) const {
+        RowVector r = RowVector::Zero(block.type->rows);
         for (int n = 0; n < block.type->nodes; ++n) {
-            const Velocity& u = sys_.exact[block.node[n]];
             NodeVector v;
-            v << u.v, u.w;
-            r += jacobian(block, n) * v;
+            v << sys_.exact[block.node[n]].v, sys_.exact[block.node[n]].w;
+            r += jacobian_of(sys_, block, n) * v;
         }
+        const RowVector error = error_of(sys_, block);
         if (block.type->bound == Bound::cone) {  // only the normal row has a target
             const double gap = error[0];
             if (phase == Phase::bouncing && block.bounce > 0 && mu[0] > 0)
@@ -131,39 +120,27 @@ private:
             else if (gap > 0)
                 r[0] += gap * soft_.inv_h;
             else if (phase == Phase::biased)
-                r[0] += std::max<double>(soft_.bias_rate * gap, -soft_.push) + softness(block, Phase::biased) * mu[0];
+                r[0] += std::max<double>(soft_.bias_rate * gap, -soft_.push) + softness(0, 0) * mu[0];
             return r;
         }
-        const double rate = block.compliance > 0     ? row_terms(block, sys_.h).rate
-                            : phase == Phase::biased ? soft_.bias_rate
-                                                     : 0.0;
-        return r + rate * ConstMap(error, rows) + softness(block, phase) * mu;
+        if (block.compliance > 0) return r + row_terms(block, sys_.h).rate * error + softness * mu;
+        if (phase == Phase::biased) return r + soft_.bias_rate * error + softness * mu;
+        return r;
     }
 
-    NodeVector respond(uint32_t node, const NodeVector& p) const {
-        const SweepMass& m = sys_.inverse_mass[node];
-        const float* i = m.inv_inertia;
-        NodeVector v;
-        v << m.inv_mass * p.head<3>(), i[0] * p[3] + i[3] * p[4] + i[4] * p[5], i[3] * p[3] + i[1] * p[4] + i[5] * p[5],
-            i[4] * p[3] + i[5] * p[4] + i[2] * p[5];
-        return v;
-    }
-    void push(const RowBlock& block, const ShortVector& impulse) {
+    void push(const RowBlock& block, const RowVector& impulse) {
         for (int n = 0; n < block.type->nodes; ++n) {
-            const NodeVector dv = respond(block.node[n], jacobian(block, n).transpose() * impulse);
-            sys_.exact[block.node[n]].v += dv.head<3>();
-            sys_.exact[block.node[n]].w += dv.tail<3>();
+            const uint32_t node = block.node[n];
+            const NodeVector dv = response(sys_.inverse_mass[node], jacobian_of(sys_, block, n).transpose() * impulse);
+            sys_.exact[node].v += dv.head<3>();
+            sys_.exact[node].w += dv.tail<3>();
         }
-    }
-    Eigen::Map<const RowJacobian> jacobian(const RowBlock& block, int n) const {
-        return {&sys_.rows.jacobian[block.jacobian + static_cast<uint32_t>(n * block.type->rows * kDof)],
-                block.type->rows, kDof};
     }
 
     System& sys_;
-    Array<uint32_t>& count_;  // row blocks on each node
-    Array<double>& inverse_;  // of the split diagonal, rows x rows a block
-    Array<double>&previous_, &next_;
+    Array<uint32_t>& count_;             // row blocks on each node
+    Array<double>&inverse_, &softness_;  // rows x rows a block
+    Array<double>&previous_, &next_;     // impulses
     SweepTerms soft_;
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
 namespace taut {
@@ -12,23 +13,9 @@ namespace {
 
 constexpr uint32_t kRelaxSweeps = 2;
 
-using RowVector = Eigen::Matrix<double, kMaxRows, 1>;
-using NodeVector = Eigen::Matrix<double, kDof, 1>;
-using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>;
-using ShortVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
-
 NodeVector velocity_of(const SweepVelocity& u) {
     NodeVector v;
     v << u.v[0], u.v[1], u.v[2], u.w[0], u.w[1], u.w[2];
-    return v;
-}
-
-NodeVector response(const SweepMass& m, const NodeVector& p) {  // W p
-    const float* i = m.inv_inertia;
-    NodeVector v;
-    v << m.inv_mass * p[0], m.inv_mass * p[1], m.inv_mass * p[2], i[0] * p[3] + i[3] * p[4] + i[4] * p[5],
-        i[3] * p[3] + i[1] * p[4] + i[5] * p[5], i[4] * p[3] + i[5] * p[4] + i[2] * p[5];
     return v;
 }
 
@@ -37,7 +24,7 @@ class RowSweep {
 public:
     RowSweep(System& system, const RowBlock& block) : system_(system), block_(block), rows_(block.type->rows) {}
 
-    void apply(const ShortVector& impulse) {
+    void apply(const RowVector& impulse) {
         for (int i = 0; i < block_.type->nodes; ++i) {
             const uint32_t node = block_.node[i];
             const NodeVector dv = response(system_.inverse_mass[node], jacobian(i).transpose() * impulse);
@@ -48,36 +35,32 @@ public:
             }
         }
     }
-    ShortVector velocity() const {  // J v
-        ShortVector v = ShortVector::Zero(rows_);
+    RowVector velocity() const {  // J v
+        RowVector v = RowVector::Zero(rows_);
         for (int i = 0; i < block_.type->nodes; ++i) v += jacobian(i) * velocity_of(system_.velocity[block_.node[i]]);
         return v;
     }
     RowMatrix effective() const {  // J W J^T
         RowMatrix s = RowMatrix::Zero(rows_, rows_);
-        for (int i = 0; i < block_.type->nodes; ++i)
-            for (int r = 0; r < rows_; ++r)
-                s.col(r) +=
-                    jacobian(i) * response(system_.inverse_mass[block_.node[i]], jacobian(i).row(r).transpose());
+        for (int i = 0; i < block_.type->nodes; ++i) s += effective_mass(system_, block_, i);
         return s;
     }
-    ShortVector impulse() const { return Eigen::Map<const ShortVector>(&system_.rows.impulse[block_.row], rows_); }
-    void move_to(const ShortVector& next) {
+    RowVector impulse() const { return impulse_of(system_, block_); }
+    void move_to(const RowVector& next) {
         apply(next - impulse());
-        Eigen::Map<ShortVector>(&system_.rows.impulse[block_.row], rows_) = next;
+        Eigen::Map<RowVector>(&system_.rows.impulse[block_.row], rows_) = next;
     }
 
     void solve_free(const SweepTerms& soft, bool biased) {
-        const double* error = &system_.rows.error[block_.row];
         RowMatrix s = effective();
-        ShortVector residual = velocity();
+        RowVector residual = velocity();
         double keep = 1;
         if (block_.compliance > 0) {  // physical softness: the same row in both phases
             const RowTerms terms = row_terms(block_, system_.h);
-            residual += terms.rate * Eigen::Map<const ShortVector>(error, rows_) + terms.compliance * impulse();
+            residual += terms.rate * error_of(system_, block_) + terms.compliance * impulse();
             s.diagonal().array() += terms.compliance;
         } else if (biased) {
-            residual += soft.bias_rate * Eigen::Map<const ShortVector>(error, rows_);
+            residual += soft.bias_rate * error_of(system_, block_);
             residual *= soft.mass_scale;
             keep = 1 - soft.impulse_scale;
         }
@@ -88,7 +71,7 @@ public:
     void solve_cone(const SweepTerms& soft, bool biased) {
         const double gap = system_.rows.error[block_.row];
         const RowMatrix s = effective();
-        ShortVector p = impulse();
+        RowVector p = impulse();
         const bool open = gap > 0;
         const double bias = open ? gap * soft.inv_h : biased ? std::max<double>(soft.bias_rate * gap, -soft.push) : 0.0;
         const bool softened = biased && !open;
@@ -97,7 +80,7 @@ public:
         p[0] = std::max(0.0, p[0] - step);
         move_to(p);
 
-        const ShortVector v = velocity();
+        const RowVector v = velocity();
         const Eigen::Matrix2d k = s.bottomRightCorner<2, 2>();
         const Eigen::Vector2d slip(v[1], v[2]), old(p[1], p[2]);
         const double limit = block_.friction * p[0];
@@ -113,9 +96,7 @@ public:
     }
 
 private:
-    Eigen::Map<const RowJacobian> jacobian(int node) const {
-        return {&system_.rows.jacobian[block_.jacobian + static_cast<uint32_t>(node * rows_ * kDof)], rows_, kDof};
-    }
+    Eigen::Map<const RowJacobian> jacobian(int node) const { return jacobian_of(system_, block_, node); }
 
     System& system_;
     const RowBlock& block_;

@@ -25,10 +25,11 @@ struct SolverReport {
 
 // Memory that iterative solvers use during a substep, kept so that steady scenes allocate nothing.
 struct SolverScratch {
-    explicit SolverScratch(Memory& memory) : count(memory), inverse(memory), previous(memory), next(memory) {}
+    explicit SolverScratch(Memory& memory)
+        : count(memory), inverse(memory), softness(memory), previous(memory), next(memory) {}
 
     Array<uint32_t> count;
-    Array<double> inverse, previous, next;
+    Array<double> inverse, softness, previous, next;
 };
 
 // One substep of one group.

@@ -1,4 +1,4 @@
-// The system of one substep: what the solvers see. Built from the state by assemble.cpp and contact_rows.cpp,
+// The system of one substep: what the solvers see. Built from the state by assemble_rows.cpp and assemble_lanes.cpp,
 // it names no constraint type; solvers read it, write velocities and impulses, and keep scratch of their own.
 //
 //   [ M + h^2 K   -J^T ] [v+]   [ M v + h f + h^2 K s ]      K: positive part of the geometric stiffness

@@ -1,0 +1,45 @@
+// Small matrices of one row block, for solvers that work row block by row block.
+#pragma once
+
+#include "system/system.h"
+
+namespace taut {
+
+using NodeVector = Eigen::Matrix<double, kDof, 1>;
+using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>;
+using RowJacobian = Eigen::Matrix<double, Eigen::Dynamic, kDof, Eigen::RowMajor, kMaxRows, kDof>;
+
+// J of one of the block's nodes: rows x 6.
+inline Eigen::Map<const RowJacobian> jacobian_of(const System& system, const RowBlock& block, int node) {
+    const int rows = block.type->rows;
+    return {&system.rows.jacobian[block.jacobian + static_cast<uint32_t>(node * rows * kDof)], rows, kDof};
+}
+
+inline RowVector impulse_of(const System& system, const RowBlock& block) {
+    return Eigen::Map<const RowVector>(&system.rows.impulse[block.row], block.type->rows);
+}
+
+inline RowVector error_of(const System& system, const RowBlock& block) {
+    return Eigen::Map<const RowVector>(&system.rows.error[block.row], block.type->rows);
+}
+
+// W p: what an impulse [N s, N m s] changes of a node's velocity.
+inline NodeVector response(const SweepMass& m, const NodeVector& p) {
+    const float* i = m.inv_inertia;
+    NodeVector v;
+    v << m.inv_mass * p[0], m.inv_mass * p[1], m.inv_mass * p[2], i[0] * p[3] + i[3] * p[4] + i[4] * p[5],
+        i[3] * p[3] + i[1] * p[4] + i[5] * p[5], i[4] * p[3] + i[5] * p[4] + i[2] * p[5];
+    return v;
+}
+
+// J W J^T of one of the block's nodes.
+inline RowMatrix effective_mass(const System& system, const RowBlock& block, int node) {
+    const auto j = jacobian_of(system, block, node);
+    RowMatrix s(block.type->rows, block.type->rows);
+    for (int r = 0; r < block.type->rows; ++r)
+        s.col(r) = j * response(system.inverse_mass[block.node[node]], j.row(r).transpose());
+    return s;
+}
+
+}  // namespace taut
