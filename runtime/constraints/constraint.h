@@ -51,6 +51,9 @@ struct ConstraintType {
     void (*evaluate)(const void* data, const Pose* x, double* error, double* jacobian);
     // k: [6 nodes][6 nodes], row-major, overwritten.
     void (*stiffness)(const void* data, const Pose* x, const double* lambda, Curvature part, double* k);
+    // Compliance of the rows as one block [rows][rows], row-major [m/N], that outlives the step; symmetric and
+    // positive definite. Null: the owner gives one number for all rows, 0 when rigid.
+    const double* (*compliance)(const void* data);
     // An instance with random but valid data and poses around it, for the tests that loop over the list.
     void (*sample)(uint64_t seed, void* data, Pose* x);
 };

@@ -41,6 +41,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kContact{"contact", 3, 2, sizeof(ContactData), Bound::cone, false, evaluate, stiffness, sample};
+const ConstraintType kContact{"contact", 3,       2,     sizeof(ContactData), Bound::cone, false, evaluate,
+                              stiffness, nullptr, sample};
 
 }  // namespace taut

@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "solvers/energy_guard.h"
 #include "solvers/projected_gauss_seidel.h"
+#include "system/row_algebra.h"
 
 namespace taut {
 namespace {
@@ -165,10 +166,12 @@ void BlockSolve::add_joint(uint32_t j) {
         for (int e = 0; e < rows * kDof; ++e) minus[e] = -jacobian[e];
         b_.matrix.add(nodes_ + j, i, minus, rows, size_of(i), kDof);
     }
-    double c = row_terms(block, sys_.h).compliance;
-    if (b_.looped) c = std::max(c, loop_compliance(block));
+    RowMatrix c = row_terms(block, sys_.h).scale * compliance_of(block);
+    if (b_.looped) c.diagonal() = c.diagonal().cwiseMax(loop_compliance(block));
     double diagonal[kMaxRows * kMaxRows] = {};
-    for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = r < rows ? -c : -1.0;  // unused rows: mu = 0
+    for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = -1;  // unused rows: mu = 0
+    for (int r = 0; r < rows; ++r)
+        for (int k = 0; k < rows; ++k) diagonal[r * padded + k] = -c(r, k);
     b_.matrix.add(nodes_ + j, nodes_ + j, diagonal, padded, padded, padded);
 }
 
@@ -312,7 +315,7 @@ bool BlockSolve::settle() {
         const double* jacobian = &sys_.rows.jacobian[block.jacobian];
         double lever = 0, gap = 0;
         for (int r = 0; r < rows; ++r) {
-            if (block.compliance > 0) error[r] = 0;  // an elastic error is not a gap
+            if (block.elastic()) error[r] = 0;  // an elastic error is not a gap
             gap = std::max(gap, std::abs(error[r]));
         }
         for (int e = 0; e < block.type->nodes * rows; ++e)

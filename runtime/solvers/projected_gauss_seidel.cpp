@@ -55,10 +55,11 @@ public:
         RowMatrix s = effective();
         RowVector residual = velocity();
         double keep = 1;
-        if (block_.compliance > 0) {  // physical softness: the same row in both phases
+        if (block_.elastic()) {  // physical softness: the same row in both phases
             const RowTerms terms = row_terms(block_, system_.h);
-            residual += terms.rate * error_of(system_, block_) + terms.compliance * impulse();
-            s.diagonal().array() += terms.compliance;
+            const RowMatrix c = terms.scale * compliance_of(block_);
+            residual += terms.rate * error_of(system_, block_) + c * impulse();
+            s += c;
         } else if (biased) {
             residual += soft.bias_rate * error_of(system_, block_);
             residual *= soft.mass_scale;

@@ -14,7 +14,7 @@ struct Joint {
     uint32_t node[2] = {kNone, kNone};     // kNone: the world
     double lambda[kMaxRows] = {};          // force of the last substep [N, N m]
     double compliance = 0;                 // of each row [m/N]
-    double damping = 0;                    // of each row [N s/m]
+    double damping = 0;                    // of each row [N s/m]; relaxation time [s] of a compliance block
     bool collide_connected = false;
     bool fresh = true;  // not solved yet: lambda means nothing
     uint64_t user_data = 0;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "system/assemble.h"
+#include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
 namespace taut {
@@ -26,7 +27,8 @@ void add_joint(System& system, Joint& joint) {
     block.force = joint.lambda;
     for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
     block.compliance = joint.compliance;
-    block.damping = joint.damping;
+    block.compliance_block = joint.type->compliance ? joint.type->compliance(joint.data) : nullptr;
+    block.relaxation = block.compliance_block ? joint.damping : joint.compliance * joint.damping;
     block.fresh = joint.fresh;
     joint.fresh = false;
 }
@@ -129,17 +131,14 @@ double row_residual(const System& system) {
     for (const RowBlock& block : system.rows.block) {
         if (block.type->bound != Bound::free) continue;
         const RowTerms terms = row_terms(block, system.h);
-        const int rows = block.type->rows;
-        for (int r = 0; r < rows; ++r) {
-            double sum =
-                terms.rate * system.rows.error[block.row + r] + terms.compliance * system.rows.impulse[block.row + r];
-            for (int n = 0; n < block.type->nodes; ++n) {
-                const double* j = &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((n * rows + r) * kDof)];
-                const Velocity& u = system.exact[block.node[n]];
-                sum += Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w);
-            }
-            largest = std::max(largest, std::abs(sum));
+        RowVector r =
+            terms.rate * error_of(system, block) + terms.scale * compliance_of(block) * impulse_of(system, block);
+        for (int n = 0; n < block.type->nodes; ++n) {
+            NodeVector u;
+            u << system.exact[block.node[n]].v, system.exact[block.node[n]].w;
+            r += jacobian_of(system, block, n) * u;
         }
+        largest = std::max(largest, r.cwiseAbs().maxCoeff());
     }
     return largest;
 }

@@ -24,6 +24,13 @@ inline RowVector error_of(const System& system, const RowBlock& block) {
     return Eigen::Map<const RowVector>(&system.rows.error[block.row], block.type->rows);
 }
 
+// C of an elastic block, zero of a rigid one.
+inline RowMatrix compliance_of(const RowBlock& block) {
+    const int rows = block.type->rows;
+    if (block.compliance_block) return Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows);
+    return block.compliance * RowMatrix::Identity(rows, rows);
+}
+
 // W p: what an impulse [N s, N m s] changes of a node's velocity.
 inline NodeVector response(const SweepMass& m, const NodeVector& p) {
     const float* i = m.inv_inertia;

@@ -27,15 +27,18 @@ struct Velocity {
 struct RowBlock {
     const ConstraintType* type;
     const void* data;
-    double* force;             // lambda of the last substep, then of this one [N]; type->rows
-    uint32_t node[kMaxNodes];  // indices into arrays by node; unused ones 0
-    uint32_t row;              // first row
-    uint32_t jacobian;         // first entry of [node][row][6]
-    double compliance;         // [m/N]
-    double damping;            // [N s/m]
-    double friction;           // of a cone
-    double bounce;             // separation speed wanted at the end of the frame, 0: none [m/s]
-    bool fresh;                // lambda of the last substep means nothing yet
+    double* force;                   // lambda of the last substep, then of this one [N]; type->rows
+    uint32_t node[kMaxNodes];        // indices into arrays by node; unused ones 0
+    uint32_t row;                    // first row
+    uint32_t jacobian;               // first entry of [node][row][6]
+    double compliance;               // of each row [m/N], 0: rigid
+    const double* compliance_block;  // [rows][rows] in its place, or null
+    double relaxation;               // time d [s]: compliance * damping
+    double friction;                 // of a cone
+    double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
+    bool fresh;                      // lambda of the last substep means nothing yet
+
+    bool elastic() const { return compliance > 0 || compliance_block; }
 };
 
 struct Rows {
@@ -90,13 +93,12 @@ struct System {
     ContactLanes contacts;  // of the group being solved
 };
 
-// compliance and target of a row of the block, see above.
+// c = scale C, target = -rate error, see above.
 struct RowTerms {
-    double compliance, rate;  // target = -rate * error
+    double scale, rate;
 };
 inline RowTerms row_terms(const RowBlock& block, double h) {
-    const double d = block.compliance * block.damping;
-    return {block.compliance / (h * (h + d)), 1 / (h + d)};
+    return {1 / (h * (h + block.relaxation)), 1 / (h + block.relaxation)};
 }
 
 }  // namespace taut

@@ -48,6 +48,18 @@ public:
         m.w = spin;
         return node;
     }
+    template <class Data>
+    uint32_t join(const ConstraintType& type, uint32_t a, uint32_t b, const Data& data, double compliance,
+                  double damping) {
+        Joint joint;
+        joint.type = &type;
+        joint.node[0] = a;
+        joint.node[1] = b;
+        std::memcpy(joint.data, &data, sizeof data);
+        joint.compliance = compliance;
+        joint.damping = damping;
+        return w.joints.add(joint);
+    }
     uint32_t ball(uint32_t a, uint32_t b, const Vec3& anchor_a, const Vec3& anchor_b, double compliance = 0,
                   double damping = 0) {
         return join(kBall, a, b, BallData{anchor_a, anchor_b}, compliance, damping);
@@ -131,18 +143,6 @@ private:
         m.isotropic = inertia.x() == inertia.y() && inertia.y() == inertia.z();
         return node;
     }
-    template <class Data>
-    uint32_t join(const ConstraintType& type, uint32_t a, uint32_t b, const Data& data, double compliance,
-                  double damping) {
-        Joint joint;
-        joint.type = &type;
-        joint.node[0] = a;
-        joint.node[1] = b;
-        std::memcpy(joint.data, &data, sizeof data);
-        joint.compliance = compliance;
-        joint.damping = damping;
-        return w.joints.add(joint);
-    }
 };
 
 // The substep's equations without their sparsity, from the constraint types alone (runtime/system/system.h):
@@ -200,9 +200,14 @@ inline DenseSubstep solve_dense(Rig& rig, const std::vector<Forces>& sets, bool 
         }
         std::vector<double> jacobian(static_cast<size_t>(type.nodes * type.rows * kDof));
         type.evaluate(joint.data, pose, error.data(), jacobian.data());
-        const double d = joint.compliance * joint.damping, c = joint.compliance / (h * (h + d)), rate = 1 / (h + d);
+        const double* elastic = type.compliance ? type.compliance(joint.data) : nullptr;
+        const double d = elastic ? joint.damping : joint.compliance * joint.damping, rate = 1 / (h + d);
+        Eigen::MatrixXd c = joint.compliance * Eigen::MatrixXd::Identity(type.rows, type.rows);
+        if (elastic)
+            c = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+                elastic, type.rows, type.rows);
         b.segment(row, type.rows) = rate * error;
-        for (int r = 0; r < type.rows; ++r) a(row + r, row + r) = -c;
+        a.block(row, row, type.rows, type.rows) = -c / (h * (h + d));
         for (int n = 0; n < type.nodes; ++n) {
             if (column[n] < 0) continue;
             const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> block(
