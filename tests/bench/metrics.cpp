@@ -75,7 +75,6 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
 Metrics::Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps)
     : scene_(scene),
       engine_(engine),
-      steps_(steps),
       last_second_(window(scene, steps, 1)),
       last_five_seconds_(window(scene, steps, 5)),
       motions_(scene.bodies.size()),

@@ -36,7 +36,7 @@ private:
 
     const scenes::Scene& scene_;
     const Engine& engine_;
-    uint32_t steps_, last_second_, last_five_seconds_;  // first steps of the windows
+    uint32_t last_second_, last_five_seconds_;  // first steps of the windows
     std::vector<Motion> motions_, start_;
     std::vector<Mass> masses_;
     std::vector<double> hang_height_;  // of each body's centre in the state that energies are counted from [m]
