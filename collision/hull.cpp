@@ -109,7 +109,7 @@ Loops reduce(const std::vector<Vec3f>& points, const std::vector<int>& corners, 
             const Vec3 normal = (points[size_t(loop[1])].cast<double>() - a)
                                     .cross(points[size_t(loop[2])].cast<double>() - a)
                                     .normalized();
-            planes.push_back({normal, normal.dot(a)});
+            planes.emplace_back(normal, normal.dot(a));
         }
         int best = -1;
         double most = tolerance;

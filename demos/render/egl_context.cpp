@@ -60,7 +60,7 @@ EglContext::EglContext() {
         if (open_surfaceless() || open_devices()) return;
         dlclose(library);
     } else {
-        tried_.push_back("libEGL.so.1: not installed");
+        tried_.emplace_back("libEGL.so.1: not installed");
     }
     std::string text = "no usable EGL device for OpenGL 3.3; tried:";
     for (const std::string& line : tried_) text += "\n  " + line;
@@ -77,7 +77,7 @@ EglContext::~EglContext() {
 
 bool EglContext::open_surfaceless() {
     if (!client_has("EGL_MESA_platform_surfaceless") || !client_has("EGL_EXT_platform_base")) {
-        tried_.push_back("surfaceless platform: not offered by this EGL library");
+        tried_.emplace_back("surfaceless platform: not offered by this EGL library");
         return false;
     }
     return open(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
@@ -86,13 +86,13 @@ bool EglContext::open_surfaceless() {
 
 bool EglContext::open_devices() {
     if (!client_has("EGL_EXT_platform_device") || !client_has("EGL_EXT_device_enumeration")) {
-        tried_.push_back("device platform: not offered by this EGL library");
+        tried_.emplace_back("device platform: not offered by this EGL library");
         return false;
     }
     std::array<EGLDeviceEXT, 32> devices{};
     EGLint count = 0;
     if (!eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) || count == 0) {
-        tried_.push_back("device platform: no devices listed (" + egl_error() + ")");
+        tried_.emplace_back("device platform: no devices listed (" + egl_error() + ")");
         return false;
     }
     for (EGLint i = 0; i < count; ++i) {
@@ -105,7 +105,7 @@ bool EglContext::open_devices() {
 
 bool EglContext::open(void* display, const std::string& platform) {
     auto fail = [&](const std::string& why) {
-        tried_.push_back(platform + ": " + why);
+        tried_.emplace_back(platform + ": " + why);
         return false;
     };
     if (display == EGL_NO_DISPLAY) return fail("no display (" + egl_error() + ")");

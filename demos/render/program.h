@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "math.h"
+#include "matrix.h"
 
 namespace render {
 
