@@ -53,8 +53,8 @@ typedef struct taut_body_def {
     float density;            /**< [kg/m^3], (0, 1e8]. Used when mass is 0. Default 1000 */
     float mass;               /**< [kg], 0 or [1e-6, 1e15]. 0: from shape and density. Default 0 */
     taut_vec3 centre_of_mass; /**< in the body's frame [m]; used when inertia is given. Default 0 */
-    taut_sym3
-        inertia; /**< about the centre of mass [kg m^2], positive definite; all zero: from shape, scaled to mass */
+    taut_sym3 inertia;   /**< about the centre of mass [kg m^2], positive definite, within 1e30; all zero: from shape,
+                            scaled to mass */
     float gravity_scale; /**< [-1000, 1000]. Default 1 */
     uint32_t reserved;   /**< zero */
     uint64_t user_data;
@@ -112,15 +112,17 @@ TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
 TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3* linear, taut_vec3* angular);
 /** Sets both; refused for a static body, and a non-zero angular velocity for a particle. */
 TAUT_API taut_result taut_body_set_velocity(taut_body body, taut_vec3 linear, taut_vec3 angular);
-/** Gives a kinematic body the velocity that brings it to the pose in one step; it keeps that velocity until changed. */
+/** Gives a kinematic body the velocity that brings it to the pose in one step; it keeps that velocity until changed. At
+ * most 1e4 m/s and rad/s. */
 TAUT_API taut_result taut_body_move_kinematic(taut_body body, const taut_pose* target);
 
 /** Force [N] at the centre of mass and torque [N m], world axes, during the next step only; calls add up. Dynamic
- * bodies and (force) particles. */
+ * bodies and (force) particles; each component within 1e24. */
 TAUT_API taut_result taut_body_apply_force(taut_body body, taut_vec3 force, taut_vec3 torque);
 /** Force [N] at a world point during the next step. */
 TAUT_API taut_result taut_body_apply_force_at(taut_body body, taut_vec3 force, taut_pos point);
-/** Impulse [N s] at the centre of mass and angular impulse [N m s], at once. */
+/** Impulse [N s] at the centre of mass and angular impulse [N m s], at once; refused where it would push the body past
+ * 1e4 m/s or rad/s. */
 TAUT_API taut_result taut_body_apply_impulse(taut_body body, taut_vec3 impulse, taut_vec3 angular_impulse);
 /** Impulse [N s] at a world point, at once. */
 TAUT_API taut_result taut_body_apply_impulse_at(taut_body body, taut_vec3 impulse, taut_pos point);

@@ -29,10 +29,10 @@ typedef struct taut_ball_joint_def {
     uint32_t collide_connected; /**< 1: the two bodies still collide. Default 0 */
     taut_body body_a;           /**< null: the world */
     taut_body body_b;           /**< null: the world; at least one end must be dynamic or a particle */
-    taut_pos anchor_a;          /**< in the frame of end a, world position if null [m]; a particle takes only 0 */
-    taut_pos anchor_b;          /**< in the frame of end b, world position if null [m]; a particle takes only 0 */
-    float compliance;           /**< [m/N], [0, 1e6]. Default 0 */
-    float damping;              /**< [N s/m], [0, 1e12]. Default 0 */
+    taut_pos anchor_a; /**< in the frame of end a, within 1e4; world position if null [m]; a particle takes only 0 */
+    taut_pos anchor_b; /**< in the frame of end b, world position if null [m]; a particle takes only 0 */
+    float compliance;  /**< [m/N], [0, 1e6]. Default 0 */
+    float damping;     /**< [N s/m], [0, 1e12]. Default 0 */
     uint64_t user_data;
 } taut_ball_joint_def;
 
