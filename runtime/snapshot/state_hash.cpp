@@ -20,6 +20,9 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
         hash.add(info.material.friction);
         hash.add(info.material.restitution);
         hash.add(static_cast<uint64_t>(info.shape));
+        hash.add(info.filter.category);
+        hash.add(info.filter.mask);
+        hash.add(static_cast<uint64_t>(static_cast<uint32_t>(info.filter.group)));
     }
 }
 
@@ -31,6 +34,7 @@ void add_joints(Hash& hash, const Joints& joints) {
         for (int r = 0; r < joint.type->rows; ++r) hash.add(joint.lambda[r]);
         hash.add(joint.compliance);
         hash.add(joint.damping);
+        hash.add(static_cast<uint64_t>(joint.fresh) << 1 | joint.collide_connected);
         for (size_t word = 0; word < joint.type->data_size / sizeof(uint64_t); ++word) {
             uint64_t bits;
             std::memcpy(&bits, joint.data + word * sizeof bits, sizeof bits);
@@ -65,6 +69,8 @@ uint64_t state_hash(const World& world) {
     for (const Block& block : world.partition.blocks) {
         hash.add(block.memory.excess_energy);
         hash.add(static_cast<uint64_t>(block.memory.guard_left) << 1 | block.memory.escalated);
+        hash.add(static_cast<uint64_t>(block.memory.solved));
+        hash.add(static_cast<uint64_t>(block.memory.since_trip));
     }
     return hash.value();
 }

@@ -1,5 +1,6 @@
-// The system of one substep: what the solvers see. Built from the state by assemble_rows.cpp and assemble_lanes.cpp,
-// it names no constraint type; solvers read it, write velocities and impulses, and keep scratch of their own.
+// The system of one substep: what the solvers see. Built from the state by assemble_rows.cpp and assemble_lanes.cpp.
+// Solvers reach constraints through it alone and by no type's name; they write velocities and impulses, and keep
+// scratch of their own.
 //
 //   [ M + h^2 K   -J^T ] [v+]   [ M v + h f + h^2 K s ]      K: positive part of the geometric stiffness
 //   [ J            c   ] [mu] = [ target              ]      s: low-passed velocity, mu = h lambda
