@@ -39,6 +39,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kBall{"ball", 3, 2, sizeof(BallData), Bound::free, false, evaluate, stiffness, nullptr, sample};
+const ConstraintType kBall{"ball", 3, 2, sizeof(BallData), Bound::free, false, 0, evaluate, stiffness, nullptr, sample};
 
 }  // namespace taut

@@ -1,7 +1,7 @@
 // The contract between constraints and everything that solves them.
 //
 // A constraint type answers, for one instance and at any poses a solver asks about:
-//   C(x)        error, strain or gap            [m, rad or 1]     rows
+//   C(x)        coordinates: what a row locks at 0, limits or drives (axis.h)   [m, rad or 1]     rows
 //   J = dC/dx   Jacobian                        [1 or m]          nodes x rows x 6
 //   K = -dJ^T/dx lambda   geometric stiffness   [N/m .. N m]      (6 nodes) x (6 nodes)
 // and knows no solver. Adding one is one file and one line in list.cpp. Coordinates of a node are its
@@ -30,7 +30,8 @@ struct Pose {
 // Which part of the geometric stiffness to return.
 enum class Curvature {
     raw,       // exact -dJ^T/dx lambda; not symmetric for rotations (Tournier et al. 2015, eq. 22)
-    positive,  // its symmetric positive semi-definite part, in closed form
+    positive,  // symmetric, positive semi-definite and not below the symmetric part of raw: that part's positive
+               // projection, or a bound of it where the projection has no closed form
 };
 
 // What lambda may be.
@@ -41,11 +42,12 @@ enum class Bound : uint8_t {
 
 struct ConstraintType {
     const char* name;
-    int rows;   // 1, 2, 3 or 6
+    int rows;   // 1 to 6
     int nodes;  // 1 to 4
     size_t data_size;
     Bound bound;
     bool couples_nodes;  // K has blocks between different nodes, beside the diagonal ones
+    uint8_t angular;     // bit r: row r is an angle [rad], its lambda a torque [N m]
 
     // error: rows; jacobian: [nodes][rows][6], may be null when only the error is asked for.
     void (*evaluate)(const void* data, const Pose* x, double* error, double* jacobian);

@@ -41,7 +41,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kContact{"contact", 3,       2,     sizeof(ContactData), Bound::cone, false, evaluate,
+const ConstraintType kContact{"contact", 3,       2,     sizeof(ContactData), Bound::cone, false, 0, evaluate,
                               stiffness, nullptr, sample};
 
 }  // namespace taut

@@ -63,7 +63,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kDistance{"distance", 1,       2,     sizeof(DistanceData), Bound::free, true, evaluate,
+const ConstraintType kDistance{"distance", 1,       2,     sizeof(DistanceData), Bound::free, true, 0, evaluate,
                                stiffness,  nullptr, sample};
 
 }  // namespace taut

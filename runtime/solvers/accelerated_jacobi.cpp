@@ -67,7 +67,7 @@ private:
             split += count_[block.node[n]] * s;
         }
         RowMatrix softness = soft_.impulse_scale / soft_.mass_scale * own;
-        if (block.elastic()) softness = row_terms(block, sys_.h).scale * compliance_of(block);
+        if (block.elastic(0)) softness = compliance_of(block, sys_.h);
         split.diagonal().array() += 1e-12 * split.trace();
         const RowMatrix inverse = (split + softness).inverse();
         inverse_.insert(inverse_.end(), inverse.data(), inverse.data() + rows * rows);
@@ -122,7 +122,7 @@ private:
                 r[0] += std::max<double>(soft_.bias_rate * gap, -soft_.push) + softness(0, 0) * mu[0];
             return r;
         }
-        if (block.elastic()) return r + row_terms(block, sys_.h).rate * error + softness * mu;
+        if (block.elastic(0)) return r + error_rate_of(sys_, block) + softness * mu;
         if (phase == Phase::biased) return r + soft_.bias_rate * error + softness * mu;
         return r;
     }

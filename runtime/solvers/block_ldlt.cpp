@@ -166,7 +166,7 @@ void BlockSolve::add_joint(uint32_t j) {
         for (int e = 0; e < rows * kDof; ++e) minus[e] = -jacobian[e];
         b_.matrix.add(nodes_ + j, i, minus, rows, size_of(i), kDof);
     }
-    RowMatrix c = row_terms(block, sys_.h).scale * compliance_of(block);
+    RowMatrix c = compliance_of(block, sys_.h);
     if (b_.looped) c.diagonal() = c.diagonal().cwiseMax(loop_compliance(block));
     double diagonal[kMaxRows * kMaxRows] = {};
     for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = -1;  // unused rows: mu = 0
@@ -203,10 +203,10 @@ void BlockSolve::right_hand_side() {
     for (uint32_t j = 0; j < joints(); ++j) {
         const RowBlock& block = row(j);
         const int rows = block.type->rows;
-        const RowTerms terms = row_terms(block, sys_.h);
         double* x = &b_.solution[(nodes_ + j) * kLd];
         const double* jacobian = &sys_.rows.jacobian[block.jacobian];
-        for (int r = 0; r < kLd; ++r) x[r] = r < rows ? terms.rate * sys_.rows.error[block.row + r] : 0.0;
+        for (int r = 0; r < kLd; ++r)
+            x[r] = r < rows ? row_terms(block, r, sys_.h).rate * sys_.rows.error[block.row + r] : 0.0;
         for (int n = 0; n < block.type->nodes; ++n, jacobian += rows * kDof) {
             if (block.node[n] == 0 || local(block.node[n]) != kNone) continue;
             const Velocity& u = sys_.exact[block.node[n]];  // a kinematic node: its velocity is known
@@ -315,7 +315,7 @@ bool BlockSolve::settle() {
         const double* jacobian = &sys_.rows.jacobian[block.jacobian];
         double lever = 0, gap = 0;
         for (int r = 0; r < rows; ++r) {
-            if (block.elastic()) error[r] = 0;  // an elastic error is not a gap
+            if (block.elastic(r)) error[r] = 0;  // an elastic error is not a gap
             gap = std::max(gap, std::abs(error[r]));
         }
         for (int e = 0; e < block.type->nodes * rows; ++e)

@@ -55,10 +55,9 @@ public:
         RowMatrix s = effective();
         RowVector residual = velocity();
         double keep = 1;
-        if (block_.elastic()) {  // physical softness: the same row in both phases
-            const RowTerms terms = row_terms(block_, system_.h);
-            const RowMatrix c = terms.scale * compliance_of(block_);
-            residual += terms.rate * error_of(system_, block_) + c * impulse();
+        if (block_.elastic(0)) {  // physical softness: the same row in both phases
+            const RowMatrix c = compliance_of(block_, system_.h);
+            residual += error_rate_of(system_, block_) + c * impulse();
             s += c;
         } else if (biased) {
             residual += soft.bias_rate * error_of(system_, block_);

@@ -1,7 +1,10 @@
 // Joints: constraints that a user made. Their forces are carried over frames.
 #pragma once
 
+#include <limits>
+
 #include "base/id_pool.h"
+#include "constraints/axis.h"
 #include "constraints/constraint.h"
 #include "state/nodes.h"
 
@@ -12,13 +15,21 @@ struct Joint {
 
     const ConstraintType* type = nullptr;  // null: dead slot
     uint32_t node[2] = {kNone, kNone};     // kNone: the world
-    double lambda[kMaxRows] = {};          // force of the last substep [N, N m]
-    double compliance = 0;                 // of each row [m/N]
-    double damping = 0;                    // of each row [N s/m]; relaxation time [s] of a compliance block
+    double lambda[kMaxRows] = {};          // force of the last substep, stops and drives included [N, N m]
+    double compliance = 0;                 // of each locked row [m/N]
+    double damping = 0;                    // of each locked row [N s/m]; relaxation time [s] of a compliance block
+    double angular_compliance = 0;         // of each locked row that is an angle [rad/(N m)]
+    double angular_damping = 0;            // [N m s/rad]
+    double break_force = std::numeric_limits<double>::infinity();   // removed when a step ends with more [N]
+    double break_torque = std::numeric_limits<double>::infinity();  // [N m]
+    bool plain = true;                                              // every row is locked: axis is not read
+    bool direct = true;                                             // false: swept, not part of a block
     bool collide_connected = false;
     bool fresh = true;  // not solved yet: lambda means nothing
     uint64_t user_data = 0;
-    uint64_t serial = 0;                             // tells joints of one slot apart; Joints::add()
+    uint64_t serial = 0;  // tells joints of one slot apart; Joints::add()
+    Axis axis[kMaxRows];
+    AxisMemory memory[kMaxRows];
     alignas(16) unsigned char data[kDataSize] = {};  // the type's own
 };
 

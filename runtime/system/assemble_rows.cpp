@@ -26,9 +26,13 @@ void add_joint(System& system, Joint& joint) {
     block.data = joint.data;
     block.force = joint.lambda;
     for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
-    block.compliance = joint.compliance;
+    block.compliance[0] = joint.compliance;
+    block.compliance[1] = joint.angular_compliance;
     block.compliance_block = joint.type->compliance ? joint.type->compliance(joint.data) : nullptr;
-    block.relaxation = block.compliance_block ? joint.damping : joint.compliance * joint.damping;
+    block.relaxation[0] = block.compliance_block ? joint.damping : joint.compliance * joint.damping;
+    block.relaxation[1] = joint.angular_compliance * joint.angular_damping;
+    block.axis = joint.plain ? nullptr : joint.axis;
+    block.memory = joint.memory;
     block.fresh = joint.fresh;
     joint.fresh = false;
 }
@@ -130,9 +134,7 @@ double row_residual(const System& system) {
     double largest = 0;
     for (const RowBlock& block : system.rows.block) {
         if (block.type->bound != Bound::free) continue;
-        const RowTerms terms = row_terms(block, system.h);
-        RowVector r =
-            terms.rate * error_of(system, block) + terms.scale * compliance_of(block) * impulse_of(system, block);
+        RowVector r = error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
         for (int n = 0; n < block.type->nodes; ++n) {
             NodeVector u;
             u << system.exact[block.node[n]].v, system.exact[block.node[n]].w;

@@ -24,11 +24,21 @@ inline RowVector error_of(const System& system, const RowBlock& block) {
     return Eigen::Map<const RowVector>(&system.rows.error[block.row], block.type->rows);
 }
 
-// C of an elastic block, zero of a rigid one.
-inline RowMatrix compliance_of(const RowBlock& block) {
+// c = C / (h (h + d)) of elastic rows, zero of rigid ones: see system.h.
+inline RowMatrix compliance_of(const RowBlock& block, double h) {
     const int rows = block.type->rows;
-    if (block.compliance_block) return Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows);
-    return block.compliance * RowMatrix::Identity(rows, rows);
+    if (block.compliance_block)
+        return row_terms(block, 0, h).scale * Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows);
+    RowMatrix c = RowMatrix::Zero(rows, rows);
+    for (int r = 0; r < rows; ++r) c(r, r) = row_terms(block, r, h).scale * block.compliance[block.angular(r)];
+    return c;
+}
+
+// error / (h + d) of each row: -target.
+inline RowVector error_rate_of(const System& system, const RowBlock& block) {
+    RowVector e = error_of(system, block);
+    for (int r = 0; r < block.type->rows; ++r) e[r] *= row_terms(block, r, system.h).rate;
+    return e;
 }
 
 // W p: what an impulse [N s, N m s] changes of a node's velocity.

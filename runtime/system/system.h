@@ -12,6 +12,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "constraints/axis.h"
 #include "constraints/constraint.h"
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
@@ -32,14 +33,18 @@ struct RowBlock {
     uint32_t node[kMaxNodes];        // indices into arrays by node; unused ones 0
     uint32_t row;                    // first row
     uint32_t jacobian;               // first entry of [node][row][6]
-    double compliance;               // of each row [m/N], 0: rigid
+    double compliance[2];            // of each row, and of each that is an angle [m/N, rad/(N m)], 0: rigid
     const double* compliance_block;  // [rows][rows] in its place, or null
-    double relaxation;               // time d [s]: compliance * damping
+    double relaxation[2];            // time d [s]: compliance * damping, likewise
+    const Axis* axis;                // of each row, or null: all are locked
+    AxisMemory* memory;              // of each row, with axis
     double friction;                 // of a cone
     double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
     bool fresh;                      // lambda of the last substep means nothing yet
 
-    bool elastic() const { return compliance > 0 || compliance_block; }
+    bool angular(int r) const { return (type->angular >> r & 1) != 0; }
+    bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }
+    bool locked(int r) const { return !axis || axis[r].mode == AxisMode::locked; }
 };
 
 struct Rows {
@@ -98,8 +103,9 @@ struct System {
 struct RowTerms {
     double scale, rate;
 };
-inline RowTerms row_terms(const RowBlock& block, double h) {
-    return {1 / (h * (h + block.relaxation)), 1 / (h + block.relaxation)};
+inline RowTerms row_terms(const RowBlock& block, int r, double h) {
+    const double d = block.relaxation[block.compliance_block ? 0 : block.angular(r)];
+    return {1 / (h * (h + d)), 1 / (h + d)};
 }
 
 }  // namespace taut

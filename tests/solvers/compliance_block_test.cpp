@@ -33,7 +33,7 @@ void no_stiffness(const void*, const Pose*, const double*, Curvature, double* k)
 
 const double* compliance(const void* data) { return static_cast<const BeamData*>(data)->compliance; }
 
-const ConstraintType kBeam{"beam",       6,          2,      sizeof(BeamData), Bound::free, false, evaluate,
+const ConstraintType kBeam{"beam",       6,          2,      sizeof(BeamData), Bound::free, false, 0x38, evaluate,
                            no_stiffness, compliance, nullptr};
 
 // A chain of bodies on beams of random stiffness, held at one end.
