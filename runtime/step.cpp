@@ -41,8 +41,10 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
         quarantine(w.nodes, group.nodes, w.frozen, system.h);
+        if (i > 0) find_contacts_again(w.nodes, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(system, group, w.nodes, gravity);
+        build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         w.profile.predict_us += watch.lap();
         evaluate_rows(system);
         w.profile.assemble_us += watch.lap();
@@ -60,12 +62,10 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();
         store_velocity(system, group, w.nodes, settings.velocity_filter);
+        store_contact_rows(system);
         w.profile.commit_us += watch.lap();
     }
-    if (solver.wide_contacts)
-        store_lanes(system, w.pairs);
-    else
-        store_contact_rows(system, group, w.pairs);
+    if (solver.wide_contacts) store_lanes(system, w.pairs);
 }
 
 void solve(World& w, Stopwatch& watch) {
@@ -109,7 +109,7 @@ void step(World& w) {
     remember_poses(w.nodes);
     detect(w, watch);
     const Solver& solver = *solvers()[w.def.solver];
-    w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct_joints});
+    w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
     std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});

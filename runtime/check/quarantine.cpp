@@ -1,5 +1,6 @@
 #include "check/quarantine.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace taut {
@@ -36,9 +37,14 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints) {
     for (Pair& pair : pairs.list)
         for (Impulse& p : pair.impulse)
             if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
-    for (Joint& joint : joints.record)
-        for (double& force : joint.lambda)
+    for (Joint& joint : joints.record) {
+        bool bad = false;
+        for (double& force : joint.lambda) {
+            bad = bad || !std::isfinite(force);
             if (!std::isfinite(force)) force = 0;
+        }
+        if (bad) std::fill(joint.memory, joint.memory + kMaxRows, AxisMemory{});
+    }
 }
 
 }  // namespace taut

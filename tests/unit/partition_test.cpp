@@ -195,7 +195,7 @@ void expect_valid_colours(const Graph& test, const Array<uint32_t>& items, const
 
 TEST_F(PartitionTest, NoColourHoldsAMovingNodeTwice) {
     std::mt19937 engine(4);
-    rules.direct_joints = false;
+    rules.direct = false;
     const uint32_t ground = add(NodeKind::fixed);
     constexpr uint32_t kCount = 300;
     for (uint32_t i = 0; i < kCount; ++i) add(NodeKind::dynamic);
