@@ -30,6 +30,25 @@ double cosine(double x) {
                                                                               y * (-1.0 / 6402373705728000.0)))))))));
 }
 
+// atan t = atan c + atan((t - c) / (1 + t c)) with c = 0, 1/2 or 1 leaves |t| <= 1/4; Taylor to t^27: error < 1e-17.
+double angle_of(double y, double x) {
+    const double ax = std::abs(x), ay = std::abs(y);
+    const double large = ax < ay ? ay : ax, small = ax < ay ? ax : ay;
+    if (large == 0) return 0;
+    double c = 0, angle = 0;
+    if (small > 0.75 * large)
+        c = 1, angle = 0.78539816339744831;
+    else if (small > 0.25 * large)
+        c = 0.5, angle = 0.46364760900080612;
+    const double t = (small - c * large) / (large + c * small), z = t * t;
+    double sum = 0;  // sum (-z)^k / (2k+1)
+    for (int k = 13; k >= 0; --k) sum = 1.0 / (2 * k + 1) - z * sum;
+    angle += t * sum;
+    if (ax < ay) angle = 1.57079632679489662 - angle;
+    if (x < 0) angle = 3.14159265358979324 - angle;
+    return y < 0 ? -angle : angle;
+}
+
 Quat rotation_from_vector(const Vec3& theta) {
     const double squared = theta.squaredNorm();
     double half = 0.5 * std::sqrt(squared);

@@ -24,6 +24,9 @@ inline Mat3 hat(const Vec3& a) {
 double sinc(double x);
 double cosine(double x);
 
+// Angle of the point (x, y) in (-pi, pi], 0 at the origin: atan2(y, x) within 4e-16, the same bits everywhere.
+double angle_of(double y, double x);
+
 // Rotation by the vector theta [rad]; exact for any size (large angles are halved first).
 Quat rotation_from_vector(const Vec3& theta);
 

@@ -66,5 +66,13 @@ std::span<const ConstraintType* const> constraint_types();
 extern const ConstraintType kBall;
 extern const ConstraintType kDistance;
 extern const ConstraintType kContact;
+// Between joint frames (joint_frames.h); their coordinates are stated in their files.
+extern const ConstraintType kFixed;
+extern const ConstraintType kHinge;
+extern const ConstraintType kSlider;
+extern const ConstraintType kCylindrical;
+extern const ConstraintType kUniversal;
+extern const ConstraintType kConeTwist;
+extern const ConstraintType kSixDof;
 
 }  // namespace taut

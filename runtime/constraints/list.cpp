@@ -4,7 +4,9 @@
 namespace taut {
 
 std::span<const ConstraintType* const> constraint_types() {
-    static const ConstraintType* const types[] = {&kBall, &kDistance, &kContact};
+    static const ConstraintType* const types[] = {
+        &kBall, &kDistance, &kContact, &kFixed, &kHinge, &kSlider, &kCylindrical, &kUniversal, &kConeTwist, &kSixDof,
+    };
     return types;
 }
 

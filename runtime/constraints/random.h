@@ -19,6 +19,7 @@ public:
         const double x = unit(), y = unit(), z = unit();
         return 2 * Vec3(x, y, z) - Vec3::Ones();
     }
+    double between(double lower, double upper) { return lower + (upper - lower) * unit(); }
     Quat rotation() { return rotation_from_vector(3 * vector()); }
     void poses(Pose* x, int count) {
         for (int i = 0; i < count; ++i) {

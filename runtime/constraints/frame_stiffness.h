@@ -1,0 +1,179 @@
+// Geometric stiffness of the rows of frame_rows.h.
+//
+// Rows of the relative rotation: with the torque t = sum lambda g on b, and -t on a, and w = dtheta,
+//   dt = -(S + hat(t)/2) w_b + (S - hat(t)/2) w_a,   S = -sum lambda sym(dg/dw_b)   symmetric
+// because turning both bodies turns t along. So, in the blocks of a and b,
+//   K = [ S - hat(t)/2   -S - hat(t)/2 ]      w^T K w = (w_b - w_a)^T S (w_b - w_a) + t . (w_a x w_b)
+//       [-S + hat(t)/2    S + hat(t)/2 ]
+// Its positive part is bounded by that of S and that of the triple product, whose off-diagonal block hat(t)/2 has the
+// positive part ([|t| T, -hat t], [hat t, |t| T])/4, T = I - t t^T/|t|^2.                              Derived here.
+#pragma once
+
+#include "constraints/frame_rows.h"
+
+namespace taut {
+
+constexpr double kNoForce = 1e-30;  // [N, N m]: below it squares vanish
+
+// sym(u v^T), whose only positive eigenvalue is (u . v + |u||v|)/2, along u/|u| + v/|v|.
+inline Mat3 dyad(const Vec3& u, const Vec3& v, Curvature part) {
+    if (part == Curvature::raw) return 0.5 * (u * v.transpose() + v * u.transpose());
+    const double uu = u.norm(), vv = v.norm();
+    if (!(uu > kNoForce && vv > kNoForce)) return Mat3::Zero();
+    const Vec3 e = u / uu + v / vv;
+    return (0.25 * uu * vv) * e * e.transpose();
+}
+
+class StiffnessWriter {
+public:
+    // k: 12 x 12; complete once finish() has run.
+    StiffnessWriter(double* k, Curvature part) : k_(k), part_(part) { std::fill(k, k + 12 * 12, 0.0); }
+
+    // The ball's: a force at each lever.
+    void anchors(const FramePair& f, const double* lambda) {
+        const Vec3 force = Vec3::Map(lambda);
+        add_block(k_, 3, 3, lever_stiffness(-force, f.ra, part_));
+        add_block(k_, 9, 9, lever_stiffness(force, f.rb, part_));
+    }
+
+    // The force f = A lambda turns with a. With l = p_b - x_a and y = dx_b - dx_a - hat(r_b) w_b + hat(l) w_a, which is
+    // A dC: the ball's form with lever l at a, and a coupling of slide and rotation,
+    //   w^T K w = w_a^T lever(-f, l) w_a + w_b^T lever(f, r_b) w_b - 2 (w_a x f) . y
+    void slides(const FramePair& f, const double* lambda) {
+        const Vec3 force = f.a * Vec3::Map(lambda), l = f.ra + f.d;
+        if (part_ == Curvature::raw)
+            turning_force(force, l, f.rb);
+        else
+            turning_force_bound(force, l, f.rb);
+    }
+
+    // C = a . b: the force lambda a at the lever b.
+    void misalignment(const Vec3& a, const Vec3& b, double lambda) { bilinear(lambda * a, b); }
+
+    // lambda: three rows.
+    // sum lambda C = tr M, M = sum lambda b a^T = -B hat(lambda) A^T / 2;  S = tr(M) I - sym M, t from M - M^T = -hat
+    // t. For B A^T a turn by c about n and u = A lambda this is
+    //   S = ((n . z) I + sym(n z^T))/2,  z = sin c u + (1 - cos c) n x u:  zero where the frames coincide,
+    // with eigenvalues n . z / 2 and (3 n . z +- |z|)/4; trace 2 n . z and squares' sum (11 (n . z)^2 + |z|^2)/8 give
+    // the largest, which bounds S in every direction.
+    void alignment(const FramePair& f, const double* lambda) {
+        const Mat3 m = -0.5 * f.b * hat(Vec3::Map(lambda)) * f.a.transpose();
+        const Mat3 s = m.trace() * Mat3::Identity() - 0.5 * (m + m.transpose());
+        torque_ -= Vec3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
+        if (part_ == Curvature::raw) {
+            s_ += s;
+            return;
+        }
+        const double nz = 0.5 * s.trace(), zz = std::max(8 * s.squaredNorm() - 11 * nz * nz, nz * nz);
+        s_ += std::max(0.0, 0.75 * nz + 0.25 * std::sqrt(zz)) * Mat3::Identity();
+    }
+
+    // lambda: two rows.
+    void axis_alignment(const FramePair& f, const double* lambda) {
+        bilinear(lambda[0] * f.ya() + lambda[1] * f.za(), f.xb());
+    }
+
+    // sym(dg/dw_b) = sym(g v^T)/n,  v = X_a x X_b,  n = 1 + X_a . X_b
+    void twist(const FramePair& f, double lambda) {
+        const Vec3 g = twist_axis(f), v = f.xa().cross(f.xb());
+        const double n = std::max(1 + f.xa().dot(f.xb()), kReversed);
+        torque_ += lambda * g;
+        s_ += dyad(-lambda / n * g, v, part_);
+    }
+
+    // Over the swing c, with m halfway from a to b and p = e x m:
+    //   sym(dg/dw_b) = (cot(c/2) p p^T - tan(c/2) m m^T)/2
+    void swing(const Vec3& a, const Vec3& b, const Vec3& across, double lambda) {
+        constexpr double kSmall = 1e-12;
+        const Vec3 e = swing_axis(a, b, across), t = e.cross(a);
+        const double cosine = 0.5 * (a + b).norm(), sine = 0.5 * (b - a).norm();  // of c/2
+        const Vec3 m = cosine * a + sine * t, p = cosine * t - sine * a;
+        double along_m = 0.5 * lambda * sine / std::max(cosine, kSmall);
+        double along_p = -0.5 * lambda * cosine / std::max(sine, kSmall);
+        if (part_ == Curvature::positive) along_m = std::max(along_m, 0.0), along_p = std::max(along_p, 0.0);
+        torque_ += lambda * e;
+        s_ += along_m * m * m.transpose() + along_p * p * p.transpose();
+    }
+
+    // With m = q x p:  sym(dg/dw_b) = sym((2 s g - q) m^T)/k of the first, sym((2 s g - p) m^T)/k of the last
+    void outer_turns(const OuterTurns& t, double first, double last) {
+        const Vec3 u = first * (2 * t.s * t.first - t.q) + last * (2 * t.s * t.last - t.p);
+        torque_ += first * t.first + last * t.last;
+        s_ += dyad(-u / t.k, t.q.cross(t.p), part_);
+    }
+
+    void finish() {
+        if (part_ == Curvature::raw) {
+            const Mat3 half = 0.5 * hat(torque_);
+            rotations(s_ - half, -s_ - half, -s_ + half, s_ + half);
+            return;
+        }
+        rotations(s_, -s_, -s_, s_);
+        const double size = torque_.norm();
+        if (!(size > kNoForce)) return;
+        const Mat3 across = 0.25 * (size * Mat3::Identity() - torque_ / size * torque_.transpose());
+        const Mat3 turned = 0.25 * hat(torque_);
+        rotations(across, -turned, turned, across);
+    }
+
+private:
+    // f . r with f of body a and r of body b: S = sym of the lever's.
+    void bilinear(const Vec3& f, const Vec3& r) {
+        const Mat3 lever = lever_stiffness(f, r, part_);
+        torque_ += r.cross(f);
+        s_ += 0.5 * (lever + lever.transpose());
+    }
+
+    void rotations(const Mat3& aa, const Mat3& ab, const Mat3& ba, const Mat3& bb) {
+        add_block(k_, 3, 3, aa);
+        add_block(k_, 3, 9, ab);
+        add_block(k_, 9, 3, ba);
+        add_block(k_, 9, 9, bb);
+    }
+
+    // Exact, by df = w_a x f and dl = dx_b - dx_a - hat(r_b) w_b in (f, r_b x f) on b and -(f, l x f) on a.
+    void turning_force(const Vec3& force, const Vec3& l, const Vec3& rb) {
+        const Mat3 f = hat(force), fr = f * hat(rb);
+        add_block(k_, 0, 3, -f);
+        add_block(k_, 6, 3, f);
+        add_block(k_, 3, 0, f);
+        add_block(k_, 3, 6, -f);
+        rotations(-hat(l) * f, fr, fr.transpose(), lever_stiffness(force, rb, Curvature::raw));
+    }
+
+    // The coupling -2 (w_a x f) . y = -2 w_a . (f x y) is at most the sum of |f| kSize |w_a|^2/2 + |f|/kSize |y|^2/2,
+    // both across f, and half of itself. kSize weighs rotation against slide and ought to be like a body's radius of
+    // gyration, which a constraint does not know.
+    void turning_force_bound(const Vec3& force, const Vec3& l, const Vec3& rb) {
+        constexpr double kSize = 0.5;  // [m]
+        add_block(k_, 3, 3, lever_stiffness(-force, l, Curvature::positive));
+        add_block(k_, 9, 9, lever_stiffness(force, rb, Curvature::positive));
+        const double size = force.norm();
+        if (!(size > kNoForce)) return;
+        // The bound is z^T c z,  z = y + kSize f/|f| x w_a = -dx_a + ea w_a + dx_b + eb w_b
+        const Mat3 c = 0.5 / kSize * (size * Mat3::Identity() - force / size * force.transpose());
+        const Mat3 ea = hat(l) + kSize / size * hat(force), eb = -hat(rb), cea = c * ea, ceb = c * eb;
+        add_block(k_, 0, 0, c);
+        add_block(k_, 6, 6, c);
+        add_mirrored(0, 6, -c);
+        add_mirrored(0, 3, -cea);
+        add_mirrored(6, 3, cea);
+        add_mirrored(0, 9, -ceb);
+        add_mirrored(6, 9, ceb);
+        add_mirrored(3, 9, ea.transpose() * ceb);
+        add_block(k_, 3, 3, ea.transpose() * cea);
+        add_block(k_, 9, 9, eb.transpose() * ceb);
+    }
+
+    void add_mirrored(int row, int column, const Mat3& block) {
+        add_block(k_, row, column, block);
+        add_block(k_, column, row, block.transpose());
+    }
+
+    double* k_;
+    Curvature part_;
+    Vec3 torque_ = Vec3::Zero();
+    Mat3 s_ = Mat3::Zero();
+};
+
+}  // namespace taut

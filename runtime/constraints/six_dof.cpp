@@ -1,0 +1,46 @@
+// Six degrees of freedom between two frames.
+//   0-2  A^T (p_b - p_a): position of b's anchor in frame a            [m]
+//   3-5  Cardan angles of B in A, A^T B = Rx(3) Ry(4) Rz(5): about X of a, then the turned Y, then Z of b
+//          3 = atan2(-Y_a . Z_b, Z_a . Z_b)                            [rad]  in (-pi, pi]
+//          4 = asin(X_a . Z_b) = pi/2 - swing from X_a to Z_b          [rad]  in [-pi/2, pi/2]
+//          5 = atan2(-X_a . Y_b, X_a . X_b)                            [rad]  in (-pi, pi]
+// At 4 = +-pi/2 rows 3 and 5 are about one axis; their values are arbitrary there, all stays finite.
+#include "constraints/frame_sample.h"
+#include "constraints/frame_stiffness.h"
+
+namespace taut {
+namespace {
+
+void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
+    const FramePair f(data, x);
+    RowWriter rows(6, error, jacobian);
+    rows.slides(f);
+    const OuterTurns turns(f.xa(), f.zb());
+    const double sine = f.xa().dot(f.zb()), cosine = f.xa().cross(f.zb()).norm();
+    rows.turn(3, {angle_of(-f.ya().dot(f.zb()), f.za().dot(f.zb())), turns.first});
+    rows.turn(4, {angle_of(sine, cosine), -swing_axis(f.xa(), f.zb(), -f.ya())});
+    rows.turn(5, {angle_of(-f.xa().dot(f.yb()), f.xa().dot(f.xb())), turns.last});
+}
+
+void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
+    const FramePair f(data, x);
+    StiffnessWriter out(k, part);
+    out.slides(f, lambda);
+    out.swing(f.xa(), f.zb(), -f.ya(), -lambda[4]);
+    out.outer_turns(OuterTurns(f.xa(), f.zb()), lambda[3], lambda[5]);
+    out.finish();
+}
+
+void sample(uint64_t seed, void* data, Pose* x) {
+    Random random(seed);
+    const double first = random.between(-2.7, 2.7), middle = random.between(-1.2, 1.2),
+                 last = random.between(-2.7, 2.7);
+    sample_frames(random, turn_about(0, first) * turn_about(1, middle) * turn_about(2, last), data, x);
+}
+
+}  // namespace
+
+const ConstraintType kSixDof{"six_dof", 6,       2,     sizeof(JointFrames), Bound::free, true, 0b111000, evaluate,
+                             stiffness, nullptr, sample};
+
+}  // namespace taut
