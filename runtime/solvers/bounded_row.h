@@ -15,22 +15,24 @@ struct BoundedRow {
     };
 
     Kind kind = Kind::push;
-    bool on = false;                        // part of the system
-    bool speculative = false;               // of a gap that may close: goal is to touch, not to rest
-    bool physical = false;                  // c and target are meant as they are
-    uint8_t row = 0;                        // within its row block
-    uint32_t block = 0;                     // in Rows::block
-    double sign = 1;                        // of J
-    double gap = 0;                         // of a push [m or rad]
-    double k = 0;                           // J W J^T [1/kg]
-    double least = 0;                       // c while the row holds
-    double c = 0;                           // c now
-    double target = 0, relaxed_target = 0;  // [m/s]
-    double goal = 0;                        // of this solve
-    double limit = 0;                       // of a box [N s]; of tangents the coefficient of friction
-    double mu = 0;                          // [N s]
-    float* slip = nullptr;                  // carried: c of a row at its bound; 0: within it; -1: new
-    float* force = nullptr;                 // carried, of axis rows [N]
+    bool on = false;            // part of the system
+    bool speculative = false;   // of a gap that may close: goal is to touch, not to rest
+    bool physical = false;      // c and target are meant as they are
+    uint8_t row = 0;            // within its row block
+    uint32_t block = 0;         // in Rows::block
+    double sign = 1;            // of J
+    double gap = 0;             // of a push [m or rad]
+    double bounce = 0;          // of a push: speed at which it leaves once it was hit, 0: none [m/s]
+    double k = 0;               // J W J^T [1/kg]
+    double least = 0;           // c while the row holds
+    double c = 0;               // c now
+    double target = 0;          // with the push that undoes an overlap [m/s]
+    double relaxed_target = 0;  // without
+    double goal = 0;            // of this solve
+    double limit = 0;           // of a box [N s]; of tangents the coefficient of friction
+    double mu = 0;              // [N s]
+    float* slip = nullptr;      // carried: c of a row at its bound; 0: within it; -1: new
+    float* force = nullptr;     // carried, of axis rows [N]
 };
 
 }  // namespace taut
