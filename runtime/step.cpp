@@ -46,7 +46,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         predict(system, group, w.nodes, gravity);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         w.profile.predict_us += watch.lap();
-        evaluate_rows(system);
+        evaluate_rows(system, 1 - (i + 1.0) / group.substeps);
         w.profile.assemble_us += watch.lap();
         Substep substep{system,   group,  w.partition.blocks, w.nodes,
                         settings, report, w.scratch,          i + 1 == group.substeps};
@@ -89,6 +89,7 @@ void solve(World& w, Stopwatch& watch) {
         drop_bad_impulses(w.pairs, w.joints);
         ++w.joints.version;  // blocks lose the frozen nodes
     }
+    for (Joint& joint : w.joints.record) std::fill(joint.drift, joint.drift + kMaxRows, 0.0);
     commit_kinematic(w.nodes, w.def.time_step);
     w.profile.factor_us = report.direct_us;
     w.profile.sweep_us -= report.direct_us;

@@ -25,6 +25,7 @@ void add_joint(System& system, Joint& joint) {
     RowBlock& block = add_block(system, *joint.type);
     block.data = joint.data;
     block.force = joint.lambda;
+    block.drift = joint.drift;
     for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
@@ -130,14 +131,17 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
     }
 }
 
-void evaluate_rows(System& system) {
+void evaluate_rows(System& system, double frame_left) {
     Rows& rows = system.rows;
     for (const RowBlock& block : rows.block) {
         Pose poses[kMaxNodes];
         for (int i = 0; i < block.type->nodes; ++i) poses[i] = system.pose[block.node[i]];
         block.type->evaluate(block.data, poses, &rows.error[block.row], &rows.jacobian[block.jacobian]);
         if (!block.force) continue;
-        for (int r = 0; r < block.type->rows; ++r) rows.impulse[block.row + r] = system.h * block.force[r];
+        for (int r = 0; r < block.type->rows; ++r) {
+            rows.impulse[block.row + r] = system.h * block.force[r];
+            rows.error[block.row + r] -= frame_left * block.drift[r];
+        }
     }
 }
 
