@@ -24,6 +24,14 @@ int locked_rows(const RowBlock& block) {
     return count;
 }
 
+// sum += w a^T b, 6 x 6.
+void add_product(const double* a, const double* b, double w, double* sum) {
+    for (int r = 0; r < kDof; ++r) {
+        const double scaled = w * a[r];
+        for (int c = 0; c < kDof; ++c) sum[r * kDof + c] += scaled * b[c];
+    }
+}
+
 }  // namespace
 
 void BlockSolve::analyse() {
@@ -132,33 +140,28 @@ void BlockSolve::add_joint(uint32_t j) {
     b_.matrix.add(nodes_ + j, nodes_ + j, diagonal, padded, padded, padded);
 }
 
-// B^T B / c of the rows that are on, row block by row block.
+// B^T B / c of the rows that are on; rows on the same nodes follow each other and go into the matrix together.
 void BlockSolve::add_bounded() {
     const auto rows = set.rows();
     for (size_t i = 0; i < rows.size();) {
-        const RowBlock& block = sys_.rows.block[rows[i].block];
-        double weight[kMaxRows] = {};
-        const uint32_t index = rows[i].block;
+        const BoundedRow& first = rows[i];
+        double sum[kMaxNodes][kMaxNodes][kDof * kDof] = {};
         bool any = false;
-        for (; i < rows.size() && rows[i].block == index; ++i) {
-            if (!rows[i].on) continue;
-            weight[rows[i].row] += 1 / rows[i].c;
+        for (; i < rows.size() && std::equal(first.place, first.place + kMaxNodes, rows[i].place); ++i) {
+            const BoundedRow& row = rows[i];
+            if (!row.on) continue;
             any = true;
+            for (int n = 0; n < row.nodes; ++n)
+                for (int m = 0; m <= n; ++m)
+                    if (row.place[n] != kNone && row.place[m] != kNone)
+                        add_product(row.jacobian + static_cast<size_t>(n) * row.stride,
+                                    row.jacobian + static_cast<size_t>(m) * row.stride, 1 / row.c, sum[n][m]);
         }
-        if (!any) continue;
-        for (int n = 0; n < block.type->nodes; ++n) {
-            const uint32_t at = local(block.node[n]);
-            if (at == kNone) continue;
-            RowJacobian weighted = jacobian_of(sys_, block, n);
-            for (int r = 0; r < block.type->rows; ++r) weighted.row(r) *= weight[r];
-            for (int m = 0; m <= n; ++m) {
-                const uint32_t to = local(block.node[m]);
-                if (to == kNone) continue;
-                const Eigen::Matrix<double, kDof, kDof, Eigen::RowMajor> product =
-                    weighted.transpose() * jacobian_of(sys_, block, m);
-                b_.matrix.add(at, to, product.data(), size_of(at), size_of(to), kDof);
-            }
-        }
+        for (int n = 0; any && n < first.nodes; ++n)
+            for (int m = 0; m <= n; ++m)
+                if (first.place[n] != kNone && first.place[m] != kNone)
+                    b_.matrix.add(first.place[n], first.place[m], sum[n][m], size_of(first.place[n]),
+                                  size_of(first.place[m]), kDof);
     }
 }
 
@@ -210,12 +213,12 @@ void BlockSolve::right_hand_side() {
     }
     for (const BoundedRow& bounded : set.rows()) {
         if (!bounded.on) continue;
-        const RowBlock& block = sys_.rows.block[bounded.block];
-        const double f = bounded.sign * (bounded.goal - bounded.sign * known(block, bounded.row)) / bounded.c;
-        for (int n = 0; n < block.type->nodes; ++n) {
-            const uint32_t i = local(block.node[n]);
-            if (i == kNone) continue;
-            NodeVector::Map(&b_.solution[i * kLd]) += f * jacobian_of(sys_, block, n).row(bounded.row).transpose();
+        const double f = bounded.sign * (bounded.goal - bounded.known) / bounded.c;
+        const double* j = bounded.jacobian;
+        for (int n = 0; n < bounded.nodes; ++n, j += bounded.stride) {
+            if (bounded.place[n] == kNone) continue;
+            double* x = &b_.solution[bounded.place[n] * kLd];
+            for (int k = 0; k < kLd; ++k) x[k] += f * j[k];
         }
     }
 }
@@ -269,6 +272,7 @@ bool BlockSolve::factor_rounds(bool with_new) {
         if (!b_.matrix.factor()) return false;
         set.aim_biased();
         solve_known();
+        relaxed_ = false;
         if (round == rounds) return true;
         ++s_.report.rounds;
         if (set.revise()) continue;
@@ -307,13 +311,14 @@ void BlockSolve::solve_relaxed() {
     set.aim_relaxed(true);
     solve_known();
     for (uint32_t node : b_.nodes) std::swap(sys_.kept[node + 1], exact[node + 1]);
+    relaxed_ = true;
 }
 
 bool BlockSolve::finish() {
     if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness && joints() > 0)
         guard_energy(s_, b_, set.work());
     if (!set.empty()) {
-        solve_relaxed();
+        if (!relaxed_) solve_relaxed();
         if (b_.tower && !set.acceptable()) return false;
         take_forces();
         set.store();

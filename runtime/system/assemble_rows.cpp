@@ -106,6 +106,10 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     for (uint32_t b : group.blocks) {
         blocks[b].first_row_block = static_cast<uint32_t>(rows.block.size());
         blocks[b].contact_count = 0;
+        for (uint32_t i = 0; i < blocks[b].nodes.size(); ++i) {
+            system.in_block[blocks[b].nodes[i] + 1] = 1;
+            system.place[blocks[b].nodes[i] + 1] = i;
+        }
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);

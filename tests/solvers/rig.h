@@ -92,8 +92,6 @@ public:
         begin_frame(w.system, w.nodes);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
-        for (uint32_t b : group().blocks)
-            for (uint32_t node : w.partition.blocks[b].nodes) w.system.in_block[node + 1] = 1;
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
         if (solver.wide_contacts) build_lanes(w.system, group(), w.pairs, w.nodes, *settings.kernels);
     }
