@@ -54,6 +54,11 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
         for (int j = 0; j < 4; ++j) add_block(k, 3 * i, 3 * j, b[i].transpose() * t * b[j]);
 }
 
+Line line(const void* data, const Pose* x) {
+    const Span s = span_of(*static_cast<const DistanceData*>(data), x);
+    return {std::max(s.length, 1e-12) * s.u, s.ra, s.rb};
+}
+
 void sample(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& rod = *static_cast<DistanceData*>(data);
@@ -63,7 +68,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kDistance{"distance", 1,       2,     sizeof(DistanceData), Bound::free, true, 0, evaluate,
-                               stiffness,  nullptr, sample};
+const ConstraintType kDistance{"distance", 1,      2,   sizeof(DistanceData), Bound::free, true, 0, evaluate, stiffness,
+                               nullptr,    sample, line};
 
 }  // namespace taut

@@ -77,6 +77,45 @@ void BlockSolve::add_mass(uint32_t i) {
     if (size_of(i) == 6) b_.matrix.add(i, i, sys_.inertia[node + 1].data(), 3, 3, 3, 3, 3);
 }
 
+// Angular velocity of a constraint's line, as its ends move now.
+Vec3 BlockSolve::line_turn(const RowBlock& block, const Line& line) const {
+    const Velocity &a = sys_.exact[block.node[0]], &b = sys_.exact[block.node[1]];
+    const Vec3 apart = b.v + b.w.cross(line.lever_b) - a.v - a.w.cross(line.lever_a);
+    return line.span.cross(apart) / line.span.squaredNorm();
+}
+
+// Slow velocities s of a row block's nodes. Rotations have their own; of a line between nodes only the motion of one
+// end against the other matters to K: that of the low-passed turning of the line.
+void BlockSolve::slow_velocities(const RowBlock& block, const Pose* poses, const uint32_t* at, double* slow) const {
+    const ConstraintType& type = *block.type;
+    for (int n = 0; n < type.nodes; ++n) {
+        if (at[n] == kNone) continue;
+        const NodeMotion& m = s_.nodes.motion[b_.nodes[at[n]]];
+        if (!type.line) Vec3::Map(slow + kDof * n) = m.slow_v;
+        Vec3::Map(slow + kDof * n + 3) = m.slow_w;
+    }
+    if (!type.line) return;
+    const Line line = type.line(block.data, poses);
+    const Vec3 wa = Vec3::Map(slow + 3), wb = Vec3::Map(slow + kDof + 3);
+    const Vec3 apart = block.slow_turn->cross(line.span) + wa.cross(line.lever_a) - wb.cross(line.lever_b);
+    // An end whose velocity is known moves as it does; K takes no part of it.
+    if (at[1] != kNone)
+        Vec3::Map(slow + kDof) = apart + (at[0] == kNone ? sys_.exact[block.node[0]].v : Vec3(Vec3::Zero()));
+    else
+        Vec3::Map(slow) = sys_.exact[block.node[1]].v - apart;
+}
+
+void BlockSolve::filter_lines() {
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const RowBlock& block = row(j);
+        if (!block.type->line) continue;
+        const Pose poses[2] = {sys_.pose[block.node[0]], sys_.pose[block.node[1]]};
+        const Vec3 turn = line_turn(block, block.type->line(block.data, poses));
+        const bool first = block.fresh && b_.memory.solved == 0;
+        *block.slow_turn += (first ? 1 : s_.settings.velocity_filter) * (turn - *block.slow_turn);
+    }
+}
+
 // h^2 K into the matrix and h^2 K s onto the known side.
 void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
     const ConstraintType& type = *block.type;
@@ -88,11 +127,8 @@ void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
     for (int n = 0; n < type.nodes; ++n) {
         poses[n] = sys_.pose[block.node[n]];
         at[n] = local(block.node[n]);
-        if (at[n] == kNone || !spare) continue;
-        const NodeMotion& m = s_.nodes.motion[b_.nodes[at[n]]];
-        Vec3::Map(slow + kDof * n) = m.slow_v;
-        Vec3::Map(slow + kDof * n + 3) = m.slow_w;
     }
+    if (spare) slow_velocities(block, poses, at, slow);
     type.stiffness(block.data, poses, force, Curvature::positive, k);
     const double hh = sys_.h * sys_.h;
     for (int i = 0; i < width * width; ++i) k[i] *= hh;
@@ -329,6 +365,7 @@ bool BlockSolve::finish() {
             row(j).force[r] = f;
             sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.h * f;
         }
+    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) filter_lines();
     ++b_.memory.solved;
     return true;
 }

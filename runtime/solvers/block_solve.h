@@ -40,6 +40,9 @@ private:
     bool factor_rounds(bool with_new);
     void assemble(bool with_new);
     void add_mass(uint32_t i);
+    Vec3 line_turn(const RowBlock& block, const Line& line) const;
+    void slow_velocities(const RowBlock& block, const Pose* poses, const uint32_t* at, double* slow) const;
+    void filter_lines();
     void add_stiffness(const RowBlock& block, const double* force);
     void add_joint(uint32_t j);
     void add_bounded();

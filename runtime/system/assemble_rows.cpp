@@ -26,6 +26,7 @@ void add_joint(System& system, Joint& joint) {
     block.data = joint.data;
     block.force = joint.lambda;
     block.drift = joint.drift;
+    block.slow_turn = &joint.slow_turn;
     for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;

@@ -31,6 +31,7 @@ struct RowBlock {
     const ConstraintType* type;
     const void* data;
     double* force;                   // lambda of the last substep, then of this one [N]; type->rows
+    Vec3* slow_turn;                 // of joints whose type has a line
     const double* drift;             // of joints: what of C is still to come within the frame is left out
     uint32_t node[kMaxNodes];        // indices into arrays by node; unused ones 0
     uint32_t row;                    // first row
