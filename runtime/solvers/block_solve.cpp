@@ -131,16 +131,20 @@ void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
     if (spare) slow_velocities(block, poses, at, slow);
     type.stiffness(block.data, poses, force, Curvature::positive, k);
     const double hh = sys_.h * sys_.h;
-    for (int i = 0; i < width * width; ++i) k[i] *= hh;
     for (int n = 0; n < type.nodes; ++n) {
         if (at[n] == kNone) continue;
-        for (int m = 0; m <= n; ++m) {
-            if (m != n && (!type.couples_nodes || at[m] == kNone)) continue;
-            b_.matrix.add(at[n], at[m], k + kDof * n * width + kDof * m, size_of(at[n]), size_of(at[m]), width);
-        }
         double* known = node_known(at[n]);
-        for (int r = 0; r < kDof; ++r)
-            for (int c = 0; c < width; ++c) known[r] += k[(kDof * n + r) * width + c] * slow[c];
+        for (int m = 0; m < type.nodes; ++m) {
+            if (at[m] == kNone || (m != n && !type.couples_nodes)) continue;
+            double* block_nm = k + kDof * n * width + kDof * m;
+            for (int r = 0; r < size_of(at[n]); ++r)
+                for (int c = 0; c < size_of(at[m]); ++c) {
+                    double& entry = block_nm[r * width + c];
+                    entry *= hh;
+                    known[r] += entry * slow[kDof * m + c];
+                }
+            if (m <= n) b_.matrix.add(at[n], at[m], block_nm, size_of(at[n]), size_of(at[m]), width);
+        }
     }
 }
 
