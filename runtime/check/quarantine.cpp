@@ -36,9 +36,12 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints) {
     for (Pair& pair : pairs.list)
         for (Impulse& p : pair.impulse)
             if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
-    for (Joint& joint : joints.record)
+    for (Joint& joint : joints.record) {
         for (double& force : joint.lambda)
             if (!std::isfinite(force)) force = 0;
+        for (AxisMemory& m : joint.memory)
+            if (!std::isfinite(m.lower + m.upper + m.drive + m.friction + m.drive_slip + m.friction_slip)) m = {};
+    }
 }
 
 }  // namespace taut

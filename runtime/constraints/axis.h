@@ -25,8 +25,9 @@ struct Axis {
 
 // What a row of axes carries from substep to substep.
 struct AxisMemory {
-    float limit = 0, drive = 0, friction = 0;   // force of each [N]; limit > 0 pushes C up
-    float drive_slip = -1, friction_slip = -1;  // compliance of a row at its bound [s/kg], 0 within it, -1: new
+    float lower = 0, upper = 0;                 // force of each stop [N], not negative
+    float drive = 0, friction = 0;              // force along C [N]
+    float drive_slip = -1, friction_slip = -1;  // compliance of a row at its bound [s/kg]; 0: within; -1: new
 };
 
 }  // namespace taut
