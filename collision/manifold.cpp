@@ -127,6 +127,23 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
     }
 }
 
+void add_beside(const Manifold& face, Manifold& edges) {
+    constexpr float kSamePlane = 0.9f;   // cosine between the normals
+    constexpr float kSamePlace = 0.25f;  // of the way to the farthest point
+    const float along = face.normal.dot(edges.normal);
+    if (face.count == 0 || edges.count != 1 || along < kSamePlane) return;
+    const ContactPoint crossing = edges.points[0];
+    auto away = [&](const ContactPoint& p) { return (p.position - crossing.position).norm(); };
+    float farthest = 0;
+    for (int i = 0; i < face.count; ++i) farthest = std::max(farthest, away(face.points[i]));
+    for (int i = 0; i < face.count && edges.count < 4; ++i) {
+        ContactPoint point = face.points[i];
+        if (away(point) <= kSamePlace * farthest) continue;
+        point.separation = std::max(along * point.separation, crossing.separation);
+        edges.points[edges.count++] = point;
+    }
+}
+
 float deepest(const Manifold& manifold) {
     float least = 1e30f;
     for (int i = 0; i < manifold.count; ++i) least = std::min(least, manifold.points[i].separation);

@@ -42,6 +42,10 @@ inline float flush_slack(float size) { return std::min(1e-3f, 0.01f * size); }
 // lines that meet.
 void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out);
 
+// Two edges that cross nearly in a face's plane are one end of that face's contact: the body rolls onto the other end
+// within the step. Adds the face's points that lie away from the crossing to the edges' manifold.
+void add_beside(const Manifold& face, Manifold& edges);
+
 // Deepest separation of a manifold [m]; 1e30 for none.
 float deepest(const Manifold& manifold);
 

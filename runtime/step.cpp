@@ -41,10 +41,12 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
         quarantine(w.nodes, group.nodes, w.frozen, system.h);
+        if (i > 0) find_contacts_again(w.nodes, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(system, group, w.nodes, gravity);
+        build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         w.profile.predict_us += watch.lap();
-        evaluate_rows(system);
+        evaluate_rows(system, 1 - (i + 1.0) / group.substeps);
         w.profile.assemble_us += watch.lap();
         Substep substep{system,   group,  w.partition.blocks, w.nodes,
                         settings, report, w.scratch,          i + 1 == group.substeps};
@@ -60,12 +62,10 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();
         store_velocity(system, group, w.nodes, settings.velocity_filter);
+        store_contact_rows(system);
         w.profile.commit_us += watch.lap();
     }
-    if (solver.wide_contacts)
-        store_lanes(system, w.pairs);
-    else
-        store_contact_rows(system, group, w.pairs);
+    if (solver.wide_contacts) store_lanes(system, w.pairs);
 }
 
 void solve(World& w, Stopwatch& watch) {
@@ -89,6 +89,7 @@ void solve(World& w, Stopwatch& watch) {
         drop_bad_impulses(w.pairs, w.joints);
         ++w.joints.version;  // blocks lose the frozen nodes
     }
+    for (Joint& joint : w.joints.record) std::fill(joint.drift, joint.drift + kMaxRows, 0.0);
     commit_kinematic(w.nodes, w.def.time_step);
     w.profile.factor_us = report.direct_us;
     w.profile.sweep_us -= report.direct_us;
@@ -109,7 +110,7 @@ void step(World& w) {
     remember_poses(w.nodes);
     detect(w, watch);
     const Solver& solver = *solvers()[w.def.solver];
-    w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct_joints});
+    w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
     std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});

@@ -178,11 +178,15 @@ void box_box(const Pair& pair, Manifold& out) {
     }
     const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
     bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge);
-    if (!on_edge) {
-        face_contact(pair, boxes, axes.face.axis, out);
-        on_edge = preference.face_misses(deepest(out), axes.edge.separation, axes.face.separation);
+    Manifold face;
+    face_contact(pair, boxes, axes.face.axis, face);
+    if (!on_edge) on_edge = preference.face_misses(deepest(face), axes.edge.separation, axes.face.separation);
+    if (on_edge) {
+        edge_contact(boxes, axes.edge, out);
+        add_beside(face, out);
+    } else {
+        out = face;
     }
-    if (on_edge) edge_contact(boxes, axes.edge, out);
     word = uint32_t((on_edge ? axes.edge.axis : axes.face.axis) + 1) | kTouching;
 }
 

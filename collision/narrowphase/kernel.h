@@ -43,7 +43,7 @@ inline void move_to_a(const Pose& b_in_a, Manifold& manifold) {
 struct Preference {
     float slop, keep;
 
-    explicit Preference(float size) : slop(std::min(0.0025f, 0.02f * size)), keep(0.4f * slop) {}
+    explicit Preference(float size) : slop(std::min(0.0025f, 0.1f * size)), keep(0.4f * slop) {}
 
     bool edge_wins(float edge, float face, bool was_edge) const {
         const float ask = was_edge ? slop - keep : slop;

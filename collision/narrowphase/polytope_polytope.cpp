@@ -129,12 +129,15 @@ void contact(const PolytopePair& pair, Axis axis, float margin, Manifold& out) {
 Axis choose_contact(const PolytopePair& pair, const Separation& face, const Separation& edges, bool was_edge,
                     float margin, Manifold& out) {
     const Preference preference(pair.size());
-    if (!preference.edge_wins(edges.distance, face.distance, was_edge)) {
-        contact(pair, face.axis, margin, out);
-        if (!preference.face_misses(deepest(out), edges.distance, face.distance)) return face.axis;
-        out.count = 0;
+    Manifold clipped;
+    contact(pair, face.axis, margin, clipped);
+    if (!preference.edge_wins(edges.distance, face.distance, was_edge) &&
+        !preference.face_misses(deepest(clipped), edges.distance, face.distance)) {
+        out = clipped;
+        return face.axis;
     }
     contact(pair, edges.axis, margin, out);
+    add_beside(clipped, out);
     return edges.axis;
 }
 

@@ -14,7 +14,7 @@ Scene build_heavy_on_light(double n, double r, const Options& options);
 Scene build_deep_start(double n, double r, const Options& options);
 Scene build_mesh_drop(double n, double r, const Options& options);
 
-Scene build_chain10(double n, double r, const Options& options);
+Scene build_chain(double n, double r, const Options& options);
 Scene build_swing(double n, double r, const Options& options);
 Scene build_chain_over_edge(double n, double r, const Options& options);
 Scene build_wrecking_ball(double n, double r, const Options& options);

@@ -8,12 +8,14 @@ namespace scenes {
 
 namespace {
 
-// The chain of chain10 and swing: ten 1 kg links, a cube of r kg.
-Scene chain_of_ten(double r, double angle, const Options& options) {
+// The chain of chainN and swing: n 1 kg links, a cube of r kg.
+Scene chain_with_weight(double n, double r, double angle, const Options& options) {
     constexpr double kCube = 0.5;
     Scene scene = empty_scene();
     ChainPlan plan;
-    plan.anchor = {0, 7, 0};
+    const double size = n / 10;  // the view grows with the chain
+    plan.links = static_cast<int>(n);
+    plan.anchor = {0, 7 * size, 0};
     plan.weight_mass = r;
     plan.weight_shape = cube_shape(scene, kCube);
     plan.weight_reach = kCube / 2;
@@ -21,17 +23,17 @@ Scene chain_of_ten(double r, double angle, const Options& options) {
     add_chain(scene, plan);
     perturb(scene, options.seed);
     decorate_with_crane(scene, plan.anchor);
-    scene.camera = {{2.5, 4.9, 15.5}, {0.3, 4.3, 0}, 36};
-    scene.stage = {{-7, 0, -5}, {7, 9, 5}};
+    scene.camera = {{2.5 * size, 4.9 * size, 15.5 * size}, {0.3 * size, 4.3 * size, 0}, 36};
+    scene.stage = {{-7 * size, 0, -5}, {7 * size, 9 * size, 5}};
     return scene;
 }
 
 }  // namespace
 
-Scene build_chain10(double, double r, const Options& options) { return chain_of_ten(r, 0, options); }
+Scene build_chain(double n, double r, const Options& options) { return chain_with_weight(n, r, 0, options); }
 
 Scene build_swing(double, double r, const Options& options) {
-    Scene scene = chain_of_ten(r, -std::numbers::pi / 3, options);  // 30 degrees from straight down
+    Scene scene = chain_with_weight(10, r, -std::numbers::pi / 3, options);  // 30 degrees from straight down
     scene.roles.swings = true;
     return scene;
 }

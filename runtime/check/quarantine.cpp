@@ -1,5 +1,6 @@
 #include "check/quarantine.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace taut {
@@ -37,10 +38,12 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints) {
         for (Impulse& p : pair.impulse)
             if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
     for (Joint& joint : joints.record) {
-        for (double& force : joint.lambda)
+        bool bad = false;
+        for (double& force : joint.lambda) {
+            bad = bad || !std::isfinite(force);
             if (!std::isfinite(force)) force = 0;
-        for (AxisMemory& m : joint.memory)
-            if (!std::isfinite(m.lower + m.upper + m.drive + m.friction + m.drive_slip + m.friction_slip)) m = {};
+        }
+        if (bad) std::fill(joint.memory, joint.memory + kMaxRows, AxisMemory{});
     }
 }
 

@@ -52,12 +52,20 @@ public:
 
     // lambda: three rows.
     // sum lambda C = tr M, M = sum lambda b a^T = -B hat(lambda) A^T / 2;  S = tr(M) I - sym M, t from M - M^T = -hat
-    // t. S is zero where the frames coincide; its Frobenius norm bounds it.
+    // t. For B A^T a turn by c about n and u = A lambda this is
+    //   S = ((n . z) I + sym(n z^T))/2,  z = sin c u + (1 - cos c) n x u:  zero where the frames coincide,
+    // with eigenvalues n . z / 2 and (3 n . z +- |z|)/4; trace 2 n . z and squares' sum (11 (n . z)^2 + |z|^2)/8 give
+    // the largest, which bounds S in every direction.
     void alignment(const FramePair& f, const double* lambda) {
         const Mat3 m = -0.5 * f.b * hat(Vec3::Map(lambda)) * f.a.transpose();
         const Mat3 s = m.trace() * Mat3::Identity() - 0.5 * (m + m.transpose());
         torque_ -= Vec3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
-        s_ += part_ == Curvature::raw ? s : Mat3(s.norm() * Mat3::Identity());
+        if (part_ == Curvature::raw) {
+            s_ += s;
+            return;
+        }
+        const double nz = 0.5 * s.trace(), zz = std::max(8 * s.squaredNorm() - 11 * nz * nz, nz * nz);
+        s_ += std::max(0.0, 0.75 * nz + 0.25 * std::sqrt(zz)) * Mat3::Identity();
     }
 
     // lambda: two rows.
@@ -142,12 +150,24 @@ private:
         add_block(k_, 9, 9, lever_stiffness(force, rb, Curvature::positive));
         const double size = force.norm();
         if (!(size > kNoForce)) return;
-        const Mat3 across = size * Mat3::Identity() - force / size * force.transpose();
-        // |f|/(2 kSize) |z|^2 across f of  z = y + kSize f/|f| x w_a, so that -w_a . (f x y) is in it
-        const Mat3 b[4] = {-Mat3::Identity(), hat(l) + kSize / size * hat(force), Mat3::Identity(), -hat(rb)};
-        const Mat3 c[4] = {-across, across * b[1], across, across * b[3]};
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) add_block(k_, 3 * i, 3 * j, 0.5 / kSize * b[i].transpose() * c[j]);
+        // The bound is z^T c z,  z = y + kSize f/|f| x w_a = -dx_a + ea w_a + dx_b + eb w_b
+        const Mat3 c = 0.5 / kSize * (size * Mat3::Identity() - force / size * force.transpose());
+        const Mat3 ea = hat(l) + kSize / size * hat(force), eb = -hat(rb), cea = c * ea, ceb = c * eb;
+        add_block(k_, 0, 0, c);
+        add_block(k_, 6, 6, c);
+        add_mirrored(0, 6, -c);
+        add_mirrored(0, 3, -cea);
+        add_mirrored(6, 3, cea);
+        add_mirrored(0, 9, -ceb);
+        add_mirrored(6, 9, ceb);
+        add_mirrored(3, 9, ea.transpose() * ceb);
+        add_block(k_, 3, 3, ea.transpose() * cea);
+        add_block(k_, 9, 9, eb.transpose() * ceb);
+    }
+
+    void add_mirrored(int row, int column, const Mat3& block) {
+        add_block(k_, row, column, block);
+        add_block(k_, column, row, block.transpose());
     }
 
     double* k_;

@@ -29,9 +29,9 @@ inline void add_block(double* k, int row, int column, const Mat3& block) {
         for (int j = 0; j < 3; ++j) k[(row + i) * 12 + column + j] += block(i, j);
 }
 
-// Writes a 3x3 block of a jacobian [node][rows][6].
+// Writes a 3x3 block into the first three rows of a jacobian [node][rows][6].
 inline void set_block(double* jacobian, int rows, int node, int column, const Mat3& block) {
-    for (int i = 0; i < rows; ++i)
+    for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) jacobian[(node * rows + i) * kDof + column + j] = block(i, j);
 }
 

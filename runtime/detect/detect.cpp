@@ -10,10 +10,13 @@ constexpr float kSamePoint = 0.02f;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
 
-collision::Placement placement_of(const Nodes& nodes, uint32_t node) {
+collision::Placement placement_of(const Nodes& nodes, uint32_t node, double elapsed = 0) {
     const NodeMotion& m = nodes.motion[node];
-    const Mat3 R = m.q.toRotationMatrix();
-    return {m.x - R * nodes.mass[node].centre, R.cast<float>()};
+    const bool ahead = nodes.info[node].kind == NodeKind::kinematic && elapsed > 0;  // moves at the end of the frame
+    const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
+    const Vec3 x = ahead ? Vec3(m.x + elapsed * m.v) : m.x;
+    const Mat3 R = q.toRotationMatrix();
+    return {x - R * nodes.mass[node].centre, R.cast<float>()};
 }
 
 bool filters_agree(const taut_filter& a, const taut_filter& b) {
@@ -52,7 +55,7 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, const c
     bool used[4] = {}, found[4] = {};
     auto take = [&](int i, int k) {
         const Vec3f friction = from[k].tangent1 * o1 + from[k].tangent2 * o2;
-        to[i] = {from[k].normal, friction.dot(t1), friction.dot(t2)};
+        to[i] = {from[k].normal, friction.dot(t1), friction.dot(t2), from[k].slip};
         used[k] = found[i] = true;
     };
     for (int i = 0; i < now.count; ++i)
@@ -69,6 +72,23 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, const c
         }
         if (best >= 0) take(i, best);
     }
+}
+
+// Manifold of one pair at the present placements, with the impulses of the last one.
+void find_points(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, Pair& pair, double time) {
+    const uint32_t a = pair.a(), b = pair.b();
+    const collision::Manifold old = pair.manifold;
+    collision::collide(shapes.record[nodes.info[a].shape].shape, pairs.placement[a],
+                       shapes.record[nodes.info[b].shape].shape, pairs.placement[b],
+                       margin_of(nodes.motion[a], nodes.motion[b], time), pair.cache, pair.manifold);
+    if (pair.manifold.count == 0) return;
+    if (old.count == 0) {
+        std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+        return;
+    }
+    Impulse before[4];
+    std::copy(pair.impulse, pair.impulse + 4, before);
+    carry_impulses(old, before, pair.manifold, pair.impulse);
 }
 
 }  // namespace
@@ -111,6 +131,17 @@ void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphas
     pairs.list.swap(pairs.scratch);
 }
 
+void find_contacts_again(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, std::span<const uint32_t> active_pairs,
+                         double elapsed, double substep) {
+    for (uint32_t p : active_pairs) {
+        ActivePair& active = pairs.active[p];
+        for (uint32_t node : {active.a, active.b}) pairs.placement[node] = placement_of(nodes, node, elapsed);
+        Pair& pair = pairs.list[active.pair];
+        find_points(nodes, shapes, pairs, pair, substep);
+        active.points = static_cast<uint32_t>(pair.manifold.count);
+    }
+}
+
 void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, double time_step) {
     pairs.placement.resize(nodes.slots());
     for (uint32_t node = 0; node < nodes.slots(); ++node)
@@ -119,24 +150,13 @@ void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, doubl
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         Pair& pair = pairs.list[i];
         if (pair.filtered) continue;
-        const uint32_t a = pair.a(), b = pair.b();
-        const collision::Manifold old = pair.manifold;
-        collision::collide(shapes.record[nodes.info[a].shape].shape, pairs.placement[a],
-                           shapes.record[nodes.info[b].shape].shape, pairs.placement[b],
-                           margin_of(nodes.motion[a], nodes.motion[b], time_step), pair.cache, pair.manifold);
+        find_points(nodes, shapes, pairs, pair, time_step);
         if (pair.manifold.count == 0) {
             if (pair.touching) report_end(pairs, nodes, pair);
             pair.touching = false;
             continue;
         }
-        pairs.active.push_back({a, b, i, static_cast<uint32_t>(pair.manifold.count)});
-        if (old.count == 0) {
-            std::fill(pair.impulse, pair.impulse + 4, Impulse{});
-            continue;
-        }
-        Impulse before[4];
-        std::copy(pair.impulse, pair.impulse + 4, before);
-        carry_impulses(old, before, pair.manifold, pair.impulse);
+        pairs.active.push_back({pair.a(), pair.b(), i, static_cast<uint32_t>(pair.manifold.count)});
     }
 }
 

@@ -1,6 +1,8 @@
 // From poses to contact pairs: boxes, pairs, manifolds with the impulses that their points carry over.
 #pragma once
 
+#include <span>
+
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
@@ -16,5 +18,10 @@ void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphas
 
 // Manifolds of all pairs at the present poses; impulses follow their features.
 void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, double time_step);
+
+// The same within a frame, `elapsed` after its start, for some of Pairs::active: those of blocks, whose light links
+// turn far in a substep. A pair may lose its points, none is added to the list.
+void find_contacts_again(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, std::span<const uint32_t> active_pairs,
+                         double elapsed, double substep);
 
 }  // namespace taut

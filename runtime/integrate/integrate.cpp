@@ -71,6 +71,7 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.pose.resize(slots + 1);
     system.exact.resize(slots + 1);
     system.free.resize(slots + 1);
+    system.kept.resize(slots + 1);
     system.correction.resize(slots + 1);
     system.start.resize(slots + 1);
     system.inertia.resize(slots + 1);

@@ -24,6 +24,7 @@ public:
     void link(uint32_t i, uint32_t j);
     void analyse();
     bool analysed() const { return analysed_; }
+    void forget() { analysed_ = false; }
 
     // --- numeric
     void clear();

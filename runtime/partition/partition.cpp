@@ -13,6 +13,15 @@ constexpr uint32_t kSlenderness = 4;       // at most this many bodies a level: 
 constexpr float kHeavyOnLight = 10;        // load over support mass: four times the substeps
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 
+// A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
+// below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
+constexpr uint32_t kMostGrown = 64;
+// A tower of at most so many bodies is a block: a heavy load on light bodies, or many slender levels. Sweeps let it
+// sag, and the change from one to the other at an impact would kick it (measured: 25 of 72 towers hit by a heavy box
+// fell when only the impact made them a block, none when they were one before).
+constexpr uint32_t kMostTower = 60;
+constexpr uint32_t kTowerLevels = 6, kTowerSlenderness = 2;
+
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
 
 }  // namespace
@@ -24,6 +33,11 @@ Partition::Partition(Memory& memory)
       island_of_(memory),
       level_(memory),
       island_(memory),
+      component_(memory),
+      core_(memory),
+      pair_in_block_(memory),
+      block_of_(memory),
+      spare_(memory),
       used_(memory),
       colour_of_(memory),
       scratch_(memory),
@@ -42,71 +56,160 @@ void Partition::unite(uint32_t a, uint32_t b) {
 }
 
 void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules) {
-    if (!rules.direct_joints)
-        blocks.clear();
-    else if (joints_version_ != joints.version)
-        build_blocks(nodes, joints);
-    joints_version_ = joints.version;
     connect(nodes, joints, pairs);
     measure_towers(nodes, pairs);
+    if (rules.direct) {
+        find_towers();
+        build_blocks(nodes, joints, pairs);
+    } else {
+        blocks.clear();
+        pair_in_block_.assign(pairs.active.size(), 0);
+    }
     choose_substeps(rules);
     distribute(nodes, joints, pairs, rules);
 }
 
 // Union-find of the joint graph alone.
-void Partition::connect_joints(const Nodes& nodes, const Joints& joints) {
+void Partition::connect_joints(const Nodes& nodes, const Joints& joints, bool direct_only) {
     parent_.resize(nodes.slots());
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
-        if (joint.type && moving(nodes, joint.node[0]) && moving(nodes, joint.node[1]))
+        if (joint.type && (joint.direct || !direct_only) && moving(nodes, joint.node[0]) &&
+            moving(nodes, joint.node[1]))
             unite(joint.node[0], joint.node[1]);
 }
 
-// Components of the joint graph. Symbolic work happens at a block's first solve.
-void Partition::build_blocks(const Nodes& nodes, const Joints& joints) {
+// Islands without joints in which weight rests on what sweeps cannot hold.
+void Partition::find_towers() {
+    for (Island& island : island_) {
+        const bool slender = (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels) ||
+                             (island.levels >= kTowerLevels && island.nodes <= kTowerSlenderness * island.levels);
+        island.tower = !island.jointed && island.nodes <= kMostTower && (island.ratio >= kHeavyOnLight || slender);
+    }
+}
+
+// False if the block would grow too much; the contact is swept then.
+bool Partition::join_contact(uint32_t a, uint32_t b) {
+    a = find(a), b = find(b);
+    if (a == b) return true;
+    const Component &ca = component_[a], &cb = component_[b];
+    const uint32_t grown = ca.grown + cb.grown + std::min(ca.nodes, cb.nodes);
+    if (grown > kMostGrown) return false;
+    const uint32_t total = ca.nodes + cb.nodes;
+    unite(a, b);
+    component_[find(a)] = {total, grown, kNone};
+    return true;
+}
+
+// Components of the graph of direct joints and the contacts that they take in. Symbolic work happens at a block's
+// first solve.
+void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
-    connect_joints(nodes, joints);
+    connect_joints(nodes, joints, true);
+    core_.assign(slots, 0);
+    component_.assign(slots, Component{});
+    pair_in_block_.assign(pairs.active.size(), 0);
+    for (const Joint& joint : joints.record)
+        for (uint32_t node : joint.node)
+            if (joint.type && joint.direct && moving(nodes, node)) core_[node] = 1;
+    for (uint32_t i = 0; i < slots; ++i) component_[i].nodes = 0;
+    for (uint32_t i = 0; i < slots; ++i) ++component_[find(i)].nodes;
+    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+        const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
+        const bool moves_a = moving(nodes, a), moves_b = moving(nodes, b);
+        if (!moves_a && !moves_b) continue;  // a quarantined body at rest on a fixed one
+        const bool tower = island_[island_of_[moves_a ? a : b]].tower;
+        if (!tower && !(moves_a && core_[a]) && !(moves_b && core_[b])) continue;
+        pair_in_block_[p] = moves_a && moves_b ? join_contact(a, b) : 1;
+        if (tower && pair_in_block_[p]) core_[moves_a ? a : b] = 1;  // in a block, with or without a joint
+    }
+    fill_blocks(nodes, joints, pairs);
+    recall_blocks(nodes, joints);
+}
+
+// Into spare_: nodes, joints, pairs and the identity of each block's graph.
+void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     Memory& memory = *blocks.get_allocator().memory;
-    Array<Block> old(memory);
-    old.swap(blocks);
-    island_of_.assign(slots, kNone);  // here: block of a root
+    uint32_t count = 0;
+    auto block_at = [&](uint32_t node) -> Block& {
+        uint32_t& block = component_[find(node)].block;
+        if (block == kNone) {
+            block = count++;
+            if (spare_.size() < count) spare_.emplace_back(memory);
+            Block& fresh = spare_[block];
+            for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
+            fresh.links.clear();
+            fresh.identity.clear();
+            fresh.matrix.forget();
+            fresh.memory = {};
+        }
+        return spare_[block];
+    };
+    auto mover = [&](uint32_t a, uint32_t b) { return moving(nodes, a) ? a : b; };
     for (uint32_t j = 0; j < joints.record.size(); ++j) {
         const Joint& joint = joints.record[j];
-        if (!joint.type) continue;
-        const uint32_t end = moving(nodes, joint.node[0]) ? joint.node[0] : joint.node[1];
-        if (!moving(nodes, end)) continue;
-        uint32_t& block = island_of_[find(end)];
-        if (block == kNone) {
-            block = static_cast<uint32_t>(blocks.size());
-            blocks.emplace_back(memory);
-        }
-        blocks[block].joints.push_back(j);
+        if (!joint.type || !joint.direct || !moving(nodes, mover(joint.node[0], joint.node[1]))) continue;
+        Block& block = block_at(mover(joint.node[0], joint.node[1]));
+        block.joints.push_back(j);
+        block.identity.push_back(joint.serial << 1 | joint.plain);
     }
-    for (uint32_t i = 0; i < slots; ++i) {
-        if (!moving(nodes, i) || island_of_[find(i)] == kNone) continue;
-        blocks[island_of_[find(i)]].nodes.push_back(i);
+    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+        if (!pair_in_block_[p]) continue;
+        const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
+        Block& block = block_at(mover(a, b));
+        block.pairs.push_back(p);
+        if (moving(nodes, a) && moving(nodes, b)) block.links.push_back(pairs.list[pairs.active[p].pair].key);
     }
-    for (Block& block : blocks) {
+    for (uint32_t i = 0; i < nodes.slots(); ++i)
+        if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);
+    while (spare_.size() > count) spare_.pop_back();
+    for (Block& block : spare_) {
         double least = 1e300, most = 0;
         for (uint32_t node : block.nodes) {
             least = std::min(least, nodes.mass[node].mass);
             most = std::max(most, nodes.mass[node].mass);
-        }
-        block.mass_ratio = most / least;
-        for (uint32_t j : block.joints) block.identity.push_back(joints.record[j].serial);
-        for (uint32_t node : block.nodes)
             block.identity.push_back(static_cast<uint64_t>(node) << 32 | nodes.ids.generation(node));
-        for (Block& before : old) {  // unchanged blocks keep their order and their memory
-            if (before.identity != block.identity) continue;
-            block = std::move(before);
-            break;
+        }
+        block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
+        block.mass_ratio = most / least;
+        block.tower = block.joints.empty();
+    }
+}
+
+// A block whose graph stayed keeps its elimination order; one that lost or gained something keeps its memory.
+void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
+    block_of_.resize(nodes.slots(), kNone);
+    auto remembers = [&](const Block& old, const Block& block) {
+        const uint64_t mark = block.tower
+                                  ? static_cast<uint64_t>(block.nodes[0]) << 32 | nodes.ids.generation(block.nodes[0])
+                                  : joints.record[block.joints[0]].serial << 1 | joints.record[block.joints[0]].plain;
+        return old.tower == block.tower &&
+               std::find(old.identity.begin(), old.identity.end(), mark) != old.identity.end();
+    };
+    for (Block& block : spare_) {
+        const uint32_t at = block_of_[block.nodes[0]];
+        if (at == kNone || at >= blocks.size()) continue;
+        Block& old = blocks[at];
+        if (old.identity == block.identity) {
+            std::swap(old.matrix, block.matrix);
+            std::swap(old.solution, block.solution);
+            std::swap(old.known, block.known);
+            std::swap(old.force, block.force);
+            block.looped = old.looped;
+            block.memory = old.memory;
+        } else if (remembers(old, block)) {
+            block.memory = old.memory;
         }
     }
+    blocks.swap(spare_);
+    block_of_.assign(nodes.slots(), kNone);
+    for (uint32_t b = 0; b < blocks.size(); ++b)
+        for (uint32_t node : blocks[b].nodes) block_of_[node] = b;
 }
 
 void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
-    connect_joints(nodes, joints);
+    connect_joints(nodes, joints, false);
     for (const ActivePair& pair : pairs.active)
         if (moving(nodes, pair.a) && moving(nodes, pair.b)) unite(pair.a, pair.b);
 
@@ -180,7 +283,11 @@ void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
 void Partition::choose_substeps(const PartitionRules& rules) {
     for (Island& island : island_) {
         uint32_t factor = 1;
-        if (island.ratio > kHeavyOnLight && !island.jointed)
+        if (island.tower) {
+            island.substeps = rules.substeps;
+            continue;
+        }
+        if (island.ratio >= kHeavyOnLight && !island.jointed)
             factor = 4;
         else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels)
             factor = 2;
@@ -189,10 +296,14 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         island.substeps = rules.substeps * (rules.fixed ? 1 : factor);
     }
     if (rules.fixed) return;
-    for (const Block& block : blocks) {
-        if (block.mass_ratio <= kExtremeMassRatio && !block.memory.escalated) continue;
+    for (Block& block : blocks) {
         Island& island = island_[island_of_[block.nodes[0]]];
-        island.substeps = std::max(island.substeps, 2 * rules.substeps);
+        if (block.tower && block.memory.refused_left > 0) {
+            --block.memory.refused_left;
+            island.substeps = std::max(island.substeps, 4 * rules.substeps);
+        }
+        if (!block.tower && (block.mass_ratio > kExtremeMassRatio || block.memory.escalated))
+            island.substeps = std::max(island.substeps, 2 * rules.substeps);
     }
 }
 
@@ -200,7 +311,11 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
     make_groups();
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (island_of_[i] != kNone) groups[group_of(i)].nodes.push_back(i);
-    for (uint32_t b = 0; b < blocks.size(); ++b) groups[group_of(blocks[b].nodes[0])].blocks.push_back(b);
+    for (uint32_t b = 0; b < blocks.size(); ++b) {
+        Group& group = groups[group_of(blocks[b].nodes[0])];
+        group.blocks.push_back(b);
+        group.direct_pairs.insert(group.direct_pairs.end(), blocks[b].pairs.begin(), blocks[b].pairs.end());
+    }
 
     used_.resize(nodes.slots());
     colours = 0;
@@ -212,18 +327,18 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
             return moving(nodes, node) && group_of(node) == g;
         };
         items.clear();
-        if (!rules.direct_joints)
-            for (uint32_t j = 0; j < joints.record.size(); ++j) {
-                const Joint& joint = joints.record[j];
-                if (joint.type && here(joint.node[0], joint.node[1])) items.push_back(j);
-            }
+        for (uint32_t j = 0; j < joints.record.size(); ++j) {
+            const Joint& joint = joints.record[j];
+            if (!joint.type || (rules.direct && joint.direct)) continue;
+            if (here(joint.node[0], joint.node[1])) items.push_back(j);
+        }
         for (uint32_t node : group.nodes) used_[node] = 0;
         const uint32_t of_joints = colour(items, group.joints, group.joint_colour_begin, [&](uint32_t j) {
             return std::pair(joints.record[j].node[0], joints.record[j].node[1]);
         });
         items.clear();
         for (uint32_t p = 0; p < pairs.active.size(); ++p)
-            if (here(pairs.active[p].a, pairs.active[p].b)) items.push_back(p);
+            if (!pair_in_block_[p] && here(pairs.active[p].a, pairs.active[p].b)) items.push_back(p);
         for (uint32_t node : group.nodes) used_[node] = 0;
         const uint32_t of_pairs = colour(items, group.pairs, group.pair_colour_begin,
                                          [&](uint32_t p) { return std::pair(pairs.active[p].a, pairs.active[p].b); });
@@ -244,6 +359,7 @@ void Partition::make_groups() {
     for (uint32_t g = 0; g < group_count; ++g) {
         groups[g].nodes.clear();
         groups[g].blocks.clear();
+        groups[g].direct_pairs.clear();
     }
     for (Island& island : island_) {
         island.group = static_cast<uint32_t>(std::lower_bound(scratch_.begin(), scratch_.end(), island.effort()) -

@@ -1,7 +1,8 @@
 // Who is solved with whom: islands, groups of islands with the same substep count, blocks, colours.
 //
 //   island  nodes connected by joints or touching pairs; independent of every other island during a frame
-//   block   nodes connected by joints: solved directly, its elimination order kept while the joint graph stays
+//   block   nodes connected by joints, with the bodies that touch them, or a tower: solved directly, contacts included;
+//           its elimination order is kept while its graph stays
 //   group   all islands that take the same number of substeps and sweeps; solved together
 //   colour  constraints of a group of which no two share a moving node
 #pragma once
@@ -20,22 +21,30 @@ struct BlockMemory {
     uint32_t guard_left = 0;         // substeps for which no slow velocity is spared
     uint32_t since_trip = 1u << 30;  // substeps since the guard last tripped
     bool escalated = false;          // tripped twice in a short time: the island takes more substeps
+    uint32_t refused_left = 0;       // frames for which a tower that was refused takes more substeps
 };
 
-// Joint-connected nodes, with what their direct solve remembers over frames.
+// What a direct solve takes together, with what it remembers over frames.
 struct Block {
-    explicit Block(Memory& m) : nodes(m), joints(m), identity(m), matrix(m), solution(m), known(m), force(m) {}
+    explicit Block(Memory& m)
+        : nodes(m), joints(m), pairs(m), links(m), identity(m), matrix(m), solution(m), known(m), force(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
-    Array<uint64_t> identity;              // serials of the joints, slots and generations of the nodes
+    Array<uint32_t> pairs;                 // in Pairs::active, of this frame
+    Array<uint64_t> links;                 // pairs of its nodes that touch: smaller << 32 | larger
+    Array<uint64_t> identity;              // of joints, nodes and links: the graph of the matrix
     SparseBlockLdlt matrix;                // unknowns: nodes, then joints
     Array<double> solution, known, force;  // scratch of its solve
+    bool tower = false;                    // no joints: bodies that stand on each other
+    bool refused = false;                  // this substep's tower did not stand as one: its contacts were swept
     bool looped = false;                   // more joints than a tree
     bool failed = false;                   // this substep's matrix could not be factored
     bool corrected = false;                // this substep's positions get a correction
     double mass_ratio = 1;                 // heaviest over lightest node
     uint32_t first_row_block = 0;          // its joints' rows in System::rows, of this frame
+    uint32_t first_contact = 0, contact_count = 0;  // its contacts' rows, of this substep
+    uint32_t first_bounded = 0, bounded_count = 0;  // its bounded rows in SolverScratch, of this substep
 
     // What its direct solve keeps over substeps; see solvers/block_ldlt.cpp.
     BlockMemory memory;
@@ -48,7 +57,8 @@ struct Group {
           pair_colour_begin(memory),
           joints(memory),
           joint_colour_begin(memory),
-          blocks(memory) {}
+          blocks(memory),
+          direct_pairs(memory) {}
 
     uint32_t substeps = 0;
     uint32_t sweeps = 1;    // least biased sweeps a substep
@@ -56,15 +66,16 @@ struct Group {
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one.
     Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
     Array<uint32_t> joints, joint_colour_begin;
-    Array<uint32_t> blocks;  // index into Partition::blocks
+    Array<uint32_t> blocks;        // index into Partition::blocks
+    Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
 };
 
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
 
 struct PartitionRules {
-    uint32_t substeps;   // least
-    bool fixed;          // no more than the least
-    bool direct_joints;  // joints form blocks; else they are swept
+    uint32_t substeps;  // least
+    bool fixed;         // no more than the least
+    bool direct;        // joints form blocks that take in their contacts, and towers are blocks; else all is swept
 };
 
 class Partition {
@@ -85,12 +96,21 @@ private:
         uint32_t nodes = 0, levels = 0, substeps = 0, sweeps = 1, group = 0;
         float ratio = 1;  // heaviest load over its support
         bool jointed = false;
+        bool tower = false;
 
         uint32_t effort() const { return substeps << 8 | sweeps; }
     };
 
-    void build_blocks(const Nodes& nodes, const Joints& joints);
-    void connect_joints(const Nodes& nodes, const Joints& joints);
+    struct Component {  // of the graph of blocks, by root
+        uint32_t nodes = 1, grown = 0, block = UINT32_MAX;
+    };
+
+    void find_towers();
+    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    bool join_contact(uint32_t a, uint32_t b);
+    void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    void recall_blocks(const Nodes& nodes, const Joints& joints);
+    void connect_joints(const Nodes& nodes, const Joints& joints, bool direct_only);
     void connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void measure_towers(const Nodes& nodes, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);
@@ -103,11 +123,15 @@ private:
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
 
-    uint64_t joints_version_ = 0;
     Array<uint32_t> parent_;     // union-find over slots; roots are the smallest slot
     Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces
     Array<uint32_t> level_;      // by slot: bodies between it and a support
     Array<Island> island_;
+    Array<Component> component_;    // by slot of a root
+    Array<uint8_t> core_;           // by slot: has a joint that is solved directly
+    Array<uint8_t> pair_in_block_;  // by index in Pairs::active
+    Array<uint32_t> block_of_;      // by slot: its block in the last frame, or kNone
+    Array<Block> spare_;
     Array<uint64_t> used_;      // by slot: colours taken
     Array<uint8_t> colour_of_;  // scratch
     Array<uint32_t> scratch_, queue_;

@@ -57,14 +57,14 @@ double internal_energy(const Substep& s, const Block& block, double kinetic) {
 
 }  // namespace
 
-void guard_energy(Substep& s, Block& block) {
+void guard_energy(Substep& s, Block& block, double bounded_work) {
     BlockMemory& memory = block.memory;
     if (memory.guard_left > 0) --memory.guard_left;
     if (memory.since_trip < 1u << 30) ++memory.since_trip;
     if (block.mass_ratio < kLeastMassRatio || memory.solved < kWarmup) return;
 
     const double before = kinetic_energy(s, block, s.system.start), after = kinetic_energy(s, block, s.system.exact);
-    double work = 0, mass = 0;  // of everything that is not a joint: forces, gyroscopic torque, contacts
+    double work = bounded_work, mass = 0;  // of everything that is not a locked row
     for (uint32_t node : block.nodes) {
         const double m = s.nodes.mass[node].mass;
         const Velocity &v0 = s.system.start[node + 1], &free = s.system.free[node + 1], &v1 = s.system.exact[node + 1];

@@ -5,13 +5,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "system/axis_rows.h"
 #include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
 namespace taut {
 namespace {
-
-constexpr uint32_t kRelaxSweeps = 2;
 
 NodeVector velocity_of(const SweepVelocity& u) {
     NodeVector v;
@@ -51,20 +50,54 @@ public:
         Eigen::Map<RowVector>(&system_.rows.impulse[block_.row], rows_) = next;
     }
 
-    void solve_free(const SweepTerms& soft, bool biased) {
+    void solve_joint(const SweepTerms& soft, bool biased) {
+        solve_locked(soft, biased);
+        for (int r = 0; block_.axis && r < rows_; ++r)
+            for_each_axis_row(block_, r, system_.rows.error[block_.row + static_cast<uint32_t>(r)], system_.h,
+                              [&](const AxisRow& axis) { solve_axis(axis, r, soft, biased); });
+    }
+
+    // The locked rows as one block; the others are left out by an identity in their place.
+    void solve_locked(const SweepTerms& soft, bool biased) {
         RowMatrix s = effective();
         RowVector residual = velocity();
-        double keep = 1;
-        if (block_.elastic(0)) {  // physical softness: the same row in both phases
-            const RowMatrix c = compliance_of(block_, system_.h);
-            residual += error_rate_of(system_, block_) + c * impulse();
-            s += c;
-        } else if (biased) {
-            residual += soft.bias_rate * error_of(system_, block_);
-            residual *= soft.mass_scale;
-            keep = 1 - soft.impulse_scale;
+        const RowMatrix c = compliance_of(block_, system_.h);
+        const RowVector rate = error_rate_of(system_, block_), p = impulse();
+        RowVector keep = RowVector::Ones(rows_);
+        for (int r = 0; r < rows_; ++r) {
+            if (!block_.locked(r)) continue;
+            if (block_.elastic(r)) {  // physical softness: the same row in both phases
+                residual[r] += rate[r] + c.row(r) * p;
+                s.row(r) += c.row(r);
+            } else if (biased) {
+                residual[r] =
+                    soft.mass_scale *
+                    (residual[r] + soft.bias_rate * system_.rows.error[block_.row + static_cast<uint32_t>(r)]);
+                keep[r] = 1 - soft.impulse_scale;
+            }
         }
-        move_to(keep * impulse() - s.inverse() * residual);
+        for (int r = 0; r < rows_; ++r) {
+            if (block_.locked(r)) continue;
+            s.row(r).setZero();
+            s.col(r).setZero();
+            s(r, r) = 1;
+            residual[r] = 0;
+        }
+        move_to(RowVector(keep.cwiseProduct(p) - s.inverse() * residual));
+    }
+
+    // A stop, drive or friction, with its own part of the row's impulse.
+    void solve_axis(const AxisRow& axis, int r, const SweepTerms& soft, bool biased) {
+        const double k = effective()(r, r), before = system_.h * *axis.force;
+        double target = biased ? axis.target : axis.relaxed_target;
+        if (axis.stop && !axis.physical && axis.gap <= 0 && biased)
+            target = std::min<double>(soft.push, -soft.bias_rate * axis.gap);
+        const double step = (target - axis.sign * velocity()[r] - axis.compliance * before) / (k + axis.compliance);
+        const double mu = std::clamp(before + step, axis.stop ? 0.0 : -axis.limit, axis.limit);
+        *axis.force = static_cast<float>(mu / system_.h);
+        RowVector p = impulse();
+        p[r] += axis.sign * (mu - before);
+        move_to(p);
     }
 
     // Normal row first, then the tangents on the cone; as in the fused sweep (constraints/contact_sweep.inl).
@@ -103,23 +136,17 @@ private:
     int rows_;
 };
 
-// Rows of blocks are the direct solver's; the rest is swept.
-uint32_t first_swept(const Substep& s) {
-    uint32_t first = 0;
-    for (uint32_t b : s.group.blocks) first += static_cast<uint32_t>(s.blocks[b].joints.size());
-    return first;
-}
+struct Range {
+    uint32_t first = 0, count = 0;
+};
 
-void sweep_rows(Substep& s, bool biased) {
-    const SweepTerms soft = soft_terms(s.system.h);
-    const auto& blocks = s.system.rows.block;
-    for (size_t i = first_swept(s); i < blocks.size(); ++i) {
-        RowSweep row(s.system, blocks[i]);
-        if (blocks[i].type->bound == Bound::cone)
-            row.solve_cone(soft, biased);
-        else
-            row.solve_free(soft, biased);
-    }
+// Rows of blocks are the direct solver's, those of their joints first and those of their contacts last.
+Range swept_rows(const Substep& s) {
+    Range swept;
+    for (uint32_t b : s.group.blocks) swept.first += static_cast<uint32_t>(s.blocks[b].joints.size());
+    const Rows& rows = s.system.rows;
+    swept.count = (s.group.blocks.empty() ? static_cast<uint32_t>(rows.block.size()) : rows.joints) - swept.first;
+    return swept;
 }
 
 // What the sweeps changed becomes part of the solution, except where a direct solve owns it.
@@ -152,23 +179,40 @@ void relax(Substep& s) { sweep_relaxed(s); }
 
 }  // namespace
 
+void warm_start_rows(Substep& s, uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; ++i) {
+        RowSweep row(s.system, s.system.rows.block[i]);
+        row.apply(row.impulse());
+    }
+}
+
+void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
+    const SweepTerms soft = soft_terms(s.system.h);
+    const auto& blocks = s.system.rows.block;
+    for (uint32_t i = first; i < first + count; ++i) {
+        RowSweep row(s.system, blocks[i]);
+        if (blocks[i].type->bound == Bound::cone)
+            row.solve_cone(soft, biased);
+        else
+            row.solve_joint(soft, biased);
+    }
+}
+
 void warm_start_sweeps(Substep& s) {
     ContactLanes& lanes = s.system.contacts;
     s.settings.kernels->warm_start(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
                                    s.system.inverse_mass.data());
-    const auto& blocks = s.system.rows.block;
-    for (size_t i = first_swept(s); i < blocks.size(); ++i) {
-        RowSweep row(s.system, blocks[i]);
-        row.apply(row.impulse());
-    }
+    const Range swept = swept_rows(s);
+    warm_start_rows(s, swept.first, swept.count);
 }
 
 void sweep_biased(Substep& s) {
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
     ContactLanes& lanes = s.system.contacts;
     const SweepTerms soft = soft_terms(s.system.h);
+    const Range swept = swept_rows(s);
     for (uint32_t i = 0; i < sweeps; ++i) {
-        sweep_rows(s, true);
+        sweep_rows(s, swept.first, swept.count, true);
         s.settings.kernels->sweep_biased(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
                                          s.system.velocity.data(), s.system.inverse_mass.data(), s.system.shift.data(),
                                          soft);
@@ -179,8 +223,9 @@ void sweep_biased(Substep& s) {
 void sweep_relaxed(Substep& s) {
     ContactLanes& lanes = s.system.contacts;
     const SweepTerms soft = soft_terms(s.system.h);
+    const Range swept = swept_rows(s);
     for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
-        sweep_rows(s, false);
+        sweep_rows(s, swept.first, swept.count, false);
         s.settings.kernels->sweep_relaxed(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
                                           s.system.velocity.data(), s.system.inverse_mass.data(), soft);
     }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "partition/partition.h"
+#include "solvers/bounded_row.h"
 #include "system/system.h"
 
 namespace taut {
@@ -18,7 +19,7 @@ struct SolverSettings {
 };
 
 struct SolverReport {
-    uint32_t solves = 0, resolves = 0, guard_trips = 0, failures = 0;
+    uint32_t solves = 0, resolves = 0, rounds = 0, guard_trips = 0, failures = 0, refusals = 0;
     float direct_us = 0;  // spent in direct solves
     double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
 };
@@ -26,10 +27,11 @@ struct SolverReport {
 // Memory that iterative solvers use during a substep, kept so that steady scenes allocate nothing.
 struct SolverScratch {
     explicit SolverScratch(Memory& memory)
-        : count(memory), inverse(memory), softness(memory), previous(memory), next(memory) {}
+        : count(memory), inverse(memory), softness(memory), previous(memory), next(memory), bounded(memory) {}
 
     Array<uint32_t> count;
     Array<double> inverse, softness, previous, next;
+    Array<BoundedRow> bounded;  // of the group's blocks
 };
 
 // One substep of one group.
@@ -46,7 +48,7 @@ struct Substep {
 
 struct Solver {
     const char* name;
-    bool direct_joints;  // joints form blocks; else they come as rows to sweep, by colour
+    bool direct;         // joints and towers form blocks; else they come as rows to sweep, by colour
     bool wide_contacts;  // contacts come in lanes; else as rows after those of the joints
     // From system.exact = v* to the velocity that moves the positions, with the push of overlapping contacts.
     void (*solve)(Substep&);

@@ -16,10 +16,12 @@ struct Joint {
     const ConstraintType* type = nullptr;  // null: dead slot
     uint32_t node[2] = {kNone, kNone};     // kNone: the world
     double lambda[kMaxRows] = {};          // force of the last substep, stops and drives included [N, N m]
-    double compliance = 0;                 // of each locked row [m/N]
-    double damping = 0;                    // of each locked row [N s/m]; relaxation time [s] of a compliance block
-    double angular_compliance = 0;         // of each locked row that is an angle [rad/(N m)]
-    double angular_damping = 0;            // [N m s/rad]
+    double drift[kMaxRows] = {};    // of C since the last step, by a change of length or anchors: it comes bit by
+                                    // bit over the substeps of the next one, and so without a kick
+    double compliance = 0;          // of each locked row [m/N]
+    double damping = 0;             // of each locked row [N s/m]; relaxation time [s] of a compliance block
+    double angular_compliance = 0;  // of each locked row that is an angle [rad/(N m)]
+    double angular_damping = 0;     // [N m s/rad]
     double break_force = std::numeric_limits<double>::infinity();   // removed when a step ends with more [N]
     double break_torque = std::numeric_limits<double>::infinity();  // [N m]
     bool plain = true;                                              // every row is locked: axis is not read

@@ -13,6 +13,7 @@ constexpr float kContactMargin = 0.02f;
 
 struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1, tangent2) of its manifold
     float normal = 0, tangent1 = 0, tangent2 = 0;
+    float slip = -1;  // of points in blocks: compliance of sliding friction [1/kg]; 0: sticks; -1: new
 };
 
 struct Pair {

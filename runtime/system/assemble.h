@@ -8,14 +8,17 @@ namespace taut {
 
 // Once a frame and group: which rows there are, in the order that the solver wants them: block by block when joints
 // are solved directly, colour by colour when they are swept; contact points after them when they come as rows.
-void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, const Pairs& pairs,
+void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Pairs& pairs,
                 const Nodes& nodes, bool contacts_as_rows);
-// Once a substep: C and J at system.pose; impulses from the forces of the last substep.
-void evaluate_rows(System& system);
+// Once a substep: rows of the contacts that blocks own, after those of joints, at system.pose.
+void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes);
+// Once a substep: C and J at system.pose; impulses from the forces of the last substep. frame_left: share of the
+// frame that is left after this substep, of which the drift of C is still to come.
+void evaluate_rows(System& system, double frame_left);
 // Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
 double row_residual(const System& system);
-// Once a frame and group, after the last substep: contact impulses back into the pairs.
-void store_contact_rows(const System& system, const Group& group, Pairs& pairs);
+// After a substep: impulses of contact rows back into the pairs.
+void store_contact_rows(const System& system);
 
 // Once a frame and group: contacts by colour into lanes, with effective masses.
 void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,

@@ -25,6 +25,7 @@ void add_joint(System& system, Joint& joint) {
     RowBlock& block = add_block(system, *joint.type);
     block.data = joint.data;
     block.force = joint.lambda;
+    block.drift = joint.drift;
     for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
@@ -42,7 +43,7 @@ ContactData contact_data(const System& system, const Nodes& nodes, const Pair& p
     const collision::ContactPoint& point = pair.manifold.points[k];
     const Pose& a = system.pose[pair.a() + 1];
     const Pose& b = system.pose[pair.b() + 1];
-    const Vec3 at = nodes.origin(pair.a()) + point.position.cast<double>();
+    const Vec3 at = a.x - a.R * nodes.mass[pair.a()].centre + point.position.cast<double>();
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
     ContactData data;
     data.anchor_a = a.R.transpose() * (at - a.x);
@@ -63,14 +64,11 @@ double bounce_speed(const System& system, const Pair& pair, const ContactData& p
     return approach > kBounceSpeed ? restitution * approach : 0.0;
 }
 
-void add_contacts(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes) {
+// Rows of the points of some active pairs; room for their data is reserved.
+void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs& pairs, const Nodes& nodes) {
     Rows& rows = system.rows;
-    rows.data.clear();
-    size_t points = 0;
-    for (uint32_t p : group.pairs) points += pairs.active[p].points;
-    rows.data.reserve(points);  // addresses below must not move
-    for (uint32_t p : group.pairs) {
-        const Pair& pair = pairs.list[pairs.active[p].pair];
+    for (uint32_t p : active_pairs) {
+        Pair& pair = pairs.list[pairs.active[p].pair];
         const auto& ma = nodes.info[pair.a()].material;
         const auto& mb = nodes.info[pair.b()].material;
         for (int k = 0; k < pair.manifold.count; ++k) {
@@ -81,17 +79,24 @@ void add_contacts(System& system, const Group& group, const Pairs& pairs, const 
             block.node[1] = pair.b() + 1;
             block.friction = std::sqrt(static_cast<double>(ma.friction) * mb.friction);
             block.bounce = bounce_speed(system, pair, rows.data.back(), std::max(ma.restitution, mb.restitution));
-            const Impulse& impulse = pair.impulse[k];
-            rows.impulse[block.row] = impulse.normal;
-            rows.impulse[block.row + 1] = impulse.tangent1;
-            rows.impulse[block.row + 2] = impulse.tangent2;
+            block.contact = &pair.impulse[k];
+            rows.impulse[block.row] = block.contact->normal;
+            rows.impulse[block.row + 1] = block.contact->tangent1;
+            rows.impulse[block.row + 2] = block.contact->tangent2;
         }
     }
 }
 
+// Addresses of contact data must not move while rows are added.
+void reserve_contacts(System& system, std::span<const uint32_t> active_pairs) {
+    constexpr size_t kPoints = 4;
+    system.rows.data.clear();
+    system.rows.data.reserve(kPoints * active_pairs.size());
+}
+
 }  // namespace
 
-void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, const Pairs& pairs,
+void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Pairs& pairs,
                 const Nodes& nodes, bool contacts_as_rows) {
     Rows& rows = system.rows;
     rows.block.clear();
@@ -100,33 +105,53 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     rows.jacobian.clear();
     for (uint32_t b : group.blocks) {
         blocks[b].first_row_block = static_cast<uint32_t>(rows.block.size());
+        blocks[b].contact_count = 0;
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
-    if (contacts_as_rows) add_contacts(system, group, pairs, nodes);
+    rows.joints = static_cast<uint32_t>(rows.block.size());
+    if (!contacts_as_rows) return;
+    reserve_contacts(system, group.pairs);
+    add_contacts(system, group.pairs, pairs, nodes);
 }
 
-void evaluate_rows(System& system) {
+void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes) {
+    if (group.direct_pairs.empty()) return;
+    Rows& rows = system.rows;
+    const bool none = rows.block.size() == rows.joints;
+    rows.error.resize(none ? rows.error.size() : rows.block[rows.joints].row);
+    rows.impulse.resize(rows.error.size());
+    rows.jacobian.resize(none ? rows.jacobian.size() : rows.block[rows.joints].jacobian);
+    rows.block.resize(rows.joints);
+    reserve_contacts(system, group.direct_pairs);
+    for (uint32_t b : group.blocks) {
+        blocks[b].first_contact = static_cast<uint32_t>(rows.block.size());
+        add_contacts(system, blocks[b].pairs, pairs, nodes);
+        blocks[b].contact_count = static_cast<uint32_t>(rows.block.size()) - blocks[b].first_contact;
+    }
+}
+
+void evaluate_rows(System& system, double frame_left) {
     Rows& rows = system.rows;
     for (const RowBlock& block : rows.block) {
         Pose poses[kMaxNodes];
         for (int i = 0; i < block.type->nodes; ++i) poses[i] = system.pose[block.node[i]];
         block.type->evaluate(block.data, poses, &rows.error[block.row], &rows.jacobian[block.jacobian]);
         if (!block.force) continue;
-        for (int r = 0; r < block.type->rows; ++r) rows.impulse[block.row + r] = system.h * block.force[r];
+        for (int r = 0; r < block.type->rows; ++r) {
+            rows.impulse[block.row + r] = system.h * block.force[r];
+            rows.error[block.row + r] -= frame_left * block.drift[r];
+        }
     }
 }
 
-void store_contact_rows(const System& system, const Group& group, Pairs& pairs) {
-    size_t next = 0;
-    const auto& blocks = system.rows.block;
-    while (next < blocks.size() && blocks[next].force) ++next;  // joints come first
-    for (uint32_t p : group.pairs) {
-        Pair& pair = pairs.list[pairs.active[p].pair];
-        for (int k = 0; k < pair.manifold.count && next < blocks.size(); ++k, ++next) {
-            const double* mu = &system.rows.impulse[blocks[next].row];
-            pair.impulse[k] = {static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(mu[2])};
-        }
+void store_contact_rows(const System& system) {
+    for (const RowBlock& block : system.rows.block) {
+        if (!block.contact) continue;
+        const double* mu = &system.rows.impulse[block.row];
+        block.contact->normal = static_cast<float>(mu[0]);
+        block.contact->tangent1 = static_cast<float>(mu[1]);
+        block.contact->tangent2 = static_cast<float>(mu[2]);
     }
 }
 

@@ -17,6 +17,7 @@
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
 #include "state/nodes.h"
+#include "state/pairs.h"
 
 namespace taut {
 
@@ -30,6 +31,7 @@ struct RowBlock {
     const ConstraintType* type;
     const void* data;
     double* force;                   // lambda of the last substep, then of this one [N]; type->rows
+    const double* drift;             // of joints: what of C is still to come within the frame is left out
     uint32_t node[kMaxNodes];        // indices into arrays by node; unused ones 0
     uint32_t row;                    // first row
     uint32_t jacobian;               // first entry of [node][row][6]
@@ -38,6 +40,7 @@ struct RowBlock {
     double relaxation[2];            // time d [s]: compliance * damping, likewise
     const Axis* axis;                // of each row, or null: all are locked
     AxisMemory* memory;              // of each row, with axis
+    Impulse* contact;                // what a contact point carries on; null for joints
     double friction;                 // of a cone
     double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
     bool fresh;                      // lambda of the last substep means nothing yet
@@ -50,11 +53,12 @@ struct RowBlock {
 struct Rows {
     explicit Rows(Memory& memory) : block(memory), error(memory), jacobian(memory), impulse(memory), data(memory) {}
 
+    uint32_t joints = 0;  // rows of joints come first, those of contacts after them
     Array<RowBlock> block;
     Array<double> error;      // C(x) [m or rad]           rows; assemble()
     Array<double> jacobian;   // dC/dx                     assemble()
     Array<double> impulse;    // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
-    Array<ContactData> data;  // of contact rows, where a solver takes contacts as rows
+    Array<ContactData> data;  // of contact rows: where a solver takes all as rows, and those of blocks
 };
 
 struct System {
@@ -67,6 +71,7 @@ struct System {
         : pose(memory),
           exact(memory),
           free(memory),
+          kept(memory),
           correction(memory),
           start(memory),
           inertia(memory),
@@ -85,6 +90,7 @@ struct System {
     Array<Pose> pose;               // at the start of the substep; predict()
     Array<Velocity> exact;          // predict(): v* = v + h a; solvers: v+
     Array<Velocity> free;           // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> kept;           // v+ without the push of overlaps, of nodes in blocks with bounded rows
     Array<Velocity> correction;     // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
     Array<Velocity> start;          // v before forces, for energy balances; predict()
     Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()

@@ -1,13 +1,11 @@
 // The same scenes in Bullet's own dynamics with its default settings: one step a frame, ten iterations.
 #include <btBulletDynamicsCommon.h>
 
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
-#include "engine.h"
+#include "peer.h"
 
 namespace bench {
 
@@ -35,17 +33,6 @@ std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
             break;
     }
     throw scenes::BadScene("--engine bullet does not run scenes with hulls: Bullet's margin would change their size");
-}
-
-double volume_of(const scenes::Shape& shape) {
-    double r = static_cast<double>(shape.radius);
-    if (shape.kind == scenes::ShapeKind::box)
-        return 8.0 * static_cast<double>(shape.half_extents.x) * static_cast<double>(shape.half_extents.y) *
-               static_cast<double>(shape.half_extents.z);
-    double ball = 4.0 / 3.0 * SIMD_PI * r * r * r;
-    return shape.kind == scenes::ShapeKind::sphere
-               ? ball
-               : ball + 2 * SIMD_PI * r * r * static_cast<double>(shape.half_length);
 }
 
 class BulletEngine : public Engine {
@@ -85,29 +72,7 @@ public:
         return {bodies_[body]->getMass(), {1 / inverse.x(), 1 / inverse.y(), 1 / inverse.z(), 0, 0, 0}};
     }
 
-    uint64_t state_hash() const override {
-        uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over poses and velocities
-        for (size_t i = 0; i < bodies_.size(); ++i) {
-            Motion m = motion(i);
-            std::array<float, 13> values = {static_cast<float>(m.position.x),
-                                            static_cast<float>(m.position.y),
-                                            static_cast<float>(m.position.z),
-                                            m.rotation.x,
-                                            m.rotation.y,
-                                            m.rotation.z,
-                                            m.rotation.w,
-                                            m.linear_velocity.x,
-                                            m.linear_velocity.y,
-                                            m.linear_velocity.z,
-                                            m.angular_velocity.x,
-                                            m.angular_velocity.y,
-                                            m.angular_velocity.z};
-            std::array<unsigned char, sizeof values> bytes;
-            std::memcpy(bytes.data(), values.data(), bytes.size());
-            for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
-        }
-        return hash;
-    }
+    uint64_t state_hash() const override { return hash_of_motions(*this, bodies_.size()); }
 
 private:
     void add(const scenes::Scene& scene, const scenes::Body& body) {
@@ -118,8 +83,7 @@ private:
         btScalar mass = 0;
         btVector3 inertia(0, 0, 0);
         if (body.kind == TAUT_BODY_DYNAMIC) {
-            const scenes::Shape& form = scene.shapes[static_cast<size_t>(body.shape)];
-            mass = body.mass > 0 ? body.mass : static_cast<float>(static_cast<double>(body.density) * volume_of(form));
+            mass = static_cast<float>(mass_of(scene, body));
             shape->calculateLocalInertia(mass, inertia);
         }
         btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape, inertia);

@@ -41,7 +41,13 @@ public:
 };
 
 std::unique_ptr<Engine> make_taut_engine(const scenes::Scene& scene);
-// Only in builds with TAUT_BENCH_PEERS. Throws scenes::BadScene for what Bullet's dynamics doesn't have.
+
+// Peers: only in builds with TAUT_BENCH_PEERS. They throw scenes::BadScene for what the engine doesn't have.
 std::unique_ptr<Engine> make_bullet_engine(const scenes::Scene& scene, uint32_t substeps);
+// ODE's two solvers: the direct one over all rows of an island, and the one that sweeps.
+enum class OdeSolver : uint8_t { step, quickstep };
+std::unique_ptr<Engine> make_ode_engine(const scenes::Scene& scene, uint32_t substeps, OdeSolver solver);
+// Joints ask for the direct one; piles would take it minutes a step.
+OdeSolver ode_solver_for(const scenes::Scene& scene);
 
 }  // namespace bench

@@ -46,11 +46,12 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
         app.add_option("--steps", steps, "steps (default: the scene's)")->check(CLI::Range(1, 10000000));
     app.add_option("--threads", options.threads, "worker threads (this version steps on one)")
         ->check(CLI::Range(1, 256));
-    app.add_option("--engine", options.engine, "taut, or bullet in builds with TAUT_BENCH_PEERS");
+    app.add_option("--engine", options.engine, "taut; bullet or ode in builds with TAUT_BENCH_PEERS");
     CLI::Option* substeps_flag =
         app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
-    CLI::Option* solver_flag =
-        app.add_option("--solver", solver, "block_ldlt, projected_gauss_seidel or accelerated_jacobi");
+    CLI::Option* solver_flag = app.add_option("--solver", solver,
+                                              "block_ldlt, projected_gauss_seidel or accelerated_jacobi;\n"
+                                              "of ode: step (default with joints) or quickstep");
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
     app.add_flag("--list", list, "print all scenes");
@@ -76,13 +77,21 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
 
 std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene& scene) {
     if (options.engine == "taut") return make_taut_engine(scene);
-    if (options.engine != "bullet")
-        throw scenes::BadScene("--engine: '" + options.engine + "' is neither taut nor bullet");
+    if (options.engine != "bullet" && options.engine != "ode")
+        throw scenes::BadScene("--engine: '" + options.engine + "' is none of taut, bullet and ode");
 #ifdef TAUT_BENCH_PEERS
-    if (options.solver) throw scenes::BadScene("--solver is for taut only");
-    return make_bullet_engine(scene, options.substeps.value_or(1));
+    uint32_t substeps = options.substeps.value_or(1);
+    if (options.engine == "ode") {
+        OdeSolver solver = ode_solver_for(scene);
+        if (options.solver && *options.solver != "step" && *options.solver != "quickstep")
+            throw scenes::BadScene("--solver: ODE has step and quickstep");
+        if (options.solver) solver = *options.solver == "step" ? OdeSolver::step : OdeSolver::quickstep;
+        return make_ode_engine(scene, substeps, solver);
+    }
+    if (options.solver) throw scenes::BadScene("--solver is for taut and ode only");
+    return make_bullet_engine(scene, substeps);
 #else
-    throw scenes::BadScene("--engine bullet: this build has no peers, configure with -DTAUT_BENCH_PEERS=ON");
+    throw scenes::BadScene("--engine " + options.engine + ": this build has no peers, see -DTAUT_BENCH_PEERS=ON");
 #endif
 }
 
@@ -104,7 +113,7 @@ void report_times(nlohmann::ordered_json& json, std::vector<double> times) {
 int run(const Options& options) {
     scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""});
     if (options.substeps) scene.world.substeps = *options.substeps;
-    if (options.solver) scene.world.solver = scenes::solver_named(*options.solver);
+    if (options.solver && options.engine == "taut") scene.world.solver = scenes::solver_named(*options.solver);
     if (!options.geometric_stiffness) scene.world.geometric_stiffness = 0;
     if (options.threads > 1) std::fprintf(stderr, "--threads: this version steps on one thread\n");
     uint32_t steps = options.steps.value_or(scene.steps);

@@ -134,7 +134,8 @@ void Metrics::follow_chain(uint32_t step) {
         growth += distance - static_cast<double>(joint.length);
         total += chain.link_length;
     }
-    gap_worst_ = std::max(gap_worst_, gap);
+    gap_most_ = std::max(gap_most_, gap);
+    stretch_most_ = std::max(stretch_most_, std::fabs(growth) / total);
     if (step >= last_five_seconds_) {
         gap_late_ = std::max(gap_late_, gap);
         stretch_late_ = std::max(stretch_late_, std::fabs(growth) / total);
@@ -213,14 +214,26 @@ void Metrics::report_stack(nlohmann::ordered_json& json) const {
     json["standing"] = std::fabs(moved.y) < kStandingDrop && lateral < kStandingDrop ? 1 : 0;
 }
 
+ChainFigures Metrics::chain() const {
+    const double link = scene_.roles.chain->link_length;
+    ChainFigures f;
+    f.gap_most = gap_most_ / link;
+    f.gap_late = gap_late_ / link;
+    f.stretch_most = stretch_most_;
+    f.stretch_late = stretch_late_;
+    f.energy = 1 + (energy_last_ - energy_start_) / energy_unit_;
+    f.energy_most = 1 + (energy_most_ - energy_start_) / energy_unit_;
+    f.blew_up = !finite_ || !(f.energy_most <= 1 + kBlownEnergy) || !(f.gap_most <= kBlownGap);
+    return f;
+}
+
 void Metrics::report_chain(nlohmann::ordered_json& json) const {
-    const scenes::Chain& chain = *scene_.roles.chain;
-    double most = 1 + (energy_most_ - energy_start_) / energy_unit_;
-    json["joint_sep_pct"] = 100 * gap_late_ / chain.link_length;
-    json["stretch_pct"] = 100 * stretch_late_;
-    json["blew_up"] = finite_ && most <= 1 + kBlownEnergy && gap_worst_ <= kBlownGap * chain.link_length ? 0 : 1;
-    json["energy_max"] = most;
-    json["energy_end"] = 1 + (energy_last_ - energy_start_) / energy_unit_;
+    const ChainFigures f = chain();
+    json["joint_sep_pct"] = 100 * f.gap_late;
+    json["stretch_pct"] = 100 * f.stretch_late;
+    json["blew_up"] = f.blew_up ? 1 : 0;
+    json["energy_max"] = f.energy_most;
+    json["energy_end"] = f.energy;
     json["first_vertical_s"] = nullptr;
     if (!crossings_.empty()) json["first_vertical_s"] = crossings_.front();
     if (scene_.roles.swings && crossings_.size() > 1)

@@ -11,12 +11,21 @@ namespace bench {
 // Meaning of each JSON field, for --help.
 extern const char* const kFieldHelp;
 
+// Of a chain or cable, so far.
+struct ChainFigures {
+    double gap_most = 0, gap_late = 0;  // largest joint gap, of the whole run and of its last 5 s [link lengths]
+    double stretch_most = 0, stretch_late = 0;  // the whole chain's change of length, same windows [1]
+    double energy = 1, energy_most = 1;         // now and at most; 1 is the start's, see energy_max in kFieldHelp
+    bool blew_up = false;
+};
+
 class Metrics {
 public:
     Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps);
 
     void after_step(uint32_t step);  // counted from 0
     bool finite() const { return finite_; }
+    ChainFigures chain() const;  // of a scene that has one
     void report(nlohmann::ordered_json& json) const;
 
 private:
@@ -45,7 +54,7 @@ private:
     uint64_t rest_count_ = 0;
     // chain
     double energy_start_ = 0, energy_most_ = 0, energy_last_ = 0, energy_unit_ = 1;  // [J]
-    double gap_worst_ = 0, gap_late_ = 0, stretch_late_ = 0;                         // [m], [m], [1]
+    double gap_most_ = 0, gap_late_ = 0, stretch_most_ = 0, stretch_late_ = 0;       // [m], [m], [1], [1]
     std::vector<double> crossings_;  // times at which the weight passes below the anchor [s]
     double side_ = 0;                // of the weight at the last step [m]
 };

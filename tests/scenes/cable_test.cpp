@@ -14,15 +14,23 @@ void PrintTo(const Cable& c, std::ostream* out) { *out << "cable" << c.count << 
 
 class LoadedCable : public testing::TestWithParam<Cable> {};
 
+scenes::Scene scene_of(const Cable& plan) {
+    return scenes::make_scene("cable" + std::to_string(plan.count) + "_r" + plan.tonnes);
+}
+
+std::string name_of(const testing::TestParamInfo<Cable>& tested) {
+    return std::to_string(tested.param.count) + "_rods_" + tested.param.tonnes + "_tonnes";
+}
+
 // Elongation stays within 1e-6 % whatever hangs on it.
 TEST_P(LoadedCable, HardlyStretches) {
     const Cable& plan = GetParam();
-    RunningScene run("cable" + std::to_string(plan.count) + "_r" + plan.tonnes);
+    RunningScene run(scene_of(plan));
     const double length = plan.count * static_cast<double>(run.scene.joints.front().length);
     double stretch = 0;
     for (uint32_t frame = 0; frame < run.scene.steps; ++frame) {
         run.step();
-        if (frame >= run.scene.steps / 2) stretch = std::max(stretch, std::abs(run.cable_length() / length - 1));
+        stretch = std::max(stretch, std::abs(run.cable_length() / length - 1));
     }
     ASSERT_TRUE(run.sound());
     EXPECT_LE(100 * stretch, 1e-6);
@@ -31,11 +39,31 @@ TEST_P(LoadedCable, HardlyStretches) {
 
 INSTANTIATE_TEST_SUITE_P(Of, LoadedCable,
                          testing::Values(Cable{10, "1"}, Cable{10, "10"}, Cable{10, "100"}, Cable{10, "1000"},
-                                         Cable{10, "1e4"}, Cable{10, "1e5"}, Cable{10, "1e6"}, Cable{50, "1"},
-                                         Cable{50, "1e6"}),
-                         [](const auto& tested) {
-                             return std::to_string(tested.param.count) + "_rods_" + tested.param.tonnes + "_tonnes";
-                         });
+                                         Cable{10, "1e4"}, Cable{10, "1e5"}, Cable{10, "1e6"}, Cable{10, "1e15"},
+                                         Cable{50, "1"}, Cable{50, "1e6"}, Cable{50, "1e15"}),
+                         name_of);
+
+class BareCable : public testing::TestWithParam<Cable> {};
+
+// The paper's first row: without geometric stiffness the same cable bursts from a thousand tonnes on. If it holds
+// here, the scene no longer asks for what the library is made for.
+TEST_P(BareCable, BurstsWithoutGeometricStiffness) {
+    const Cable& plan = GetParam();
+    scenes::Scene scene = scene_of(plan);
+    scene.world.geometric_stiffness = 0;
+    RunningScene run(scene);
+    double gap = 0;
+    for (uint32_t frame = 0; frame < run.scene.steps && gap < 1; ++frame) {
+        run.step();
+        gap = run.sound() ? run.joint_error() / run.scene.roles.chain->link_length : INFINITY;
+    }
+    EXPECT_GE(gap, 1) << "largest gap, in rods";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, BareCable,
+                         testing::Values(Cable{10, "1e3"}, Cable{10, "1e6"}, Cable{10, "1e15"}, Cable{50, "1e3"},
+                                         Cable{50, "1e6"}, Cable{50, "1e15"}),
+                         name_of);
 
 class FallingCable : public testing::TestWithParam<int> {};
 

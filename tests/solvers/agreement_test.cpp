@@ -150,7 +150,7 @@ class EverySolver : public testing::TestWithParam<size_t> {
 protected:
     const Solver& solver() const { return *solvers()[GetParam()]; }
     // Tolerance of the direct solve (results are read as floats) or of one that sweeps.
-    double within(double direct, double sweeps) const { return solver().direct_joints ? direct : sweeps; }
+    double within(double direct, double sweeps) const { return solver().direct ? direct : sweeps; }
 };
 
 INSTANTIATE_TEST_SUITE_P(List, EverySolver, testing::Range<size_t>(0, solvers().size()),

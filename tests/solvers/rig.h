@@ -88,7 +88,7 @@ public:
     // As at the start of a frame of one group: partition, rows, lanes.
     void begin(const Solver& with) {
         solver = with;
-        w.partition.build(w.nodes, w.joints, w.pairs, {1, true, solver.direct_joints});
+        w.partition.build(w.nodes, w.joints, w.pairs, {1, true, solver.direct});
         begin_frame(w.system, w.nodes);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
@@ -101,7 +101,8 @@ public:
     void predict() {
         shift_kinematic(w.system, w.nodes, 0);
         taut::predict(w.system, group(), w.nodes, gravity);
-        evaluate_rows(w.system);
+        build_block_contacts(w.system, group(), w.partition.blocks, w.pairs, w.nodes);
+        evaluate_rows(w.system, 0);
     }
     void solve() {
         Substep s = substep();
@@ -114,10 +115,8 @@ public:
         store_velocity(w.system, group(), w.nodes, settings.velocity_filter);
     }
     void store_contacts() {
-        if (solver.wide_contacts)
-            store_lanes(w.system, w.pairs);
-        else
-            store_contact_rows(w.system, group(), w.pairs);
+        store_contact_rows(w.system);
+        if (solver.wide_contacts) store_lanes(w.system, w.pairs);
     }
     Group& group() { return w.partition.groups[0]; }
     Substep substep() { return {w.system, group(), w.partition.blocks, w.nodes, settings, report, w.scratch, false}; }

@@ -35,6 +35,26 @@ TEST(Cosine, IsCosine) {
     EXPECT_LE(worst, kClose);
 }
 
+TEST(AngleOf, IsTheArcTangentAllAround) {
+    double worst = 0;
+    for (double radius : {1e-300, 1e-9, 1.0, 1e9, 1e150})
+        for (int i = -20000; i <= 20000; ++i) {
+            const double y = radius * std::sin(i * kHalfPi / 10000), x = radius * std::cos(i * kHalfPi / 10000);
+            worst = std::max(worst, std::abs(angle_of(y, x) - std::atan2(y, x)));
+            EXPECT_EQ(angle_of(-y, x), y == 0 ? angle_of(y, x) : -angle_of(y, x));
+        }
+    EXPECT_LE(worst, 9e-16);
+    for (double tiny = 1e-300; tiny < 0.1; tiny *= 10) EXPECT_NEAR(angle_of(tiny, 1), std::atan(tiny), 3e-16 * tiny);
+}
+
+TEST(AngleOf, HasOneValueOnTheCutAndAtTheOrigin) {
+    EXPECT_EQ(angle_of(0.0, -1), 2 * kHalfPi);
+    EXPECT_EQ(angle_of(-0.0, -1), 2 * kHalfPi);
+    EXPECT_EQ(angle_of(0, 0), 0);
+    EXPECT_EQ(angle_of(1, 0), kHalfPi);
+    EXPECT_EQ(angle_of(-1, 0), -kHalfPi);
+}
+
 Vec3 direction(std::mt19937_64& engine) {
     std::normal_distribution<double> number;
     return Vec3(number(engine), number(engine), number(engine)).normalized();

@@ -1,0 +1,259 @@
+#include "solvers/active_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "system/axis_rows.h"
+
+namespace taut {
+namespace {
+
+// c of a contact over its k, in blocks with joints. Stiffer holds heavier loads over edges (measured: 1e-3 sinks 10 mm
+// at 10000:1, 3e-5 2.7 mm at 100000:1), as long as a manifold keeps its points; see collision/manifold.h, add_beside.
+constexpr double kContactSoftness = 3e-5;
+constexpr double kTowerSoftness = 1e-5;    // in towers, at most; a load of r times a row's own mass sinks as c r
+constexpr double kAxisSoftness = 1e-6;     // of stops, rigid drives and friction
+constexpr double kSpeculative = 5e-4;      // [m] wider gaps are not resting contacts
+constexpr double kClosing = 1e-9;          // [m]
+constexpr double kOverBox = 1.05;          // impulse over its limit that is worth another round
+constexpr double kAcceptedPull = 0.1;      // of a tower: share of all impulses that may be of the wrong sign
+constexpr double kAcceptedClosing = 1e-3;  // [m] that may close unseen
+
+using Kind = BoundedRow::Kind;
+
+}  // namespace
+
+double ActiveSet::speed(const BoundedRow& row, const Array<Velocity>& velocity) const {
+    const RowBlock& block = sys_.rows.block[row.block];
+    double v = 0;
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t node = block.node[n];
+        const Velocity& u = sys_.in_block[node] ? velocity[node] : sys_.exact[node];
+        const double* j =
+            &sys_.rows.jacobian[block.jacobian + static_cast<uint32_t>((n * block.type->rows + row.row) * kDof)];
+        v += Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w);
+    }
+    return row.sign * v;
+}
+
+double ActiveSet::inverse_mass(uint32_t index, int row) const {
+    const RowBlock& block = sys_.rows.block[index];
+    double k = 0;
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const auto j = jacobian_of(sys_, block, n).row(row).transpose();
+        k += j.dot(response(sys_.inverse_mass[block.node[n]], j));
+    }
+    return k;
+}
+
+BoundedRow& ActiveSet::add(Kind kind, uint32_t block, int row, double sign, double softness) {
+    BoundedRow& r = s_.scratch.bounded.emplace_back();
+    ++b_.bounded_count;
+    r.kind = kind;
+    r.block = block;
+    r.row = static_cast<uint8_t>(row);
+    r.sign = sign;
+    r.k = inverse_mass(block, row);
+    r.least = r.c = softness * r.k;
+    return r;
+}
+
+void ActiveSet::gather_axes(uint32_t index) {
+    const RowBlock& block = sys_.rows.block[index];
+    if (!block.axis) return;
+    for (int row = 0; row < block.type->rows; ++row) {
+        for_each_axis_row(
+            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h, [&](const AxisRow& axis) {
+                BoundedRow& r = add(axis.stop ? Kind::push : Kind::box, index, row, axis.sign, kAxisSoftness);
+                r.least = r.c = std::max(r.least, axis.compliance);
+                r.physical = axis.physical;
+                r.target = axis.target;
+                r.relaxed_target = axis.relaxed_target;
+                r.limit = axis.limit;
+                r.force = axis.force;
+                r.slip = axis.slip;
+                r.mu = sys_.h * *axis.force;
+                if (axis.stop) {
+                    r.gap = axis.gap;
+                    r.speculative = axis.gap > 0;
+                    r.on = axis.gap < 0 || r.mu > 0;
+                    return;
+                }
+                r.on = true;
+                if (*r.slip < 0) *r.slip = static_cast<float>(std::abs(r.target - speed(r, sys_.free)) / r.limit);
+                if (*r.slip > r.least) r.c = *r.slip;
+            });
+    }
+}
+
+// A new contact starts out sliding, at the force that stops its approach: c = |vt| / (friction * that force).
+void ActiveSet::begin_slip(BoundedRow* tangents, const BoundedRow& normal) {
+    const double approach = std::max(0.0, -speed(normal, sys_.free));
+    const double at_rest = 0.25 * sys_.h * std::sqrt(s_.settings.gravity_squared);
+    const double push = std::max(0.0, normal.mu) + std::max(approach, at_rest) / normal.k;
+    const double slide = std::hypot(speed(tangents[0], sys_.free), speed(tangents[1], sys_.free));
+    *tangents[0].slip = static_cast<float>(slide / std::max(1e-30, tangents[0].limit * push));
+    for (int i = 0; i < 2; ++i) tangents[i].c = std::max<double>(tangents[i].least, *tangents[i].slip);
+}
+
+void ActiveSet::gather_contact(uint32_t index) {
+    const RowBlock& block = sys_.rows.block[index];
+    const double softness = b_.tower ? std::min(kTowerSoftness, 1e-2 / b_.mass_ratio) : kContactSoftness;
+    const size_t first = s_.scratch.bounded.size();
+    for (int row = 0; row < 3; ++row) {
+        BoundedRow& r = add(row == 0 ? Kind::push : Kind::tangent, index, row, 1, softness);
+        r.mu = sys_.rows.impulse[block.row + static_cast<uint32_t>(row)];
+    }
+    BoundedRow* r = &s_.scratch.bounded[first];
+    r[0].gap = sys_.rows.error[block.row];
+    r[0].speculative = r[0].gap > kSpeculative;
+    r[0].target = r[0].speculative ? -r[0].gap / sys_.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.h);
+    r[0].relaxed_target = r[0].speculative ? r[0].target : 0;
+    r[0].bounce = block.bounce;
+    r[0].on = r[0].gap < 0 || r[0].mu > 0;
+    for (int i = 1; i < 3; ++i) {
+        r[i].on = r[0].on;
+        r[i].limit = block.friction;
+        r[i].slip = &block.contact->slip;
+        if (*r[i].slip > r[i].least) r[i].c = *r[i].slip;
+    }
+    if (r[0].on && block.contact->slip < 0) begin_slip(r + 1, r[0]);
+}
+
+void ActiveSet::gather() {
+    b_.first_bounded = static_cast<uint32_t>(s_.scratch.bounded.size());
+    b_.bounded_count = 0;
+    for (uint32_t j = 0; j < b_.joints.size(); ++j) gather_axes(b_.first_row_block + j);
+    for (uint32_t c = 0; c < b_.contact_count; ++c) gather_contact(b_.first_contact + c);
+}
+
+void ActiveSet::aim_biased() {
+    for (BoundedRow& r : rows()) r.goal = r.target;
+}
+
+// Rows that rest keep the impulse they have, mu, in spite of their softness.
+void ActiveSet::aim_relaxed(bool with_reference) {
+    for (BoundedRow& r : rows()) {
+        r.goal = r.relaxed_target;
+        if (r.bounce > 0 && r.on && r.mu > 0) r.goal = r.bounce;
+        const bool slides = r.kind != Kind::push && r.c > r.least;
+        if (with_reference && r.on && r.bounce == 0 && !r.speculative && !r.physical && !slides) r.goal += r.c * r.mu;
+    }
+}
+
+void ActiveSet::take_impulses() {
+    for (BoundedRow& r : rows()) r.mu = r.on ? (r.goal - speed(r, sys_.exact)) / r.c : 0.0;
+}
+
+void ActiveSet::turn_off(size_t i) {
+    auto all = rows();
+    all[i].on = false;
+    all[i].mu = 0;
+    for (size_t t = i + 1; t < all.size() && t <= i + 2 && all[t].kind == Kind::tangent; ++t) {
+        all[t].on = false;
+        all[t].mu = 0;
+        *all[t].slip = -1;
+    }
+}
+
+bool ActiveSet::revise() {
+    bool changed = false;
+    auto all = rows();
+    for (size_t i = 0; i < all.size(); ++i) {
+        BoundedRow& r = all[i];
+        if (r.kind == Kind::box && std::abs(r.mu) > kOverBox * r.limit) {
+            const double slide = std::abs(r.goal - speed(r, sys_.exact));
+            r.c = (slide + (std::abs(r.mu) - r.limit) * r.k) / std::max(1e-30, r.limit);
+            changed = true;
+        }
+        if (r.kind != Kind::push) continue;
+        if (r.on && r.mu < 0) {
+            turn_off(i);
+            changed = true;
+        } else if (!r.on && r.gap + sys_.h * speed(r, sys_.exact) < -kClosing) {
+            r.on = true;
+            const bool contact = i + 2 < all.size() && all[i + 1].kind == Kind::tangent;
+            if (contact) {
+                all[i + 1].on = all[i + 2].on = true;
+                begin_slip(&all[i + 1], r);
+            }
+            changed = true;
+        }
+    }
+    return changed;
+}
+
+bool ActiveSet::drop_pulling() {
+    bool changed = false;
+    auto all = rows();
+    for (size_t i = 0; i < all.size(); ++i) {
+        if (all[i].kind != Kind::push || !all[i].on || all[i].mu >= 0) continue;
+        turn_off(i);
+        changed = true;
+    }
+    return changed;
+}
+
+bool ActiveSet::acceptable() const {
+    double pull = 0, excess = 0, total = 0, closing = 0;
+    auto all = rows();
+    for (size_t i = 0; i < all.size(); ++i) {
+        const BoundedRow& r = all[i];
+        if (r.kind != Kind::push) continue;
+        if (!r.on) {
+            closing = std::max(closing, -(r.gap + sys_.h * speed(r, sys_.exact)));
+            continue;
+        }
+        total += std::abs(r.mu);
+        pull += std::max(0.0, -r.mu);
+        if (i + 2 < all.size() && all[i + 1].kind == Kind::tangent)
+            excess += std::max(0.0, std::hypot(all[i + 1].mu, all[i + 2].mu) - all[i + 1].limit * std::max(0.0, r.mu));
+    }
+    return pull <= kAcceptedPull * total && excess <= kAcceptedPull * total && closing <= kAcceptedClosing;
+}
+
+void ActiveSet::store() {
+    auto all = rows();
+    // c of the next substep, and mu within its bound.
+    auto follow = [](BoundedRow* r, int count, double bound, double slide) {
+        double size = 0;
+        for (int i = 0; i < count; ++i) size = std::hypot(size, r[i].mu);
+        const double excess = std::max(0.0, size - bound), over = std::max(1e-30, bound);
+        double next = 0;
+        if (r->c > r->least || excess > 1e-6 * bound) {
+            const double half = r->c > r->least ? 0.5 * r->c : 0;
+            next = std::max(half, (slide + excess * r->k) / over);
+            if (next <= r->least) next = 0;
+        }
+        *r->slip = static_cast<float>(std::min(next, 1e30));
+        for (int i = 0; i < count && excess > 0; ++i) r[i].mu *= bound / size;
+    };
+    for (size_t i = 0; i < all.size(); ++i) {
+        BoundedRow& r = all[i];
+        if (r.kind == Kind::box) follow(&r, 1, r.limit, std::abs(r.relaxed_target - speed(r, sys_.kept)));
+        if (r.kind == Kind::tangent && r.row == 1) {
+            const BoundedRow& normal = all[i - 1];
+            if (r.on)
+                follow(&r, 2, r.limit * std::max(0.0, normal.mu),
+                       std::hypot(speed(r, sys_.kept), speed(all[i + 1], sys_.kept)));
+            else
+                *r.slip = -1;
+        }
+    }
+    for (BoundedRow& r : all) {
+        const RowBlock& block = sys_.rows.block[r.block];
+        const double mu = r.kind == Kind::push ? std::max(0.0, r.mu) : r.mu;
+        if (r.force)
+            *r.force = static_cast<float>(mu / sys_.h);
+        else
+            sys_.rows.impulse[block.row + r.row] = mu;
+    }
+}
+
+double ActiveSet::work() const {
+    double sum = 0;
+    for (const BoundedRow& r : rows()) sum += r.on ? 0.5 * r.mu * (speed(r, sys_.start) + speed(r, sys_.exact)) : 0.0;
+    return sum;
+}
+
+}  // namespace taut

@@ -1,0 +1,57 @@
+// The bounded rows of one block and which of them are on: contacts, stops, drives and friction.
+//
+//   round     solve with the rows that are on; drop those that pull, add those that would close; at most a few times
+//   friction  secant: a row at its bound is one with target velocity 0 and c = |v| / (bound), which gives the bound's
+//             impulse against v, implicitly; c of a sliding row follows with one substep of lag, at most halved
+//   relaxed   solved again on the same factor: rows that rest want velocity 0 with the impulse they have, so that the
+//             push that undoes overlaps moves positions and is not kept
+// Rules and their evidence: measured on chains over edges and towers, the tests of scenes hold them.
+#pragma once
+
+#include "solvers/solver.h"
+#include "system/row_algebra.h"
+
+namespace taut {
+
+class ActiveSet {
+public:
+    ActiveSet(Substep& s, Block& b) : s_(s), sys_(s.system), b_(b) {}
+
+    // Bounded rows of the block from its row blocks, at the velocities in System::exact.
+    void gather();
+    bool empty() const { return b_.bounded_count == 0; }
+    uint32_t rounds() const { return b_.tower ? 8 : 4; }
+
+    void aim_biased();                      // goals of the solve that moves positions
+    void aim_relaxed(bool with_reference);  // of the one whose velocities are kept
+    // Impulses of the rows that are on, from System::exact.
+    void take_impulses();
+    // After a biased solve: true if a row came, went or left its box.
+    bool revise();
+    // After a relaxed solve of a tower: true if a row that is on pulls.
+    bool drop_pulling();
+    // Of a tower: no row pulls, slides beyond its cone or closes unseen by more than a little.
+    bool acceptable() const;
+    // Slips for the next substep and impulses back into their rows.
+    void store();
+    // Work on velocities that went from v0 to v1: mu . J (v0 + v1) / 2 [J].
+    double work() const;
+
+    std::span<BoundedRow> rows() const { return {&s_.scratch.bounded[b_.first_bounded], b_.bounded_count}; }
+    // J v of a row, all ends.
+    double speed(const BoundedRow& row, const Array<Velocity>& velocity) const;
+
+private:
+    void gather_axes(uint32_t block);
+    void gather_contact(uint32_t block);
+    BoundedRow& add(BoundedRow::Kind kind, uint32_t block, int row, double sign, double softness);
+    double inverse_mass(uint32_t block, int row) const;
+    void begin_slip(BoundedRow* tangents, const BoundedRow& normal);
+    void turn_off(size_t i);
+
+    Substep& s_;
+    System& sys_;
+    Block& b_;
+};
+
+}  // namespace taut

@@ -1,0 +1,365 @@
+#include "solvers/block_solve.h"
+
+#include <algorithm>
+
+#include "solvers/energy_guard.h"
+
+namespace taut {
+namespace {
+
+constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
+constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
+constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
+
+// A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
+// exceeds this part of the lever, positions (not velocities) are projected once more on the same factor. Heavy loads
+// do not whip, and there the projection disturbs the tension that K was formed from (measured: 2 of 16 starts lost).
+constexpr double kSettleGap = 4e-3;
+
+constexpr int kLd = kDof;
+
+int locked_rows(const RowBlock& block) {
+    int count = 0;
+    for (int r = 0; r < block.type->rows; ++r) count += block.locked(r);
+    return count;
+}
+
+}  // namespace
+
+void BlockSolve::analyse() {
+    SparseBlockLdlt& matrix = b_.matrix;
+    if (matrix.analysed()) return;
+    matrix.begin(nodes_ + joints());
+    for (uint32_t i = 0; i < nodes_; ++i) matrix.set_unknown(i, size_of(i), false);
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const ConstraintType& type = *row(j).type;
+        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, locked_rows(row(j)));
+        for (int n = 0; n < type.nodes; ++n) {
+            const uint32_t i = local(row(j).node[n]);
+            if (i == kNone) continue;
+            matrix.link(nodes_ + j, i);
+            for (int m = 0; m < n && (type.couples_nodes || row(j).axis); ++m) {
+                const uint32_t k = local(row(j).node[m]);
+                if (k != kNone) matrix.link(i, k);
+            }
+        }
+    }
+    for (uint64_t link : b_.links)
+        matrix.link(local(static_cast<uint32_t>(link >> 32) + 1), local(static_cast<uint32_t>(link) + 1));
+    b_.solution.resize((nodes_ + joints()) * kLd);
+    b_.known.resize(nodes_ * kLd);
+    b_.force.resize(joints() * kMaxRows);
+    matrix.analyse();
+    b_.looped = looped();
+}
+
+// More joints than a tree on the nodes (and the ground, where something is held) can have.
+bool BlockSolve::looped() const {
+    bool held = false;
+    for (uint32_t j = 0; j < joints(); ++j)
+        for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;
+    return joints() + 1 > nodes_ + (held ? 1u : 0u);
+}
+
+void BlockSolve::add_mass(uint32_t i) {
+    const uint32_t node = b_.nodes[i];
+    const double mass = s_.nodes.mass[node].mass;
+    const double diagonal[9] = {mass, 0, 0, 0, mass, 0, 0, 0, mass};
+    b_.matrix.add(i, i, diagonal, 3, 3, 3);
+    if (size_of(i) == 6) b_.matrix.add(i, i, sys_.inertia[node + 1].data(), 3, 3, 3, 3, 3);
+}
+
+// h^2 K into the matrix and h^2 K s onto the known side.
+void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
+    const ConstraintType& type = *block.type;
+    const int width = kDof * type.nodes;
+    Pose poses[kMaxNodes];
+    uint32_t at[kMaxNodes];
+    double k[kDof * kMaxNodes * kDof * kMaxNodes], slow[kDof * kMaxNodes] = {};
+    const bool spare = s_.settings.velocity_filter > 0 && b_.memory.guard_left == 0;
+    for (int n = 0; n < type.nodes; ++n) {
+        poses[n] = sys_.pose[block.node[n]];
+        at[n] = local(block.node[n]);
+        if (at[n] == kNone || !spare) continue;
+        const NodeMotion& m = s_.nodes.motion[b_.nodes[at[n]]];
+        Vec3::Map(slow + kDof * n) = m.slow_v;
+        Vec3::Map(slow + kDof * n + 3) = m.slow_w;
+    }
+    type.stiffness(block.data, poses, force, Curvature::positive, k);
+    const double hh = sys_.h * sys_.h;
+    for (int i = 0; i < width * width; ++i) k[i] *= hh;
+    for (int n = 0; n < type.nodes; ++n) {
+        if (at[n] == kNone) continue;
+        for (int m = 0; m <= n; ++m) {
+            if (m != n && (!type.couples_nodes || at[m] == kNone)) continue;
+            b_.matrix.add(at[n], at[m], k + kDof * n * width + kDof * m, size_of(at[n]), size_of(at[m]), width);
+        }
+        double* known = node_known(at[n]);
+        for (int r = 0; r < kDof; ++r)
+            for (int c = 0; c < width; ++c) known[r] += k[(kDof * n + r) * width + c] * slow[c];
+    }
+}
+
+double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
+    double k = 0;
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const auto j = jacobian_of(sys_, block, n).row(r).transpose();
+        if (local(block.node[n]) != kNone) k += j.dot(response(sys_.inverse_mass[block.node[n]], j));
+    }
+    return kLoopCompliance * k;
+}
+
+// The locked rows; the place of every other row is taken by mu = 0.
+void BlockSolve::add_joint(uint32_t j) {
+    const RowBlock& block = row(j);
+    const int rows = block.type->rows, padded = rows > 3 ? 6 : 3;
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t i = local(block.node[n]);
+        if (i == kNone) continue;
+        RowJacobian minus = -jacobian_of(sys_, block, n);
+        for (int r = 0; r < rows; ++r)
+            if (!block.locked(r)) minus.row(r).setZero();
+        b_.matrix.add(nodes_ + j, i, minus.data(), rows, size_of(i), kDof);
+    }
+    const RowMatrix c = compliance_of(block, sys_.h);
+    double diagonal[kMaxRows * kMaxRows] = {};
+    for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = -1;
+    for (int r = 0; r < rows; ++r) {
+        if (!block.locked(r)) continue;
+        for (int k = 0; k < rows; ++k) diagonal[r * padded + k] = -c(r, k);
+        if (b_.looped) diagonal[r * padded + r] = -std::max(c(r, r), loop_compliance(block, r));
+    }
+    b_.matrix.add(nodes_ + j, nodes_ + j, diagonal, padded, padded, padded);
+}
+
+// B^T B / c of the rows that are on, row block by row block.
+void BlockSolve::add_bounded() {
+    const auto rows = set.rows();
+    for (size_t i = 0; i < rows.size();) {
+        const RowBlock& block = sys_.rows.block[rows[i].block];
+        double weight[kMaxRows] = {};
+        const uint32_t index = rows[i].block;
+        bool any = false;
+        for (; i < rows.size() && rows[i].block == index; ++i) {
+            if (!rows[i].on) continue;
+            weight[rows[i].row] += 1 / rows[i].c;
+            any = true;
+        }
+        if (!any) continue;
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const uint32_t at = local(block.node[n]);
+            if (at == kNone) continue;
+            RowJacobian weighted = jacobian_of(sys_, block, n);
+            for (int r = 0; r < block.type->rows; ++r) weighted.row(r) *= weight[r];
+            for (int m = 0; m <= n; ++m) {
+                const uint32_t to = local(block.node[m]);
+                if (to == kNone) continue;
+                const Eigen::Matrix<double, kDof, kDof, Eigen::RowMajor> product =
+                    weighted.transpose() * jacobian_of(sys_, block, m);
+                b_.matrix.add(at, to, product.data(), size_of(at), size_of(to), kDof);
+            }
+        }
+    }
+}
+
+void BlockSolve::assemble(bool with_new) {
+    b_.matrix.clear();
+    std::fill(b_.known.begin(), b_.known.end(), 0.0);
+    for (uint32_t i = 0; i < nodes_; ++i) add_mass(i);
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const RowBlock& block = row(j);
+        if (s_.settings.geometric_stiffness) {
+            const bool old_counts = !block.fresh || b_.memory.solved > 0;
+            if (old_counts && !(with_new && b_.memory.guard_left > 0)) add_stiffness(block, block.force);
+            if (with_new) add_stiffness(block, joint_force(j));
+        }
+        add_joint(j);
+    }
+    add_bounded();
+}
+
+// M (v* + contact changes) + h^2 K s + B^T goal / c for nodes, -target for joints.
+void BlockSolve::right_hand_side() {
+    for (uint32_t i = 0; i < nodes_; ++i) {
+        const uint32_t node = b_.nodes[i];
+        double* x = &b_.solution[i * kLd];
+        const Velocity& u = sys_.free[node + 1];
+        Vec3::Map(x) = s_.nodes.mass[node].mass * u.v + Vec3::Map(node_known(i));
+        Vec3::Map(x + 3).setZero();
+        if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[node + 1] * u.w + Vec3::Map(node_known(i) + 3);
+    }
+    // J v of ends whose velocity is known: kinematic ones.
+    auto known = [&](const RowBlock& block, int r) {
+        double v = 0;
+        for (int n = 0; n < block.type->nodes; ++n) {
+            if (block.node[n] == 0 || local(block.node[n]) != kNone) continue;
+            const Velocity& u = sys_.exact[block.node[n]];
+            const auto j = jacobian_of(sys_, block, n).row(r);
+            v += j.head<3>().dot(u.v) + j.tail<3>().dot(u.w);
+        }
+        return v;
+    };
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const RowBlock& block = row(j);
+        double* x = &b_.solution[(nodes_ + j) * kLd];
+        std::fill(x, x + kLd, 0.0);
+        for (int r = 0; r < block.type->rows; ++r)
+            if (block.locked(r))
+                x[r] = row_terms(block, r, sys_.h).rate * sys_.rows.error[block.row + static_cast<uint32_t>(r)] +
+                       known(block, r);
+    }
+    for (const BoundedRow& bounded : set.rows()) {
+        if (!bounded.on) continue;
+        const RowBlock& block = sys_.rows.block[bounded.block];
+        const double f = bounded.sign * (bounded.goal - bounded.sign * known(block, bounded.row)) / bounded.c;
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const uint32_t i = local(block.node[n]);
+            if (i == kNone) continue;
+            NodeVector::Map(&b_.solution[i * kLd]) += f * jacobian_of(sys_, block, n).row(bounded.row).transpose();
+        }
+    }
+}
+
+void BlockSolve::solve_known() {
+    right_hand_side();
+    b_.matrix.solve(b_.solution.data());
+    take_solution();
+    set.take_impulses();
+}
+
+void BlockSolve::take_solution() {
+    for (uint32_t i = 0; i < nodes_; ++i) {
+        const double* x = &b_.solution[i * kLd];
+        sys_.exact[b_.nodes[i] + 1] = {Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5])};
+    }
+}
+
+// Of locked rows from their multipliers, of all others from their bounded rows.
+void BlockSolve::take_forces() {
+    for (uint32_t j = 0; j < joints(); ++j)
+        for (int r = 0; r < row(j).type->rows; ++r)
+            joint_force(j)[r] =
+                row(j).locked(r) ? b_.solution[(nodes_ + j) * kLd + static_cast<uint32_t>(r)] / sys_.h : 0;
+    for (const BoundedRow& bounded : set.rows())
+        if (bounded.force)
+            joint_force(bounded.block - b_.first_row_block)[bounded.row] += bounded.sign * bounded.mu / sys_.h;
+}
+
+bool BlockSolve::force_grew() const {
+    double largest = 0;
+    auto squared = [](const double* f, int rows) {
+        double sum = 0;
+        for (int r = 0; r < rows; ++r) sum += f[r] * f[r];
+        return sum;
+    };
+    for (uint32_t j = 0; j < joints(); ++j) largest = std::max(largest, squared(joint_force(j), row(j).type->rows));
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const double now = squared(joint_force(j), row(j).type->rows),
+                     before = squared(row(j).force, row(j).type->rows);
+        if (now > kGrowth * kGrowth * before && now > kNegligible * kNegligible * largest) return true;
+    }
+    return false;
+}
+
+// Rounds over the active set; of a tower, the relaxed solution has to push as well.
+bool BlockSolve::factor_rounds(bool with_new) {
+    const uint32_t rounds = set.empty() ? 1 : set.rounds();
+    for (uint32_t round = 1;; ++round) {
+        assemble(with_new);
+        if (!b_.matrix.factor()) return false;
+        set.aim_biased();
+        solve_known();
+        if (round == rounds) return true;
+        ++s_.report.rounds;
+        if (set.revise()) continue;
+        if (!b_.tower) return true;
+        solve_relaxed();
+        if (!set.drop_pulling()) return true;
+    }
+}
+
+bool BlockSolve::solve_first() {
+    ++s_.report.solves;
+    for (int pass = 0; pass < 2; ++pass) {
+        if (!factor_rounds(pass > 0)) return false;
+        take_forces();
+        const bool again = joints() > 0 && (b_.memory.solved == 0 || b_.memory.guard_left > 0 || force_grew());
+        if (pass > 0 || !again || !s_.settings.geometric_stiffness) break;
+        ++s_.report.resolves;
+    }
+    return true;
+}
+
+void BlockSolve::solve_again() {
+    set.aim_biased();
+    solve_known();
+    take_forces();
+}
+
+// A tower's resting rows refer to a first relaxed solution, an articulation's to the biased one: measured.
+void BlockSolve::solve_relaxed() {
+    Array<Velocity>& exact = sys_.exact;
+    for (uint32_t node : b_.nodes) sys_.kept[node + 1] = exact[node + 1];
+    if (b_.tower) {
+        set.aim_relaxed(false);
+        solve_known();
+    }
+    set.aim_relaxed(true);
+    solve_known();
+    for (uint32_t node : b_.nodes) std::swap(sys_.kept[node + 1], exact[node + 1]);
+}
+
+bool BlockSolve::finish() {
+    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness && joints() > 0)
+        guard_energy(s_, b_, set.work());
+    if (!set.empty()) {
+        solve_relaxed();
+        if (b_.tower && !set.acceptable()) return false;
+        take_forces();
+        set.store();
+    }
+    for (uint32_t j = 0; j < joints(); ++j)
+        for (int r = 0; r < row(j).type->rows; ++r) {
+            const double f = joint_force(j)[r];
+            row(j).force[r] = f;
+            sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.h * f;
+        }
+    ++b_.memory.solved;
+    return true;
+}
+
+bool BlockSolve::settle() {
+    bool open = false;
+    std::fill(b_.solution.begin(), b_.solution.end(), 0.0);
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const RowBlock& block = row(j);
+        const int rows = block.type->rows;
+        Pose poses[kMaxNodes];
+        for (int n = 0; n < block.type->nodes; ++n) {
+            poses[n] = sys_.pose[block.node[n]];
+            if (local(block.node[n]) == kNone) continue;
+            const NodeMotion& m = s_.nodes.motion[block.node[n] - 1];
+            poses[n] = {m.x, m.q.toRotationMatrix()};
+        }
+        double* error = &b_.solution[(nodes_ + j) * kLd];
+        block.type->evaluate(block.data, poses, error, nullptr);
+        const double* jacobian = &sys_.rows.jacobian[block.jacobian];
+        double lever = 0, gap = 0;
+        for (int r = 0; r < rows; ++r) {
+            if (block.elastic(r) || !block.locked(r)) error[r] = 0;  // not a gap to close
+            if (!block.angular(r)) gap = std::max(gap, std::abs(error[r]));
+        }
+        for (int e = 0; e < block.type->nodes * rows; ++e)
+            lever = std::max(lever, Vec3::Map(jacobian + e * kDof + 3).norm());
+        open = open || (lever > 0 && gap > kSettleGap * lever);  // particles have no lever, and swing without this
+    }
+    if (!open) return false;
+    b_.matrix.solve(b_.solution.data());
+    for (uint32_t i = 0; i < nodes_; ++i) {
+        const double* x = &b_.solution[i * kLd];
+        sys_.correction[b_.nodes[i] + 1] = {Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5])};
+    }
+    return true;
+}
+
+}  // namespace taut

@@ -1,0 +1,69 @@
+// The matrix of one block: its nodes and the multipliers of its joints' locked rows. Bounded rows (active_set.h) are
+// folded into the nodes.
+//
+//   [ M + h^2 K + B^T B / c   -J^T ] [v+]   [ M v* + contact impulses + h^2 K s + B^T goal / c ]
+//   [ -J                       -c  ] [mu] = [ -target                                          ]
+//                     (Tournier et al. 2015, eq. 21, s instead of 0: only fast motion is damped)
+#pragma once
+
+#include <algorithm>
+
+#include "solvers/active_set.h"
+
+namespace taut {
+
+class BlockSolve {
+public:
+    BlockSolve(Substep& s, Block& b)
+        : set(s, b), s_(s), sys_(s.system), b_(b), nodes_(static_cast<uint32_t>(b.nodes.size())) {}
+
+    void analyse();
+    // Factors at this substep's poses and solves from the unconstrained velocity, in rounds over the active set and
+    // twice where the force demands it.
+    bool solve_first();
+    // Same factor, with what contacts of the sweeps have changed since.
+    void solve_again();
+    // Velocities without the push of overlaps, into System::kept.
+    void solve_relaxed();
+    // Relaxed solution, forces and memory; false: a tower is not held by this solution.
+    bool finish();
+    // Displacements that close the joints at the moved positions; false if they are closed well enough.
+    bool settle();
+
+    ActiveSet set;
+
+private:
+    const RowBlock& row(uint32_t j) const { return sys_.rows.block[b_.first_row_block + j]; }
+    uint32_t joints() const { return static_cast<uint32_t>(b_.joints.size()); }
+    uint32_t local(uint32_t sweep_node) const {  // position in b_.nodes, or kNone
+        if (!sys_.in_block[sweep_node]) return kNone;
+        const auto at = std::lower_bound(b_.nodes.begin(), b_.nodes.end(), sweep_node - 1);
+        return at != b_.nodes.end() && *at == sweep_node - 1 ? static_cast<uint32_t>(at - b_.nodes.begin()) : kNone;
+    }
+    int size_of(uint32_t i) const { return s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6; }
+    bool looped() const;
+
+    bool factor_rounds(bool with_new);
+    void assemble(bool with_new);
+    void add_mass(uint32_t i);
+    void add_stiffness(const RowBlock& block, const double* force);
+    void add_joint(uint32_t j);
+    void add_bounded();
+    double loop_compliance(const RowBlock& block, int r) const;
+    void right_hand_side();
+    void solve_known();
+    void take_solution();
+    void take_forces();
+    bool force_grew() const;
+
+    double* node_known(uint32_t i) { return &b_.known[i * kDof]; }
+    double* joint_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
+    const double* joint_force(uint32_t j) const { return &b_.force[j * kMaxRows]; }
+
+    Substep& s_;
+    System& sys_;
+    Block& b_;
+    uint32_t nodes_;
+};
+
+}  // namespace taut

@@ -1,0 +1,38 @@
+// A scalar row of a block whose impulse has bounds: a contact's normal or tangents, a stop, a drive, friction.
+//   s J v + c mu = goal,  c > 0
+// Because of c it is folded into the nodes, A += J^T J / c, so that a round of the active set changes no pattern.
+#pragma once
+
+#include <cstdint>
+
+namespace taut {
+
+struct BoundedRow {
+    enum class Kind : uint8_t {
+        push,     // mu >= 0, on only while it pushes
+        tangent,  // two in a row after a contact's normal row, |mu| within friction * its impulse
+        box,      // |mu| <= limit
+    };
+
+    Kind kind = Kind::push;
+    bool on = false;            // part of the system
+    bool speculative = false;   // of a gap that may close: goal is to touch, not to rest
+    bool physical = false;      // c and target are meant as they are
+    uint8_t row = 0;            // within its row block
+    uint32_t block = 0;         // in Rows::block
+    double sign = 1;            // of J
+    double gap = 0;             // of a push [m or rad]
+    double bounce = 0;          // of a push: speed at which it leaves once it was hit, 0: none [m/s]
+    double k = 0;               // J W J^T [1/kg]
+    double least = 0;           // c while the row holds
+    double c = 0;               // c now
+    double target = 0;          // with the push that undoes an overlap [m/s]
+    double relaxed_target = 0;  // without
+    double goal = 0;            // of this solve
+    double limit = 0;           // of a box [N s]; of tangents the coefficient of friction
+    double mu = 0;              // [N s]
+    float* slip = nullptr;      // carried: c of a row at its bound; 0: within it; -1: new
+    float* force = nullptr;     // carried, of axis rows [N]
+};
+
+}  // namespace taut

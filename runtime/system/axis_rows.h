@@ -1,0 +1,73 @@
+// The scalar rows that an axis adds to one row of its joint (constraints/axis.h), for every solver:
+//   s J v + c mu = target,   mu within [0, inf) for a stop and within [-limit, limit] for drive and friction.
+// Stiffness k and damping d of a drive as an implicit spring: c = 1/(h (h k + d)),
+//   target = (d speed - k (C - target)) / (h k + d); infinite d: c = 0, target = speed.
+#pragma once
+
+#include <cmath>
+
+#include "system/system.h"
+
+namespace taut {
+
+constexpr double kStopRate = 0.2;  // share of an overlap that a stop or contact undoes in a substep
+constexpr double kStopPush = 3;    // and the most of it [m/s or rad/s]
+
+struct AxisRow {
+    double sign;            // of J
+    bool stop;              // pushes only
+    bool physical;          // c and target are meant as they are: not to be relaxed
+    double gap;             // of a stop: room that is left [m or rad]
+    double target;          // [m/s or rad/s]
+    double relaxed_target;  // without the push that undoes an overlap
+    double compliance;      // c [1/kg]; 0: rigid
+    double limit;           // largest |mu| [N s]
+    float *force, *slip;    // what is carried; a stop has no slip
+};
+
+// C in the turn that is nearest to `near`.
+inline double unwrapped(const RowBlock& block, int r, double c, double near) {
+    constexpr double kTurn = 2 * 3.14159265358979323846;
+    if (!block.angular(r) || !std::isfinite(near)) return c;
+    return c - kTurn * std::round((c - near) / kTurn);
+}
+
+inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, float* force) {
+    AxisRow row{sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force, nullptr};
+    const double d = double(axis.limit_compliance) * axis.limit_damping;
+    row.compliance = axis.limit_compliance / (h * (h + d));
+    row.target = row.relaxed_target = -gap / h;
+    if (gap > 0) return row;
+    row.target = row.physical ? -gap / (h + d) : std::min(kStopPush, -kStopRate * gap / h);
+    row.relaxed_target = row.physical ? row.target : 0;
+    return row;
+}
+
+inline AxisRow drive_row(double c, const Axis& axis, double h, AxisMemory& memory) {
+    AxisRow row{1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive, &memory.drive_slip};
+    if (!std::isfinite(axis.damping)) return row;
+    const double rate = h * axis.stiffness + axis.damping;
+    row.compliance = 1 / (h * rate);
+    row.target = row.relaxed_target = (double(axis.damping) * axis.speed - axis.stiffness * (c - axis.target)) / rate;
+    return row;
+}
+
+// Calls visit(AxisRow) for each scalar row on row r of a block with axes.
+template <class Visit>
+void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit visit) {
+    const Axis& axis = block.axis[r];
+    AxisMemory& memory = block.memory[r];
+    if (axis.mode == AxisMode::limited) {
+        const double centre = 0.5 * (double(axis.lower) + axis.upper);
+        const double at = unwrapped(block, r, c, centre);
+        if (std::isfinite(axis.lower)) visit(stop_row(1, at - axis.lower, axis, h, &memory.lower));
+        if (std::isfinite(axis.upper)) visit(stop_row(-1, axis.upper - at, axis, h, &memory.upper));
+    }
+    if (axis.mode == AxisMode::locked) return;
+    const bool springs = axis.stiffness > 0 || axis.damping > 0;
+    if (axis.max_force > 0 && springs) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
+    if (axis.friction > 0)
+        visit(AxisRow{1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction, &memory.friction_slip});
+}
+
+}  // namespace taut
