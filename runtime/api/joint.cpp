@@ -177,11 +177,13 @@ taut_result taut_joint_set_break(taut_joint handle, float force, float torque) {
 taut_result taut_joint_set_length(taut_joint handle, float length) {
     Check check(__func__);
     check.number("length", length, kJointLength);
-    return change(check, handle, [&](World&, Joint& joint) {
+    return change(check, handle, [&](const World& world, Joint& joint) {
         if (!check.require(joint.type == &kDistance, "joint is not a distance joint")) return check.result();
+        Joint changed = joint;
         DistanceData data = read_data<DistanceData>(joint);
         data.length = length;
-        write_data(joint, data);
+        write_data(changed, data);
+        replace_joint(world.nodes, joint, changed);
         return TAUT_OK;
     });
 }
@@ -216,7 +218,7 @@ taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, 
         Joint moved = joint;
         write_ends(moved, kind, ends[0], ends[1]);
         if (moved.type == &kDistance && !check_distance(check, world, moved)) return check.result();
-        joint = moved;
+        replace_joint(world.nodes, joint, moved);
         return TAUT_OK;
     });
 }

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace taut {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace
 
 // ---------------------------------------------------------------- ends
 
@@ -42,6 +47,16 @@ void reserve_pair_of_ends(World& world, const Joint& joint) {
 void forget_pair_of_ends(World& world, const Joint& joint) {
     if (joint.node[0] == kNone || joint.node[1] == kNone) return;
     forget_pair(world.pairs, world.nodes, joint.node[0], joint.node[1]);
+}
+
+void replace_joint(const Nodes& nodes, Joint& joint, const Joint& changed) {
+    const JointReading before = read_joint(nodes, joint), after = read_joint(nodes, changed);
+    joint = changed;
+    if (joint.fresh) return;
+    for (int row = 0; row < joint.type->rows; ++row) {
+        const double change = after.value[row] - before.value[row];
+        joint.drift[row] += is_angle(joint, row) ? std::remainder(change, 2 * kPi) : change;
+    }
 }
 
 // ---------------------------------------------------------------- axes
@@ -109,7 +124,7 @@ Check& check_axis(Check& check, const JointKind& kind, const JointAxis& place, c
 }
 
 Spring spring_of(double frequency, double damping_ratio, double inverse_mass) {
-    const double omega = 2 * 3.14159265358979323846 * frequency, mass = 1 / inverse_mass;
+    const double omega = 2 * kPi * frequency, mass = 1 / inverse_mass;
     return {mass * omega * omega, 2 * damping_ratio * mass * omega};
 }
 

@@ -55,6 +55,10 @@ Check& check_distance(Check& check, const World& world, const Joint& joint);
 void reserve_pair_of_ends(World& world, const Joint& joint);
 void forget_pair_of_ends(World& world, const Joint& joint);
 
+// Puts a changed joint in the place of the old one. What the change does to coordinates comes bit by bit over the next
+// step, unless the joint was never solved: then it is where the host wants it.
+void replace_joint(const Nodes& nodes, Joint& joint, const Joint& changed);
+
 // ---------------------------------------------------------------- axes
 
 // The axis of a joint, or a refusal.

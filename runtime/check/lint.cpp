@@ -26,10 +26,16 @@ constexpr size_t kMostRows = 1200;
 class Lint {
 public:
     explicit Lint(World& world)
-        : world_(world), nodes_(world.nodes), joints_(world.joints), found_(world.memory), parent_(world.memory) {}
+        : world_(world),
+          nodes_(world.nodes),
+          joints_(world.joints),
+          found_(world.memory),
+          parent_(world.memory),
+          direct_pairs_(world.memory) {}
 
     Array<taut_lint_entry> run() {
         connect();
+        collect_direct_pairs();
         masses_of_blocks();
         for_joints([&](uint32_t j, const Joint& joint) { mass_ratio_of(j, joint); });
         masses_of_contacts();
@@ -45,7 +51,7 @@ public:
 private:
     bool moves(uint32_t node) const { return node != kNone && moves_by_forces(nodes_.info[node].kind); }
     double mass(uint32_t node) const { return nodes_.mass[node].mass; }
-    bool direct(const Joint& joint) const { return world_.def.solver == TAUT_SOLVER_BLOCK_LDLT && joint.direct; }
+    bool direct(const Joint& joint) const { return solvers()[world_.def.solver]->direct && joint.direct; }
     double substep() const { return static_cast<double>(world_.def.time_step) / world_.def.substeps; }
     Vec3 gravity() const { return {world_.def.gravity.x, world_.def.gravity.y, world_.def.gravity.z}; }
 
@@ -84,6 +90,22 @@ private:
         });
     }
 
+    // Contacts that the last step solved within blocks.
+    void collect_direct_pairs() {
+        const Partition& partition = world_.partition;
+        for (uint32_t g = 0; g < partition.group_count; ++g) {
+            for (uint32_t p : partition.groups[g].direct_pairs) {
+                if (p >= world_.pairs.active.size()) continue;  // of a step that ran out of memory
+                const ActivePair& pair = world_.pairs.active[p];
+                direct_pairs_.push_back(static_cast<uint64_t>(pair.a) << 32 | pair.b);
+            }
+        }
+        std::sort(direct_pairs_.begin(), direct_pairs_.end());
+    }
+    bool direct(const Pair& pair) const {
+        return std::binary_search(direct_pairs_.begin(), direct_pairs_.end(), pair.key);
+    }
+
     void masses_of_blocks() {
         Array<uint32_t> light(parent_.size(), kNone, world_.memory), heavy(light);
         for (uint32_t node = 0; node < nodes_.slots(); ++node) {
@@ -113,13 +135,14 @@ private:
             if (!pair.touching || !moves(light) || !moves(heavy)) continue;
             if (mass(light) > mass(heavy)) std::swap(light, heavy);
             if ((nodes_.motion[heavy].x - nodes_.motion[light].x).dot(gravity()) >= 0) continue;
-            add_above(TAUT_LINT_CONTACT_MASS_RATIO, light, kNone, mass(heavy) / mass(light), kSweptMassRatio);
+            add_above(TAUT_LINT_CONTACT_MASS_RATIO, light, kNone, mass(heavy) / mass(light),
+                      direct(pair) ? kBlockMassRatio : kSweptMassRatio);
         }
     }
 
     struct Neighbours {
         double first = 0, second = 0;  // the two heaviest [kg]
-        bool swept = false;            // one of them by a swept joint or a contact
+        bool swept = false;            // one of them by a swept joint or contact
     };
     void light_between_heavy() {
         Array<Neighbours> around(nodes_.slots(), Neighbours{}, world_.memory);
@@ -135,7 +158,7 @@ private:
         };
         for_joints([&](uint32_t, const Joint& joint) { meet(joint.node[0], joint.node[1], !direct(joint)); });
         for (const Pair& pair : world_.pairs.list)
-            if (pair.touching) meet(pair.a(), pair.b(), true);
+            if (pair.touching) meet(pair.a(), pair.b(), !direct(pair));
         for (uint32_t node = 0; node < nodes_.slots(); ++node) {
             const Neighbours& n = around[node];
             if (n.second == 0) continue;
@@ -323,7 +346,8 @@ private:
     const Nodes& nodes_;
     const Joints& joints_;
     Array<taut_lint_entry> found_;
-    Array<uint32_t> parent_;  // union-find over slots
+    Array<uint32_t> parent_;        // union-find over slots
+    Array<uint64_t> direct_pairs_;  // keys, sorted
     bool all_connected_ = false;
 };
 

@@ -46,6 +46,7 @@ void add_joints(Hash& hash, const Joints& joints) {
         if (!joint.type) continue;
         hash.add(static_cast<uint64_t>(i));
         for (int r = 0; r < joint.type->rows; ++r) hash.add(joint.lambda[r]);
+        for (int r = 0; r < joint.type->rows; ++r) hash.add(joint.drift[r]);
         hash.add(joint.compliance);
         hash.add(joint.damping);
         hash.add(joint.angular_compliance);
