@@ -16,11 +16,7 @@ constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
 // below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
 constexpr uint32_t kMostGrown = 64;
-// A tower of at most so many bodies is a block: a heavy load on light bodies, or many slender levels. Sweeps let it
-// sag, and the change from one to the other at an impact would kick it (measured: 25 of 72 towers hit by a heavy box
-// fell when only the impact made them a block, none when they were one before).
-constexpr uint32_t kMostTower = 60;
-constexpr uint32_t kTowerLevels = 6, kTowerSlenderness = 2;
+constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
 
@@ -82,8 +78,7 @@ void Partition::connect_joints(const Nodes& nodes, const Joints& joints, bool di
 // Islands without joints in which weight rests on what sweeps cannot hold.
 void Partition::find_towers() {
     for (Island& island : island_) {
-        const bool slender = (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels) ||
-                             (island.levels >= kTowerLevels && island.nodes <= kTowerSlenderness * island.levels);
+        const bool slender = island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels;
         island.tower = !island.jointed && island.nodes <= kMostTower && (island.ratio >= kHeavyOnLight || slender);
     }
 }

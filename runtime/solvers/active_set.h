@@ -44,8 +44,7 @@ public:
 private:
     void gather_axes(uint32_t block);
     void gather_contact(uint32_t block);
-    BoundedRow& add(BoundedRow::Kind kind, uint32_t block, int row, double sign, double softness);
-    double inverse_mass(uint32_t block, int row) const;
+    BoundedRow& add(BoundedRow::Kind kind, uint32_t index, int row, double sign, double softness);
     void begin_slip(BoundedRow* tangents, const BoundedRow& normal);
     void turn_off(size_t i);
 

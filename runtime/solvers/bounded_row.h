@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "constraints/constraint.h"
+
 namespace taut {
 
 struct BoundedRow {
@@ -15,11 +17,16 @@ struct BoundedRow {
     };
 
     Kind kind = Kind::push;
-    bool on = false;            // part of the system
-    bool speculative = false;   // of a gap that may close: goal is to touch, not to rest
-    bool physical = false;      // c and target are meant as they are
-    uint8_t row = 0;            // within its row block
-    uint32_t block = 0;         // in Rows::block
+    bool on = false;           // part of the system
+    bool speculative = false;  // of a gap that may close: goal is to touch, not to rest
+    bool physical = false;     // c and target are meant as they are
+    uint8_t row = 0;           // within its row block
+    uint32_t block = 0;        // in Rows::block
+    uint8_t nodes = 0;
+    uint32_t place[kMaxNodes] = {};    // of each node in the block, or UINT32_MAX: its velocity is known
+    const double* jacobian = nullptr;  // of the first node; 6 entries, those of the next node `stride` further
+    uint32_t stride = 0;
+    double known = 0;           // s J v of the nodes whose velocity is known [m/s]
     double sign = 1;            // of J
     double gap = 0;             // of a push [m or rad]
     double bounce = 0;          // of a push: speed at which it leaves once it was hit, 0: none [m/s]

@@ -262,7 +262,7 @@ TEST_F(PartitionTest, AFixedHubNeedsOneColour) {
 // ---------------------------------------------------------------- substeps
 
 TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
-    const std::vector<uint32_t> low = tower(5), tall = tower(6), taller = tower(60), too_tall = tower(61);
+    const std::vector<uint32_t> low = tower(12), tall = tower(13), taller = tower(60), too_tall = tower(61);
     build();
     ASSERT_EQ(partition.blocks.size(), 2u);
     for (const Block& block : partition.blocks) {
@@ -270,7 +270,7 @@ TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
         EXPECT_EQ(block.pairs.size(), block.nodes.size());
         EXPECT_EQ(block.links.size(), block.nodes.size() - 1) << "the ground is no node";
     }
-    EXPECT_EQ(partition.blocks[0].nodes.size(), 6u);
+    EXPECT_EQ(partition.blocks[0].nodes.size(), 13u);
     EXPECT_EQ(partition.blocks[1].nodes.size(), 60u);
     EXPECT_EQ(substeps_of(low[0]), 4u);
     EXPECT_EQ(substeps_of(tall[0]), 4u);
@@ -284,7 +284,7 @@ TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
 
 // A refused tower sags like any pile until it is a block again.
 TEST_F(PartitionTest, RefusedTowersTakeFourTimesTheSubsteps) {
-    const std::vector<uint32_t> boxes = tower(6);
+    const std::vector<uint32_t> boxes = tower(13);
     build();
     partition.blocks[0].memory.refused_left = 2;
     for (uint32_t expected : {16u, 16u, 4u}) {
