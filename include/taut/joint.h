@@ -282,7 +282,8 @@ typedef struct taut_six_dof_joint_def {
     float break_torque;
     taut_joint_solve solve;
     uint32_t reserved;
-    taut_axis_def axes[6]; /**< position along x, y, z, angle about x, y, z; default locked */
+    taut_axis_def axes[6]; /**< position along x, y, z of a; angle about x of a, the turned y, z of b, of which that
+                              about y must keep off +-pi/2; default locked */
     uint64_t user_data;
 } taut_six_dof_joint_def;
 
