@@ -115,6 +115,7 @@ void step(World& w) {
     publish_contacts(w);
     publish_motion(w, w.frozen);
     publish_profile(w);
+    break_joints(w);
     w.profile.publish_us = watch.lap();
     w.profile.allocations = w.memory.calls() - calls;
     w.profile.step_us = whole.lap();
