@@ -162,8 +162,8 @@ void change_axis(Joint& joint, int row, const Axis& axis) {
         memory = {};
         joint.lambda[row] = 0;
     }
-    if (!has_drive(axis)) memory.drive = AxisMemory().drive, memory.drive_slip = AxisMemory().drive_slip;
-    if (axis.friction == 0) memory.friction = AxisMemory().friction, memory.friction_slip = AxisMemory().friction_slip;
+    if (!has_drive(axis)) memory.drive = 0;
+    if (axis.friction == 0) memory.friction = 0;
     now = axis;
     joint.plain = true;
     for (int r = 0; r < joint.type->rows; ++r) joint.plain = joint.plain && is_locked(joint, r);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
 constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
-constexpr double kStiff = 0.5;  // h^2 K / M above which a force counts: symplectic steps hold 4 without any K
+constexpr double kStiff = 0.5;            // h^2 K / M above which a force counts: symplectic steps hold 4 without any K
 constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
@@ -190,7 +190,7 @@ void BlockSolve::add_bounded() {
         bool any = false;
         for (; i < rows.size() && std::equal(first.place, first.place + kMaxNodes, rows[i].place); ++i) {
             const BoundedRow& row = rows[i];
-            if (!row.on) continue;
+            if (!row.on || row.at_limit != 0) continue;
             any = true;
             for (int n = 0; n < row.nodes; ++n)
                 for (int m = 0; m <= n; ++m)
@@ -254,7 +254,8 @@ void BlockSolve::right_hand_side() {
     }
     for (const BoundedRow& bounded : set.rows()) {
         if (!bounded.on) continue;
-        const double f = bounded.sign * (bounded.goal - bounded.known) / bounded.c;
+        const double held = (bounded.goal - bounded.known) / bounded.c;
+        const double f = bounded.sign * (bounded.at_limit != 0 ? bounded.at_limit * bounded.limit : held);
         const double* j = bounded.jacobian;
         for (int n = 0; n < bounded.nodes; ++n, j += bounded.stride) {
             if (bounded.place[n] == kNone) continue;
