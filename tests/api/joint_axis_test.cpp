@@ -228,8 +228,13 @@ TEST(Frequency, GivesTheStiffnessOfTheTwoEnds) {
     hinge.angle.drive.frequency = 1;
     ASSERT_OK(taut_world_add_hinge_joint(world, &hinge, &joint));
     ASSERT_OK(taut_joint_get_axis(joint, 0, &axis));
-    // The angle's row alone: the anchor's rows hold the rest.
-    EXPECT_NEAR(axis.drive.stiffness, 1000.0 / 6 * 4 * kPi * kPi, 1);
+    const double inertia = 1000.0 / 6 + 1000 * 0.25;
+    EXPECT_NEAR(axis.drive.stiffness, inertia * 4 * kPi * kPi, 1);
+    taut_axis_def again = axis_def(TAUT_AXIS_FREE);
+    again.drive.frequency = 1;
+    ASSERT_OK(taut_joint_set_axis(joint, 0, &again));
+    ASSERT_OK(taut_joint_get_axis(joint, 0, &axis));
+    EXPECT_NEAR(axis.drive.stiffness, inertia * 4 * kPi * kPi, 1);
     EXPECT_OK(taut_world_destroy(world));
 }
 
