@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
 constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
+constexpr double kStiff = 0.5;  // h^2 K / M above which a force counts: symplectic steps hold 4 without any K
 constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
@@ -288,6 +289,25 @@ void BlockSolve::take_forces() {
             joint_force(bounded.block - b_.first_row_block)[bounded.row] += bounded.sign * bounded.mu / sys_.h;
 }
 
+// True if the geometric stiffness of this force, left out, would matter to the motion of a node: h^2 K_ii / M_ii.
+bool BlockSolve::stiff(const RowBlock& block, const double* force) const {
+    const int width = kDof * block.type->nodes;
+    Pose poses[kMaxNodes];
+    double k[kDof * kMaxNodes * kDof * kMaxNodes];
+    for (int n = 0; n < block.type->nodes; ++n) poses[n] = sys_.pose[block.node[n]];
+    block.type->stiffness(block.data, poses, force, Curvature::positive, k);
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t at = local(block.node[n]);
+        if (at == kNone) continue;
+        const Mat3& inertia = sys_.inertia[block.node[n]];
+        for (int i = 0; i < size_of(at); ++i) {
+            const double mass = i < 3 ? s_.nodes.mass[b_.nodes[at]].mass : inertia(i - 3, i - 3);
+            if (sys_.h * sys_.h * k[(kDof * n + i) * (width + 1)] > kStiff * mass) return true;
+        }
+    }
+    return false;
+}
+
 bool BlockSolve::force_grew() const {
     double largest = 0;
     auto squared = [](const double* f, int rows) {
@@ -299,7 +319,9 @@ bool BlockSolve::force_grew() const {
     for (uint32_t j = 0; j < joints(); ++j) {
         const double now = squared(joint_force(j), row(j).type->rows),
                      before = squared(row(j).force, row(j).type->rows);
-        if (now > kGrowth * kGrowth * before && now > kNegligible * kNegligible * largest) return true;
+        if (now > kGrowth * kGrowth * before && now > kNegligible * kNegligible * largest &&
+            stiff(row(j), joint_force(j)))
+            return true;
     }
     return false;
 }

@@ -51,6 +51,7 @@ private:
     void solve_known();
     void take_solution();
     void take_forces();
+    bool stiff(const RowBlock& block, const double* force) const;
     bool force_grew() const;
 
     double* node_known(uint32_t i) { return &b_.known[i * kDof]; }

@@ -452,6 +452,30 @@ TEST_F(PartitionTest, SoftJointsAreSwept) {
     ASSERT_EQ(partition.groups[0].joints.size(), 1u);
 }
 
+// A net of n x n has (n - 1)^2 loops: 45 x 45 is solved directly, 46 x 46 is swept.
+TEST_F(PartitionTest, NetsBeyondTwoThousandLoopsAreSwept) {
+    auto net = [&](uint32_t side) {
+        const uint32_t first = nodes.slots();
+        for (uint32_t i = 0; i < side * side; ++i) add(NodeKind::particle);
+        for (uint32_t i = 0; i < side; ++i)
+            for (uint32_t k = 0; k < side; ++k) {
+                if (k + 1 < side) join(first + i * side + k, first + i * side + k + 1);
+                if (i + 1 < side) join(first + i * side + k, first + (i + 1) * side + k);
+            }
+        return first;
+    };
+    const uint32_t direct = net(45), swept = net(46), link = add(NodeKind::dynamic);
+    join(link, kNone);
+    touch(link, swept + 7);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 2u);
+    EXPECT_EQ(partition.blocks[0].nodes.size(), 45u * 45u);
+    EXPECT_EQ(partition.blocks[0].nodes[0], direct);
+    EXPECT_EQ(partition.blocks[1].nodes.size(), 2u) << "a link and what it touches of the net";
+    ASSERT_EQ(partition.group_count, 1u);
+    EXPECT_EQ(partition.groups[0].joints.size(), 2u * 46u * 45u);
+}
+
 // A joint's slot is used again at once, by a joint between other nodes of the same block or of another type: the
 // numbers in the block are the same, its matrix is not.
 TEST_F(PartitionTest, AReusedSlotIsAnotherJoint) {
