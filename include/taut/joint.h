@@ -78,8 +78,9 @@ typedef struct taut_drive {
     float stiffness;     /**< [N/m], [0, 1e24]. Default 0 */
     float damping;       /**< [N s/m], [0, 1e24], or INFINITY: holds the speed exactly, without stiffness. Default 0 */
     float frequency;     /**< [Hz], 0 or [1e-3, 1e3]: stiffness and damping (then 0 here) follow from it and
-                              damping_ratio, for the mass that the joint's two ends alone set against motion along the
-                              axis when this is given: 1 / (J W J^T) at the present pose. Default 0 */
+                              damping_ratio, for the mass or inertia that the joint's two ends alone set against motion
+                              along the axis, at the pose where this is given, while the joint holds what it locks:
+                              for a hinge, inertia about the hinge. Default 0 */
     float damping_ratio; /**< of frequency, [0, 1000]; 1: critical. Default 1 */
     float max_force;     /**< [N], [0, 1e24] or INFINITY. Default INFINITY */
 } taut_drive;

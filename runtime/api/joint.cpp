@@ -113,7 +113,7 @@ taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axi
     return with_axis(check, handle, axis, Use::write, [&](const World& world, Joint& joint, const JointAxis& place) {
         if (!check_axis(check, kind_of(joint), place, *def)) return check.result();
         const JointReading reading = read_joint(world.nodes, joint);
-        const double inverse_mass = inverse_mass_of(world.nodes, joint, reading, place.row);
+        const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
         // Both ends may have become static since.
         check.require(def->drive.frequency == 0 || inverse_mass > 0,
                       "drive.frequency is given, but neither end moves any more");

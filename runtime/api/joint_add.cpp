@@ -166,9 +166,11 @@ Joint make_joint(const JointKind& kind, const Def& def, const JointEnd (&ends)[2
 void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, Joint& joint) {
     if (kind.axes.empty()) return;
     const JointReading reading = read_joint(world.nodes, joint);
+    for (size_t i = 0; i < kind.axes.size(); ++i)  // which rows are locked decides about the masses of the others
+        joint.axis[kind.axes[i].row].mode = make_axis(kind.axes[i], *axes[i].def, 1).mode;
     for (size_t i = 0; i < kind.axes.size(); ++i) {
         const JointAxis& place = kind.axes[i];
-        const double inverse_mass = inverse_mass_of(world.nodes, joint, reading, place.row);
+        const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
         change_axis(joint, place.row, make_axis(place, *axes[i].def, inverse_mass));
     }
 }

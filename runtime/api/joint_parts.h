@@ -73,7 +73,7 @@ struct Spring {
 Spring spring_of(double frequency, double damping_ratio, double inverse_mass);
 
 void set_drive(Axis& axis, const taut_drive& drive, double inverse_mass);
-// The axis that a checked def asks for. inverse_mass: J W J^T of its row.
+// The axis that a checked def asks for. inverse_mass: of its row, see held_inverse_mass_of().
 Axis make_axis(const JointAxis& place, const taut_axis_def& def, double inverse_mass);
 // Changes one row and what it carries.
 void change_axis(Joint& joint, int row, const Axis& axis);

@@ -6,6 +6,7 @@
 namespace taut {
 namespace {
 
+constexpr double kLeast = 1e-9;  // share of an inverse mass that counts as nothing
 constexpr double kTurn = 2 * 3.14159265358979323846;
 
 JointAnchors anchors_of(const Joint& joint) {
@@ -20,6 +21,21 @@ const double* row_of(const Joint& joint, const JointReading& reading, int end, i
 
 Vec3 linear_part(const double* row) { return {row[0], row[1], row[2]}; }
 Vec3 angular_part(const double* row) { return {row[3], row[4], row[5]}; }
+
+// J_i W J_k^T of two rows.
+double coupling(const Nodes& nodes, const Joint& joint, const JointReading& reading, int i, int k) {
+    double sum = 0;
+    for (int end = 0; end < 2; ++end) {
+        const uint32_t node = joint.node[end];
+        if (node == kNone || !moves_by_forces(nodes.info[node].kind)) continue;
+        const double *ji = row_of(joint, reading, end, i), *jk = row_of(joint, reading, end, k);
+        const Mat3 to_body = reading.pose[end].R.transpose();
+        const NodeMass& mass = nodes.mass[node];
+        sum += mass.inv_mass * linear_part(ji).dot(linear_part(jk)) +
+               (to_body * angular_part(ji)).dot(mass.inv_inertia.matrix() * (to_body * angular_part(jk)));
+    }
+    return sum;
+}
 
 }  // namespace
 
@@ -55,16 +71,26 @@ double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& readi
 }
 
 double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
-    double inverse = 0;
-    for (int end = 0; end < 2; ++end) {
-        const uint32_t node = joint.node[end];
-        if (node == kNone || !moves_by_forces(nodes.info[node].kind)) continue;
-        const double* j = row_of(joint, reading, end, row);
-        const Vec3 turn = reading.pose[end].R.transpose() * angular_part(j);
-        const NodeMass& mass = nodes.mass[node];
-        inverse += mass.inv_mass * linear_part(j).squaredNorm() + turn.dot(mass.inv_inertia.matrix() * turn);
+    return coupling(nodes, joint, reading, row, row);
+}
+
+double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
+    int rows[kMaxRows], count = 0;
+    for (int r = 0; r < joint.type->rows; ++r)
+        if (r != row && is_locked(joint, r)) rows[count++] = r;
+    rows[count++] = row;  // last
+    double a[kMaxRows][kMaxRows];
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < count; ++k) a[i][k] = coupling(nodes, joint, reading, rows[i], rows[k]);
+    for (int pivot = 0; pivot + 1 < count; ++pivot) {
+        // A row that earlier ones hold already has nothing left to hold.
+        if (!(a[pivot][pivot] > kLeast * inverse_mass_of(nodes, joint, reading, rows[pivot]))) continue;
+        for (int i = pivot + 1; i < count; ++i) {
+            const double share = a[i][pivot] / a[pivot][pivot];
+            for (int k = pivot + 1; k < count; ++k) a[i][k] -= share * a[pivot][k];
+        }
     }
-    return inverse;
+    return std::max(a[count - 1][count - 1], kLeast * inverse_mass_of(nodes, joint, reading, row));
 }
 
 double overrun_of(const Joint& joint, const JointReading& reading, int row) {

@@ -29,6 +29,9 @@ inline bool is_locked(const Joint& joint, int row) { return joint.axis[row].mode
 double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
 // J W J^T of one row: inverse of the mass that the two ends alone set against it [1/kg or 1/(kg m^2)].
 double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
+// The same while the joint's locked rows hold: what is left of J W J^T when they are eliminated. Of a hinge's angle:
+// the inertia about the hinge, not that about the centre of mass.
+double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
 // How far a coordinate is beyond the stops of its row, an angle in the turn that is nearest to them; 0 within.
 double overrun_of(const Joint& joint, const JointReading& reading, int row);
 
