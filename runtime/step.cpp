@@ -108,6 +108,7 @@ void step(World& w) {
     remember_poses(w.nodes);
     detect(w, watch);
     const Solver& solver = *solvers()[w.def.solver];
+    note_loads(w.joints, w.nodes);
     w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     w.profile.partition_us = watch.lap();
     solve(w, watch);

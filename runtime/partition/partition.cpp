@@ -16,12 +16,32 @@ constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
 // below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
 constexpr uint32_t kMostGrown = 64;
+
+// Contacts of what carries no more than about ten times its own weight are as well swept, and far cheaper so: ragdolls
+// in a heap. Beyond, a light body between a heavy one and an edge sinks in.
+constexpr double kLoad = 100;             // force of a joint over the mass of its lighter body [m/s^2]
+constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses always takes them in
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
 
 }  // namespace
+
+void note_loads(Joints& joints, const Nodes& nodes) {
+    for (Joint& joint : joints.record) {
+        if (!joint.type) continue;
+        double squared = 0, lighter = 1e300;
+        for (int r = 0; r < joint.type->rows; ++r)
+            if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];
+        for (uint32_t node : joint.node)
+            if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
+        if (squared > kLoad * kLoad * lighter * lighter)
+            joint.loaded = joint.loaded + 1 < kLoadedAfter ? joint.loaded + 1 : kLoadedAfter + kLoadedFor;
+        else
+            joint.loaded = joint.loaded > kLoadedAfter ? joint.loaded - 1 : 0;
+    }
+}
 
 Partition::Partition(Memory& memory)
     : groups(memory),
@@ -94,8 +114,9 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     const uint32_t grown = ca.grown + cb.grown + std::min(ca.nodes, cb.nodes);
     if (grown > kMostGrown) return false;
     const uint32_t total = ca.nodes + cb.nodes;
+    const bool loaded = ca.loaded || cb.loaded;
     unite(a, b);
-    component_[find(a)] = {total, 0, grown, kNone};
+    component_[find(a)] = {total, 0, grown, kNone, 0, 0, loaded};
     return true;
 }
 
@@ -108,14 +129,23 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
     component_.assign(slots, Component{});
     pair_in_block_.assign(pairs.active.size(), 0);
     for (uint32_t i = 0; i < slots; ++i) component_[i].nodes = 0;
-    for (uint32_t i = 0; i < slots; ++i) ++component_[find(i)].nodes;
+    for (uint32_t i = 0; i < slots; ++i) {
+        Component& component = component_[find(i)];
+        ++component.nodes;
+        if (!moving(nodes, i)) continue;
+        component.least = std::min(component.least, nodes.mass[i].mass);
+        component.most = std::max(component.most, nodes.mass[i].mass);
+    }
     choose_direct(nodes, joints);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
         const bool moves_a = moving(nodes, a), moves_b = moving(nodes, b);
         if (!moves_a && !moves_b) continue;  // a quarantined body at rest on a fixed one
         const bool tower = island_[island_of_[moves_a ? a : b]].tower;
-        if (!tower && !(moves_a && core_[a]) && !(moves_b && core_[b])) continue;
+        auto takes_in = [&](uint32_t node) {
+            return moving(nodes, node) && core_[node] && component_[find(node)].loaded;
+        };
+        if (!tower && !takes_in(a) && !takes_in(b)) continue;
         pair_in_block_[p] = moves_a && moves_b ? join_contact(a, b) : 1;
         if (tower && pair_in_block_[p]) core_[moves_a ? a : b] = 1;  // in a block, with or without a joint
     }
@@ -135,6 +165,9 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
         const Joint& joint = joints.record[j];
         if (!may(joint) || too_many(component_[find(end(joint))])) continue;
         joint_in_block_[j] = 1;
+        Component& component = component_[find(end(joint))];
+        component.loaded =
+            component.loaded || joint.loaded >= kLoadedAfter || component.most >= kLoadedMassRatio * component.least;
         for (uint32_t node : joint.node)
             if (moving(nodes, node)) core_[node] = 1;
     }

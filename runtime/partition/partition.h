@@ -70,6 +70,11 @@ struct Group {
     Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
 };
 
+// Once a frame: which joints carry more than contacts on their bodies could stand in sweeps. A block takes its contacts
+// in while one of its joints has done so for three frames, and for a second after.
+void note_loads(Joints& joints, const Nodes& nodes);
+constexpr uint8_t kLoadedAfter = 3, kLoadedFor = 60;  // frames
+
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
 
 struct PartitionRules {
@@ -103,6 +108,8 @@ private:
 
     struct Component {  // of the graph of blocks, by root
         uint32_t nodes = 1, joints = 0, grown = 0, block = UINT32_MAX;
+        double least = 1e300, most = 0;  // mass of its nodes [kg]
+        bool loaded = false;             // takes in its contacts
     };
 
     void find_towers();

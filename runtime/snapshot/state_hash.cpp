@@ -53,6 +53,8 @@ void add_joints(Hash& hash, const Joints& joints) {
         hash.add(joint.break_torque);
         hash.add(static_cast<uint64_t>(joint.direct) << 2 | static_cast<uint64_t>(joint.fresh) << 1 |
                  joint.collide_connected);
+        hash.add(static_cast<uint64_t>(joint.loaded));
+        hash.add(joint.slow_turn);
         if (!joint.plain) add_axes(hash, joint);
         for (size_t word = 0; word < joint.type->data_size / sizeof(uint64_t); ++word) {
             uint64_t bits;
@@ -72,6 +74,7 @@ void add_pairs(Hash& hash, const Pairs& pairs) {
             hash.add(pair.impulse[k].normal);
             hash.add(pair.impulse[k].tangent1);
             hash.add(pair.impulse[k].tangent2);
+            hash.add(pair.impulse[k].slip);
         }
     }
 }
@@ -90,6 +93,7 @@ uint64_t state_hash(const World& world) {
         hash.add(static_cast<uint64_t>(block.memory.guard_left) << 1 | block.memory.escalated);
         hash.add(static_cast<uint64_t>(block.memory.solved));
         hash.add(static_cast<uint64_t>(block.memory.since_trip));
+        hash.add(static_cast<uint64_t>(block.memory.refused_left));
     }
     return hash.value();
 }

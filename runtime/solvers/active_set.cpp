@@ -112,7 +112,7 @@ void ActiveSet::gather_contact(uint32_t index) {
         BoundedRow& r = add(row == 0 ? Kind::push : Kind::tangent, index, row, 1, softness);
         r.mu = sys_.rows.impulse[block.row + static_cast<uint32_t>(row)];
     }
-    BoundedRow* r = &s_.scratch.bounded[first];
+    BoundedRow* r = s_.scratch.bounded.data() + first;
     r[0].gap = sys_.rows.error[block.row];
     r[0].speculative = r[0].gap > kSpeculative;
     r[0].target = r[0].speculative ? -r[0].gap / sys_.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.h);

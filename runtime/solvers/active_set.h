@@ -38,7 +38,7 @@ public:
     // Work on velocities that went from v0 to v1: mu . J (v0 + v1) / 2 [J].
     double work() const;
 
-    std::span<BoundedRow> rows() const { return {&s_.scratch.bounded[b_.first_bounded], b_.bounded_count}; }
+    std::span<BoundedRow> rows() const { return {s_.scratch.bounded.data() + b_.first_bounded, b_.bounded_count}; }
     // J v of a row, all ends.
     double speed(const BoundedRow& row, const Array<Velocity>& velocity) const;
 

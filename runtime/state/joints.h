@@ -27,6 +27,7 @@ struct Joint {
     bool plain = true;                                              // every row is locked: axis is not read
     bool direct = true;                                             // false: swept, not part of a block
     bool collide_connected = false;
+    uint8_t loaded = 0;             // frames under or since a load beyond what sweeps hold; partition/partition.h
     bool fresh = true;              // not solved yet: lambda means nothing
     Vec3 slow_turn = Vec3::Zero();  // low-passed angular velocity of its line [rad/s]; see ConstraintType::line
     uint64_t user_data = 0;

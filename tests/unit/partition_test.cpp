@@ -36,6 +36,7 @@ struct Graph {
         joint.type = &type;
         joint.node[0] = a;
         joint.node[1] = b;
+        joint.loaded = kLoadedAfter;
         return joints.add(joint);
     }
     void touch(uint32_t a, uint32_t b) {
@@ -426,6 +427,34 @@ TEST_F(PartitionTest, ContactsMergeBlocks) {
     ASSERT_EQ(partition.blocks.size(), 2u);
     EXPECT_EQ(partition.blocks[0].memory.solved, 7u);
     EXPECT_FALSE(partition.blocks[0].matrix.analysed());
+}
+
+// A body of 2 kg on a joint carries 100 m/s^2 times its mass for three frames: its block takes its contacts in, and for
+// a second after that.
+TEST_F(PartitionTest, OnlyLoadedBlocksTakeTheirContactsIn) {
+    const uint32_t a = add(NodeKind::dynamic, 2), ground = add(NodeKind::fixed);
+    const uint32_t j = join(a, kNone);
+    joints.record[j].loaded = 0;
+    touch(a, ground);
+    auto taken_in = [&](double force) {
+        joints.record[j].lambda[1] = force;
+        note_loads(joints, nodes);
+        build();
+        return partition.blocks[0].pairs.size();
+    };
+    for (int frame = 0; frame < 10; ++frame) EXPECT_EQ(taken_in(199), 0u);
+    EXPECT_EQ(taken_in(-201), 0u);
+    EXPECT_EQ(taken_in(201), 0u);
+    EXPECT_EQ(taken_in(0), 0u) << "starts again";
+    EXPECT_EQ(taken_in(201), 0u);
+    EXPECT_EQ(taken_in(201), 0u);
+    EXPECT_EQ(taken_in(201), 1u);
+    for (int frame = 0; frame < 60; ++frame) EXPECT_EQ(taken_in(0), 1u) << frame;
+    EXPECT_EQ(taken_in(0), 0u);
+
+    const uint32_t heavy = add(NodeKind::dynamic, 200);
+    joints.record[join(a, heavy)].loaded = 0;
+    EXPECT_EQ(taken_in(0), 1u) << "masses of 1 to 100";
 }
 
 // Beyond 64 bodies that came by contacts the rest is swept; contacts with the ground always belong to the block.
