@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kGuardSubsteps = 60;  // how long a trip lasts
 constexpr uint32_t kWarmup = 3;          // substeps of a new block: its forces are still settling
-constexpr double kLeastMassRatio = 10;   // below, the plain scheme does not gain energy
+constexpr double kLeastMassRatio = 100;  // below, the plain scheme does not gain energy
 
 double kinetic_energy(const Substep& s, const Block& block, const Array<Velocity>& velocity) {
     double sum = 0;
