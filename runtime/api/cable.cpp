@@ -302,7 +302,7 @@ taut_result taut_cable_set_reel_speed(taut_cable handle, uint32_t end, float spe
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         Cable& cable = world.cables.record[index];
         if (!check_reel(check, world, cable, end)) return check.result();
-        const double most = 0.5 * cable.nominal / world.def.time_step;
+        const double most = 0.5 * (1 + 1e-6) * cable.nominal / world.def.time_step;  // rounding is no offence
         if (!check.number("speed", speed, Range{-most, most})) return check.result();
         cable.end[end].wanted_speed = speed;
         cable.end[end].acceleration = acceleration;
