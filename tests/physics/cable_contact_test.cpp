@@ -78,8 +78,8 @@ TEST_P(LoadedOver, HoldsTogetherAndOut) {
     const auto t = tensions_of(cable);
     RecordProperty("gap_um", std::to_string(1e6 * gap));
     RecordProperty("depth_um", std::to_string(1e6 * late_depth));
-    EXPECT_LT(gap, 5e-4);
-    EXPECT_LT(late_depth, 3e-3);
+    EXPECT_LT(gap, 5e-5);
+    EXPECT_LT(late_depth, 5e-4);
     EXPECT_LT(norm(velocity(load)), 0.1);  // it swings a little
     EXPECT_NEAR(t.back(), s.load * kG, 0.02 * s.load * kG);
 }

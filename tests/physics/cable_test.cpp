@@ -73,7 +73,7 @@ TEST_P(EitherCable, HangsAsACatenary) {
         EXPECT_NEAR(p.z, 0, 1e-3);
         worst = std::max(worst, std::abs(p.y - wanted.y(p.x)));
     }
-    EXPECT_LT(worst, 4e-3);
+    EXPECT_LT(worst, 1e-3);
     RecordProperty("worst_mm", std::to_string(1e3 * worst));
     // The horizontal pull is the same everywhere: w a.
     const auto points = points_of(cable);
@@ -183,7 +183,7 @@ TEST_P(Reeling, MovesTheLoadWithoutKicks) {
     }
     RecordProperty("pull_ppm", std::to_string(1e6 * worst_pull));
     EXPECT_GE(std::abs(static_cast<double>(tensions_of(cable).size()) - static_cast<double>(segments)), 11);
-    EXPECT_LT(worst_pull, 1e-3);
+    EXPECT_LT(worst_pull, w.compliance > 0 ? 3e-4 : 1e-6);
     EXPECT_LT(worst_place, 1e-4);
     EXPECT_LT(worst_gap, 1e-6);
     EXPECT_LT(worst_side, 1e-3);
@@ -224,8 +224,8 @@ TEST_P(EitherCable, IsReeledWhileItSwings) {
         for (size_t k = 1; k < points.size(); ++k) sum += norm(points[k] - points[k - 1]);
         stretch = std::max(stretch, std::abs(sum - length_of(cable)));
     }
-    EXPECT_LT(gap, 2e-3);
-    EXPECT_LT(stretch, 2e-3);
+    EXPECT_LT(gap, 5e-5);
+    EXPECT_LT(stretch, 2e-4);
     // From 45 degrees, and shorter: at most a few times the weight.
     EXPECT_LT(pull, 4 * 200 * kG);
     EXPECT_NEAR(length_of(cable) - start, -0.169, 0.02);  // what the ramps of both ends leave
