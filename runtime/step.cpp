@@ -34,8 +34,6 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
     const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
     const double frame = w.def.time_step;
     system.h = frame / group.substeps;
-    for (uint32_t b : group.blocks)
-        for (uint32_t node : w.partition.blocks[b].nodes) system.in_block[node + 1] = 1;
     build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
     if (solver.wide_contacts) build_lanes(system, group, w.pairs, w.nodes, *settings.kernels);
     w.profile.predict_us += watch.lap();
@@ -119,6 +117,7 @@ void step(World& w) {
     publish_contacts(w);
     publish_motion(w, w.frozen);
     publish_profile(w);
+    break_joints(w);
     w.profile.publish_us = watch.lap();
     w.profile.allocations = w.memory.calls() - calls;
     w.profile.step_us = whole.lap();

@@ -19,6 +19,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       contact_end(memory),
       moved(memory),
       quarantined(memory),
+      broken(memory),
       frozen(memory) {
     pairs.world = id;
 }

@@ -41,6 +41,7 @@ struct World {
     Array<taut_contact_event> contact_begin, contact_end;
     Array<taut_moved_event> moved;
     Array<taut_quarantine_event> quarantined;
+    Array<taut_joint_break_event> broken;
     Array<uint32_t> frozen;  // nodes quarantined by the last step
     taut_profile profile{};
 

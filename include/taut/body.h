@@ -111,6 +111,18 @@ TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose* pose);
 /** Pose between the last two steps at the fraction left by taut_world_advance, for rendering. */
 TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
 
+/**
+ * Poses and velocities of many bodies at once, in the order given. Each array may be null; its stride is the distance
+ * of two entries [bytes], 0: packed; else at least the size of an entry and a multiple of 8 (poses) or 4.
+ * @param bodies count handles of this world. Nothing is written unless all are good.
+ * @param linear of the centres of mass [m/s]. @param angular world axes [rad/s].
+ * @return TAUT_OK; TAUT_NULL_POINTER (bodies, with count > 0), TAUT_INVALID_ARGUMENT (stride), TAUT_STALE_HANDLE,
+ *         TAUT_FOREIGN_HANDLE (the text names the first bad body), TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_get_body_states(taut_world world, const taut_body* bodies, uint32_t count,
+                                                taut_pose* poses, size_t pose_stride, taut_vec3* linear,
+                                                size_t linear_stride, taut_vec3* angular, size_t angular_stride);
+
 /** Velocity of the centre of mass [m/s] and angular velocity [rad/s], world axes. Either pointer may be null. */
 TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3* linear, taut_vec3* angular);
 /** Sets both; refused for a static body, and a non-zero angular velocity for a particle. */

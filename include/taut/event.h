@@ -34,6 +34,14 @@ typedef struct taut_quarantine_event {
     uint64_t user_data;
 } taut_quarantine_event;
 
+/** A joint that ended a step with more force or torque than its def allows, and was removed then. */
+typedef struct taut_joint_break_event {
+    taut_joint joint; /**< stale by now: good for comparing only */
+    uint64_t user_data;
+    taut_vec3 force;  /**< on end b, as taut_joint_get_force would have said [N] */
+    taut_vec3 torque; /**< on end b about its anchor [N m] */
+} taut_joint_break_event;
+
 /** The events of the last step. */
 typedef struct taut_events {
     const taut_contact_event* begin;
@@ -44,6 +52,9 @@ typedef struct taut_events {
     uint32_t end_count;
     uint32_t moved_count;
     uint32_t quarantined_count;
+    const taut_joint_break_event* broken; /**< in the order of the joints' slots */
+    uint32_t broken_count;
+    uint32_t reserved; /**< zero */
 } taut_events;
 
 /** One point of a touching pair. */

@@ -1,6 +1,26 @@
 /**
  * @file joint.h
  * Joints between two ends, each a rigid body, a particle or the world (null handle).
+ *
+ * A joint locks some of the two ends' relative motions and leaves the rest, its axes, to the host: each axis may be
+ * locked, free or limited by stops, driven by a motor or spring, and held by friction. Kinds that have axes are placed
+ * by a frame on each end; where the frames coincide every coordinate is 0. Coordinates are those of end b in the frame
+ * of end a. A particle has no rotation: only ball and distance joints take one.
+ *
+ *   kind         locks                              axes, by index
+ *   ball         a point on a point                 none
+ *   distance     (see its def)                      0: distance of two points, less `length` [m]
+ *   fixed        everything                         none
+ *   hinge        all but the angle about x          0: angle [rad]
+ *   slider       all but the slide along x          0: slide [m]
+ *   cylindrical  all but slide along, angle about x 0: slide [m], 1: angle [rad]
+ *   universal    position; x of a square to y of b  0: angle about x of a, 1: angle about y of b [rad]
+ *   cone_twist   position                           0: swing, between the x axes, [0, pi]; 1: twist about x [rad]
+ *   six_dof      what its axes lock                 0 to 2: position in frame a [m], 3 to 5: Cardan angles [rad]
+ *
+ * An angle is read in (-pi, pi]; a stop or target is taken in the turn that is nearest. "[N]" of an axis that is an
+ * angle reads "[N m]", "[m]" "[rad]", and so on.
+ *
  * Each function here: thread safety: one thread at a time per world, not inside a step.
  */
 #ifndef TAUT_JOINT_H
@@ -17,8 +37,66 @@ extern "C" {
 typedef enum taut_joint_kind {
     TAUT_JOINT_BALL = 0,
     TAUT_JOINT_DISTANCE = 1,
+    TAUT_JOINT_FIXED = 2,
+    TAUT_JOINT_HINGE = 3,
+    TAUT_JOINT_SLIDER = 4,
+    TAUT_JOINT_UNIVERSAL = 5,
+    TAUT_JOINT_CYLINDRICAL = 6,
+    TAUT_JOINT_CONE_TWIST = 7,
+    TAUT_JOINT_SIX_DOF = 8,
     TAUT_JOINT_KIND_MAX = 0x7fffffff
 } taut_joint_kind;
+
+/** How a joint is solved. */
+typedef enum taut_joint_solve {
+    TAUT_JOINT_SOLVE_DIRECT = 0, /**< with all joints it hangs together with, at once; where the world's solver can */
+    TAUT_JOINT_SOLVE_SOFT = 1,   /**< by sweeps: cheap, yields under loads far heavier than the bodies it holds */
+    TAUT_JOINT_SOLVE_MAX = 0x7fffffff
+} taut_joint_solve;
+
+/** What an axis lets its coordinate do. */
+typedef enum taut_axis_mode {
+    TAUT_AXIS_LOCKED = 0,  /**< held at 0 */
+    TAUT_AXIS_FREE = 1,    /**< moves */
+    TAUT_AXIS_LIMITED = 2, /**< moves between two stops */
+    TAUT_AXIS_MODE_MAX = 0x7fffffff
+} taut_axis_mode;
+
+/** Where a joint sits on an end. The x axis is the one that the joint is about. */
+typedef struct taut_frame {
+    taut_pos position;  /**< in the frame of the end's body, each component within 1e4; in the world if null [m] */
+    taut_quat rotation; /**< from the joint's axes to the body's; to the world's if null */
+} taut_frame;
+
+/**
+ * Motor or spring along an axis: force = -stiffness (coordinate - target) - damping (rate - speed), at most max_force
+ * either way. There is none while stiffness, damping and frequency are 0, or max_force is.
+ */
+typedef struct taut_drive {
+    float target;        /**< [m], within 1e6; an angle within 2 pi [rad]. Default 0 */
+    float speed;         /**< [m/s], within 1e4. Default 0 */
+    float stiffness;     /**< [N/m], [0, 1e24]. Default 0 */
+    float damping;       /**< [N s/m], [0, 1e24], or INFINITY: holds the speed exactly, without stiffness. Default 0 */
+    float frequency;     /**< [Hz], 0 or [1e-3, 1e3]: stiffness and damping (then 0 here) follow from it and
+                              damping_ratio, for the mass or inertia that the joint's two ends alone set against motion
+                              along the axis, at the pose where this is given, while the joint holds what it locks:
+                              for a hinge, inertia about the hinge. Default 0 */
+    float damping_ratio; /**< of frequency, [0, 1000]; 1: critical. Default 1 */
+    float max_force;     /**< [N], [0, 1e24] or INFINITY. Default INFINITY */
+} taut_drive;
+
+/** One axis of a joint. Drive and friction act on free and limited axes; a locked one takes none. */
+typedef struct taut_axis_def {
+    uint32_t struct_size;
+    taut_axis_mode mode;
+    float lower;           /**< stop of a limited axis [m], within 1e6, or -INFINITY: none. Of an angle, each within
+                                2 pi and not more than 2 pi apart [rad]. Default -INFINITY */
+    float upper;           /**< not below lower, or INFINITY: none. Default INFINITY */
+    float stop_compliance; /**< of the stops [m/N], [0, 1e6]; 0: rigid. Default 0 */
+    float stop_damping;    /**< of compliant stops [N s/m], [0, 1e12]. Default 0 */
+    taut_drive drive;
+    float friction; /**< force at most, against the motion [N], [0, 1e24]. Default 0 */
+} taut_axis_def;
 
 /**
  * Holds a point of one end on a point of the other (3 rows).
@@ -33,10 +111,15 @@ typedef struct taut_ball_joint_def {
     taut_pos anchor_b; /**< in the frame of end b, world position if null [m]; a particle takes only 0 */
     float compliance;  /**< [m/N], [0, 1e6]. Default 0 */
     float damping;     /**< [N s/m], [0, 1e12]. Default 0 */
+    float break_force; /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
+    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_DIRECT */
     uint64_t user_data;
 } taut_ball_joint_def;
 
-/** Holds two points at a distance (1 row): a rod, or a spring when compliant. */
+/**
+ * Holds two points at a distance (1 row): a rod, or a spring when compliant. With min_length or max_length it keeps
+ * them within a range instead: a rope has a max_length alone. Its axis 0 has the coordinate distance - length.
+ */
 typedef struct taut_distance_joint_def {
     uint32_t struct_size;
     uint32_t collide_connected; /**< 1: the two bodies still collide. Default 0 */
@@ -44,42 +127,274 @@ typedef struct taut_distance_joint_def {
     taut_body body_b;           /**< null: the world; at least one end must be dynamic or a particle */
     taut_pos anchor_a;          /**< as for the ball joint */
     taut_pos anchor_b;
-    float length;      /**< [m], 0: the distance at creation, else [1e-4, 1e6]. Default 0 */
-    float compliance;  /**< [m/N], [0, 1e6]. Default 0 */
-    float damping;     /**< [N s/m], [0, 1e12]. Default 0 */
-    uint32_t reserved; /**< zero */
+    float length;           /**< [m], 0 or [1e-4, 1e6]; 0: max_length if finite, else min_length, else the distance at
+                                 creation. Default 0 */
+    float compliance;       /**< of the rod, or of the stops of a range [m/N], [0, 1e6]. Default 0 */
+    float damping;          /**< likewise [N s/m], [0, 1e12]. Default 0 */
+    float min_length;       /**< [m], 0 or [1e-4, 1e6]; 0: no lower stop. Default 0 */
+    float max_length;       /**< [m], 0, [1e-4, 1e6] or INFINITY; 0: no upper stop; INFINITY likewise, but not a rod.
+                                 Default 0 */
+    float frequency;        /**< [Hz], 0 or [1e-3, 1e3]: compliance and damping (then 0 here) follow from it and
+                                 damping_ratio, as for a taut_drive. Default 0 */
+    float damping_ratio;    /**< of frequency, [0, 1000]. Default 1 */
+    float break_force;      /**< as for the ball joint */
+    taut_drive drive;       /**< of a range: target is distance - length */
+    float friction;         /**< of a range [N], [0, 1e24]. Default 0 */
+    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_DIRECT */
+    uint32_t reserved;      /**< zero */
     uint64_t user_data;
 } taut_distance_joint_def;
 
+/** Holds two frames together (6 rows). */
+typedef struct taut_fixed_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected; /**< 1: the two bodies still collide. Default 0 */
+    taut_body body_a;           /**< null: the world; no particle */
+    taut_body body_b;           /**< null: the world; no particle; at least one end must be dynamic */
+    taut_frame frame_a;         /**< default: the origin, unturned */
+    taut_frame frame_b;
+    float compliance;         /**< of the locked positions [m/N], [0, 1e6]. Default 0 */
+    float damping;            /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
+    float angular_compliance; /**< of the locked angles [rad/(N m)], [0, 1e6]. Default 0 */
+    float angular_damping;    /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
+    float break_force;        /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
+    float break_torque;       /**< the same of the torque about the anchor of end b [N m] */
+    taut_joint_solve solve;   /**< default TAUT_JOINT_SOLVE_DIRECT */
+    uint32_t reserved;        /**< zero */
+    uint64_t user_data;
+} taut_fixed_joint_def;
+
+/** Leaves the angle about x. All fields but the axes are those of taut_fixed_joint_def, here and below. */
+typedef struct taut_hinge_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def angle; /**< default free */
+    uint64_t user_data;
+} taut_hinge_joint_def;
+
+/** Leaves the slide along x. */
+typedef struct taut_slider_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def slide; /**< default free */
+    uint64_t user_data;
+} taut_slider_joint_def;
+
+/** Leaves the slide along and the angle about x. */
+typedef struct taut_cylindrical_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def slide; /**< default free */
+    taut_axis_def angle; /**< default free */
+    uint64_t user_data;
+} taut_cylindrical_joint_def;
+
+/** Leaves the angles about x of frame a and about y of frame b: a cardan joint. */
+typedef struct taut_universal_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def angle_a; /**< about x of frame a; default free */
+    taut_axis_def angle_b; /**< about y of frame b; default free */
+    uint64_t user_data;
+} taut_universal_joint_def;
+
+/** A ball joint with a limited cone and twist: shoulder, neck. */
+typedef struct taut_cone_twist_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def swing; /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at; no drive */
+    taut_axis_def twist; /**< default free */
+    uint64_t user_data;
+} taut_cone_twist_joint_def;
+
+/** Each of the six relative motions as the host wants it. */
+typedef struct taut_six_dof_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def axes[6]; /**< position along x, y, z of a; angle about x of a, the turned y, z of b, of which that
+                              about y must keep off +-pi/2; default locked */
+    uint64_t user_data;
+} taut_six_dof_joint_def;
+
+/** What acts along an axis, as of the last substep; zero before the first step. */
+typedef struct taut_axis_forces {
+    float total;         /**< of all below and of the lock, along the coordinate [N] */
+    float stop;          /**< > 0: the lower stop pushes up; < 0: the upper one down [N] */
+    float drive;         /**< [N] */
+    float friction;      /**< [N] */
+    int32_t active_stop; /**< -1: lower, 1: upper, 0: none pushes */
+    uint32_t reserved;   /**< zero */
+} taut_axis_forces;
+
+/** Writes the defaults of a free axis. */
+TAUT_API void taut_axis_def_init(taut_axis_def* def);
 TAUT_API void taut_ball_joint_def_init(taut_ball_joint_def* def);
 TAUT_API void taut_distance_joint_def_init(taut_distance_joint_def* def);
+TAUT_API void taut_fixed_joint_def_init(taut_fixed_joint_def* def);
+TAUT_API void taut_hinge_joint_def_init(taut_hinge_joint_def* def);
+TAUT_API void taut_slider_joint_def_init(taut_slider_joint_def* def);
+TAUT_API void taut_cylindrical_joint_def_init(taut_cylindrical_joint_def* def);
+TAUT_API void taut_universal_joint_def_init(taut_universal_joint_def* def);
+TAUT_API void taut_cone_twist_joint_def_init(taut_cone_twist_joint_def* def);
+TAUT_API void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def);
+
+/**
+ * The frames that a world point and direction have on two ends at their present poses: what a def's frame_a and frame_b
+ * take so that the joint begins with every coordinate at 0. x is the axis; y is the world's x, y or z, whichever is
+ * most square to the axis (the first of equals), made square to it.
+ * @param body_a, body_b null: the world. @param pivot [m], within 1e7. @param axis not zero; normalised.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_joint_frames_from_world(taut_world world, taut_body body_a, taut_body body_b, taut_pos pivot,
+                                                  taut_vec3 axis, taut_frame* frame_a, taut_frame* frame_b);
 
 /**
  * Adds a joint.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT (both ends fixed or the same, anchor off a particle, points of a distance
- *         joint closer than 1e-4 m, range), TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE, TAUT_STRUCT_SIZE,
- * TAUT_NULL_POINTER, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (both ends fixed or the same, anchor off a particle, a particle where none may
+ *         be, points of a distance joint closer than 1e-4 m, range), TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE,
+ *         TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out);
 TAUT_API taut_result taut_world_add_distance_joint(taut_world world, const taut_distance_joint_def* def,
                                                    taut_joint* out);
+TAUT_API taut_result taut_world_add_fixed_joint(taut_world world, const taut_fixed_joint_def* def, taut_joint* out);
+TAUT_API taut_result taut_world_add_hinge_joint(taut_world world, const taut_hinge_joint_def* def, taut_joint* out);
+TAUT_API taut_result taut_world_add_slider_joint(taut_world world, const taut_slider_joint_def* def, taut_joint* out);
+TAUT_API taut_result taut_world_add_cylindrical_joint(taut_world world, const taut_cylindrical_joint_def* def,
+                                                      taut_joint* out);
+TAUT_API taut_result taut_world_add_universal_joint(taut_world world, const taut_universal_joint_def* def,
+                                                    taut_joint* out);
+TAUT_API taut_result taut_world_add_cone_twist_joint(taut_world world, const taut_cone_twist_joint_def* def,
+                                                     taut_joint* out);
+TAUT_API taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_joint_def* def, taut_joint* out);
 TAUT_API taut_result taut_joint_remove(taut_joint joint);
 /** 1 if the handle names a live joint, else 0. */
 TAUT_API int32_t taut_joint_is_valid(taut_joint joint);
 
 TAUT_API taut_result taut_joint_get_kind(taut_joint joint, taut_joint_kind* out);
 TAUT_API taut_result taut_joint_get_user_data(taut_joint joint, uint64_t* out);
+TAUT_API taut_result taut_joint_set_user_data(taut_joint joint, uint64_t value);
 TAUT_API taut_result taut_joint_get_bodies(taut_joint joint, taut_body* body_a, taut_body* body_b);
 /** World positions of the two anchors after the last step [m]. */
 TAUT_API taut_result taut_joint_get_anchors(taut_joint joint, taut_pos* anchor_a, taut_pos* anchor_b);
-/** Force on end b in the last substep, world axes [N]; end a receives the opposite. */
+/** Frames on the two ends, as in the defs; unturned for ball and distance joints. */
+TAUT_API taut_result taut_joint_get_frames(taut_joint joint, taut_frame* frame_a, taut_frame* frame_b);
+
+/** Force on end b in the last substep, world axes [N]; end a receives the opposite. Zero before the first step. */
 TAUT_API taut_result taut_joint_get_force(taut_joint joint, taut_vec3* out);
-/** Distance by which the joint is violated at the present poses [m]: gap of a ball joint, |length error| of a rod. */
+/** Torque on end b about its anchor in the last substep, world axes [N m]; drives, stops and friction included. */
+TAUT_API taut_result taut_joint_get_torque(taut_joint joint, taut_vec3* out);
+/** Distance by which the joint is violated at the present poses [m]: gap of a ball joint, |length error| of a rod,
+ *  overrun of stops; of what is locked or limited only. */
 TAUT_API taut_result taut_joint_get_error(taut_joint joint, float* out);
-/** Changes compliance [m/N] and damping [N s/m]; ranges as in the defs. */
+/** The same of angles [rad], 0 for ball and distance joints; what a joint locks counts by the sine of its angle. */
+TAUT_API taut_result taut_joint_get_angular_error(taut_joint joint, float* out);
+/** Number of axes, by which the calls below index them. */
+TAUT_API taut_result taut_joint_get_axis_count(taut_joint joint, uint32_t* out);
+/** Coordinate of an axis [m or rad] and its rate [m/s or rad/s] at the present poses; either pointer may be null.
+ *  TAUT_INVALID_ARGUMENT for an axis that the joint has not, here and below. */
+TAUT_API taut_result taut_joint_get_coordinates(taut_joint joint, uint32_t axis, float* value, float* rate);
+TAUT_API taut_result taut_joint_get_axis_forces(taut_joint joint, uint32_t axis, taut_axis_forces* out);
+
+/** The axis as it is: stiffness and damping are those in force, frequency 0. For a distance joint, lower and upper
+ *  count from `length`. */
+TAUT_API taut_result taut_joint_get_axis(taut_joint joint, uint32_t axis, taut_axis_def* out);
+/**
+ * Changes an axis. New mode or stops forget what the axis carries from the last step; a new drive or friction keeps it.
+ * @return as for adding a joint.
+ */
+TAUT_API taut_result taut_joint_set_axis(taut_joint joint, uint32_t axis, const taut_axis_def* def);
+/** Changes target and speed of a drive alone; TAUT_INVALID_ARGUMENT for an axis without one. */
+TAUT_API taut_result taut_joint_set_target(taut_joint joint, uint32_t axis, float target, float speed);
+/** Changes compliance [m/N] and damping [N s/m] of locked positions, for a distance joint also of its stops; ranges as
+ *  in the defs. */
 TAUT_API taut_result taut_joint_set_compliance(taut_joint joint, float compliance, float damping);
-/** Changes the length of a distance joint [m], [1e-4, 1e6]; TAUT_INVALID_ARGUMENT for another kind. */
+/** Changes compliance [rad/(N m)] and damping [N m s/rad] of locked angles; TAUT_INVALID_ARGUMENT for ball and distance
+ *  joints. */
+TAUT_API taut_result taut_joint_set_angular_compliance(taut_joint joint, float compliance, float damping);
+/** Changes what the joint breaks at [N], [N m], [0, 1e24]; 0: never. See taut_joint_break_event. */
+TAUT_API taut_result taut_joint_set_break(taut_joint joint, float force, float torque);
+/** Changes the length of a distance joint [m], [1e-4, 1e6]; stops and drive move along. TAUT_INVALID_ARGUMENT for
+ *  another kind. */
 TAUT_API taut_result taut_joint_set_length(taut_joint joint, float length);
+TAUT_API taut_result taut_joint_set_solve(taut_joint joint, taut_joint_solve solve);
+/** Moves the joint on both ends. Ball and distance joints do not look at the rotations, which must be valid all the
+ *  same. @return as for adding a joint. */
+TAUT_API taut_result taut_joint_set_frames(taut_joint joint, const taut_frame* frame_a, const taut_frame* frame_b);
+/** Whether the two bodies collide, 0 or 1. */
+TAUT_API taut_result taut_joint_set_collide_connected(taut_joint joint, uint32_t collide_connected);
 
 #ifdef __cplusplus
 }

@@ -10,6 +10,7 @@
 #include <taut/cable.h>
 #include <taut/event.h>
 #include <taut/joint.h>
+#include <taut/lint.h>
 #include <taut/math.h>
 #include <taut/profile.h>
 #include <taut/shape.h>

@@ -68,6 +68,8 @@ TAUT_API taut_result taut_world_step(taut_world world);
  */
 TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
 
+/** The def as checked at creation, with the gravity of now. */
+TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
 /** Live bodies and particles, shapes and joints; any pointer may be null. */

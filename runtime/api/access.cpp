@@ -10,21 +10,21 @@ namespace taut {
 // ---------------------------------------------------------------- check
 
 Check& Check::pointer(const char* name, const void* value) {
-    if (*this && !value) result_ = refuse(TAUT_NULL_POINTER, "%s: %s is null", call_, name);
+    if (*this && !value) result_ = refuse(TAUT_NULL_POINTER, "%s: %s%s is null", call_, scope_, name);
     return *this;
 }
 
 Check& Check::struct_size(uint32_t value, size_t known) {
     if (*this && value != known) {
-        result_ = refuse(TAUT_STRUCT_SIZE, "%s: struct_size is %u, expected %zu; call the _init function", call_, value,
-                         known);
+        result_ = refuse(TAUT_STRUCT_SIZE, "%s: %sstruct_size is %u, expected %zu; call the _init function", call_,
+                         scope_, value, known);
     }
     return *this;
 }
 
 Check& Check::zero(const char* field, uint64_t value) {
     if (*this && value != 0) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is %llu, expected 0", call_, field,
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is %llu, expected 0", call_, scope_, field,
                          static_cast<unsigned long long>(value));
     }
     return *this;
@@ -34,7 +34,8 @@ Check& Check::boolean(const char* field, uint32_t value) { return count(field, v
 
 Check& Check::count(const char* field, uint32_t value, uint32_t lo, uint32_t hi) {
     if (*this && !(value >= lo && value <= hi)) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is %u, expected [%u, %u]", call_, field, value, lo, hi);
+        result_ =
+            refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is %u, expected [%u, %u]", call_, scope_, field, value, lo, hi);
     }
     return *this;
 }
@@ -44,8 +45,8 @@ Check& Check::in_range(const char* field, const char* part, T value, Range range
     const T lo = static_cast<T>(range.lo), hi = static_cast<T>(range.hi);
     const bool inside = (range.open_below ? value > lo : value >= lo) && value <= hi;
     if (*this && !inside) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is %.9g, expected %c%.6g, %.6g]", call_, field, part,
-                         static_cast<double>(value), range.open_below ? '(' : '[', range.lo, range.hi);
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s%s is %.9g, expected %c%.6g, %.6g]", call_, scope_, field,
+                         part, static_cast<double>(value), range.open_below ? '(' : '[', range.lo, range.hi);
     }
     return *this;
 }
@@ -55,10 +56,14 @@ Check& Check::number(const char* field, double value, Range range) { return in_r
 
 Check& Check::zero_or(const char* field, float value, Range range) {
     if (*this && value != 0 && !(value >= static_cast<float>(range.lo) && value <= static_cast<float>(range.hi))) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is %.9g, expected 0 or [%.6g, %.6g]", call_, field,
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is %.9g, expected 0 or [%.6g, %.6g]", call_, scope_, field,
                          static_cast<double>(value), range.lo, range.hi);
     }
     return *this;
+}
+
+Check& Check::number_or(const char* field, float value, Range range, float other) {
+    return value == other ? *this : in_range(field, "", value, range);
 }
 
 Check& Check::vector(const char* field, const taut_vec3& value, Range range) {
@@ -75,7 +80,7 @@ Check& Check::vector(const char* field, const taut_pos& value, Range range) {
 
 Check& Check::length(const char* field, double squared, Range range) {
     if (*this && !(squared <= range.hi * range.hi)) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s has length %.9g, expected at most %.6g", call_, field,
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s has length %.9g, expected at most %.6g", call_, scope_, field,
                          std::sqrt(squared), range.hi);
     }
     return *this;
@@ -91,7 +96,7 @@ Check& Check::bounded(const char* field, const taut_pos& value, Range range) {
 
 Check& Check::zero(const char* field, const taut_vec3& value, const char* why) {
     if (*this && !(value.x == 0 && value.y == 0 && value.z == 0)) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s is (%.9g, %.9g, %.9g), expected 0 %s", call_, field,
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is (%.9g, %.9g, %.9g), expected 0 %s", call_, scope_, field,
                          static_cast<double>(value.x), static_cast<double>(value.y), static_cast<double>(value.z), why);
     }
     return *this;
@@ -103,14 +108,14 @@ Check& Check::rotation(const char* field, const taut_quat& value) {
     in_range(field, ".z", value.z, component).in_range(field, ".w", value.w, component);
     const double size = Quat(value.w, value.x, value.y, value.z).norm();
     if (*this && !(std::abs(size - 1) <= kUnitTolerance)) {
-        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s has length %.9g, expected 1 within %g", call_, field, size,
-                         kUnitTolerance);
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s has length %.9g, expected 1 within %g", call_, scope_, field,
+                         size, kUnitTolerance);
     }
     return *this;
 }
 
 Check& Check::require(bool condition, const char* text, taut_result code) {
-    if (*this && !condition) result_ = refuse(code, "%s: %s", call_, text);
+    if (*this && !condition) result_ = refuse(code, "%s: %s%s", call_, scope_, text);
     return *this;
 }
 

@@ -35,7 +35,14 @@ constexpr Range kShapeCoordinate{-TAUT_SHAPE_MAX_SIZE, TAUT_SHAPE_MAX_SIZE};  //
 constexpr Range kCompliance{0, 1e6};                                          // [m/N]
 constexpr Range kDamping{0, 1e12};                                            // [N s/m]
 constexpr Range kJointLength{1e-4, 1e6};                                      // [m]
-constexpr Range kAdvance{0, 1e3};                                             // [s]
+constexpr Range kJointPosition{-1e6, 1e6};                                    // [m], of a stop or target
+constexpr Range kJointAngle{-6.2831855, 6.2831855};                           // [rad], likewise
+constexpr Range kSwing{0, 3.1415927410125732, true};                          // [rad]
+constexpr Range kJointForce{0, 1e24};                                         // [N, N m], stiffness and damping too
+constexpr Range kFrequency{1e-3, 1e3};                                        // [Hz]
+constexpr Range kDampingRatio{0, 1000};
+constexpr Range kDirection{-1e30, 1e30};  // of which the length does not matter
+constexpr Range kAdvance{0, 1e3};         // [s]
 // No header states these: above anything that double cannot carry through a step, far above any scene.
 constexpr Range kInertia{-1e30, 1e30};   // [kg m^2]
 constexpr Range kForce{-1e24, 1e24};     // [N, N m, N s, N m s]
@@ -48,6 +55,11 @@ class Check {
 public:
     explicit Check(const char* call) : call_(call) {}
 
+    // What stands before the fields of a struct inside a def ("angle."); "" at the end of it.
+    Check& within(const char* scope) {
+        scope_ = scope;
+        return *this;
+    }
     Check& pointer(const char* name, const void* value);
     // The first field of every def.
     Check& struct_size(uint32_t value, size_t known);
@@ -64,6 +76,8 @@ public:
     Check& number(const char* field, float value, Range range);
     Check& number(const char* field, double value, Range range);
     Check& zero_or(const char* field, float value, Range range);
+    // In the range, or one value outside: an infinity.
+    Check& number_or(const char* field, float value, Range range, float other);
     // Each component in the range.
     Check& vector(const char* field, const taut_vec3& value, Range range);
     Check& vector(const char* field, const taut_pos& value, Range range);
@@ -85,6 +99,7 @@ private:
     Check& length(const char* field, double squared, Range range);
 
     const char* call_;
+    const char* scope_ = "";
     taut_result result_ = TAUT_OK;
 };
 

@@ -1,6 +1,7 @@
 #include <taut/body.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "api/access.h"
 #include "api/body_mass.h"
@@ -63,6 +64,18 @@ Check& check_pose(Check& check, const taut_pose& pose, const char* position, con
 Check& check_pushable(Check& check, NodeKind kind, bool angular) {
     check.require(moves_by_forces(kind), "body is not dynamic: forces do not move it");
     return check.require(kind != NodeKind::particle || !angular, "body is a particle, which takes no torque");
+}
+
+// The stride of an array of entries of this size: 0 means packed.
+size_t check_stride(Check& check, const char* wrong, size_t stride, size_t entry, size_t alignment) {
+    if (stride == 0) return entry;
+    check.require(stride >= entry && stride % alignment == 0, wrong);
+    return stride;
+}
+
+template <class Entry>
+Entry& at_stride(Entry* first, uint32_t index, size_t stride) {
+    return *reinterpret_cast<Entry*>(reinterpret_cast<unsigned char*>(first) + index * stride);
 }
 
 // ---------------------------------------------------------------- act
@@ -306,6 +319,39 @@ taut_result taut_body_get_velocity(taut_body handle, taut_vec3* linear, taut_vec
     return with(__func__, handle, Use::read, [&](const World& world, uint32_t node) {
         if (linear) *linear = to_vec3(world.nodes.motion[node].v);
         if (angular) *angular = to_vec3(world.nodes.motion[node].w);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_body_states(taut_world handle, const taut_body* bodies, uint32_t count, taut_pose* poses,
+                                       size_t pose_stride, taut_vec3* linear, size_t linear_stride, taut_vec3* angular,
+                                       size_t angular_stride) {
+    Check check(__func__);
+    if (count > 0) check.pointer("bodies", bodies);
+    pose_stride = check_stride(check, "pose_stride is too small or not a multiple of 8", pose_stride, sizeof *poses, 8);
+    linear_stride =
+        check_stride(check, "linear_stride is too small or not a multiple of 4", linear_stride, sizeof *linear, 4);
+    angular_stride =
+        check_stride(check, "angular_stride is too small or not a multiple of 4", angular_stride, sizeof *angular, 4);
+    if (!check) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        const Nodes& nodes = world.nodes;
+        for (uint32_t i = 0; i < count; ++i) {
+            uint32_t node;
+            if (const taut_result found = find_body(check.call(), "bodies", world, bodies[i], node); found != TAUT_OK) {
+                char field[32];
+                std::snprintf(field, sizeof field, "bodies[%u]", i);
+                return find_body(check.call(), field, world, bodies[i], node);
+            }
+        }
+        for (uint32_t i = 0; i < count; ++i) {
+            HandleBits bits{};
+            unpack_handle(bodies[i].bits, bits);
+            const NodeMotion& motion = nodes.motion[bits.index];
+            if (poses) at_stride(poses, i, pose_stride) = to_pose(nodes.origin(bits.index), motion.q);
+            if (linear) at_stride(linear, i, linear_stride) = to_vec3(motion.v);
+            if (angular) at_stride(angular, i, angular_stride) = to_vec3(motion.w);
+        }
         return TAUT_OK;
     });
 }

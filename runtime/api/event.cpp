@@ -11,8 +11,17 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
     if (!check.pointer("out", out)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         const auto size = [](const auto& array) { return static_cast<uint32_t>(array.size()); };
-        *out = {world.contact_begin.data(), world.contact_end.data(), world.moved.data(), world.quarantined.data(),
-                size(world.contact_begin),  size(world.contact_end),  size(world.moved),  size(world.quarantined)};
+        *out = {world.contact_begin.data(),
+                world.contact_end.data(),
+                world.moved.data(),
+                world.quarantined.data(),
+                size(world.contact_begin),
+                size(world.contact_end),
+                size(world.moved),
+                size(world.quarantined),
+                world.broken.data(),
+                size(world.broken),
+                0};
         return TAUT_OK;
     });
 }

@@ -1,190 +1,37 @@
+// Joints that are there: what they connect, and changes of what they do.
 #include <taut/joint.h>
 
-#include "api/access.h"
-#include "constraints/ball.h"
-#include "constraints/distance.h"
+#include "api/joint_parts.h"
 
 using namespace taut;
 
 namespace {
 
-// What every joint's data begins with.
-struct JointAnchors {
-    Vec3 a, b;
-};
-static_assert(sizeof(BallData) >= sizeof(JointAnchors) && sizeof(DistanceData) >= sizeof(JointAnchors));
-
-// A joint's data, or what it begins with. Eigen's vectors are plain numbers, though not trivially copyable by the
-// letter.
-template <class Data>
-Data read_data(const Joint& joint) {
-    static_assert(sizeof(Data) <= Joint::kDataSize && std::is_trivially_destructible_v<Data>);
-    Data data;
-    std::memcpy(static_cast<void*>(&data), joint.data, sizeof data);
-    return data;
+// act(world, joint, place) on an axis that the joint has.
+template <class Act>
+taut_result with_axis(const Check& check, taut_joint handle, uint32_t axis, Use use, Act&& act) {
+    return with(check.call(), handle, use, [&](World& world, uint32_t index) {
+        Joint& joint = world.joints.record[index];
+        JointAxis place;
+        const taut_result found = find_axis(check.call(), joint, axis, place);
+        return found == TAUT_OK ? act(world, joint, place) : found;
+    });
 }
 
-template <class Data>
-void write_data(Joint& joint, const Data& data) {
-    static_assert(sizeof(Data) <= Joint::kDataSize && std::is_trivially_destructible_v<Data>);
-    std::memcpy(joint.data, static_cast<const void*>(&data), sizeof data);
-}
-
-struct JointKind {
-    const ConstraintType* type;
-    taut_joint_kind kind;
-};
-const JointKind kJointKinds[] = {{&kBall, TAUT_JOINT_BALL}, {&kDistance, TAUT_JOINT_DISTANCE}};
-
-struct End {
-    uint32_t node = kNone;
-    Vec3 anchor = Vec3::Zero();  // as the joint's data wants it: relative to the centre of mass, or in the world
-};
-
-Pose pose_of(const World& world, uint32_t node) {
-    if (node == kNone) return {};
-    const NodeMotion& motion = world.nodes.motion[node];
-    if (world.nodes.info[node].kind == NodeKind::particle) return {motion.x, Mat3::Identity()};
-    return {motion.x, motion.q.toRotationMatrix()};
-}
-
-Vec3 world_anchor(const World& world, const End& end) {
-    const Pose pose = pose_of(world, end.node);
-    return pose.x + pose.R * end.anchor;
-}
-
-bool moves(const World& world, const End& end) {
-    return end.node != kNone && moves_by_forces(world.nodes.info[end.node].kind);
-}
-
-template <class Def>
-bool check_def(Check& check, const Def* def, taut_joint* out) {
-    if (!check.pointer("def", def).pointer("out", out)) return false;
-    check.struct_size(def->struct_size, sizeof *def)
-        .boolean("collide_connected", def->collide_connected)
-        .bounded("anchor_a", def->anchor_a, kPosition)
-        .bounded("anchor_b", def->anchor_b, kPosition)
-        .number("compliance", def->compliance, kCompliance)
-        .number("damping", def->damping, kDamping);
-    return static_cast<bool>(check);
-}
-
-taut_result find_end(Check& check, const World& world, const char* body_field, taut_body body, const char* anchor_field,
-                     const taut_pos& anchor, End& out) {
-    out.anchor = to_vec(anchor);
-    if (body.bits == 0) return TAUT_OK;
-    const taut_result found = find_body(check.call(), body_field, world, body, out.node);
-    if (found != TAUT_OK) return found;
-    if (world.nodes.info[out.node].kind == NodeKind::particle) {
-        if (out.anchor != Vec3::Zero()) {
-            return refuse(TAUT_INVALID_ARGUMENT, "%s: %s is off its particle, expected 0", check.call(), anchor_field);
-        }
-    } else {
-        out.anchor -= world.nodes.mass[out.node].centre;
-        check.vector(anchor_field, anchor, kShapeCoordinate);
-    }
-    return check.result();
-}
-
-template <class Def>
-taut_result find_ends(Check& check, const World& world, const Def& def, End& a, End& b) {
-    taut_result found = find_end(check, world, "body_a", def.body_a, "anchor_a", def.anchor_a, a);
-    if (found == TAUT_OK) found = find_end(check, world, "body_b", def.body_b, "anchor_b", def.anchor_b, b);
-    if (found != TAUT_OK) return found;
-    check.require(moves(world, a) || moves(world, b), "body_a and body_b: neither end is dynamic or a particle");
-    check.require(a.node != b.node, "body_a and body_b are the same");
-    return check.result();
-}
-
-void forget_pair_of_ends(World& world, const Joint& joint) {
-    if (joint.collide_connected || joint.node[0] == kNone || joint.node[1] == kNone) return;
-    forget_pair(world.pairs, world.nodes, joint.node[0], joint.node[1]);
-}
-
-template <class Def, class Data>
-taut_result add_joint(Check& check, World& world, const ConstraintType& type, const Def& def, const End& a,
-                      const End& b, const Data& data, taut_joint* out) {
-    if (!check.require(world.joints.ids.slots() < kMaxSlots, "too many joints", TAUT_LIMIT)) return check.result();
-    Joint joint;
-    joint.type = &type;
-    joint.node[0] = a.node;
-    joint.node[1] = b.node;
-    joint.compliance = def.compliance;
-    joint.damping = def.damping;
-    joint.collide_connected = def.collide_connected != 0;
-    joint.user_data = def.user_data;
-    write_data(joint, data);
-    if (a.node != kNone) reserve_ended(world.pairs, a.node);
-    const uint32_t index = world.joints.add(joint);
-    forget_pair_of_ends(world, joint);
-    *out = world.joint_handle(index);
-    return TAUT_OK;
-}
-
-End end_of(const Joint& joint, int end) {
-    const JointAnchors anchors = read_data<JointAnchors>(joint);
-    return {joint.node[end], end == 0 ? anchors.a : anchors.b};
-}
-
-// Error and Jacobian at the present poses.
-struct Evaluation {
-    double error[kMaxRows] = {};
-    double jacobian[kMaxNodes * kMaxRows * kDof] = {};  // [node][row][6]
-};
-
-void evaluate(const World& world, const Joint& joint, Evaluation& out) {
-    Pose poses[kMaxNodes];
-    for (int i = 0; i < 2; ++i) poses[i] = pose_of(world, joint.node[i]);
-    joint.type->evaluate(joint.data, poses, out.error, out.jacobian);
+template <class Change>
+taut_result change(const Check& check, taut_joint handle, Change&& apply) {
+    if (!check) return check.result();
+    return with(check.call(), handle, Use::write,
+                [&](World& world, uint32_t index) { return apply(world, world.joints.record[index]); });
 }
 
 }  // namespace
 
-void taut_ball_joint_def_init(taut_ball_joint_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-}
-
-void taut_distance_joint_def_init(taut_distance_joint_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-}
-
-taut_result taut_world_add_ball_joint(taut_world handle, const taut_ball_joint_def* def, taut_joint* out) {
-    Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
-    return with_world(check.call(), handle, Use::write, [&](World& world) {
-        End a, b;
-        const taut_result found = find_ends(check, world, *def, a, b);
-        if (found != TAUT_OK) return found;
-        return add_joint(check, world, kBall, *def, a, b, BallData{a.anchor, b.anchor}, out);
-    });
-}
-
-taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* def, taut_joint* out) {
-    Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
-    if (!check.zero_or("length", def->length, kJointLength).zero("reserved", def->reserved)) return check.result();
-    return with_world(check.call(), handle, Use::write, [&](World& world) {
-        End a, b;
-        const taut_result found = find_ends(check, world, *def, a, b);
-        if (found != TAUT_OK) return found;
-        // Between closer points a distance has no direction.
-        const double distance = (world_anchor(world, b) - world_anchor(world, a)).norm();
-        check.number("distance between the anchors", distance, kJointLength);
-        if (!check) return check.result();
-        const double length = def->length == 0 ? distance : def->length;
-        return add_joint(check, world, kDistance, *def, a, b, DistanceData{a.anchor, b.anchor, length}, out);
-    });
-}
-
 taut_result taut_joint_remove(taut_joint handle) {
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         const Joint& joint = world.joints.record[index];
-        if (joint.node[0] != kNone) reserve_ended(world.pairs, joint.node[0]);
-        forget_pair_of_ends(world, joint);
+        reserve_pair_of_ends(world, joint);
+        if (!joint.collide_connected) forget_pair_of_ends(world, joint);
         world.joints.remove(index);
         return TAUT_OK;
     });
@@ -196,9 +43,7 @@ taut_result taut_joint_get_kind(taut_joint handle, taut_joint_kind* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        for (const JointKind& known : kJointKinds) {
-            if (known.type == world.joints.record[index].type) *out = known.kind;
-        }
+        *out = kind_of(world.joints.record[index]).kind;
         return TAUT_OK;
     });
 }
@@ -208,6 +53,13 @@ taut_result taut_joint_get_user_data(taut_joint handle, uint64_t* out) {
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         *out = world.joints.record[index].user_data;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_user_data(taut_joint handle, uint64_t value) {
+    return change(Check(__func__), handle, [&](World&, Joint& joint) {
+        joint.user_data = value;
         return TAUT_OK;
     });
 }
@@ -223,69 +75,164 @@ taut_result taut_joint_get_bodies(taut_joint handle, taut_body* body_a, taut_bod
     });
 }
 
-taut_result taut_joint_get_anchors(taut_joint handle, taut_pos* anchor_a, taut_pos* anchor_b) {
+// ---------------------------------------------------------------- axes
+
+taut_result taut_joint_get_axis_count(taut_joint handle, uint32_t* out) {
     Check check(__func__);
-    if (!check.pointer("anchor_a", anchor_a).pointer("anchor_b", anchor_b)) return check.result();
+    if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const Joint& joint = world.joints.record[index];
-        *anchor_a = to_pos(world_anchor(world, end_of(joint, 0)));
-        *anchor_b = to_pos(world_anchor(world, end_of(joint, 1)));
+        *out = static_cast<uint32_t>(kind_of(world.joints.record[index]).axes.size());
         return TAUT_OK;
     });
 }
 
-taut_result taut_joint_get_force(taut_joint handle, taut_vec3* out) {
+taut_result taut_joint_get_axis(taut_joint handle, uint32_t axis, taut_axis_def* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
-    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const Joint& joint = world.joints.record[index];
-        Vec3 force = Vec3::Zero();
-        if (!joint.fresh) {
-            // J_b^T lambda, translations only.
-            Evaluation now;
-            evaluate(world, joint, now);
-            const int rows = joint.type->rows;
-            for (int row = 0; row < rows; ++row) {
-                const double* columns = now.jacobian + (rows + row) * kDof;
-                force += joint.lambda[row] * Vec3(columns[0], columns[1], columns[2]);
-            }
+    return with_axis(check, handle, axis, Use::read, [&](const World&, const Joint& joint, const JointAxis& place) {
+        const Axis& held = joint.axis[place.row];
+        taut_axis_def_init(out);
+        out->mode = static_cast<taut_axis_mode>(held.mode);
+        out->stop_compliance = held.limit_compliance;
+        out->stop_damping = held.limit_damping;
+        out->friction = held.friction;
+        if (held.mode == AxisMode::limited) {
+            out->lower = held.lower;
+            out->upper = held.upper;
         }
-        *out = to_vec3(force);
+        if (has_drive(held)) {
+            out->drive = {held.target, held.speed, held.stiffness, held.damping, 0, 1, held.max_force};
+        }
         return TAUT_OK;
     });
 }
 
-taut_result taut_joint_get_error(taut_joint handle, float* out) {
+taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axis_def* def) {
     Check check(__func__);
-    if (!check.pointer("out", out)) return check.result();
-    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        Evaluation now;
-        evaluate(world, world.joints.record[index], now);
-        *out = static_cast<float>(Eigen::Map<const Eigen::Matrix<double, kMaxRows, 1>>(now.error).norm());
+    if (!check.pointer("def", def)) return check.result();
+    return with_axis(check, handle, axis, Use::write, [&](const World& world, Joint& joint, const JointAxis& place) {
+        if (!check_axis(check, kind_of(joint), place, *def)) return check.result();
+        const JointReading reading = read_joint(world.nodes, joint);
+        const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
+        // Both ends may have become static since.
+        check.require(def->drive.frequency == 0 || inverse_mass > 0,
+                      "drive.frequency is given, but neither end moves any more");
+        if (!check) return check.result();
+        change_axis(joint, place.row, make_axis(place, *def, inverse_mass));
         return TAUT_OK;
     });
 }
+
+taut_result taut_joint_set_target(taut_joint handle, uint32_t axis, float target, float speed) {
+    Check check(__func__);
+    if (!check.number("speed", speed, kSpeed)) return check.result();
+    return with_axis(check, handle, axis, Use::write, [&](const World&, Joint& joint, const JointAxis& place) {
+        Axis& held = joint.axis[place.row];
+        check.number("target", target, is_angle(joint, place.row) ? kJointAngle : kJointPosition)
+            .require(has_drive(held), "the axis has no drive");
+        if (!check) return check.result();
+        held.target = target;
+        held.speed = speed;
+        return TAUT_OK;
+    });
+}
+
+// ---------------------------------------------------------------- all else
 
 taut_result taut_joint_set_compliance(taut_joint handle, float compliance, float damping) {
     Check check(__func__);
     check.number("compliance", compliance, kCompliance).number("damping", damping, kDamping);
-    if (!check) return check.result();
-    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
-        world.joints.record[index].compliance = compliance;
-        world.joints.record[index].damping = damping;
+    return change(check, handle, [&](World&, Joint& joint) {
+        joint.compliance = compliance;
+        joint.damping = damping;
+        if (joint.type == &kDistance && joint.axis[0].mode == AxisMode::limited) {
+            joint.axis[0].limit_compliance = compliance;
+            joint.axis[0].limit_damping = damping;
+        }
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_angular_compliance(taut_joint handle, float compliance, float damping) {
+    Check check(__func__);
+    check.number("compliance", compliance, kCompliance).number("damping", damping, kDamping);
+    return change(check, handle, [&](World&, Joint& joint) {
+        if (!check.require(joint.type->angular != 0, "joint locks no angles")) return check.result();
+        joint.angular_compliance = compliance;
+        joint.angular_damping = damping;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_break(taut_joint handle, float force, float torque) {
+    Check check(__func__);
+    check.number("force", force, kJointForce).number("torque", torque, kJointForce);
+    return change(check, handle, [&](World&, Joint& joint) {
+        joint.break_force = or_never(force);
+        joint.break_torque = or_never(torque);
         return TAUT_OK;
     });
 }
 
 taut_result taut_joint_set_length(taut_joint handle, float length) {
     Check check(__func__);
-    if (!check.number("length", length, kJointLength)) return check.result();
-    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
-        Joint& joint = world.joints.record[index];
+    check.number("length", length, kJointLength);
+    return change(check, handle, [&](const World& world, Joint& joint) {
         if (!check.require(joint.type == &kDistance, "joint is not a distance joint")) return check.result();
+        Joint changed = joint;
         DistanceData data = read_data<DistanceData>(joint);
         data.length = length;
-        write_data(joint, data);
+        write_data(changed, data);
+        replace_joint(world.nodes, joint, changed);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_solve(taut_joint handle, taut_joint_solve solve) {
+    Check check(__func__);
+    check.choice("solve", solve, TAUT_JOINT_SOLVE_SOFT);
+    return change(check, handle, [&](World& world, Joint& joint) {
+        const bool direct = solve == TAUT_JOINT_SOLVE_DIRECT;
+        if (joint.direct == direct) return TAUT_OK;
+        joint.direct = direct;
+        ++world.joints.version;  // blocks gain or lose it
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, const taut_frame* frame_b) {
+    Check check(__func__);
+    if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
+    const taut_frame* frames[2] = {frame_a, frame_b};
+    for (int i = 0; i < 2; ++i) {
+        check.bounded(kFrameNames[i].position, frames[i]->position, kPosition)
+            .rotation(kFrameNames[i].rotation, frames[i]->rotation);
+    }
+    return change(check, handle, [&](const World& world, Joint& joint) {
+        const JointKind& kind = kind_of(joint);
+        JointEnd ends[2];
+        for (int i = 0; i < 2; ++i) {
+            ends[i].node = joint.node[i];
+            if (!place_end(check, world, kind, kFrameNames[i], *frames[i], ends[i])) return check.result();
+        }
+        Joint moved = joint;
+        write_ends(moved, kind, ends[0], ends[1]);
+        if (moved.type == &kDistance && !check_distance(check, world, moved)) return check.result();
+        replace_joint(world.nodes, joint, moved);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_collide_connected(taut_joint handle, uint32_t collide_connected) {
+    Check check(__func__);
+    check.boolean("collide_connected", collide_connected);
+    return change(check, handle, [&](World& world, Joint& joint) {
+        const bool collide = collide_connected != 0;
+        if (joint.collide_connected == collide) return TAUT_OK;
+        reserve_pair_of_ends(world, joint);
+        forget_pair_of_ends(world, joint);
+        joint.collide_connected = collide;
+        ++world.joints.version;  // pairs.joined is taken from the joints anew
         return TAUT_OK;
     });
 }

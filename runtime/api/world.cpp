@@ -118,6 +118,15 @@ taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* 
     });
 }
 
+taut_result taut_world_get_def(taut_world handle, taut_world_def* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        *out = world.def;
+        return TAUT_OK;
+    });
+}
+
 taut_result taut_world_get_gravity(taut_world handle, taut_vec3* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();

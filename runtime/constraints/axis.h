@@ -15,7 +15,7 @@ enum class AxisMode : uint8_t { locked, free, limited };
 
 struct Axis {
     AxisMode mode = AxisMode::locked;
-    float lower = 0, upper = 0;                     // of a limited row; an infinite one is no stop
+    float lower = 0, upper = 0;                     // force of each stop [N], not negative
     float limit_compliance = 0, limit_damping = 0;  // of the stops: [m/N], [N s/m]; 0: rigid
     float stiffness = 0, damping = 0;               // of the drive: [N/m], [N s/m]; infinite damping holds the speed
     float target = 0, speed = 0;                    // of the drive: [m], [m/s]
@@ -25,9 +25,8 @@ struct Axis {
 
 // What a row of axes carries from substep to substep.
 struct AxisMemory {
-    float lower = 0, upper = 0;                 // force of each stop [N], not negative
-    float drive = 0, friction = 0;              // force along C [N]
-    float drive_slip = -1, friction_slip = -1;  // compliance of a row at its bound [s/kg]; 0: within; -1: new
+    float lower = 0, upper = 0;     // force of each stop [N], not negative
+    float drive = 0, friction = 0;  // force along C [N]
 };
 
 }  // namespace taut

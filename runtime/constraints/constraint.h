@@ -40,6 +40,11 @@ enum class Bound : uint8_t {
     cone,  // row 0 >= 0, rows 1 and 2 within friction * row 0
 };
 
+// The line that a constraint keeps taut between two nodes: from the end of a lever on a to the end of one on b [m].
+struct Line {
+    Vec3 span, lever_a, lever_b;
+};
+
 struct ConstraintType {
     const char* name;
     int rows;   // 1 to 6
@@ -58,6 +63,8 @@ struct ConstraintType {
     const double* (*compliance)(const void* data);
     // An instance with random but valid data and poses around it, for the tests that loop over the list.
     void (*sample)(uint64_t seed, void* data, Pose* x);
+    // Where K resists the turning of a line between its nodes, which their own rotations do not describe; else null.
+    Line (*line)(const void* data, const Pose* x) = nullptr;
 };
 
 // Every type there is; tests, hash and assembly loop over it.

@@ -49,9 +49,23 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
     add_block(k, 9, 9, lever_stiffness(f, s.rb, part));
     if (part == Curvature::positive && *lambda >= 0) return;
     const Mat3 t = -*lambda / std::max(s.length, 1e-12) * (Mat3::Identity() - s.u * s.u.transpose());
-    const Mat3 b[4] = {-Mat3::Identity(), hat(s.ra), Mat3::Identity(), -hat(s.rb)};
+    add_block(k, 0, 0, t);
+    add_block(k, 0, 6, -t);
+    add_block(k, 6, 0, -t);
+    add_block(k, 6, 6, t);
+    if (s.ra.isZero(0) && s.rb.isZero(0)) return;  // between particles
+    const Mat3 a = hat(s.ra), b = hat(s.rb), ta = t * a, tb = t * b;
+    const Mat3 lever[4][4] = {{Mat3::Zero(), -ta, Mat3::Zero(), tb},
+                              {-ta.transpose(), a.transpose() * ta, ta.transpose(), -a.transpose() * tb},
+                              {Mat3::Zero(), ta, Mat3::Zero(), -tb},
+                              {tb.transpose(), -b.transpose() * ta, -tb.transpose(), b.transpose() * tb}};
     for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) add_block(k, 3 * i, 3 * j, b[i].transpose() * t * b[j]);
+        for (int j = 0; j < 4; ++j) add_block(k, 3 * i, 3 * j, lever[i][j]);
+}
+
+Line line(const void* data, const Pose* x) {
+    const Span s = span_of(*static_cast<const DistanceData*>(data), x);
+    return {std::max(s.length, 1e-12) * s.u, s.ra, s.rb};
 }
 
 void sample(uint64_t seed, void* data, Pose* x) {
@@ -63,7 +77,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kDistance{"distance", 1,       2,     sizeof(DistanceData), Bound::free, true, 0, evaluate,
-                               stiffness,  nullptr, sample};
+const ConstraintType kDistance{"distance", 1,      2,   sizeof(DistanceData), Bound::free, true, 0, evaluate, stiffness,
+                               nullptr,    sample, line};
 
 }  // namespace taut

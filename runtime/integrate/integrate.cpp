@@ -80,6 +80,7 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.inverse_mass.resize(slots + 1);
     system.shift.assign(slots + 1, SweepShift{});
     system.in_block.assign(slots + 1, 0);
+    system.place.assign(slots + 1, kNone);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node) {
         if (nodes.info[node].kind == NodeKind::dead) continue;

@@ -22,6 +22,7 @@ EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unkn
       merged_(memory) {
     read_links(links);
     std::priority_queue<uint64_t, Array<uint64_t>, std::greater<>> queue(std::greater<>{}, Array<uint64_t>(memory));
+    nodes_first_ = meshed();
     for (uint32_t i = 0; i < unknowns_.size(); ++i)
         if (!unknowns_[i].multiplier) queue.push(key(i));
     while (!queue.empty()) {  // entries whose degree has changed since are out of date
@@ -97,7 +98,23 @@ uint64_t EliminationOrder::key(uint32_t i) const {
         const uint32_t other = ends_[m][0] == i ? ends_[m][1] : ends_[m][0];
         if (other != i && (ends_[m][0] == i || ends_[m][1] == i) && linked(i, other)) --degree;
     }
+    if (nodes_first_) return (2 * degree + (unknowns_[i].multiplier ? 1u << 30 : 0)) << 32 | i;
     return (2 * degree + !unknowns_[i].multiplier) << 32 | i;
+}
+
+// More multipliers than nodes, and nodes that only multipliers tie together: a net. There the graph of multipliers,
+// which is left once all nodes are gone, has the smaller separators (3 rows a joint against 6 freedoms a body).
+bool EliminationOrder::meshed() const {
+    size_t multipliers = 0;
+    for (uint32_t i = 0; i < unknowns_.size(); ++i) {
+        if (unknowns_[i].multiplier) {
+            ++multipliers;
+            continue;
+        }
+        for (uint32_t j : graph_[i])
+            if (!unknowns_[j].multiplier) return false;
+    }
+    return 2 * multipliers > unknowns_.size();
 }
 
 }  // namespace taut

@@ -33,8 +33,10 @@ private:
     int need(uint32_t multiplier, uint32_t node) const;
     bool linked(uint32_t i, uint32_t j) const;
     uint64_t key(uint32_t i) const;
+    bool meshed() const;
 
     std::span<const Unknown> unknowns_;
+    bool nodes_first_ = false;
     Array<Array<uint32_t>> graph_;    // as elimination leaves it
     Array<Array<uint32_t>> ends_;     // nodes of a multiplier
     Array<uint8_t> done_, freedoms_;  // freedoms of a node that no multiplier claimed yet

@@ -16,11 +16,8 @@ constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
 // below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
 constexpr uint32_t kMostGrown = 64;
-// A tower of at most so many bodies is a block: a heavy load on light bodies, or many slender levels. Sweeps let it
-// sag, and the change from one to the other at an impact would kick it (measured: 25 of 72 towers hit by a heavy box
-// fell when only the impact made them a block, none when they were one before).
-constexpr uint32_t kMostTower = 60;
-constexpr uint32_t kTowerLevels = 6, kTowerSlenderness = 2;
+constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
+constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
 
@@ -36,6 +33,7 @@ Partition::Partition(Memory& memory)
       component_(memory),
       core_(memory),
       pair_in_block_(memory),
+      joint_in_block_(memory),
       block_of_(memory),
       spare_(memory),
       used_(memory),
@@ -64,9 +62,10 @@ void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pai
     } else {
         blocks.clear();
         pair_in_block_.assign(pairs.active.size(), 0);
+        joint_in_block_.assign(joints.record.size(), 0);
     }
     choose_substeps(rules);
-    distribute(nodes, joints, pairs, rules);
+    distribute(nodes, joints, pairs);
 }
 
 // Union-find of the joint graph alone.
@@ -82,8 +81,7 @@ void Partition::connect_joints(const Nodes& nodes, const Joints& joints, bool di
 // Islands without joints in which weight rests on what sweeps cannot hold.
 void Partition::find_towers() {
     for (Island& island : island_) {
-        const bool slender = (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels) ||
-                             (island.levels >= kTowerLevels && island.nodes <= kTowerSlenderness * island.levels);
+        const bool slender = island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels;
         island.tower = !island.jointed && island.nodes <= kMostTower && (island.ratio >= kHeavyOnLight || slender);
     }
 }
@@ -97,7 +95,7 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     if (grown > kMostGrown) return false;
     const uint32_t total = ca.nodes + cb.nodes;
     unite(a, b);
-    component_[find(a)] = {total, grown, kNone};
+    component_[find(a)] = {total, 0, grown, kNone};
     return true;
 }
 
@@ -109,11 +107,9 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
     core_.assign(slots, 0);
     component_.assign(slots, Component{});
     pair_in_block_.assign(pairs.active.size(), 0);
-    for (const Joint& joint : joints.record)
-        for (uint32_t node : joint.node)
-            if (joint.type && joint.direct && moving(nodes, node)) core_[node] = 1;
     for (uint32_t i = 0; i < slots; ++i) component_[i].nodes = 0;
     for (uint32_t i = 0; i < slots; ++i) ++component_[find(i)].nodes;
+    choose_direct(nodes, joints);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
         const bool moves_a = moving(nodes, a), moves_b = moving(nodes, b);
@@ -125,6 +121,29 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
     }
     fill_blocks(nodes, joints, pairs);
     recall_blocks(nodes, joints);
+}
+
+// Joints that blocks own: those that ask for it, but for nets with too many loops.
+void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
+    auto end = [&](const Joint& joint) { return moving(nodes, joint.node[0]) ? joint.node[0] : joint.node[1]; };
+    auto may = [&](const Joint& joint) { return joint.type && joint.direct && moving(nodes, end(joint)); };
+    auto too_many = [](const Component& c) { return c.joints > c.nodes + kMostLoops; };
+    joint_in_block_.assign(joints.record.size(), 0);
+    for (const Joint& joint : joints.record)
+        if (may(joint)) ++component_[find(end(joint))].joints;
+    for (size_t j = 0; j < joints.record.size(); ++j) {
+        const Joint& joint = joints.record[j];
+        if (!may(joint) || too_many(component_[find(end(joint))])) continue;
+        joint_in_block_[j] = 1;
+        for (uint32_t node : joint.node)
+            if (moving(nodes, node)) core_[node] = 1;
+    }
+    for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
+    for (uint32_t i = nodes.slots(); i-- > 0;) {  // nodes of such a net stand alone; their root is smallest, so last
+        if (!too_many(component_[parent_[i]])) continue;
+        parent_[i] = i;
+        component_[i] = {};
+    }
 }
 
 // Into spare_: nodes, joints, pairs and the identity of each block's graph.
@@ -148,7 +167,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
     auto mover = [&](uint32_t a, uint32_t b) { return moving(nodes, a) ? a : b; };
     for (uint32_t j = 0; j < joints.record.size(); ++j) {
         const Joint& joint = joints.record[j];
-        if (!joint.type || !joint.direct || !moving(nodes, mover(joint.node[0], joint.node[1]))) continue;
+        if (!joint_in_block_[j]) continue;
         Block& block = block_at(mover(joint.node[0], joint.node[1]));
         block.joints.push_back(j);
         block.identity.push_back(joint.serial << 1 | joint.plain);
@@ -307,7 +326,7 @@ void Partition::choose_substeps(const PartitionRules& rules) {
     }
 }
 
-void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules) {
+void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     make_groups();
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (island_of_[i] != kNone) groups[group_of(i)].nodes.push_back(i);
@@ -329,7 +348,7 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
         items.clear();
         for (uint32_t j = 0; j < joints.record.size(); ++j) {
             const Joint& joint = joints.record[j];
-            if (!joint.type || (rules.direct && joint.direct)) continue;
+            if (!joint.type || joint_in_block_[j]) continue;
             if (here(joint.node[0], joint.node[1])) items.push_back(j);
         }
         for (uint32_t node : group.nodes) used_[node] = 0;

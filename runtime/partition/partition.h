@@ -102,11 +102,12 @@ private:
     };
 
     struct Component {  // of the graph of blocks, by root
-        uint32_t nodes = 1, grown = 0, block = UINT32_MAX;
+        uint32_t nodes = 1, joints = 0, grown = 0, block = UINT32_MAX;
     };
 
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    void choose_direct(const Nodes& nodes, const Joints& joints);
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
@@ -116,7 +117,7 @@ private:
     void choose_substeps(const PartitionRules& rules);
     void make_groups();
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
-    void distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    void distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     template <class Ends>
     uint32_t colour(const Array<uint32_t>& items, Array<uint32_t>& sorted, Array<uint32_t>& begin, Ends ends);
 
@@ -127,10 +128,11 @@ private:
     Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces
     Array<uint32_t> level_;      // by slot: bodies between it and a support
     Array<Island> island_;
-    Array<Component> component_;    // by slot of a root
-    Array<uint8_t> core_;           // by slot: has a joint that is solved directly
-    Array<uint8_t> pair_in_block_;  // by index in Pairs::active
-    Array<uint32_t> block_of_;      // by slot: its block in the last frame, or kNone
+    Array<Component> component_;     // by slot of a root
+    Array<uint8_t> core_;            // by slot: has a joint that is solved directly
+    Array<uint8_t> pair_in_block_;   // by index in Pairs::active
+    Array<uint8_t> joint_in_block_;  // by slot
+    Array<uint32_t> block_of_;       // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
     Array<uint64_t> used_;      // by slot: colours taken
     Array<uint8_t> colour_of_;  // scratch

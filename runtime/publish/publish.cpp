@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "state/joint_reading.h"
+
 namespace taut {
 namespace {
 
@@ -63,16 +65,8 @@ void publish_profile(World& world) {
     for (const Joint& joint : world.joints.record) {
         if (!joint.type) continue;
         ++p.joints;
-        Pose poses[2];
-        for (int i = 0; i < 2; ++i) {
-            if (joint.node[i] == kNone) continue;
-            const NodeMotion& m = world.nodes.motion[joint.node[i]];
-            poses[i] = {m.x, m.q.toRotationMatrix()};
-        }
-        double error[kMaxRows], squared = 0;
-        joint.type->evaluate(joint.data, poses, error, nullptr);
-        for (int r = 0; r < joint.type->rows; ++r) squared += error[r] * error[r];
-        p.joint_error = std::max(p.joint_error, static_cast<float>(std::sqrt(squared)));
+        const JointError error = error_of(joint, read_joint(world.nodes, joint));
+        p.joint_error = std::max(p.joint_error, static_cast<float>(error.linear));
     }
     p.islands = world.partition.islands;
     p.blocks = static_cast<uint32_t>(world.partition.blocks.size());

@@ -26,15 +26,34 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
     }
 }
 
+void add_axes(Hash& hash, const Joint& joint) {
+    for (int r = 0; r < joint.type->rows; ++r) {
+        const Axis& axis = joint.axis[r];
+        const AxisMemory& memory = joint.memory[r];
+        hash.add(static_cast<uint64_t>(axis.mode));
+        for (float x : {axis.lower, axis.upper, axis.limit_compliance, axis.limit_damping, axis.stiffness, axis.damping,
+                        axis.target, axis.speed, axis.max_force, axis.friction})
+            hash.add(x);
+        for (float x : {memory.lower, memory.upper, memory.drive, memory.friction}) hash.add(x);
+    }
+}
+
 void add_joints(Hash& hash, const Joints& joints) {
     for (size_t i = 0; i < joints.record.size(); ++i) {
         const Joint& joint = joints.record[i];
         if (!joint.type) continue;
         hash.add(static_cast<uint64_t>(i));
         for (int r = 0; r < joint.type->rows; ++r) hash.add(joint.lambda[r]);
+        for (int r = 0; r < joint.type->rows; ++r) hash.add(joint.drift[r]);
         hash.add(joint.compliance);
         hash.add(joint.damping);
-        hash.add(static_cast<uint64_t>(joint.fresh) << 1 | joint.collide_connected);
+        hash.add(joint.angular_compliance);
+        hash.add(joint.angular_damping);
+        hash.add(joint.break_force);
+        hash.add(joint.break_torque);
+        hash.add(static_cast<uint64_t>(joint.direct) << 2 | static_cast<uint64_t>(joint.fresh) << 1 |
+                 joint.collide_connected);
+        if (!joint.plain) add_axes(hash, joint);
         for (size_t word = 0; word < joint.type->data_size / sizeof(uint64_t); ++word) {
             uint64_t bits;
             std::memcpy(&bits, joint.data + word * sizeof bits, sizeof bits);

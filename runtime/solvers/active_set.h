@@ -1,8 +1,9 @@
 // The bounded rows of one block and which of them are on: contacts, stops, drives and friction.
 //
 //   round     solve with the rows that are on; drop those that pull, add those that would close; at most a few times
-//   friction  secant: a row at its bound is one with target velocity 0 and c = |v| / (bound), which gives the bound's
-//             impulse against v, implicitly; c of a sliding row follows with one substep of lag, at most halved
+//   box       a drive or friction whose impulse passes its limit is that limit, until it no longer lags behind
+//   tangents  secant: a sliding contact has target velocity 0 and c = |v| / (friction * push), which gives that impulse
+//             against v, implicitly; c follows with one substep of lag, at most halved
 //   relaxed   solved again on the same factor: rows that rest want velocity 0 with the impulse they have, so that the
 //             push that undoes overlaps moves positions and is not kept
 // Rules and their evidence: measured on chains over edges and towers, the tests of scenes hold them.
@@ -44,9 +45,10 @@ public:
 private:
     void gather_axes(uint32_t block);
     void gather_contact(uint32_t block);
-    BoundedRow& add(BoundedRow::Kind kind, uint32_t block, int row, double sign, double softness);
-    double inverse_mass(uint32_t block, int row) const;
+    BoundedRow& add(BoundedRow::Kind kind, uint32_t index, int row, double sign, double softness);
     void begin_slip(BoundedRow* tangents, const BoundedRow& normal);
+    void follow_slip(BoundedRow* tangents, double bound) const;
+    bool revise_box(BoundedRow& row) const;
     void turn_off(size_t i);
 
     Substep& s_;

@@ -64,7 +64,12 @@ void sweep_tower(Substep& s, Block& block) {
     take_from_sweeps(s, block);
 }
 
+void finish(Substep& s, Block& block, BlockSolve& solve) {
+    if (!solve.finish()) sweep_tower(s, block);
+}
+
 void solve(Substep& s) {
+    const bool alone = !has_sweeps(s);
     warm_start_sweeps(s);
     Stopwatch watch;
     s.scratch.bounded.clear();
@@ -82,20 +87,20 @@ void solve(Substep& s) {
             move_freely(s, block);
         }
         give_to_sweeps(s, block);
+        if (alone && !block.failed) finish(s, block, solve);
     }
     s.report.direct_us += watch.lap();
     sweep_biased(s);
+    if (alone) return;
     watch.lap();
     for (uint32_t b : s.group.blocks) {
         Block& block = s.blocks[b];
         if (block.failed) continue;
         BlockSolve solve(s, block);
-        if (has_sweeps(s)) {
-            add_contact_changes(s, block);
-            solve.solve_again();
-            give_to_sweeps(s, block);
-        }
-        if (!solve.finish()) sweep_tower(s, block);
+        add_contact_changes(s, block);
+        solve.solve_again();
+        give_to_sweeps(s, block);
+        finish(s, block, solve);
     }
     s.report.direct_us += watch.lap();
 }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
 constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
+constexpr double kStiff = 0.5;            // h^2 K / M above which a force counts: symplectic steps hold 4 without any K
 constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
@@ -22,6 +23,14 @@ int locked_rows(const RowBlock& block) {
     int count = 0;
     for (int r = 0; r < block.type->rows; ++r) count += block.locked(r);
     return count;
+}
+
+// sum += w a^T b, 6 x 6.
+void add_product(const double* a, const double* b, double w, double* sum) {
+    for (int r = 0; r < kDof; ++r) {
+        const double scaled = w * a[r];
+        for (int c = 0; c < kDof; ++c) sum[r * kDof + c] += scaled * b[c];
+    }
 }
 
 }  // namespace
@@ -69,6 +78,45 @@ void BlockSolve::add_mass(uint32_t i) {
     if (size_of(i) == 6) b_.matrix.add(i, i, sys_.inertia[node + 1].data(), 3, 3, 3, 3, 3);
 }
 
+// Angular velocity of a constraint's line, as its ends move now.
+Vec3 BlockSolve::line_turn(const RowBlock& block, const Line& line) const {
+    const Velocity &a = sys_.exact[block.node[0]], &b = sys_.exact[block.node[1]];
+    const Vec3 apart = b.v + b.w.cross(line.lever_b) - a.v - a.w.cross(line.lever_a);
+    return line.span.cross(apart) / line.span.squaredNorm();
+}
+
+// Slow velocities s of a row block's nodes. Rotations have their own; of a line between nodes only the motion of one
+// end against the other matters to K: that of the low-passed turning of the line.
+void BlockSolve::slow_velocities(const RowBlock& block, const Pose* poses, const uint32_t* at, double* slow) const {
+    const ConstraintType& type = *block.type;
+    for (int n = 0; n < type.nodes; ++n) {
+        if (at[n] == kNone) continue;
+        const NodeMotion& m = s_.nodes.motion[b_.nodes[at[n]]];
+        if (!type.line) Vec3::Map(slow + kDof * n) = m.slow_v;
+        Vec3::Map(slow + kDof * n + 3) = m.slow_w;
+    }
+    if (!type.line) return;
+    const Line line = type.line(block.data, poses);
+    const Vec3 wa = Vec3::Map(slow + 3), wb = Vec3::Map(slow + kDof + 3);
+    const Vec3 apart = block.slow_turn->cross(line.span) + wa.cross(line.lever_a) - wb.cross(line.lever_b);
+    // An end whose velocity is known moves as it does; K takes no part of it.
+    if (at[1] != kNone)
+        Vec3::Map(slow + kDof) = apart + (at[0] == kNone ? sys_.exact[block.node[0]].v : Vec3(Vec3::Zero()));
+    else
+        Vec3::Map(slow) = sys_.exact[block.node[1]].v - apart;
+}
+
+void BlockSolve::filter_lines() {
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const RowBlock& block = row(j);
+        if (!block.type->line) continue;
+        const Pose poses[2] = {sys_.pose[block.node[0]], sys_.pose[block.node[1]]};
+        const Vec3 turn = line_turn(block, block.type->line(block.data, poses));
+        const bool first = block.fresh && b_.memory.solved == 0;
+        *block.slow_turn += (first ? 1 : s_.settings.velocity_filter) * (turn - *block.slow_turn);
+    }
+}
+
 // h^2 K into the matrix and h^2 K s onto the known side.
 void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
     const ConstraintType& type = *block.type;
@@ -80,23 +128,24 @@ void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
     for (int n = 0; n < type.nodes; ++n) {
         poses[n] = sys_.pose[block.node[n]];
         at[n] = local(block.node[n]);
-        if (at[n] == kNone || !spare) continue;
-        const NodeMotion& m = s_.nodes.motion[b_.nodes[at[n]]];
-        Vec3::Map(slow + kDof * n) = m.slow_v;
-        Vec3::Map(slow + kDof * n + 3) = m.slow_w;
     }
+    if (spare) slow_velocities(block, poses, at, slow);
     type.stiffness(block.data, poses, force, Curvature::positive, k);
     const double hh = sys_.h * sys_.h;
-    for (int i = 0; i < width * width; ++i) k[i] *= hh;
     for (int n = 0; n < type.nodes; ++n) {
         if (at[n] == kNone) continue;
-        for (int m = 0; m <= n; ++m) {
-            if (m != n && (!type.couples_nodes || at[m] == kNone)) continue;
-            b_.matrix.add(at[n], at[m], k + kDof * n * width + kDof * m, size_of(at[n]), size_of(at[m]), width);
-        }
         double* known = node_known(at[n]);
-        for (int r = 0; r < kDof; ++r)
-            for (int c = 0; c < width; ++c) known[r] += k[(kDof * n + r) * width + c] * slow[c];
+        for (int m = 0; m < type.nodes; ++m) {
+            if (at[m] == kNone || (m != n && !type.couples_nodes)) continue;
+            double* block_nm = k + kDof * n * width + kDof * m;
+            for (int r = 0; r < size_of(at[n]); ++r)
+                for (int c = 0; c < size_of(at[m]); ++c) {
+                    double& entry = block_nm[r * width + c];
+                    entry *= hh;
+                    known[r] += entry * slow[kDof * m + c];
+                }
+            if (m <= n) b_.matrix.add(at[n], at[m], block_nm, size_of(at[n]), size_of(at[m]), width);
+        }
     }
 }
 
@@ -132,33 +181,28 @@ void BlockSolve::add_joint(uint32_t j) {
     b_.matrix.add(nodes_ + j, nodes_ + j, diagonal, padded, padded, padded);
 }
 
-// B^T B / c of the rows that are on, row block by row block.
+// B^T B / c of the rows that are on; rows on the same nodes follow each other and go into the matrix together.
 void BlockSolve::add_bounded() {
     const auto rows = set.rows();
     for (size_t i = 0; i < rows.size();) {
-        const RowBlock& block = sys_.rows.block[rows[i].block];
-        double weight[kMaxRows] = {};
-        const uint32_t index = rows[i].block;
+        const BoundedRow& first = rows[i];
+        double sum[kMaxNodes][kMaxNodes][kDof * kDof] = {};
         bool any = false;
-        for (; i < rows.size() && rows[i].block == index; ++i) {
-            if (!rows[i].on) continue;
-            weight[rows[i].row] += 1 / rows[i].c;
+        for (; i < rows.size() && std::equal(first.place, first.place + kMaxNodes, rows[i].place); ++i) {
+            const BoundedRow& row = rows[i];
+            if (!row.on || row.at_limit != 0) continue;
             any = true;
+            for (int n = 0; n < row.nodes; ++n)
+                for (int m = 0; m <= n; ++m)
+                    if (row.place[n] != kNone && row.place[m] != kNone)
+                        add_product(row.jacobian + static_cast<size_t>(n) * row.stride,
+                                    row.jacobian + static_cast<size_t>(m) * row.stride, 1 / row.c, sum[n][m]);
         }
-        if (!any) continue;
-        for (int n = 0; n < block.type->nodes; ++n) {
-            const uint32_t at = local(block.node[n]);
-            if (at == kNone) continue;
-            RowJacobian weighted = jacobian_of(sys_, block, n);
-            for (int r = 0; r < block.type->rows; ++r) weighted.row(r) *= weight[r];
-            for (int m = 0; m <= n; ++m) {
-                const uint32_t to = local(block.node[m]);
-                if (to == kNone) continue;
-                const Eigen::Matrix<double, kDof, kDof, Eigen::RowMajor> product =
-                    weighted.transpose() * jacobian_of(sys_, block, m);
-                b_.matrix.add(at, to, product.data(), size_of(at), size_of(to), kDof);
-            }
-        }
+        for (int n = 0; any && n < first.nodes; ++n)
+            for (int m = 0; m <= n; ++m)
+                if (first.place[n] != kNone && first.place[m] != kNone)
+                    b_.matrix.add(first.place[n], first.place[m], sum[n][m], size_of(first.place[n]),
+                                  size_of(first.place[m]), kDof);
     }
 }
 
@@ -210,12 +254,13 @@ void BlockSolve::right_hand_side() {
     }
     for (const BoundedRow& bounded : set.rows()) {
         if (!bounded.on) continue;
-        const RowBlock& block = sys_.rows.block[bounded.block];
-        const double f = bounded.sign * (bounded.goal - bounded.sign * known(block, bounded.row)) / bounded.c;
-        for (int n = 0; n < block.type->nodes; ++n) {
-            const uint32_t i = local(block.node[n]);
-            if (i == kNone) continue;
-            NodeVector::Map(&b_.solution[i * kLd]) += f * jacobian_of(sys_, block, n).row(bounded.row).transpose();
+        const double held = (bounded.goal - bounded.known) / bounded.c;
+        const double f = bounded.sign * (bounded.at_limit != 0 ? bounded.at_limit * bounded.limit : held);
+        const double* j = bounded.jacobian;
+        for (int n = 0; n < bounded.nodes; ++n, j += bounded.stride) {
+            if (bounded.place[n] == kNone) continue;
+            double* x = &b_.solution[bounded.place[n] * kLd];
+            for (int k = 0; k < kLd; ++k) x[k] += f * j[k];
         }
     }
 }
@@ -245,6 +290,25 @@ void BlockSolve::take_forces() {
             joint_force(bounded.block - b_.first_row_block)[bounded.row] += bounded.sign * bounded.mu / sys_.h;
 }
 
+// True if the geometric stiffness of this force, left out, would matter to the motion of a node: h^2 K_ii / M_ii.
+bool BlockSolve::stiff(const RowBlock& block, const double* force) const {
+    const int width = kDof * block.type->nodes;
+    Pose poses[kMaxNodes];
+    double k[kDof * kMaxNodes * kDof * kMaxNodes];
+    for (int n = 0; n < block.type->nodes; ++n) poses[n] = sys_.pose[block.node[n]];
+    block.type->stiffness(block.data, poses, force, Curvature::positive, k);
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t at = local(block.node[n]);
+        if (at == kNone) continue;
+        const Mat3& inertia = sys_.inertia[block.node[n]];
+        for (int i = 0; i < size_of(at); ++i) {
+            const double mass = i < 3 ? s_.nodes.mass[b_.nodes[at]].mass : inertia(i - 3, i - 3);
+            if (sys_.h * sys_.h * k[(kDof * n + i) * (width + 1)] > kStiff * mass) return true;
+        }
+    }
+    return false;
+}
+
 bool BlockSolve::force_grew() const {
     double largest = 0;
     auto squared = [](const double* f, int rows) {
@@ -256,7 +320,9 @@ bool BlockSolve::force_grew() const {
     for (uint32_t j = 0; j < joints(); ++j) {
         const double now = squared(joint_force(j), row(j).type->rows),
                      before = squared(row(j).force, row(j).type->rows);
-        if (now > kGrowth * kGrowth * before && now > kNegligible * kNegligible * largest) return true;
+        if (now > kGrowth * kGrowth * before && now > kNegligible * kNegligible * largest &&
+            stiff(row(j), joint_force(j)))
+            return true;
     }
     return false;
 }
@@ -269,6 +335,7 @@ bool BlockSolve::factor_rounds(bool with_new) {
         if (!b_.matrix.factor()) return false;
         set.aim_biased();
         solve_known();
+        relaxed_ = false;
         if (round == rounds) return true;
         ++s_.report.rounds;
         if (set.revise()) continue;
@@ -307,13 +374,14 @@ void BlockSolve::solve_relaxed() {
     set.aim_relaxed(true);
     solve_known();
     for (uint32_t node : b_.nodes) std::swap(sys_.kept[node + 1], exact[node + 1]);
+    relaxed_ = true;
 }
 
 bool BlockSolve::finish() {
     if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness && joints() > 0)
         guard_energy(s_, b_, set.work());
     if (!set.empty()) {
-        solve_relaxed();
+        if (!relaxed_) solve_relaxed();
         if (b_.tower && !set.acceptable()) return false;
         take_forces();
         set.store();
@@ -324,6 +392,7 @@ bool BlockSolve::finish() {
             row(j).force[r] = f;
             sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.h * f;
         }
+    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) filter_lines();
     ++b_.memory.solved;
     return true;
 }

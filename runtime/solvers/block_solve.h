@@ -6,8 +6,6 @@
 //                     (Tournier et al. 2015, eq. 21, s instead of 0: only fast motion is damped)
 #pragma once
 
-#include <algorithm>
-
 #include "solvers/active_set.h"
 
 namespace taut {
@@ -35,17 +33,16 @@ public:
 private:
     const RowBlock& row(uint32_t j) const { return sys_.rows.block[b_.first_row_block + j]; }
     uint32_t joints() const { return static_cast<uint32_t>(b_.joints.size()); }
-    uint32_t local(uint32_t sweep_node) const {  // position in b_.nodes, or kNone
-        if (!sys_.in_block[sweep_node]) return kNone;
-        const auto at = std::lower_bound(b_.nodes.begin(), b_.nodes.end(), sweep_node - 1);
-        return at != b_.nodes.end() && *at == sweep_node - 1 ? static_cast<uint32_t>(at - b_.nodes.begin()) : kNone;
-    }
+    uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
     int size_of(uint32_t i) const { return s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6; }
     bool looped() const;
 
     bool factor_rounds(bool with_new);
     void assemble(bool with_new);
     void add_mass(uint32_t i);
+    Vec3 line_turn(const RowBlock& block, const Line& line) const;
+    void slow_velocities(const RowBlock& block, const Pose* poses, const uint32_t* at, double* slow) const;
+    void filter_lines();
     void add_stiffness(const RowBlock& block, const double* force);
     void add_joint(uint32_t j);
     void add_bounded();
@@ -54,6 +51,7 @@ private:
     void solve_known();
     void take_solution();
     void take_forces();
+    bool stiff(const RowBlock& block, const double* force) const;
     bool force_grew() const;
 
     double* node_known(uint32_t i) { return &b_.known[i * kDof]; }
@@ -64,6 +62,7 @@ private:
     System& sys_;
     Block& b_;
     uint32_t nodes_;
+    bool relaxed_ = false;  // System::kept belongs to the present solution
 };
 
 }  // namespace taut

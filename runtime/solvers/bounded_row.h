@@ -5,21 +5,29 @@
 
 #include <cstdint>
 
+#include "constraints/constraint.h"
+
 namespace taut {
 
 struct BoundedRow {
     enum class Kind : uint8_t {
         push,     // mu >= 0, on only while it pushes
         tangent,  // two in a row after a contact's normal row, |mu| within friction * its impulse
-        box,      // |mu| <= limit
+        box,      // |mu| <= limit, known where it is at its limit
     };
 
     Kind kind = Kind::push;
-    bool on = false;            // part of the system
-    bool speculative = false;   // of a gap that may close: goal is to touch, not to rest
-    bool physical = false;      // c and target are meant as they are
-    uint8_t row = 0;            // within its row block
-    uint32_t block = 0;         // in Rows::block
+    bool on = false;           // part of the system
+    bool speculative = false;  // of a gap that may close: goal is to touch, not to rest
+    bool physical = false;     // c and target are meant as they are
+    int8_t at_limit = 0;       // of a box: -1, 1: mu is that limit; 0: the row holds
+    uint8_t row = 0;           // within its row block
+    uint32_t block = 0;        // in Rows::block
+    uint8_t nodes = 0;
+    uint32_t place[kMaxNodes] = {};    // of each node in the block, or UINT32_MAX: its velocity is known
+    const double* jacobian = nullptr;  // of the first node; 6 entries, those of the next node `stride` further
+    uint32_t stride = 0;
+    double known = 0;           // s J v of the nodes whose velocity is known [m/s]
     double sign = 1;            // of J
     double gap = 0;             // of a push [m or rad]
     double bounce = 0;          // of a push: speed at which it leaves once it was hit, 0: none [m/s]
@@ -31,7 +39,7 @@ struct BoundedRow {
     double goal = 0;            // of this solve
     double limit = 0;           // of a box [N s]; of tangents the coefficient of friction
     double mu = 0;              // [N s]
-    float* slip = nullptr;      // carried: c of a row at its bound; 0: within it; -1: new
+    float* slip = nullptr;      // of tangents, carried: c of a sliding contact; 0: it sticks; -1: new
     float* force = nullptr;     // carried, of axis rows [N]
 };
 

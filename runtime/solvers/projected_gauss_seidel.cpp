@@ -162,17 +162,18 @@ void publish(Substep& s) {
     }
 }
 
-void store_forces(Substep& s) {
-    for (const RowBlock& block : s.system.rows.block)
-        if (block.force)
-            for (int r = 0; r < block.type->rows; ++r)
-                block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
+void store_forces(Substep& s, Range range) {
+    for (uint32_t i = range.first; i < range.first + range.count; ++i) {
+        const RowBlock& block = s.system.rows.block[i];
+        for (int r = 0; block.force && r < block.type->rows; ++r)
+            block.force[r] = s.system.rows.impulse[block.row + static_cast<uint32_t>(r)] / s.system.h;
+    }
 }
 
 void solve(Substep& s) {
     warm_start_sweeps(s);
     sweep_biased(s);
-    store_forces(s);
+    store_forces(s, swept_rows(s));
 }
 
 void relax(Substep& s) { sweep_relaxed(s); }
@@ -232,6 +233,7 @@ void sweep_relaxed(Substep& s) {
     if (s.last && lanes.bounces)
         s.settings.kernels->restitute(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
                                       s.system.velocity.data(), s.system.inverse_mass.data(), kBounceSpeed);
+    store_forces(s, swept);
     publish(s);
 }
 

@@ -27,7 +27,8 @@ struct Joint {
     bool plain = true;                                              // every row is locked: axis is not read
     bool direct = true;                                             // false: swept, not part of a block
     bool collide_connected = false;
-    bool fresh = true;  // not solved yet: lambda means nothing
+    bool fresh = true;              // not solved yet: lambda means nothing
+    Vec3 slow_turn = Vec3::Zero();  // low-passed angular velocity of its line [rad/s]; see ConstraintType::line
     uint64_t user_data = 0;
     uint64_t serial = 0;  // tells joints of one slot apart; Joints::add()
     Axis axis[kMaxRows];

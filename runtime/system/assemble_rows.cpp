@@ -26,6 +26,7 @@ void add_joint(System& system, Joint& joint) {
     block.data = joint.data;
     block.force = joint.lambda;
     block.drift = joint.drift;
+    block.slow_turn = &joint.slow_turn;
     for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
@@ -106,6 +107,10 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     for (uint32_t b : group.blocks) {
         blocks[b].first_row_block = static_cast<uint32_t>(rows.block.size());
         blocks[b].contact_count = 0;
+        for (uint32_t i = 0; i < blocks[b].nodes.size(); ++i) {
+            system.in_block[blocks[b].nodes[i] + 1] = 1;
+            system.place[blocks[b].nodes[i] + 1] = i;
+        }
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);

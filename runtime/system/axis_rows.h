@@ -22,7 +22,7 @@ struct AxisRow {
     double relaxed_target;  // without the push that undoes an overlap
     double compliance;      // c [1/kg]; 0: rigid
     double limit;           // largest |mu| [N s]
-    float *force, *slip;    // what is carried; a stop has no slip
+    float* force;           // carried [N]
 };
 
 // C in the turn that is nearest to `near`.
@@ -33,7 +33,7 @@ inline double unwrapped(const RowBlock& block, int r, double c, double near) {
 }
 
 inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, float* force) {
-    AxisRow row{sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force, nullptr};
+    AxisRow row{sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force};
     const double d = double(axis.limit_compliance) * axis.limit_damping;
     row.compliance = axis.limit_compliance / (h * (h + d));
     row.target = row.relaxed_target = -gap / h;
@@ -44,7 +44,7 @@ inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, flo
 }
 
 inline AxisRow drive_row(double c, const Axis& axis, double h, AxisMemory& memory) {
-    AxisRow row{1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive, &memory.drive_slip};
+    AxisRow row{1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive};
     if (!std::isfinite(axis.damping)) return row;
     const double rate = h * axis.stiffness + axis.damping;
     row.compliance = 1 / (h * rate);
@@ -66,8 +66,7 @@ void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit v
     if (axis.mode == AxisMode::locked) return;
     const bool springs = axis.stiffness > 0 || axis.damping > 0;
     if (axis.max_force > 0 && springs) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
-    if (axis.friction > 0)
-        visit(AxisRow{1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction, &memory.friction_slip});
+    if (axis.friction > 0) visit(AxisRow{1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
 }
 
 }  // namespace taut

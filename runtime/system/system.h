@@ -31,6 +31,7 @@ struct RowBlock {
     const ConstraintType* type;
     const void* data;
     double* force;                   // lambda of the last substep, then of this one [N]; type->rows
+    Vec3* slow_turn;                 // of joints whose type has a line
     const double* drift;             // of joints: what of C is still to come within the frame is left out
     uint32_t node[kMaxNodes];        // indices into arrays by node; unused ones 0
     uint32_t row;                    // first row
@@ -78,6 +79,7 @@ struct System {
           found(memory),
           kinematic(memory),
           in_block(memory),
+          place(memory),
           velocity(memory),
           inverse_mass(memory),
           shift(memory),
@@ -96,7 +98,8 @@ struct System {
     Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;             // begin_frame()
     Array<uint32_t> kinematic;      // nodes; begin_frame()
-    Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; partition
+    Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; build_rows()
+    Array<uint32_t> place;          // in the nodes of its block, or kNone; build_rows()
     Array<SweepVelocity> velocity;  // float copy for sweeps
     Array<SweepMass> inverse_mass;  // of sweeps, world axes
     Array<SweepShift> shift;        // motion since contacts were found; commit()

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "support.h"
+#include "joint_support.h"
 
 namespace taut_test {
 
@@ -126,6 +126,71 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              def.anchor_b = {0, 20, 0};
              taut_joint out;
              return taut_world_add_distance_joint(w, &def, &out);
+         }},
+        {"taut_world_add_fixed_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_fixed_joint_def, taut_fixed_joint_def_init, taut_world_add_fixed_joint>(
+                 w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_world_add_hinge_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_hinge_joint_def, taut_hinge_joint_def_init, taut_world_add_hinge_joint>(
+                 w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_world_add_slider_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_slider_joint_def, taut_slider_joint_def_init, taut_world_add_slider_joint>(
+                 w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_world_add_universal_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_universal_joint_def, taut_universal_joint_def_init, taut_world_add_universal_joint>(
+                 w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_world_add_cylindrical_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_cylindrical_joint_def, taut_cylindrical_joint_def_init,
+                               taut_world_add_cylindrical_joint>(w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0),
+                                                                 &out);
+         }},
+        {"taut_world_add_cone_twist_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_cone_twist_joint_def, taut_cone_twist_joint_def_init,
+                               taut_world_add_cone_twist_joint>(w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0),
+                                                                &out);
+         }},
+        {"taut_world_add_six_dof_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_six_dof_joint_def, taut_six_dof_joint_def_init, taut_world_add_six_dof_joint>(
+                 w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_joint_frames_from_world",
+         [&p](taut_world w) {
+             taut_frame a, b;
+             return taut_joint_frames_from_world(w, p.crate, {0}, {0, 0, 0}, {1, 0, 0}, &a, &b);
+         }},
+        {"taut_world_get_body_states",
+         [&p](taut_world w) {
+             taut_pose out;
+             return taut_world_get_body_states(w, &p.crate, 1, &out, 0, nullptr, 0, nullptr, 0);
+         }},
+        {"taut_world_get_def",
+         [](taut_world w) {
+             taut_world_def out;
+             return taut_world_get_def(w, &out);
+         }},
+        {"taut_world_lint",
+         [](taut_world w) {
+             taut_lint_entry out[64];
+             uint32_t count;
+             return taut_world_lint(w, out, 64, &count);
          }},
         {"taut_world_destroy", [](taut_world w) { return taut_world_destroy(w); }},
     };
@@ -250,6 +315,53 @@ inline std::vector<Call<taut_joint>> joint_calls() {
          }},
         {"taut_joint_set_compliance", [](taut_joint j) { return taut_joint_set_compliance(j, 1e-6f, 0); }},
         {"taut_joint_set_length", [](taut_joint j) { return taut_joint_set_length(j, 2); }},
+        {"taut_joint_set_user_data", [](taut_joint j) { return taut_joint_set_user_data(j, 7); }},
+        {"taut_joint_get_frames",
+         [](taut_joint j) {
+             taut_frame a, b;
+             return taut_joint_get_frames(j, &a, &b);
+         }},
+        {"taut_joint_set_frames",
+         [](taut_joint j) {
+             const taut_frame a = frame(0, 0, 0), b = frame(0, 1, 0);
+             return taut_joint_set_frames(j, &a, &b);
+         }},
+        {"taut_joint_get_torque",
+         [](taut_joint j) {
+             taut_vec3 out;
+             return taut_joint_get_torque(j, &out);
+         }},
+        {"taut_joint_get_angular_error",
+         [](taut_joint j) {
+             float out;
+             return taut_joint_get_angular_error(j, &out);
+         }},
+        {"taut_joint_get_axis_count",
+         [](taut_joint j) {
+             uint32_t out;
+             return taut_joint_get_axis_count(j, &out);
+         }},
+        {"taut_joint_get_coordinates", [](taut_joint j) { return taut_joint_get_coordinates(j, 0, nullptr, nullptr); }},
+        {"taut_joint_get_axis_forces",
+         [](taut_joint j) {
+             taut_axis_forces out;
+             return taut_joint_get_axis_forces(j, 0, &out);
+         }},
+        {"taut_joint_get_axis",
+         [](taut_joint j) {
+             taut_axis_def out;
+             return taut_joint_get_axis(j, 0, &out);
+         }},
+        {"taut_joint_set_axis",
+         [](taut_joint j) {
+             const taut_axis_def def = axis_def(TAUT_AXIS_LOCKED);
+             return taut_joint_set_axis(j, 0, &def);
+         }},
+        {"taut_joint_set_target", [](taut_joint j) { return taut_joint_set_target(j, 0, 0, 0); }},
+        {"taut_joint_set_angular_compliance", [](taut_joint j) { return taut_joint_set_angular_compliance(j, 0, 0); }},
+        {"taut_joint_set_break", [](taut_joint j) { return taut_joint_set_break(j, 1e9f, 0); }},
+        {"taut_joint_set_solve", [](taut_joint j) { return taut_joint_set_solve(j, TAUT_JOINT_SOLVE_SOFT); }},
+        {"taut_joint_set_collide_connected", [](taut_joint j) { return taut_joint_set_collide_connected(j, 1); }},
         {"taut_joint_remove", [](taut_joint j) { return taut_joint_remove(j); }},
     };
 }

@@ -1,111 +1,12 @@
 // Every def against wrong sizes, null pointers and every float field out of range.
-#include <cmath>
-#include <cstddef>
 #include <cstring>
-#include <limits>
 #include <utility>
-#include <vector>
 
-#include "support.h"
+#include "def_check.h"
 
 using namespace taut_test;
 
 namespace {
-
-struct Field {
-    const char* name;  // as texts name it
-    size_t offset;
-    size_t size;  // 4: float, 8: double
-    double lo, hi;
-    enum Edges { closed, open_below, unchecked } edges = closed;  // unchecked: other fields decide about the limits
-};
-
-#define FIELD(def, member, ...) \
-    { #member, offsetof(def, member), sizeof(def::member), __VA_ARGS__ }
-#define FIELD3(def, member, ...) \
-    FIELD(def, member.x, __VA_ARGS__), FIELD(def, member.y, __VA_ARGS__), FIELD(def, member.z, __VA_ARGS__)
-
-template <class Def>
-Def with(const Def& def, const Field& field, double value) {
-    Def out = def;
-    unsigned char* at = reinterpret_cast<unsigned char*>(&out) + field.offset;
-    if (field.size == sizeof(float)) {
-        const float narrow = static_cast<float>(value);
-        std::memcpy(at, &narrow, sizeof narrow);
-    } else {
-        std::memcpy(at, &value, sizeof value);
-    }
-    return out;
-}
-
-double above(const Field& field, double value) {
-    const double inf = std::numeric_limits<double>::infinity();
-    if (field.size == sizeof(double)) return std::nextafter(value, inf);
-    return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
-}
-double below(const Field& field, double value) { return -above(field, -value); }
-
-// Holds one entry point against all that its def forbids, and the limits that it allows.
-template <class Def, class Handle>
-class DefCheck {
-public:
-    DefCheck(taut_world world, const char* name, taut_result (*add)(taut_world, const Def*, Handle*))
-        : world_(world), name_(name), add_(add) {}
-
-    void run(const Def& good, const std::vector<Field>& fields) {
-        SCOPED_TRACE(name_);
-        expect_refused(nullptr, TAUT_NULL_POINTER, "def");
-        ASSERT_EQ(add_(world_, &good, nullptr), TAUT_NULL_POINTER);
-        EXPECT_TRUE(contains(taut_last_error(), "out")) << taut_last_error();
-        for (uint32_t size : {0u, good.struct_size - 1, good.struct_size + 1, UINT32_MAX}) {
-            Def def = good;
-            def.struct_size = size;
-            expect_refused(&def, TAUT_STRUCT_SIZE, "struct_size");
-        }
-        for (const Field& field : fields) {
-            for (double value : bad_values(field)) {
-                const Def def = with(good, field, value);
-                expect_refused(&def, TAUT_INVALID_ARGUMENT, field.name);
-            }
-            for (double value : {field.lo, field.hi}) {
-                if (field.edges == Field::unchecked || (field.edges == Field::open_below && value == field.lo))
-                    continue;
-                const Def def = with(good, field, value);
-                Handle out = {0};
-                EXPECT_EQ(add_(world_, &def, &out), TAUT_OK) << field.name << ": " << taut_last_error();
-                EXPECT_NE(out.bits, 0u);
-            }
-        }
-        Handle out = {0};
-        EXPECT_EQ(add_(world_, &good, &out), TAUT_OK) << taut_last_error();
-    }
-
-    // The def is wrong in a way that the text names by this word.
-    void expect_refused(const Def* def, taut_result code, const char* word) {
-        const Watch watch(world_);
-        Handle out = {0x1234};
-        EXPECT_EQ(add_(world_, def, &out), code) << word << ": " << taut_last_error();
-        EXPECT_TRUE(contains(taut_last_error(), std::string(name_) + ": ")) << taut_last_error();
-        EXPECT_TRUE(contains(taut_last_error(), word)) << taut_last_error();
-        EXPECT_EQ(out.bits, 0x1234u);
-        EXPECT_TRUE(watch.unchanged()) << word;
-    }
-
-private:
-    static std::vector<double> bad_values(const Field& field) {
-        const double inf = std::numeric_limits<double>::infinity(), most = std::numeric_limits<float>::max();
-        std::vector<double> bad = {std::nan(""), inf, -inf, most, -most};
-        if (field.edges != Field::unchecked) {
-            bad.push_back(field.edges == Field::open_below ? field.lo : below(field, field.lo));
-            bad.push_back(above(field, field.hi));
-        }
-        return bad;
-    }
-
-    taut_world world_;
-    const char* name_;
-    taut_result (*add_)(taut_world, const Def*, Handle*);
-};
 
 const double kSizeLo = TAUT_SHAPE_MIN_SIZE, kSizeHi = TAUT_SHAPE_MAX_SIZE;
 
@@ -249,51 +150,6 @@ TEST_F(Refusals, Particle) {
     check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "mass is 0");
 }
 
-TEST_F(Refusals, BallJoint) {
-    taut_ball_joint_def def;
-    taut_ball_joint_def_init(&def);
-    def.body_a = p.crate;
-    DefCheck check(p.world, "taut_world_add_ball_joint", taut_world_add_ball_joint);
-    using Def = taut_ball_joint_def;
-    check.run(def, {FIELD3(Def, anchor_a, -1e4, 1e4), FIELD3(Def, anchor_b, -1e7, 1e7), FIELD(Def, compliance, 0, 1e6),
-                    FIELD(Def, damping, 0, 1e12)});
-    const auto refuse = [&](taut_result code, const char* word, auto change) {
-        Def bad = def;
-        change(bad);
-        check.expect_refused(&bad, code, word);
-    };
-    refuse(TAUT_INVALID_ARGUMENT, "collide_connected", [](Def& d) { d.collide_connected = 2; });
-    refuse(TAUT_INVALID_ARGUMENT, "neither", [](Def& d) { d.body_a = {0}; });
-    refuse(TAUT_INVALID_ARGUMENT, "neither", [&](Def& d) { d.body_a = p.ground; });
-    refuse(TAUT_INVALID_ARGUMENT, "neither", [&](Def& d) { d.body_a = p.lift, d.body_b = p.ground; });
-    refuse(TAUT_INVALID_ARGUMENT, "same", [&](Def& d) { d.body_b = p.crate; });
-    refuse(TAUT_INVALID_ARGUMENT, "anchor_a", [&](Def& d) { d.body_a = p.bob, d.anchor_a = {0, 0.1, 0}; });
-    refuse(TAUT_INVALID_ARGUMENT, "anchor_b", [&](Def& d) { d.body_b = p.bob, d.anchor_b = {0, 0.1, 0}; });
-}
-
-TEST_F(Refusals, DistanceJoint) {
-    taut_distance_joint_def def;
-    taut_distance_joint_def_init(&def);
-    def.body_b = p.crate;
-    def.anchor_a = {0, 5, 0};
-    DefCheck check(p.world, "taut_world_add_distance_joint", taut_world_add_distance_joint);
-    using Def = taut_distance_joint_def;
-    check.run(def, {FIELD3(Def, anchor_a, -1e5, 1e5, Field::unchecked), FIELD3(Def, anchor_b, -1e4, 1e4),
-                    FIELD(Def, length, 1e-4, 1e6), FIELD(Def, compliance, 0, 1e6), FIELD(Def, damping, 0, 1e12)});
-    const auto refuse = [&](const char* word, auto change) {
-        Def bad = def;
-        change(bad);
-        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, word);
-    };
-    taut_pose at;
-    ASSERT_OK(taut_body_get_pose(p.crate, &at));
-    refuse("distance", [&](Def& d) { d.anchor_a = {at.position.x, at.position.y, at.position.z + 9e-5}; });
-    refuse("distance", [&](Def& d) { d.anchor_a = {at.position.x, at.position.y, at.position.z}, d.length = 1; });
-    refuse("distance", [](Def& d) { d.anchor_a = {2e6, 0, 0}; });
-    refuse("collide_connected", [](Def& d) { d.collide_connected = UINT32_MAX; });
-    refuse("reserved", [](Def& d) { d.reserved = 1; });
-}
-
 TEST(WorldDef, RefusesWhatItDoesNotState) {
     taut_world_def good;
     taut_world_def_init(&good);
@@ -376,8 +232,6 @@ TEST(Init, TakesNullAndWritesSizes) {
     taut_sphere_def_init(nullptr);
     taut_capsule_def_init(nullptr);
     taut_hull_def_init(nullptr);
-    taut_ball_joint_def_init(nullptr);
-    taut_distance_joint_def_init(nullptr);
 
     taut_world_def world;
     std::memset(&world, 0xff, sizeof world);

@@ -308,7 +308,118 @@ private:
         if (one_in(2)) def.anchor_b = pos(2);
         if (one_in(2)) def.compliance = real(0, 0.01);
         if (one_in(2)) def.damping = real(0, 10);
+        if (one_in(4)) def.break_force = real(0, 1e4);
+        if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 3 : 2));
         return def;
+    }
+    taut_frame joint_frame() {
+        taut_frame out = {{0, 0, 0}, {0, 0, 0, 1}};
+        if (one_in(2)) out.position = pos(2);
+        if (one_in(2)) out.rotation = quat();
+        return out;
+    }
+    taut_axis_def axis_def(bool lockable) {
+        taut_axis_def def;
+        taut_axis_def_init(&def);
+        spoil(def.struct_size);
+        def.mode = static_cast<taut_axis_mode>(lockable && one_in(4) ? 0 : 1 + byte() % 2);
+        if (one_in(2)) def.lower = real(-3, 0);
+        if (one_in(2)) def.upper = real(0.01, 3);
+        if (one_in(4)) def.stop_compliance = real(0, 0.01);
+        if (one_in(4)) def.stop_damping = real(0, 10);
+        if (def.mode != TAUT_AXIS_LOCKED || one_in(8)) {
+            if (one_in(4)) def.drive = drive();
+            if (one_in(4)) def.friction = real(0, 10);
+        }
+        return def;
+    }
+    taut_drive drive() {
+        taut_drive out = {real(-1, 1), real(-5, 5), 0, 0, 0, real(0, 2), real(0, 1000)};
+        if (one_in(2)) {
+            out.frequency = real(0.1, 30);
+        } else {
+            out.stiffness = real(0, 1000);
+            out.damping = one_in(8) ? INFINITY : real(0, 100);
+        }
+        if (one_in(8)) out.stiffness = 0;
+        return out;
+    }
+    template <class Def>
+    Def framed_def(size_t w, void (*init)(Def*)) {
+        Def def;
+        init(&def);
+        spoil(def.struct_size);
+        def.collide_connected = byte() & 1;
+        def.body_a = pick(bodies_, w);
+        def.body_b = pick(bodies_, w);
+        def.frame_a = joint_frame();
+        def.frame_b = joint_frame();
+        if (one_in(4)) {
+            const taut_vec3 axis = vec(1);
+            const taut_pos pivot = pos(5);
+            run("taut_joint_frames_from_world", [&] {
+                return taut_joint_frames_from_world(worlds_[w], def.body_a, def.body_b, pivot, axis, &def.frame_a,
+                                                    &def.frame_b);
+            });
+        }
+        if (one_in(4)) def.compliance = real(0, 0.01);
+        if (one_in(4)) def.damping = real(0, 10);
+        if (one_in(4)) def.angular_compliance = real(0, 0.01);
+        if (one_in(4)) def.angular_damping = real(0, 10);
+        if (one_in(4)) def.break_force = real(0, 1e4);
+        if (one_in(4)) def.break_torque = real(0, 1e4);
+        if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 3 : 2));
+        spoil(def.reserved);
+        return def;
+    }
+    bool add_framed(size_t w, taut_joint& out) {
+        const taut_world world = worlds_[w];
+        switch (byte() % 7) {
+            case 0: {
+                const auto def = framed_def(w, taut_fixed_joint_def_init);
+                return run("taut_world_add_fixed_joint", [&] { return taut_world_add_fixed_joint(world, &def, &out); });
+            }
+            case 1: {
+                auto def = framed_def(w, taut_hinge_joint_def_init);
+                def.angle = axis_def(true);
+                return run("taut_world_add_hinge_joint", [&] { return taut_world_add_hinge_joint(world, &def, &out); });
+            }
+            case 2: {
+                auto def = framed_def(w, taut_slider_joint_def_init);
+                def.slide = axis_def(true);
+                return run("taut_world_add_slider_joint",
+                           [&] { return taut_world_add_slider_joint(world, &def, &out); });
+            }
+            case 3: {
+                auto def = framed_def(w, taut_cylindrical_joint_def_init);
+                def.slide = axis_def(true);
+                def.angle = axis_def(true);
+                return run("taut_world_add_cylindrical_joint",
+                           [&] { return taut_world_add_cylindrical_joint(world, &def, &out); });
+            }
+            case 4: {
+                auto def = framed_def(w, taut_universal_joint_def_init);
+                def.angle_a = axis_def(true);
+                def.angle_b = axis_def(true);
+                return run("taut_world_add_universal_joint",
+                           [&] { return taut_world_add_universal_joint(world, &def, &out); });
+            }
+            case 5: {
+                auto def = framed_def(w, taut_cone_twist_joint_def_init);
+                def.swing = axis_def(false);
+                if (!one_in(8)) def.swing.drive = {0, 0, 0, 0, 0, 1, 0};
+                def.twist = axis_def(true);
+                return run("taut_world_add_cone_twist_joint",
+                           [&] { return taut_world_add_cone_twist_joint(world, &def, &out); });
+            }
+            default: {
+                auto def = framed_def(w, taut_six_dof_joint_def_init);
+                for (taut_axis_def& axis : def.axes)
+                    if (one_in(2)) axis = axis_def(true);
+                return run("taut_world_add_six_dof_joint",
+                           [&] { return taut_world_add_six_dof_joint(world, &def, &out); });
+            }
+        }
     }
     void add_joint() {
         if (live(joints_, taut_joint_is_valid) >= kMostJoints) return;
@@ -316,11 +427,20 @@ private:
         taut_joint out = {0};
         bool added;
         if (one_in(2)) {
+            added = add_framed(w, out);
+        } else if (one_in(2)) {
             const auto def = joint_def(w, taut_ball_joint_def_init);
             added = run("taut_world_add_ball_joint", [&] { return taut_world_add_ball_joint(worlds_[w], &def, &out); });
         } else {
             auto def = joint_def(w, taut_distance_joint_def_init);
             if (one_in(2)) def.length = real(0, 3);
+            if (one_in(3)) {
+                if (one_in(2)) def.min_length = real(0.01, 2);
+                def.max_length = one_in(4) ? INFINITY : real(2, 4);
+                if (one_in(2)) def.drive = drive();
+                if (one_in(2)) def.friction = real(0, 10);
+            }
+            if (one_in(4)) def.compliance = def.damping = 0, def.frequency = real(0.1, 30);
             spoil(def.reserved);
             added = run("taut_world_add_distance_joint",
                         [&] { return taut_world_add_distance_joint(worlds_[w], &def, &out); });
@@ -398,6 +518,33 @@ private:
             expect(body_a.bits == 0 || taut_body_is_valid(body_a), "a joint on a dead body");
             expect(body_b.bits == 0 || taut_body_is_valid(body_b), "a joint on a dead body");
         }
+        if (run("taut_joint_get_angular_error", [&] { return taut_joint_get_angular_error(joint, &error); }))
+            expect(error >= 0, "an error that is none");
+        taut_vec3 torque;
+        if (run("taut_joint_get_torque", [&] { return taut_joint_get_torque(joint, &torque); }))
+            expect(!std::isnan(torque.x + torque.y + torque.z), "a torque that is none");
+        taut_frame frame_a, frame_b;
+        if (run("taut_joint_get_frames", [&] { return taut_joint_get_frames(joint, &frame_a, &frame_b); }))
+            expect(finite(frame_a.position) && finite(frame_b.position), "a frame that is not finite");
+        uint32_t axes = 0;
+        const bool known = run("taut_joint_get_axis_count", [&] { return taut_joint_get_axis_count(joint, &axes); });
+        const uint32_t axis = byte() % 8;
+        float value, rate;
+        const bool read =
+            run("taut_joint_get_coordinates", [&] { return taut_joint_get_coordinates(joint, axis, &value, &rate); });
+        expect(read == (known && axis < axes), "an axis that is there and is not");
+        expect(!read || (std::isfinite(value) && std::isfinite(rate)), "a coordinate that is not finite");
+        taut_axis_forces forces;
+        if (run("taut_joint_get_axis_forces", [&] { return taut_joint_get_axis_forces(joint, axis, &forces); }))
+            expect(std::abs(forces.active_stop) <= 1 && forces.reserved == 0, "forces that are none");
+        taut_axis_def def;
+        if (run("taut_joint_get_axis", [&] { return taut_joint_get_axis(joint, axis, &def); })) {
+            // What is read can be written, and changes nothing.
+            const uint64_t before[2] = {hash(0), hash(1)};
+            expect(run("taut_joint_set_axis", [&] { return taut_joint_set_axis(joint, axis, &def); }),
+                   "an axis that is read but not taken");
+            expect(before[0] == hash(0) && before[1] == hash(1), "an axis that is not what was read");
+        }
     }
 
     void read_shape() {
@@ -420,7 +567,10 @@ private:
         taut_events events;
         if (run("taut_world_get_events", [&] { return taut_world_get_events(world, &events); })) {
             for (uint32_t i = 0; i < events.moved_count; ++i) expect_finite(events.moved[i].pose);
+            for (uint32_t i = 0; i < events.broken_count; ++i)
+                expect(!taut_joint_is_valid(events.broken[i].joint), "a broken joint that lives");
         }
+        read_all(world);
         std::vector<taut_contact> contacts(byte());
         uint32_t count = 0;
         if (run("taut_world_get_contacts", [&] {
@@ -436,6 +586,34 @@ private:
         profile.struct_size = sizeof profile;
         spoil(profile.struct_size);
         run("taut_world_get_profile", [&] { return taut_world_get_profile(world, &profile); });
+    }
+
+    void read_all(taut_world world) {
+        std::vector<taut_lint_entry> entries(byte());
+        uint32_t count = 0;
+        if (run("taut_world_lint", [&] {
+                return taut_world_lint(world, entries.data(), static_cast<uint32_t>(entries.size()), &count);
+            })) {
+            for (uint32_t i = 0; i < count; ++i) {
+                expect(entries[i].body.bits == 0 || taut_body_is_valid(entries[i].body), "lint of a dead body");
+                expect(entries[i].joint.bits == 0 || taut_joint_is_valid(entries[i].joint), "lint of a dead joint");
+                expect(std::strcmp(taut_lint_text(entries[i].kind), "unknown") != 0, "lint of no kind");
+            }
+        }
+        taut_world_def def;
+        if (run("taut_world_get_def", [&] { return taut_world_get_def(world, &def); }))
+            expect(def.struct_size == sizeof def, "a def that is none");
+        taut_body bodies[4];
+        for (taut_body& body : bodies) body = pick(bodies_, 0);
+        taut_pose poses[8];
+        const size_t strides[] = {0, sizeof(taut_pose), 2 * sizeof(taut_pose), 4, 52};
+        const size_t stride = strides[byte() % 5];
+        const uint32_t wanted = byte() % 4;
+        if (run("taut_world_get_body_states", [&] {
+                return taut_world_get_body_states(worlds_[0], bodies, wanted, poses, stride, nullptr, 0, nullptr, 0);
+            })) {
+            for (uint32_t i = 0; i < wanted; ++i) expect_finite(poses[i * (stride == 2 * sizeof(taut_pose) ? 2 : 1)]);
+        }
     }
 
     void write_body() {
@@ -495,6 +673,47 @@ private:
         const float a = real(0, one_in(8) ? 1e6 : 0.01), b = real(0, 100), length = real(1e-4, 5);
         run("taut_joint_set_compliance", [&] { return taut_joint_set_compliance(joint, a, b); });
         run("taut_joint_set_length", [&] { return taut_joint_set_length(joint, length); });
+        const uint32_t axis = byte() % 6;
+        switch (byte() % 8) {
+            case 0: {
+                const taut_axis_def def = axis_def(true);
+                run("taut_joint_set_axis", [&] { return taut_joint_set_axis(joint, axis, &def); });
+                break;
+            }
+            case 1:
+                run("taut_joint_set_target", [&] { return taut_joint_set_target(joint, axis, a, b); });
+                break;
+            case 2:
+                run("taut_joint_set_angular_compliance",
+                    [&] { return taut_joint_set_angular_compliance(joint, a, b); });
+                break;
+            case 3:
+                run("taut_joint_set_break", [&] { return taut_joint_set_break(joint, 1e4f * a, b); });
+                break;
+            case 4: {
+                const taut_joint_solve solve = static_cast<taut_joint_solve>(byte() % (one_in(8) ? 3 : 2));
+                run("taut_joint_set_solve", [&] { return taut_joint_set_solve(joint, solve); });
+                break;
+            }
+            case 5: {
+                const taut_frame frame_a = joint_frame(), frame_b = joint_frame();
+                run("taut_joint_set_frames", [&] { return taut_joint_set_frames(joint, &frame_a, &frame_b); });
+                break;
+            }
+            case 6: {
+                const uint32_t collide = byte() % (one_in(8) ? 3 : 2);
+                run("taut_joint_set_collide_connected",
+                    [&] { return taut_joint_set_collide_connected(joint, collide); });
+                break;
+            }
+            default: {
+                const uint64_t value = word();
+                if (!run("taut_joint_set_user_data", [&] { return taut_joint_set_user_data(joint, value); })) return;
+                uint64_t read = 0;
+                taut_joint_get_user_data(joint, &read);
+                expect(read == value, "user data that changed");
+            }
+        }
     }
 
     void write_world() {

@@ -92,8 +92,6 @@ public:
         begin_frame(w.system, w.nodes);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
-        for (uint32_t b : group().blocks)
-            for (uint32_t node : w.partition.blocks[b].nodes) w.system.in_block[node + 1] = 1;
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
         if (solver.wide_contacts) build_lanes(w.system, group(), w.pairs, w.nodes, *settings.kernels);
     }
@@ -196,6 +194,19 @@ inline DenseSubstep solve_dense(Rig& rig, const std::vector<Forces>& sets, bool 
             const NodeMotion& m = w.nodes.motion[joint.node[n]];
             pose[n] = {m.x, m.q.toRotationMatrix()};
             if (spare_slow && column[n] >= 0) slow.segment<6>(6 * n) << m.slow_v, m.slow_w;
+        }
+        if (spare_slow && type.line) {  // b's end against a's turns with the line; a known end moves as it does
+            const Line line = type.line(joint.data, pose);
+            const Vec3 wa = slow.segment<3>(3), wb = slow.segment<3>(9);
+            slow.segment<3>(0).setZero();
+            slow.segment<3>(6) = joint.slow_turn.cross(line.span) + wa.cross(line.lever_a) - wb.cross(line.lever_b);
+            for (int n = 0; n < 2; ++n) {
+                if (column[n] >= 0) continue;
+                const Vec3 known = joint.node[n] == kNone ? Vec3(Vec3::Zero()) : w.nodes.motion[joint.node[n]].v;
+                const Vec3 shift = known - Vec3(slow.segment<3>(6 * n));
+                for (int k = 0; k < 2; ++k) slow.segment<3>(6 * k) += shift;
+                slow.segment<6>(6 * n).setZero();  // K takes no part of a known end
+            }
         }
         std::vector<double> jacobian(static_cast<size_t>(type.nodes * type.rows * kDof));
         type.evaluate(joint.data, pose, error.data(), jacobian.data());

@@ -262,7 +262,7 @@ TEST_F(PartitionTest, AFixedHubNeedsOneColour) {
 // ---------------------------------------------------------------- substeps
 
 TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
-    const std::vector<uint32_t> low = tower(5), tall = tower(6), taller = tower(60), too_tall = tower(61);
+    const std::vector<uint32_t> low = tower(12), tall = tower(13), taller = tower(60), too_tall = tower(61);
     build();
     ASSERT_EQ(partition.blocks.size(), 2u);
     for (const Block& block : partition.blocks) {
@@ -270,7 +270,7 @@ TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
         EXPECT_EQ(block.pairs.size(), block.nodes.size());
         EXPECT_EQ(block.links.size(), block.nodes.size() - 1) << "the ground is no node";
     }
-    EXPECT_EQ(partition.blocks[0].nodes.size(), 6u);
+    EXPECT_EQ(partition.blocks[0].nodes.size(), 13u);
     EXPECT_EQ(partition.blocks[1].nodes.size(), 60u);
     EXPECT_EQ(substeps_of(low[0]), 4u);
     EXPECT_EQ(substeps_of(tall[0]), 4u);
@@ -284,7 +284,7 @@ TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
 
 // A refused tower sags like any pile until it is a block again.
 TEST_F(PartitionTest, RefusedTowersTakeFourTimesTheSubsteps) {
-    const std::vector<uint32_t> boxes = tower(6);
+    const std::vector<uint32_t> boxes = tower(13);
     build();
     partition.blocks[0].memory.refused_left = 2;
     for (uint32_t expected : {16u, 16u, 4u}) {
@@ -450,6 +450,30 @@ TEST_F(PartitionTest, SoftJointsAreSwept) {
     EXPECT_EQ(partition.blocks[0].nodes.size(), 2u);
     EXPECT_EQ(partition.islands, 1u);
     ASSERT_EQ(partition.groups[0].joints.size(), 1u);
+}
+
+// A net of n x n has (n - 1)^2 loops: 45 x 45 is solved directly, 46 x 46 is swept.
+TEST_F(PartitionTest, NetsBeyondTwoThousandLoopsAreSwept) {
+    auto net = [&](uint32_t side) {
+        const uint32_t first = nodes.slots();
+        for (uint32_t i = 0; i < side * side; ++i) add(NodeKind::particle);
+        for (uint32_t i = 0; i < side; ++i)
+            for (uint32_t k = 0; k < side; ++k) {
+                if (k + 1 < side) join(first + i * side + k, first + i * side + k + 1);
+                if (i + 1 < side) join(first + i * side + k, first + (i + 1) * side + k);
+            }
+        return first;
+    };
+    const uint32_t direct = net(45), swept = net(46), link = add(NodeKind::dynamic);
+    join(link, kNone);
+    touch(link, swept + 7);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 2u);
+    EXPECT_EQ(partition.blocks[0].nodes.size(), 45u * 45u);
+    EXPECT_EQ(partition.blocks[0].nodes[0], direct);
+    EXPECT_EQ(partition.blocks[1].nodes.size(), 2u) << "a link and what it touches of the net";
+    ASSERT_EQ(partition.group_count, 1u);
+    EXPECT_EQ(partition.groups[0].joints.size(), 2u * 46u * 45u);
 }
 
 // A joint's slot is used again at once, by a joint between other nodes of the same block or of another type: the

@@ -1,0 +1,59 @@
+/**
+ * @file lint.h
+ * What in a world is likely to yield, jump or tremble, found without stepping it: for tools and development builds.
+ */
+#ifndef TAUT_LINT_H
+#define TAUT_LINT_H
+
+#include <taut/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What is the matter; taut_lint_text says it in words. value and limit of an entry are in the unit given here. */
+typedef enum taut_lint_kind {
+    TAUT_LINT_BLOCK_MASS_RATIO = 0,    /**< heaviest over lightest body of directly solved joints; body: the lightest */
+    TAUT_LINT_JOINT_MASS_RATIO = 1,    /**< of the two ends of a swept joint; body: the lighter */
+    TAUT_LINT_CONTACT_MASS_RATIO = 2,  /**< of a body that rests on a lighter one; body: the lighter */
+    TAUT_LINT_LIGHT_BETWEEN_HEAVY = 3, /**< second heaviest neighbour over the body between them */
+    TAUT_LINT_THIN_INERTIA = 4,        /**< largest over smallest principal inertia of a body in a joint */
+    TAUT_LINT_SOFT_LOAD = 5,           /**< force of a swept joint over the weight of its lighter end, last step */
+    TAUT_LINT_SOFT_COMPLIANCE = 6,     /**< compliance of a swept joint, over h^2 J W J^T [1]: acts as rigid */
+    TAUT_LINT_REDUNDANT_ROWS = 7, /**< rows of a joint that other joints hold already: internal forces are arbitrary */
+    TAUT_LINT_JOINT_APART = 8,    /**< gap of a rigid joint [m]: closes with a jump */
+    TAUT_LINT_JOINT_MISALIGNED = 9,    /**< angle of a rigid joint that is off [rad]: closes with a jump */
+    TAUT_LINT_STOP_OVERRUN = 10,       /**< coordinate beyond a rigid stop [m]: is pushed back */
+    TAUT_LINT_STOP_OVERRUN_ANGLE = 11, /**< the same of an angle [rad] */
+    TAUT_LINT_NARROW_STOPS = 12,       /**< room between two stops [m]: trembles; lock the axis instead */
+    TAUT_LINT_NARROW_STOPS_ANGLE = 13, /**< the same of an angle [rad] */
+    TAUT_LINT_KIND_MAX = 0x7fffffff
+} taut_lint_kind;
+
+/** One finding. */
+typedef struct taut_lint_entry {
+    taut_lint_kind kind;
+    uint32_t reserved; /**< zero */
+    taut_body body;    /**< null where none is meant */
+    taut_joint joint;  /**< null where none is meant */
+    float value;       /**< found */
+    float limit;       /**< what it should keep to */
+} taut_lint_entry;
+
+/**
+ * Looks at joints, masses, contacts and forces as they are now; contacts and forces are those of the last step.
+ * Entries come in the order of their kinds, within a kind in that of slots. Changes nothing. Takes memory of the world
+ * while it runs, and time that grows with the square of a looped mechanism's rows.
+ * @param entries null if capacity is 0.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED,
+ *         TAUT_OUT_OF_MEMORY. Thread safety: one thread at a time per world, not inside a step.
+ */
+TAUT_API taut_result taut_world_lint(taut_world world, taut_lint_entry* entries, uint32_t capacity, uint32_t* count);
+/** A sentence on what the kind means and what to do, "unknown" for other values. Thread safety: any thread. */
+TAUT_API const char* taut_lint_text(taut_lint_kind kind);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,336 @@
+// Defs of joints, and joints made from them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "api/joint_parts.h"
+
+using namespace taut;
+
+namespace {
+
+constexpr taut_quat kUnturned{0, 0, 0, 1};
+
+// ---------------------------------------------------------------- what the defs have in common
+
+template <class Def>
+constexpr bool kFramed = requires(Def def) {
+    def.frame_a;
+};
+
+// The axes of each def by index, null after the last, with their names; null defs are never asked.
+struct NamedAxis {
+    const taut_axis_def* def = nullptr;
+    const char* scope = "";  // in texts
+};
+using NamedAxes = std::array<NamedAxis, kMaxRows>;
+
+NamedAxes axes_of(const taut_ball_joint_def&) { return {}; }
+NamedAxes axes_of(const taut_fixed_joint_def&) { return {}; }
+NamedAxes axes_of(const taut_hinge_joint_def& def) { return {{{&def.angle, "angle."}}}; }
+NamedAxes axes_of(const taut_slider_joint_def& def) { return {{{&def.slide, "slide."}}}; }
+NamedAxes axes_of(const taut_cylindrical_joint_def& def) { return {{{&def.slide, "slide."}, {&def.angle, "angle."}}}; }
+NamedAxes axes_of(const taut_universal_joint_def& def) {
+    return {{{&def.angle_a, "angle_a."}, {&def.angle_b, "angle_b."}}};
+}
+NamedAxes axes_of(const taut_cone_twist_joint_def& def) { return {{{&def.swing, "swing."}, {&def.twist, "twist."}}}; }
+NamedAxes axes_of(const taut_six_dof_joint_def& def) {
+    return {{{&def.axes[0], "axes[0]."},
+             {&def.axes[1], "axes[1]."},
+             {&def.axes[2], "axes[2]."},
+             {&def.axes[3], "axes[3]."},
+             {&def.axes[4], "axes[4]."},
+             {&def.axes[5], "axes[5]."}}};
+}
+
+void init_axis(taut_axis_def& def, taut_axis_mode mode) {
+    def = {};
+    def.struct_size = sizeof def;
+    def.mode = mode;
+    def.lower = -INFINITY;
+    def.upper = INFINITY;
+    def.drive.damping_ratio = 1;
+    def.drive.max_force = INFINITY;
+}
+
+template <class Def>
+void init(Def* def, taut_axis_mode mode = TAUT_AXIS_FREE) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    if constexpr (kFramed<Def>) {
+        def->frame_a.rotation = def->frame_b.rotation = kUnturned;
+        for (const NamedAxis& axis : axes_of(*def)) {
+            if (axis.def) init_axis(const_cast<taut_axis_def&>(*axis.def), mode);
+        }
+    }
+}
+
+// ---------------------------------------------------------------- check
+
+template <class Def>
+bool check_def(Check& check, const Def* def, const taut_joint* out) {
+    if (!check.pointer("def", def).pointer("out", out)) return false;
+    check.struct_size(def->struct_size, sizeof *def).boolean("collide_connected", def->collide_connected);
+    if constexpr (kFramed<Def>) {
+        for (int end = 0; end < 2; ++end) {
+            const taut_frame& frame = end == 0 ? def->frame_a : def->frame_b;
+            check.bounded(kFrameNames[end].position, frame.position, kPosition)
+                .rotation(kFrameNames[end].rotation, frame.rotation);
+        }
+        check.number("angular_compliance", def->angular_compliance, kCompliance)
+            .number("angular_damping", def->angular_damping, kDamping)
+            .number("break_torque", def->break_torque, kJointForce);
+    } else {
+        check.bounded("anchor_a", def->anchor_a, kPosition).bounded("anchor_b", def->anchor_b, kPosition);
+    }
+    check.number("compliance", def->compliance, kCompliance)
+        .number("damping", def->damping, kDamping)
+        .number("break_force", def->break_force, kJointForce)
+        .choice("solve", def->solve, TAUT_JOINT_SOLVE_SOFT);
+    if constexpr (requires { def->reserved; }) check.zero("reserved", def->reserved);
+    return static_cast<bool>(check);
+}
+
+bool check_axes(Check& check, const JointKind& kind, const NamedAxes& axes) {
+    for (size_t i = 0; i < kind.axes.size(); ++i) {
+        check.within(axes[i].scope);
+        if (!check_axis(check, kind, kind.axes[i], *axes[i].def)) return false;
+        check.within("");
+    }
+    return true;
+}
+
+bool check_range(Check& check, const taut_distance_joint_def& def) {
+    const bool ranged = def.min_length > 0 || def.max_length > 0;
+    check.zero_or("length", def.length, kJointLength).zero_or("min_length", def.min_length, kJointLength);
+    if (def.max_length != INFINITY) check.zero_or("max_length", def.max_length, kJointLength);
+    check.require(def.max_length == 0 || def.min_length <= def.max_length, "min_length is above max_length");
+    check.zero_or("frequency", def.frequency, kFrequency)
+        .number("damping_ratio", def.damping_ratio, kDampingRatio)
+        .require(def.frequency == 0 || (def.compliance == 0 && def.damping == 0),
+                 "frequency stands beside compliance or damping, expected one way of the two");
+    check_drive(check, def.drive, false).number("friction", def.friction, kJointForce);
+    const bool acts = def.drive.stiffness > 0 || def.drive.damping > 0 || def.drive.frequency > 0 || def.friction > 0;
+    check.require(ranged || !acts, "drive or friction on a rod: min_length and max_length are 0");
+    return static_cast<bool>(check);
+}
+
+// ---------------------------------------------------------------- act
+
+template <class Def>
+taut_result find_ends(Check& check, const World& world, const JointKind& kind, const Def& def, JointEnd (&ends)[2]) {
+    const EndNames* names = kFramed<Def> ? kFrameNames : kAnchorNames;
+    for (int i = 0; i < 2; ++i) {
+        const taut_body body = i == 0 ? def.body_a : def.body_b;
+        if (body.bits != 0) {
+            const taut_result found = find_body(check.call(), names[i].body, world, body, ends[i].node);
+            if (found != TAUT_OK) return found;
+        }
+        taut_frame frame;
+        if constexpr (kFramed<Def>)
+            frame = i == 0 ? def.frame_a : def.frame_b;
+        else
+            frame = {i == 0 ? def.anchor_a : def.anchor_b, kUnturned};
+        if (!place_end(check, world, kind, names[i], frame, ends[i])) return check.result();
+    }
+    const auto moves = [&](const JointEnd& end) {
+        return end.node != kNone && moves_by_forces(world.nodes.info[end.node].kind);
+    };
+    check.require(moves(ends[0]) || moves(ends[1]), "body_a and body_b: neither end is dynamic or a particle");
+    check.require(ends[0].node != ends[1].node, "body_a and body_b are the same");
+    return check.result();
+}
+
+template <class Def>
+Joint make_joint(const JointKind& kind, const Def& def, const JointEnd (&ends)[2]) {
+    Joint joint;
+    joint.type = kind.type;
+    joint.node[0] = ends[0].node;
+    joint.node[1] = ends[1].node;
+    joint.compliance = def.compliance;
+    joint.damping = def.damping;
+    joint.break_force = or_never(def.break_force);
+    if constexpr (kFramed<Def>) {
+        joint.angular_compliance = def.angular_compliance;
+        joint.angular_damping = def.angular_damping;
+        joint.break_torque = or_never(def.break_torque);
+    }
+    joint.direct = def.solve == TAUT_JOINT_SOLVE_DIRECT;
+    joint.collide_connected = def.collide_connected != 0;
+    joint.user_data = def.user_data;
+    write_ends(joint, kind, ends[0], ends[1]);
+    return joint;
+}
+
+void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, Joint& joint) {
+    if (kind.axes.empty()) return;
+    const JointReading reading = read_joint(world.nodes, joint);
+    for (size_t i = 0; i < kind.axes.size(); ++i)  // which rows are locked decides about the masses of the others
+        joint.axis[kind.axes[i].row].mode = make_axis(kind.axes[i], *axes[i].def, 1).mode;
+    for (size_t i = 0; i < kind.axes.size(); ++i) {
+        const JointAxis& place = kind.axes[i];
+        const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
+        change_axis(joint, place.row, make_axis(place, *axes[i].def, inverse_mass));
+    }
+}
+
+taut_result add_joint(Check& check, World& world, const Joint& joint, taut_joint* out) {
+    if (!check.require(world.joints.ids.slots() < kMaxSlots, "too many joints", TAUT_LIMIT)) return check.result();
+    reserve_pair_of_ends(world, joint);
+    const uint32_t index = world.joints.add(joint);
+    if (!joint.collide_connected) forget_pair_of_ends(world, joint);
+    *out = world.joint_handle(index);
+    return TAUT_OK;
+}
+
+template <class Def>
+taut_result add(const char* call, taut_world handle, taut_joint_kind which, const Def* def, taut_joint* out) {
+    Check check(call);
+    const JointKind& kind = joint_kind(which);
+    if (!check_def(check, def, out)) return check.result();
+    const NamedAxes axes = axes_of(*def);
+    if (!check_axes(check, kind, axes)) return check.result();
+    return with_world(call, handle, Use::write, [&](World& world) {
+        JointEnd ends[2];
+        const taut_result found = find_ends(check, world, kind, *def, ends);
+        if (found != TAUT_OK) return found;
+        Joint joint = make_joint(kind, *def, ends);
+        set_axes(world, kind, axes, joint);
+        return add_joint(check, world, joint, out);
+    });
+}
+
+// The length that counts as 0 of a distance joint's coordinate.
+double zero_length(const taut_distance_joint_def& def, double distance) {
+    if (def.length > 0) return def.length;
+    if (def.max_length > 0 && std::isfinite(def.max_length)) return def.max_length;
+    return def.min_length > 0 ? def.min_length : distance;
+}
+
+// Rod or range, with length and spring.
+Check& set_distance(Check& check, const World& world, const taut_distance_joint_def& def, Joint& joint) {
+    DistanceData data = read_data<DistanceData>(joint);
+    const double distance = (world_anchor(world.nodes, joint, 1) - world_anchor(world.nodes, joint, 0)).norm();
+    data.length = zero_length(def, distance);
+    write_data(joint, data);
+    const double inverse_mass = inverse_mass_of(world.nodes, joint, read_joint(world.nodes, joint), 0);
+    if (def.frequency > 0) {
+        const Spring spring = spring_of(def.frequency, def.damping_ratio, inverse_mass);
+        joint.compliance = 1 / spring.stiffness;
+        joint.damping = spring.damping;
+        check.number("frequency gives a compliance that", joint.compliance, kCompliance);
+        check.number("frequency gives a damping that", joint.damping, kDamping);
+    }
+    if (!(def.min_length > 0 || def.max_length > 0)) return check;
+    Axis axis;
+    const float length = static_cast<float>(data.length);
+    axis.lower = def.min_length > 0 ? def.min_length - length : -INFINITY;
+    axis.upper = def.max_length > 0 ? def.max_length - length : INFINITY;
+    axis.mode = AxisMode::limited;
+    axis.limit_compliance = static_cast<float>(joint.compliance);
+    axis.limit_damping = static_cast<float>(joint.damping);
+    set_drive(axis, def.drive, inverse_mass);
+    axis.friction = def.friction;
+    change_axis(joint, 0, axis);
+    return check;
+}
+
+// The world axis most square to a direction.
+Vec3 square_axis(const Vec3& x) {
+    Eigen::Index least;
+    x.cwiseAbs().minCoeff(&least);
+    return Vec3::Unit(least);
+}
+
+taut_frame frame_on(const World& world, uint32_t node, const Vec3& pivot, const Quat& rotation) {
+    if (node == kNone) return {to_pos(pivot), to_quat(rotation)};
+    const bool turns = world.nodes.info[node].kind != NodeKind::particle;
+    const Quat body = turns ? world.nodes.motion[node].q.conjugate() : Quat::Identity();
+    return {to_pos(body * (pivot - world.nodes.origin(node))), to_quat((body * rotation).normalized())};
+}
+
+}  // namespace
+
+void taut_axis_def_init(taut_axis_def* def) {
+    if (def) init_axis(*def, TAUT_AXIS_FREE);
+}
+void taut_ball_joint_def_init(taut_ball_joint_def* def) { init(def); }
+void taut_distance_joint_def_init(taut_distance_joint_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->damping_ratio = 1;
+    def->drive.damping_ratio = 1;
+    def->drive.max_force = INFINITY;
+}
+void taut_fixed_joint_def_init(taut_fixed_joint_def* def) { init(def); }
+void taut_hinge_joint_def_init(taut_hinge_joint_def* def) { init(def); }
+void taut_slider_joint_def_init(taut_slider_joint_def* def) { init(def); }
+void taut_cylindrical_joint_def_init(taut_cylindrical_joint_def* def) { init(def); }
+void taut_universal_joint_def_init(taut_universal_joint_def* def) { init(def); }
+void taut_cone_twist_joint_def_init(taut_cone_twist_joint_def* def) { init(def); }
+void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def) { init(def, TAUT_AXIS_LOCKED); }
+
+taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_BALL, def, out);
+}
+taut_result taut_world_add_fixed_joint(taut_world world, const taut_fixed_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_FIXED, def, out);
+}
+taut_result taut_world_add_hinge_joint(taut_world world, const taut_hinge_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_HINGE, def, out);
+}
+taut_result taut_world_add_slider_joint(taut_world world, const taut_slider_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_SLIDER, def, out);
+}
+taut_result taut_world_add_cylindrical_joint(taut_world world, const taut_cylindrical_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_CYLINDRICAL, def, out);
+}
+taut_result taut_world_add_universal_joint(taut_world world, const taut_universal_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_UNIVERSAL, def, out);
+}
+taut_result taut_world_add_cone_twist_joint(taut_world world, const taut_cone_twist_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_CONE_TWIST, def, out);
+}
+taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_SIX_DOF, def, out);
+}
+
+taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* def, taut_joint* out) {
+    Check check(__func__);
+    if (!check_def(check, def, out) || !check_range(check, *def)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const JointKind& kind = joint_kind(TAUT_JOINT_DISTANCE);
+        JointEnd ends[2];
+        const taut_result found = find_ends(check, world, kind, *def, ends);
+        if (found != TAUT_OK) return found;
+        Joint joint = make_joint(kind, *def, ends);
+        if (!check_distance(check, world, joint) || !set_distance(check, world, *def, joint)) return check.result();
+        return add_joint(check, world, joint, out);
+    });
+}
+
+taut_result taut_joint_frames_from_world(taut_world handle, taut_body body_a, taut_body body_b, taut_pos pivot,
+                                         taut_vec3 axis, taut_frame* frame_a, taut_frame* frame_b) {
+    Check check(__func__);
+    if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
+    check.bounded("pivot", pivot, kPosition).vector("axis", axis, kDirection);
+    const double length = to_vec(axis).norm();
+    if (!check.require(!check || length > 0, "axis is 0")) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        uint32_t a = kNone, b = kNone;
+        taut_result found = TAUT_OK;
+        if (body_a.bits != 0) found = find_body(check.call(), "body_a", world, body_a, a);
+        if (found == TAUT_OK && body_b.bits != 0) found = find_body(check.call(), "body_b", world, body_b, b);
+        if (found != TAUT_OK) return found;
+        Mat3 axes;
+        axes.col(0) = to_vec(axis) / length;
+        axes.col(2) = axes.col(0).cross(square_axis(axes.col(0))).normalized();
+        axes.col(1) = axes.col(2).cross(axes.col(0));
+        const Quat rotation(axes);
+        *frame_a = frame_on(world, a, to_vec(pivot), rotation);
+        *frame_b = frame_on(world, b, to_vec(pivot), rotation);
+        return TAUT_OK;
+    });
+}

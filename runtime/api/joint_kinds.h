@@ -1,0 +1,28 @@
+// The kinds of joints: which constraint type each is and which of its rows are the host's axes. A new kind is its
+// constraint type, a line in joint_kinds.cpp, a def in joint.h and a line in joint_add.cpp.
+#pragma once
+
+#include <taut/joint.h>
+
+#include <span>
+
+#include "state/joints.h"
+
+namespace taut {
+
+struct JointAxis {
+    int row;
+    bool swing = false;  // a coordinate that is never negative: has an upper stop alone, and no drive
+};
+
+struct JointKind {
+    taut_joint_kind kind;
+    const ConstraintType* type;
+    bool framed;  // data is JointFrames, no end a particle; else it begins with JointAnchors
+    std::span<const JointAxis> axes;
+};
+
+const JointKind& joint_kind(taut_joint_kind kind);
+const JointKind& kind_of(const Joint& joint);
+
+}  // namespace taut

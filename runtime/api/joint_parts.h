@@ -1,0 +1,86 @@
+// What the calls that make joints and those that change them share: placing ends, checking and setting axes.
+#pragma once
+
+#include <limits>
+
+#include "api/access.h"
+#include "api/joint_kinds.h"
+#include "constraints/distance.h"
+#include "constraints/joint_frames.h"
+#include "state/joint_reading.h"
+
+namespace taut {
+
+// A joint's data, or what it begins with. Eigen's vectors are plain numbers, though not trivially copyable by the
+// letter.
+template <class Data>
+Data read_data(const Joint& joint) {
+    static_assert(sizeof(Data) <= Joint::kDataSize && std::is_trivially_destructible_v<Data>);
+    Data data;
+    std::memcpy(static_cast<void*>(&data), joint.data, sizeof data);
+    return data;
+}
+
+template <class Data>
+void write_data(Joint& joint, const Data& data) {
+    static_assert(sizeof(Data) <= Joint::kDataSize && std::is_trivially_destructible_v<Data>);
+    std::memcpy(joint.data, static_cast<const void*>(&data), sizeof data);
+}
+
+// ---------------------------------------------------------------- ends
+
+struct JointEnd {
+    uint32_t node = kNone;
+    Vec3 anchor = Vec3::Zero();  // as the joint's data wants it: relative to the centre of mass, or in the world
+    Quat frame = Quat::Identity();
+};
+
+// What a def calls the two ends.
+struct EndNames {
+    const char *body, *position, *rotation;
+};
+constexpr EndNames kAnchorNames[2] = {{"body_a", "anchor_a", ""}, {"body_b", "anchor_b", ""}};
+constexpr EndNames kFrameNames[2] = {{"body_a", "frame_a.position", "frame_a.rotation"},
+                                     {"body_b", "frame_b.position", "frame_b.rotation"}};
+
+// Places an end whose node is known; the frame is as a def has it.
+Check& place_end(Check& check, const World& world, const JointKind& kind, const EndNames& names,
+                 const taut_frame& frame, JointEnd& end);
+void write_ends(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b);
+// Between points that are closer than a distance joint can be long there is no direction.
+Check& check_distance(Check& check, const World& world, const Joint& joint);
+
+// A change of what the joint's bodies may collide with: their pair is found anew by the next step. The first may
+// throw, the second does not.
+void reserve_pair_of_ends(World& world, const Joint& joint);
+void forget_pair_of_ends(World& world, const Joint& joint);
+
+// Puts a changed joint in the place of the old one. What the change does to coordinates comes bit by bit over the next
+// step, unless the joint was never solved: then it is where the host wants it.
+void replace_joint(const Nodes& nodes, Joint& joint, const Joint& changed);
+
+// ---------------------------------------------------------------- axes
+
+// The axis of a joint, or a refusal.
+taut_result find_axis(const char* call, const Joint& joint, uint32_t axis, JointAxis& out);
+Check& check_drive(Check& check, const taut_drive& drive, bool angular);
+Check& check_axis(Check& check, const JointKind& kind, const JointAxis& place, const taut_axis_def& def);
+
+struct Spring {
+    double stiffness, damping;  // [N/m], [N s/m]
+};
+// Of a frequency [Hz] on a mass of which the inverse is given.
+Spring spring_of(double frequency, double damping_ratio, double inverse_mass);
+
+void set_drive(Axis& axis, const taut_drive& drive, double inverse_mass);
+// The axis that a checked def asks for. inverse_mass: of its row, see held_inverse_mass_of().
+Axis make_axis(const JointAxis& place, const taut_axis_def& def, double inverse_mass);
+// Changes one row and what it carries.
+void change_axis(Joint& joint, int row, const Axis& axis);
+
+// Of what a joint breaks at: 0 stands for never.
+inline double or_never(float threshold) { return threshold == 0 ? std::numeric_limits<double>::infinity() : threshold; }
+
+inline bool has_drive(const Axis& axis) { return axis.max_force > 0; }
+
+}  // namespace taut

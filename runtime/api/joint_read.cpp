@@ -1,0 +1,122 @@
+// What a joint says at the present poses: where it sits, what it carries, how far it is off.
+#include <taut/joint.h>
+
+#include "api/joint_parts.h"
+
+using namespace taut;
+
+namespace {
+
+// act(world, joint, reading)
+template <class Act>
+taut_result reading(const Check& check, taut_joint handle, Act&& act) {
+    if (!check) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
+        const Joint& joint = world.joints.record[index];
+        return act(world, joint, read_joint(world.nodes, joint));
+    });
+}
+
+taut_frame frame_of(const World& world, const Joint& joint, int end) {
+    Vec3 anchor;
+    Quat rotation = Quat::Identity();
+    if (kind_of(joint).framed) {
+        const JointFrames data = read_data<JointFrames>(joint);
+        anchor = end == 0 ? data.anchor_a : data.anchor_b;
+        rotation = end == 0 ? data.frame_a : data.frame_b;
+    } else {
+        const JointAnchors data = read_data<JointAnchors>(joint);
+        anchor = end == 0 ? data.a : data.b;
+    }
+    if (joint.node[end] != kNone) anchor += world.nodes.mass[joint.node[end]].centre;
+    return {to_pos(anchor), to_quat(rotation)};
+}
+
+}  // namespace
+
+taut_result taut_joint_get_anchors(taut_joint handle, taut_pos* anchor_a, taut_pos* anchor_b) {
+    Check check(__func__);
+    check.pointer("anchor_a", anchor_a).pointer("anchor_b", anchor_b);
+    return reading(check, handle, [&](const World& world, const Joint& joint, const JointReading&) {
+        *anchor_a = to_pos(world_anchor(world.nodes, joint, 0));
+        *anchor_b = to_pos(world_anchor(world.nodes, joint, 1));
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_frames(taut_joint handle, taut_frame* frame_a, taut_frame* frame_b) {
+    Check check(__func__);
+    check.pointer("frame_a", frame_a).pointer("frame_b", frame_b);
+    return reading(check, handle, [&](const World& world, const Joint& joint, const JointReading&) {
+        *frame_a = frame_of(world, joint, 0);
+        *frame_b = frame_of(world, joint, 1);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_force(taut_joint handle, taut_vec3* out) {
+    Check check(__func__);
+    check.pointer("out", out);
+    return reading(check, handle, [&](const World&, const Joint& joint, const JointReading& now) {
+        *out = to_vec3(wrench_of(joint, now).force);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_torque(taut_joint handle, taut_vec3* out) {
+    Check check(__func__);
+    check.pointer("out", out);
+    return reading(check, handle, [&](const World&, const Joint& joint, const JointReading& now) {
+        *out = to_vec3(wrench_of(joint, now).torque);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_error(taut_joint handle, float* out) {
+    Check check(__func__);
+    check.pointer("out", out);
+    return reading(check, handle, [&](const World&, const Joint& joint, const JointReading& now) {
+        *out = static_cast<float>(error_of(joint, now).linear);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_angular_error(taut_joint handle, float* out) {
+    Check check(__func__);
+    check.pointer("out", out);
+    return reading(check, handle, [&](const World&, const Joint& joint, const JointReading& now) {
+        *out = static_cast<float>(error_of(joint, now).angular);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_coordinates(taut_joint handle, uint32_t axis, float* value, float* rate) {
+    const Check check(__func__);
+    return reading(check, handle, [&](const World& world, const Joint& joint, const JointReading& now) {
+        JointAxis place;
+        const taut_result found = find_axis(check.call(), joint, axis, place);
+        if (found != TAUT_OK) return found;
+        if (value) *value = static_cast<float>(now.value[place.row]);
+        if (rate) *rate = static_cast<float>(rate_of(world.nodes, joint, now, place.row));
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_axis_forces(taut_joint handle, uint32_t axis, taut_axis_forces* out) {
+    Check check(__func__);
+    check.pointer("out", out);
+    return reading(check, handle, [&](const World&, const Joint& joint, const JointReading&) {
+        JointAxis place;
+        const taut_result found = find_axis(check.call(), joint, axis, place);
+        if (found != TAUT_OK) return found;
+        *out = {};
+        if (joint.fresh) return TAUT_OK;
+        const AxisMemory& memory = joint.memory[place.row];
+        out->total = static_cast<float>(joint.lambda[place.row]);
+        out->stop = memory.lower - memory.upper;
+        out->drive = memory.drive;
+        out->friction = memory.friction;
+        out->active_stop = out->stop > 0 ? -1 : out->stop < 0 ? 1 : 0;
+        return TAUT_OK;
+    });
+}

@@ -1,0 +1,51 @@
+#include <taut/lint.h>
+
+#include <algorithm>
+
+#include "api/access.h"
+#include "check/lint.h"
+
+using namespace taut;
+
+namespace {
+
+// In the order of taut_lint_kind.
+constexpr const char* kText[] = {
+    "the heaviest body of a block of joints is too heavy for the lightest: bring their masses closer",
+    "a swept joint ties a heavy body to a light one and will stretch: solve it directly",
+    "a heavy body rests on a light one and will sink in: bring their masses closer or take more substeps",
+    "a light body stands between two heavy ones, which will meet through it: make it heavier",
+    "a body in a joint is so thin that it spins up about its long axis: raise its smallest inertia",
+    "a swept joint carries far more than its lighter end weighs and will yield: solve it directly",
+    "a swept joint has so little compliance that it acts as a rigid one: make it 0, or solve the joint directly",
+    "a joint holds what other joints hold already: its force is arbitrary; free an axis or give it compliance",
+    "the two points of a joint are apart and will jump together: place the bodies or the joint anew",
+    "the two frames of a joint are turned apart and will jump together: place the bodies or the joint anew",
+    "a joint is far beyond a stop and will be pushed back: place it within, or give the stop compliance",
+    "a joint is turned far beyond a stop and will be pushed back: place it within, or give the stop compliance",
+    "two stops leave so little room that the joint trembles between them: lock the axis",
+    "two stops leave so little angle that the joint trembles between them: lock the axis",
+};
+
+}  // namespace
+
+taut_result taut_world_lint(taut_world handle, taut_lint_entry* entries, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    if (capacity > 0 && !check.pointer("entries", entries)) return check.result();
+    // For writing: what it works with comes from the world's memory, which has one user at a time.
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const Array<taut_lint_entry> found = lint(world);
+        *count = static_cast<uint32_t>(found.size());
+        if (found.size() > capacity) {
+            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, *count);
+        }
+        std::copy(found.begin(), found.end(), entries);
+        return TAUT_OK;
+    });
+}
+
+const char* taut_lint_text(taut_lint_kind kind) {
+    const auto index = static_cast<uint32_t>(kind);
+    return index < std::size(kText) ? kText[index] : "unknown";
+}

@@ -1,0 +1,27 @@
+#include "publish/publish.h"
+#include "state/joint_reading.h"
+
+namespace taut {
+
+// In ascending slot order, which also orders the events.
+void break_joints(World& world) {
+    world.broken.clear();
+    for (uint32_t index = 0; index < world.joints.record.size(); ++index) {
+        const Joint& joint = world.joints.record[index];
+        if (!joint.type || (std::isinf(joint.break_force) && std::isinf(joint.break_torque))) continue;
+        const Wrench load = wrench_of(joint, read_joint(world.nodes, joint));
+        if (!(load.force.norm() > joint.break_force || load.torque.norm() > joint.break_torque)) continue;
+        const Vec3f force = load.force.cast<float>(), torque = load.torque.cast<float>();
+        // What may fail comes first.
+        world.broken.push_back({world.joint_handle(index),
+                                joint.user_data,
+                                {force.x(), force.y(), force.z()},
+                                {torque.x(), torque.y(), torque.z()}});
+        // The two bodies may collide from the next step on: a pair that was filtered is found anew, and touched nobody.
+        if (!joint.collide_connected && joint.node[0] != kNone && joint.node[1] != kNone)
+            forget_pair(world.pairs, world.nodes, joint.node[0], joint.node[1]);
+        world.joints.remove(index);
+    }
+}
+
+}  // namespace taut

@@ -1,0 +1,127 @@
+#include "state/joint_reading.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace taut {
+namespace {
+
+constexpr double kLeast = 1e-9;  // share of an inverse mass that counts as nothing
+constexpr double kTurn = 2 * 3.14159265358979323846;
+
+JointAnchors anchors_of(const Joint& joint) {
+    JointAnchors anchors;
+    std::memcpy(static_cast<void*>(&anchors), joint.data, sizeof anchors);
+    return anchors;
+}
+
+const double* row_of(const Joint& joint, const JointReading& reading, int end, int row) {
+    return reading.jacobian + (end * joint.type->rows + row) * kDof;
+}
+
+Vec3 linear_part(const double* row) { return {row[0], row[1], row[2]}; }
+Vec3 angular_part(const double* row) { return {row[3], row[4], row[5]}; }
+
+// J_i W J_k^T of two rows.
+double coupling(const Nodes& nodes, const Joint& joint, const JointReading& reading, int i, int k) {
+    double sum = 0;
+    for (int end = 0; end < 2; ++end) {
+        const uint32_t node = joint.node[end];
+        if (node == kNone || !moves_by_forces(nodes.info[node].kind)) continue;
+        const double *ji = row_of(joint, reading, end, i), *jk = row_of(joint, reading, end, k);
+        const Mat3 to_body = reading.pose[end].R.transpose();
+        const NodeMass& mass = nodes.mass[node];
+        sum += mass.inv_mass * linear_part(ji).dot(linear_part(jk)) +
+               (to_body * angular_part(ji)).dot(mass.inv_inertia.matrix() * (to_body * angular_part(jk)));
+    }
+    return sum;
+}
+
+}  // namespace
+
+Pose pose_of(const Nodes& nodes, uint32_t node) {
+    if (node == kNone) return {};
+    const NodeMotion& motion = nodes.motion[node];
+    if (nodes.info[node].kind == NodeKind::particle) return {motion.x, Mat3::Identity()};
+    return {motion.x, motion.q.toRotationMatrix()};
+}
+
+Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end) {
+    const JointAnchors anchors = anchors_of(joint);
+    const Pose pose = pose_of(nodes, joint.node[end]);
+    return pose.x + pose.R * (end == 0 ? anchors.a : anchors.b);
+}
+
+JointReading read_joint(const Nodes& nodes, const Joint& joint) {
+    JointReading reading;
+    for (int end = 0; end < 2; ++end) reading.pose[end] = pose_of(nodes, joint.node[end]);
+    joint.type->evaluate(joint.data, reading.pose, reading.value, reading.jacobian);
+    return reading;
+}
+
+double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
+    double rate = 0;
+    for (int end = 0; end < 2; ++end) {
+        if (joint.node[end] == kNone) continue;
+        const double* j = row_of(joint, reading, end, row);
+        const NodeMotion& motion = nodes.motion[joint.node[end]];
+        rate += linear_part(j).dot(motion.v) + angular_part(j).dot(motion.w);
+    }
+    return rate;
+}
+
+double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
+    return coupling(nodes, joint, reading, row, row);
+}
+
+double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
+    int rows[kMaxRows], count = 0;
+    for (int r = 0; r < joint.type->rows; ++r)
+        if (r != row && is_locked(joint, r)) rows[count++] = r;
+    rows[count++] = row;  // last
+    double a[kMaxRows][kMaxRows];
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < count; ++k) a[i][k] = coupling(nodes, joint, reading, rows[i], rows[k]);
+    for (int pivot = 0; pivot + 1 < count; ++pivot) {
+        // A row that earlier ones hold already has nothing left to hold.
+        if (!(a[pivot][pivot] > kLeast * inverse_mass_of(nodes, joint, reading, rows[pivot]))) continue;
+        for (int i = pivot + 1; i < count; ++i) {
+            const double share = a[i][pivot] / a[pivot][pivot];
+            for (int k = pivot + 1; k < count; ++k) a[i][k] -= share * a[pivot][k];
+        }
+    }
+    return std::max(a[count - 1][count - 1], kLeast * inverse_mass_of(nodes, joint, reading, row));
+}
+
+double overrun_of(const Joint& joint, const JointReading& reading, int row) {
+    const Axis& axis = joint.axis[row];
+    if (axis.mode != AxisMode::limited) return 0;
+    double value = reading.value[row];
+    const double centre = 0.5 * (static_cast<double>(axis.lower) + axis.upper);
+    if (is_angle(joint, row) && std::isfinite(centre)) value -= kTurn * std::round((value - centre) / kTurn);
+    return std::max({0.0, axis.lower - value, value - axis.upper});
+}
+
+JointError error_of(const Joint& joint, const JointReading& reading) {
+    double squared[2] = {};
+    for (int row = 0; row < joint.type->rows; ++row) {
+        const double error = is_locked(joint, row) ? reading.value[row] : overrun_of(joint, reading, row);
+        squared[is_angle(joint, row)] += error * error;
+    }
+    return {std::sqrt(squared[0]), std::sqrt(squared[1])};
+}
+
+Wrench wrench_of(const Joint& joint, const JointReading& reading) {
+    Wrench wrench;
+    if (joint.fresh) return wrench;
+    for (int row = 0; row < joint.type->rows; ++row) {
+        const double* j = row_of(joint, reading, 1, row);
+        wrench.force += joint.lambda[row] * linear_part(j);
+        wrench.torque += joint.lambda[row] * angular_part(j);
+    }
+    // J^T lambda is about the centre of mass: move it to the anchor.
+    wrench.torque -= (reading.pose[1].R * anchors_of(joint).b).cross(wrench.force);
+    return wrench;
+}
+
+}  // namespace taut

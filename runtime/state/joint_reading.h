@@ -1,0 +1,50 @@
+// What a joint says at the present poses: coordinates, rates, errors, what it carries. For reading, not for the solve.
+#pragma once
+
+#include "state/joints.h"
+
+namespace taut {
+
+// What every joint's data begins with: relative to the centre of mass, body axes; world position of a null end [m].
+struct JointAnchors {
+    Vec3 a, b;
+};
+
+// Pose of a node; kNone and particles are unturned.
+Pose pose_of(const Nodes& nodes, uint32_t node);
+Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end);
+
+struct JointReading {
+    Pose pose[2];
+    double value[kMaxRows] = {};                // coordinates [m or rad]
+    double jacobian[2 * kMaxRows * kDof] = {};  // [end][row][6]
+};
+
+JointReading read_joint(const Nodes& nodes, const Joint& joint);
+
+inline bool is_angle(const Joint& joint, int row) { return (joint.type->angular >> row & 1) != 0; }
+inline bool is_locked(const Joint& joint, int row) { return joint.axis[row].mode == AxisMode::locked; }
+
+// d(coordinate)/dt [m/s or rad/s].
+double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
+// J W J^T of one row: inverse of the mass that the two ends alone set against it [1/kg or 1/(kg m^2)].
+double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
+// The same while the joint's locked rows hold: what is left of J W J^T when they are eliminated. Of a hinge's angle:
+// the inertia about the hinge, not that about the centre of mass.
+double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
+// How far a coordinate is beyond the stops of its row, an angle in the turn that is nearest to them; 0 within.
+double overrun_of(const Joint& joint, const JointReading& reading, int row);
+
+// Of locked rows their coordinates, of limited rows their overrun.
+struct JointError {
+    double linear, angular;  // [m], [rad]
+};
+JointError error_of(const Joint& joint, const JointReading& reading);
+
+// On end b about its anchor, world axes; zero of a joint that was not solved yet.
+struct Wrench {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]
+};
+Wrench wrench_of(const Joint& joint, const JointReading& reading);
+
+}  // namespace taut

@@ -1,0 +1,133 @@
+// Joints that break: when, what is told of it, and what is possible afterwards.
+#include "joint_support.h"
+
+using namespace taut_test;
+
+namespace {
+
+taut_events step_for_events(taut_world world) {
+    EXPECT_OK(taut_world_step(world));
+    taut_events out;
+    EXPECT_OK(taut_world_get_events(world, &out));
+    return out;
+}
+
+// A weight of 1 kg hangs from a thread that holds more or less than that.
+TEST(Break, AboveTheForceAndNotBelow) {
+    for (bool holds : {true, false}) {
+        const taut_world world = make_world();
+        taut_ball_joint_def def;
+        taut_ball_joint_def_init(&def);
+        def.body_b = add_particle(world, 0, 0, 0);
+        def.break_force = holds ? 9.9f : 9.7f;
+        def.user_data = 77;
+        taut_joint joint;
+        ASSERT_OK(taut_world_add_ball_joint(world, &def, &joint));
+        uint32_t broken = 0;
+        for (int i = 0; i < 60; ++i) {
+            const taut_events events = step_for_events(world);
+            broken += events.broken_count;
+            if (events.broken_count == 0) continue;
+            EXPECT_EQ(events.broken[0].joint.bits, joint.bits);
+            EXPECT_EQ(events.broken[0].user_data, 77u);
+            EXPECT_NEAR(events.broken[0].force.y, 9.81, 0.01);
+            EXPECT_NEAR(events.broken[0].torque.z, 0, 1e-6);
+            EXPECT_FALSE(taut_joint_is_valid(joint));
+        }
+        EXPECT_EQ(broken, holds ? 0u : 1u);
+        EXPECT_EQ(counts_of(world).joints, holds ? 1u : 0u);
+        taut_pose pose;
+        ASSERT_OK(taut_body_get_pose(def.body_b, &pose));
+        EXPECT_EQ(pose.position.y < -4, !holds);
+        EXPECT_OK(taut_world_destroy(world));
+    }
+}
+
+// A beam bends off at the wall by its torque alone.
+TEST(Break, AboveTheTorque) {
+    for (float most : {0.0f, 2.1e4f, 1.9e4f}) {  // the weight's is 1.962e4
+        const taut_world world = make_world();
+        const taut_body box = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
+        taut_fixed_joint_def def;
+        taut_fixed_joint_def_init(&def);
+        def.body_b = box;
+        ASSERT_OK(taut_joint_frames_from_world(world, {0}, box, {0, 5, 0}, {1, 0, 0}, &def.frame_a, &def.frame_b));
+        taut_joint joint;
+        ASSERT_OK(taut_world_add_fixed_joint(world, &def, &joint));
+        for (int i = 0; i < 60; ++i) ASSERT_OK(taut_world_step(world));
+        ASSERT_OK(taut_joint_set_break(joint, 0, most));
+        const taut_events events = step_for_events(world);
+        ASSERT_EQ(events.broken_count, most == 1.9e4f ? 1u : 0u);
+        for (uint32_t i = 0; i < events.broken_count; ++i) EXPECT_NEAR(events.broken[i].torque.z, 1.962e4, 10);
+        EXPECT_OK(taut_world_destroy(world));
+    }
+}
+
+// In the order of slots, with one event each; they are gone with the next step.
+TEST(Break, ManyAtOnce) {
+    const taut_world world = make_world();
+    std::vector<taut_joint> joints;
+    for (int i = 0; i < 20; ++i) {
+        const taut_body bob = add_particle(world, i, 0, 0);
+        taut_distance_joint_def def;
+        taut_distance_joint_def_init(&def);
+        def.body_b = bob;
+        def.anchor_a = {static_cast<double>(i), 1, 0};
+        def.break_force = i % 2 == 0 ? 1.0f : 100.0f;
+        def.user_data = static_cast<uint64_t>(i);
+        taut_joint joint;
+        ASSERT_OK(taut_world_add_distance_joint(world, &def, &joint));
+        joints.push_back(joint);
+    }
+    taut_events events = step_for_events(world);
+    ASSERT_EQ(events.broken_count, 10u);
+    for (uint32_t i = 0; i < 10; ++i) {
+        EXPECT_EQ(events.broken[i].user_data, 2 * i);
+        EXPECT_EQ(events.broken[i].joint.bits, joints[2 * i].bits);
+    }
+    events = step_for_events(world);
+    EXPECT_EQ(events.broken_count, 0u);
+    EXPECT_EQ(counts_of(world).joints, 10u);
+    EXPECT_OK(taut_world_destroy(world));
+}
+
+// Two boxes that a joint kept from colliding do so once it broke.
+TEST(Break, LetsItsBodiesCollide) {
+    const taut_world world = make_world();
+    const taut_shape box = add_box(world);
+    const taut_body a = add_body(world, body_def(TAUT_BODY_STATIC, box, 0, 0, 0));
+    const taut_body b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0, 0.999, 0));
+    taut_joint joint = add_ball(world, a, b, {0, 0.5, 0}, {0, -0.499, 0});
+    for (int i = 0; i < 10; ++i) ASSERT_OK(taut_world_step(world));
+    uint32_t count = 0;
+    ASSERT_OK(taut_world_get_contacts(world, nullptr, 0, &count));
+    ASSERT_OK(taut_joint_set_break(joint, 1, 0));
+    EXPECT_EQ(step_for_events(world).broken_count, 1u);
+    EXPECT_EQ(step_for_events(world).begin_count, 1u);
+    for (int i = 0; i < 60; ++i) ASSERT_OK(taut_world_step(world));
+    taut_pose pose;
+    ASSERT_OK(taut_body_get_pose(b, &pose));
+    EXPECT_NEAR(pose.position.y, 1, 0.01);  // it stands on the other
+    EXPECT_OK(taut_world_destroy(world));
+}
+
+TEST(CollideConnected, ChangesBothWays) {
+    const taut_world world = make_world();
+    ASSERT_OK(taut_world_set_gravity(world, {0, 0, 0}));
+    const taut_shape box = add_box(world);
+    const taut_body a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0, 0, 0));
+    const taut_body b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0.999, 0, 0));
+    const taut_joint joint = add_ball(world, a, b, {0.4995, 0, 0}, {-0.4995, 0, 0});
+    taut_contact contacts[8];
+    for (uint32_t collide : {0u, 1u, 0u, 1u}) {
+        ASSERT_OK(taut_joint_set_collide_connected(joint, collide));
+        const taut_events events = step_for_events(world);
+        uint32_t count = 99;
+        ASSERT_OK(taut_world_get_contacts(world, contacts, 8, &count));
+        EXPECT_EQ(count, collide ? 4u : 0u);
+        EXPECT_EQ(events.begin_count, collide);
+    }
+    EXPECT_OK(taut_world_destroy(world));
+}
+
+}  // namespace

@@ -1,0 +1,449 @@
+// Joints with stops, drives and friction, against what mechanics says of them.
+#include "physics/lab.h"
+
+namespace {
+
+using namespace lab;
+
+constexpr double kDegree = kPi / 180;
+
+taut_axis_def free_axis() {
+    taut_axis_def axis;
+    taut_axis_def_init(&axis);
+    return axis;
+}
+
+taut_axis_def limited(double lower, double upper) {
+    taut_axis_def axis = free_axis();
+    axis.mode = TAUT_AXIS_LIMITED;
+    axis.lower = static_cast<float>(lower);
+    axis.upper = static_cast<float>(upper);
+    return axis;
+}
+
+taut_axis_def motor(double speed, double max_force) {
+    taut_axis_def axis = free_axis();
+    axis.drive.speed = static_cast<float>(speed);
+    axis.drive.damping = INFINITY;
+    axis.drive.max_force = static_cast<float>(max_force);
+    return axis;
+}
+
+taut_axis_def with_friction(double force) {
+    taut_axis_def axis = free_axis();
+    axis.friction = static_cast<float>(force);
+    return axis;
+}
+
+// Both frames of a joint at a point and along an axis of the world.
+template <class Def>
+Def at(const World& world, void (*init)(Def*), taut_body a, taut_body b, const Vec& pivot, const Vec& axis) {
+    Def def;
+    init(&def);
+    def.body_a = a;
+    def.body_b = b;
+    ok(taut_joint_frames_from_world(world.handle, a, b, pivot.pos(), axis.narrow(), &def.frame_a, &def.frame_b));
+    return def;
+}
+
+taut_joint hinge(const World& world, taut_body a, taut_body b, const Vec& pivot, const Vec& axis,
+                 const taut_axis_def& angle = free_axis()) {
+    auto def = at(world, taut_hinge_joint_def_init, a, b, pivot, axis);
+    def.angle = angle;
+    taut_joint out{};
+    ok(taut_world_add_hinge_joint(world.handle, &def, &out));
+    return out;
+}
+
+taut_joint slider(const World& world, taut_body a, taut_body b, const Vec& pivot, const Vec& axis,
+                  const taut_axis_def& slide = free_axis()) {
+    auto def = at(world, taut_slider_joint_def_init, a, b, pivot, axis);
+    def.slide = slide;
+    taut_joint out{};
+    ok(taut_world_add_slider_joint(world.handle, &def, &out));
+    return out;
+}
+
+struct Motion {
+    double value, rate;
+};
+
+Motion motion(taut_joint joint, uint32_t axis = 0) {
+    float value = 0, rate = 0;
+    ok(taut_joint_get_coordinates(joint, axis, &value, &rate));
+    return {static_cast<double>(value), static_cast<double>(rate)};
+}
+
+taut_axis_forces forces(taut_joint joint, uint32_t axis = 0) {
+    taut_axis_forces out;
+    ok(taut_joint_get_axis_forces(joint, axis, &out));
+    return out;
+}
+
+double error(taut_joint joint) {
+    float out = 0;
+    ok(taut_joint_get_error(joint, &out));
+    return static_cast<double>(out);
+}
+
+double angular_error(taut_joint joint) {
+    float out = 0;
+    ok(taut_joint_get_angular_error(joint, &out));
+    return static_cast<double>(out);
+}
+
+World weightless() {
+    return World([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+}
+
+// A bar of 1 m along x with its left end in the origin.
+constexpr double kBarMass = 2, kBarInertia = 0.2;
+taut_body bar(const World& world) {
+    return world.add({.position = {0.5, 0, 0}, .mass = kBarMass, .inertia = {0.05, kBarInertia, kBarInertia}});
+}
+constexpr double kAboutEnd = kBarInertia + kBarMass * 0.25;  // its inertia about the left end
+
+// ---------------------------------------------------------------- stops
+
+TEST(HingeStop, CatchesABarAndCarriesIt) {
+    World world;
+    const taut_body body = bar(world);
+    const taut_joint joint = hinge(world, {}, body, {0, 0, 0}, {0, 0, 1}, limited(-30 * kDegree, 60 * kDegree));
+    double overrun = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+        world.step();
+        overrun = std::max(overrun, -30 * kDegree - motion(joint).value);
+    }
+    EXPECT_LE(overrun, 0.3 * kDegree) << "at the blow";
+    EXPECT_NEAR(motion(joint).value, -30 * kDegree, 0.02 * kDegree);
+    EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
+    const taut_axis_forces f = forces(joint);
+    const double moment = kBarMass * kG * 0.5 * std::cos(30 * kDegree);
+    EXPECT_NEAR(f.stop, moment, 0.002 * moment);
+    EXPECT_EQ(f.active_stop, -1);
+    EXPECT_LT(error(joint), 1e-5);
+    EXPECT_LT(angular_error(joint), 1e-4);
+}
+
+// A stop of compliance c yields by moment * c.
+TEST(HingeStop, YieldsByItsCompliance) {
+    World world;
+    taut_axis_def axis = limited(0, 1);
+    axis.stop_compliance = 0.01f;
+    axis.stop_damping = 5;
+    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, axis);
+    world.step(600);
+    const double yielded = motion(joint).value;
+    EXPECT_NEAR(yielded, -0.01 * kBarMass * kG * 0.5 * std::cos(yielded), 2e-4);
+}
+
+// Fifty bodies with stops at 20 degrees, 1000 kg at the end: each angle stays within its stops.
+TEST(HingeStop, HoldsUnderAThousandTimesTheWeight) {
+    World world;
+    std::vector<taut_joint> joints;
+    taut_body last{};
+    for (int i = 0; i < 20; ++i) {
+        const taut_body link =
+            world.add({.position = {0.25 + 0.5 * i, 0, 0}, .mass = 1, .inertia = {0.01, 0.02, 0.02}});
+        joints.push_back(hinge(world, last, link, {0.5 * i, 0, 0}, {0, 0, 1}, limited(-20 * kDegree, 20 * kDegree)));
+        last = link;
+    }
+    const taut_body weight = world.add({.position = {10.2, 0, 0}, .mass = 1000, .inertia = {40, 40, 40}});
+    joints.push_back(hinge(world, last, weight, {10, 0, 0}, {0, 0, 1}));
+    double overrun = 0, gap = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+        world.step();
+        for (size_t j = 0; j + 1 < joints.size(); ++j)
+            overrun = std::max(overrun, std::abs(motion(joints[j]).value) - 20 * kDegree);
+        for (taut_joint joint : joints) gap = std::max(gap, error(joint));
+    }
+    EXPECT_LE(overrun, 2 * kDegree);
+    EXPECT_LE(gap, 5e-3);
+    RecordProperty("overrun_deg", std::to_string(overrun / kDegree));
+    RecordProperty("gap_mm", std::to_string(1e3 * gap));
+}
+
+TEST(Rope, IsSlackUntilItIsTaut) {
+    World world;
+    const taut_body body = world.particle(3, {0, -0.5, 0});
+    taut_distance_joint_def def;
+    taut_distance_joint_def_init(&def);
+    def.body_b = body;
+    def.max_length = 2;
+    taut_joint rope{};
+    ok(taut_world_add_distance_joint(world.handle, &def, &rope));
+    const int falling = static_cast<int>(std::sqrt(2 * 1.4 / kG) / world.frame());
+    world.step(falling);
+    EXPECT_NEAR(position(body).y, -0.5 - 0.5 * kG * std::pow(falling * world.frame(), 2), 0.02) << "free fall";
+    EXPECT_EQ(forces(rope).stop, 0);
+    double lowest = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+        world.step();
+        lowest = std::min(lowest, position(body).y);
+    }
+    EXPECT_GT(lowest, -2.003);
+    EXPECT_NEAR(position(body).y, -2, 1e-4);
+    EXPECT_NEAR(forces(rope).stop, -3 * kG, 0.01);
+}
+
+TEST(ConeTwist, KeepsItsCone) {
+    World world;
+    const taut_body body =
+        world.add({.position = {0, -0.5, 0}, .spin = {9, 3, 5}, .mass = 2, .inertia = {0.2, 0.05, 0.2}});
+    auto def = at(world, taut_cone_twist_joint_def_init, {}, body, {0, 0, 0}, {0, -1, 0});
+    def.swing = limited(0, 40 * kDegree);
+    def.twist = limited(-15 * kDegree, 15 * kDegree);
+    taut_joint joint{};
+    ok(taut_world_add_cone_twist_joint(world.handle, &def, &joint));
+    double swing = 0, twist = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+        world.step();
+        swing = std::max(swing, motion(joint, 0).value);
+        twist = std::max(twist, std::abs(motion(joint, 1).value));
+    }
+    EXPECT_GE(swing, 39 * kDegree) << "the stop was reached";
+    EXPECT_LE(swing, 42 * kDegree);
+    EXPECT_LE(twist, 17 * kDegree);
+    EXPECT_LE(error(joint), 1e-4);
+}
+
+// ---------------------------------------------------------------- drives
+
+TEST(Motor, AcceleratesByItsTorqueThenHoldsItsSpeed) {
+    const World world = weightless();
+    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, motor(6, 3));
+    const double reached = 6 * kAboutEnd / 3;  // [s]
+    const int before = static_cast<int>(0.5 * reached / world.frame());
+    world.step(before);
+    EXPECT_NEAR(motion(joint).rate, 3 / kAboutEnd * before * world.frame(), 1e-3);
+    EXPECT_NEAR(forces(joint).drive, 3, 1e-5);
+    world.step(static_cast<int>(reached / world.frame()));
+    EXPECT_NEAR(motion(joint).rate, 6, 1e-3);
+    EXPECT_NEAR(forces(joint).drive, 0, 0.02);
+}
+
+// Against a load beyond its strength it slips at its limit.
+TEST(Motor, GivesWayBeyondItsTorque) {
+    World world;
+    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, motor(0, 4));
+    world.step(20);
+    EXPECT_LT(motion(joint).value, -0.2);
+    EXPECT_NEAR(forces(joint).drive, 4, 1e-4);
+    const double strong = kBarMass * kG;
+    const taut_axis_def enough = motor(0, strong);
+    ok(taut_joint_set_axis(joint, 0, &enough));
+    world.step(60);
+    const double held = motion(joint).value;
+    world.step(60);
+    EXPECT_NEAR(motion(joint).value, held, 1e-3);
+}
+
+TEST(Drive, HoldsATargetLikeASpring) {
+    World world;
+    taut_axis_def axis = free_axis();
+    axis.drive.stiffness = 200;
+    axis.drive.damping = 20;
+    axis.drive.target = 0.4f;
+    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, axis);
+    world.step(600);
+    const double angle = motion(joint).value;
+    EXPECT_NEAR(200 * (0.4 - angle), kBarMass * kG * 0.5 * std::cos(angle), 0.02);
+    EXPECT_NEAR(forces(joint).drive, kBarMass * kG * 0.5 * std::cos(angle), 0.02);
+}
+
+// Given as 2 Hz undamped: what it swings with, but for the damping of implicit Euler.
+TEST(Drive, SwingsAtTheFrequencyGiven) {
+    World world([](taut_world_def& def) { def.gravity = {0, 0, 0}, def.substeps = 32; });
+    taut_axis_def axis = free_axis();
+    axis.drive.frequency = 2;
+    axis.drive.damping_ratio = 0;
+    axis.drive.target = 0.2f;
+    const taut_joint joint =
+        slider(world, {}, world.add({.mass = 3, .inertia = {1, 1, 1}}), {0, 0, 0}, {1, 0, 0}, axis);
+    std::vector<double> crossings;
+    double last = -0.2;
+    for (int frame = 1; frame <= 180; ++frame) {
+        world.step();
+        const double now = motion(joint).value - 0.2;
+        if (last < 0 && now >= 0) crossings.push_back((frame - now / (now - last)) * world.frame());
+        last = now;
+    }
+    ASSERT_GE(crossings.size(), 4u);
+    const double period = (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
+    EXPECT_NEAR(period, 0.5, 0.005);
+}
+
+// ---------------------------------------------------------------- friction
+
+TEST(JointFriction, StopsARotorAfterItsTime) {
+    const World world = weightless();
+    const taut_body body = world.add({.spin = {0, 0, 10}, .mass = 1, .inertia = {0.3, 0.3, 0.5}});
+    const taut_joint joint = hinge(world, {}, body, {0, 0, 0}, {0, 0, 1}, with_friction(2));
+    const double stops = 10 * 0.5 / 2;  // [s]
+    const int half = static_cast<int>(0.5 * stops / world.frame());
+    world.step(half);
+    EXPECT_NEAR(motion(joint).rate, 10 - 2 / 0.5 * half * world.frame(), 1e-3);
+    EXPECT_NEAR(forces(joint).friction, -2, 1e-5);
+    world.step(half + 20);
+    EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
+}
+
+TEST(JointFriction, HoldsBelowItsForceAndSlipsAbove) {
+    for (const double factor : {0.9, 1.1}) {
+        World world;
+        const taut_joint joint = slider(world, {}, world.add({.mass = 2, .inertia = {1, 1, 1}}), {0, 0, 0}, {0, 1, 0},
+                                        with_friction(2 * kG / factor));
+        world.step(120);
+        const double slid = -motion(joint).value;
+        if (factor < 1)
+            EXPECT_LT(slid, 1e-3);
+        else
+            EXPECT_NEAR(slid, 0.5 * (kG - kG / factor) * 4, 0.01);
+    }
+}
+
+// ---------------------------------------------------------------- what is locked
+
+TEST(Slider, FallsAlongItsAxisAlone) {
+    World world;
+    const Vec axis = unit({1, -2, 0.5});
+    const taut_body body = world.add({.spin = {}, .mass = 2, .inertia = {0.3, 0.4, 0.5}});
+    const taut_joint joint = slider(world, {}, body, {0.3, 0.2, 0}, axis);
+    world.step(60);
+    const double acceleration = dot(axis, {0, -kG, 0});
+    EXPECT_NEAR(motion(joint).value, 0.5 * acceleration, 0.01 * acceleration);
+    EXPECT_LT(norm(cross(position(body), axis)), 1e-5);
+    EXPECT_LT(norm(state(body).spin), 1e-6);
+}
+
+// Five bars welded to a wall carry their weight as one: the torque at the wall.
+TEST(Fixed, CarriesACantilever) {
+    World world;
+    std::vector<taut_joint> joints;
+    taut_body last{};
+    for (int i = 0; i < 5; ++i) {
+        const taut_body link = world.add({.position = {0.5 + i, 0, 0}, .mass = 4, .inertia = {0.1, 0.4, 0.4}});
+        auto def = at(world, taut_fixed_joint_def_init, last, link, {1.0 * i, 0, 0}, {1, 0, 0});
+        joints.emplace_back();
+        ok(taut_world_add_fixed_joint(world.handle, &def, &joints.back()));
+        last = link;
+    }
+    world.step(300);
+    EXPECT_NEAR(position(last).y, 0, 1e-5);
+    taut_vec3 force, torque;
+    ok(taut_joint_get_force(joints[0], &force));
+    ok(taut_joint_get_torque(joints[0], &torque));
+    EXPECT_NEAR(force.y, 20 * kG, 0.01);
+    EXPECT_NEAR(torque.z, 20 * kG * 2.5, 0.1);
+}
+
+// Two shafts at an angle beta through a cardan joint: tan(out) = tan(in) / cos(beta) or tan(in) cos(beta), by which
+// shaft bears the cross; both shafts in bearings, so the loop is closed.
+TEST(Universal, TurnsLikeACardanJoint) {
+    const World world = weightless();
+    const double beta = 30 * kDegree;
+    const Vec out_axis = {std::cos(beta), std::sin(beta), 0};
+    const taut_body in = world.add({.position = {-0.5, 0, 0}, .mass = 1, .inertia = {0.1, 0.1, 0.1}});
+    const taut_body out = world.add({.position = 0.5 * out_axis, .mass = 1, .inertia = {0.1, 0.1, 0.1}});
+    const taut_joint input = hinge(world, {}, in, {-0.5, 0, 0}, {1, 0, 0}, motor(2, 1e3));
+    const taut_joint output = hinge(world, {}, out, 0.5 * out_axis, out_axis);
+    taut_universal_joint_def def;
+    taut_universal_joint_def_init(&def);
+    def.body_a = in;
+    def.body_b = out;
+    def.frame_a.position = {0.5, 0, 0};
+    def.frame_b.position = (-0.5 * out_axis).pos();
+    // The cross: x of a is z of the world, y of b is square to it and to the output shaft.
+    const Quat a = Quat::turn({0, 1, 0}, -kPi / 2);  // x to z
+    const Quat b = Quat::turn({0, 0, 1}, beta) * a;
+    def.frame_a.rotation = a.narrow();
+    def.frame_b.rotation = b.narrow();
+    taut_joint cardan{};
+    ok(taut_world_add_universal_joint(world.handle, &def, &cardan));
+    double worst = 0, ratio_low = 10, ratio_high = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+        world.step();
+        const double from = motion(input).value, to = motion(output).value;
+        const double expected = std::atan2(std::sin(from) * std::cos(beta), std::cos(from));
+        const double other = std::atan2(std::sin(from), std::cos(from) * std::cos(beta));
+        const auto off = [&](double angle) { return std::abs(std::remainder(to - angle, 2 * kPi)); };
+        worst = std::max(worst, std::min(off(expected), off(other)));
+        if (frame < 5) continue;
+        ratio_low = std::min(ratio_low, motion(output).rate / motion(input).rate);
+        ratio_high = std::max(ratio_high, motion(output).rate / motion(input).rate);
+    }
+    EXPECT_LT(worst, 0.01);
+    EXPECT_NEAR(ratio_low, std::cos(beta), 0.02);
+    EXPECT_NEAR(ratio_high, 1 / std::cos(beta), 0.02);
+    EXPECT_LT(error(cardan), 1e-3);
+}
+
+// A parallelogram with one more parallel link is over-constrained and still moves.
+TEST(FourBar, MovesWithAParallelLinkTooMany) {
+    World world;
+    const taut_body coupler = world.add({.position = {1, -1, 0}, .mass = 2, .inertia = {0.2, 0.4, 0.4}});
+    std::vector<taut_joint> joints;
+    for (const double x : {0.0, 1.0, 2.0}) {
+        const taut_body link = world.add({.position = {x, -0.5, 0}, .mass = 1, .inertia = {0.1, 0.02, 0.1}});
+        joints.push_back(hinge(world, {}, link, {x, 0, 0}, {0, 0, 1}));
+        joints.push_back(hinge(world, link, coupler, {x, -1, 0}, {0, 0, 1}));
+    }
+    ok(taut_body_set_velocity(coupler, {2, 0, 0}, {0, 0, 0}));
+    double gap = 0, tilt = 0, reach = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+        world.step();
+        for (taut_joint joint : joints) gap = std::max(gap, error(joint));
+        const BodyState now = state(coupler);
+        tilt = std::max(tilt, std::abs(now.rotation.z));
+        reach = std::max(reach, std::abs(now.position.x - 1));
+    }
+    EXPECT_GT(reach, 0.3);
+    EXPECT_LT(gap, 1e-3);
+    EXPECT_LT(tilt, 1e-3) << "the coupler stays level";
+}
+
+// ---------------------------------------------------------------- swept joints
+
+// The same stop and motor when the joint is swept instead of solved in a block.
+TEST(SoftJoint, KnowsStopsAndMotors) {
+    World world;
+    const taut_body body = bar(world);
+    auto def = at(world, taut_hinge_joint_def_init, {}, body, {0, 0, 0}, {0, 0, 1});
+    def.angle = limited(-30 * kDegree, 60 * kDegree);
+    def.solve = TAUT_JOINT_SOLVE_SOFT;
+    taut_joint joint{};
+    ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
+    world.step(300);
+    EXPECT_NEAR(motion(joint).value, -30 * kDegree, 0.5 * kDegree);
+    const taut_axis_def up = motor(1, 100);
+    ok(taut_joint_set_axis(joint, 0, &up));
+    world.step(60);
+    EXPECT_NEAR(motion(joint).rate, 1, 0.02);
+    EXPECT_LT(error(joint), 2e-3);
+}
+
+// ---------------------------------------------------------------- changes in motion
+
+// A joint made between bodies that move as it wants, or taken away, changes no velocity.
+TEST(JointInMotion, ComesAndGoesWithoutAKick) {
+    const World world = weightless();
+    const taut_body a = world.add({.velocity = {1, 2, 0}, .spin = {0, 0, 3}, .mass = 1, .inertia = {0.1, 0.1, 0.1}});
+    const Vec arm = {1, 0, 0};
+    const taut_body b = world.add({.position = arm,
+                                   .velocity = Vec(1, 2, 0) + cross({0, 0, 3}, arm),
+                                   .spin = {0, 0, 3},
+                                   .mass = 5,
+                                   .inertia = {0.4, 0.4, 0.4}});
+    const Totals before = totals({a, b});
+    auto def = at(world, taut_fixed_joint_def_init, a, b, {0.5, 0, 0}, {1, 0, 0});
+    taut_joint joint{};
+    ok(taut_world_add_fixed_joint(world.handle, &def, &joint));
+    world.step(60);
+    ok(taut_joint_remove(joint));
+    world.step(1);
+    const Totals after = totals({a, b});
+    EXPECT_NEAR(after.kinetic / before.kinetic, 1, 0.002);
+    EXPECT_NEAR(norm(after.spin - before.spin) / norm(before.spin), 0, 0.002);
+}
+
+}  // namespace

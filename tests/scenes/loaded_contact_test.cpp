@@ -1,0 +1,117 @@
+// Contacts that carry what hangs or stands on light bodies: chains over edges, towers under heavy loads.
+#include "scenes/running_scene.h"
+
+namespace {
+
+using namespace lab;
+
+double penetration(taut_world world) {  // deepest contact point [m]
+    uint32_t count = 0;
+    taut_world_get_contacts(world, nullptr, 0, &count);
+    std::vector<taut_contact> contacts(count);
+    ok(taut_world_get_contacts(world, contacts.data(), count, &count));
+    float deepest = 0;
+    for (const taut_contact& contact : contacts) deepest = std::max(deepest, -contact.separation);
+    return static_cast<double>(deepest);
+}
+
+// ---------------------------------------------------------------- a loaded chain over an edge
+
+struct Edge {
+    const char* ratio;
+    uint64_t seed;
+};
+
+void PrintTo(const Edge& edge, std::ostream* out) { *out << edge.ratio << " seed " << edge.seed; }
+
+class ChainOverEdge : public testing::TestWithParam<Edge> {};
+
+TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdge) {
+    scenes::Options options;
+    options.seed = GetParam().seed;
+    RunningScene run(scenes::make_scene(std::string("chain_over_edge_r") + GetParam().ratio, options));
+    double gap = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+        run.step();
+        if (frame >= 300) gap = std::max(gap, run.joint_error());
+    }
+    ASSERT_TRUE(run.sound());
+    EXPECT_LE(gap, 0.5e-3);
+    EXPECT_LE(penetration(run.world.world), 3e-3);
+    const auto weight = static_cast<size_t>(run.scene.roles.chain->bodies.back());
+    EXPECT_GT(run.body(weight).position.y, 1) << "slid off";
+    EXPECT_LT(norm(run.body(weight).velocity), 0.05) << "at rest";
+    RecordProperty("gap_mm", std::to_string(1e3 * gap));
+    RecordProperty("penetration_mm", std::to_string(1e3 * penetration(run.world.world)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
+                         testing::Values(Edge{"10", 0}, Edge{"10", 12}, Edge{"100", 1}, Edge{"100", 5}, Edge{"1000", 3},
+                                         Edge{"1000", 14}, Edge{"10000", 7}, Edge{"10000", 9}, Edge{"10000", 14},
+                                         Edge{"100000", 2}),
+                         [](const auto& tested) {
+                             return std::string("r") + tested.param.ratio + "_seed" + std::to_string(tested.param.seed);
+                         });
+
+TEST(WreckingBall, HoldsTogether) {
+    RunningScene run("wrecking_ball");
+    double gap = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+        run.step();
+        gap = std::max(gap, run.joint_error());
+    }
+    ASSERT_TRUE(run.sound());
+    EXPECT_LE(gap, 0.5e-3);
+    EXPECT_LE(penetration(run.world.world), 3e-3);
+}
+
+// ---------------------------------------------------------------- a load on light bodies
+
+class HeavyOnLight : public testing::TestWithParam<const char*> {};
+
+TEST_P(HeavyOnLight, StandsForAMinute) {
+    RunningScene run(std::string("heavy_on_light_r") + GetParam());
+    double fastest = 0;
+    for (int frame = 0; frame < 3600; ++frame) {
+        run.step();
+        if (frame >= 3000) fastest = std::max(fastest, run.pile_speed());
+    }
+    ASSERT_TRUE(run.sound());
+    const auto top = static_cast<size_t>(run.scene.roles.top_body);
+    const Vec moved = run.body(top).position - run.start[top].position;
+    EXPECT_LE(-100 * moved.y / run.start[top].position.y, 0.2) << "sank";
+    EXPECT_LE(std::hypot(moved.x, moved.z), 1e-3) << "leans";
+    EXPECT_LE(fastest, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ratio, HeavyOnLight, testing::Values("10", "100", "1000", "10000"),
+                         [](const auto& tested) { return std::string("r") + tested.param; });
+
+// Eight to twelve cubes of a kilogram, a cube of 10 to 1000 kg dropped on them up to 3 cm off centre: 36 starts.
+bool stands(int cubes, double mass, double height, double off, double angle) {
+    World world;
+    const taut_shape shape = world.box({0.25, 0.25, 0.25});
+    world.add_ground();
+    for (int i = 0; i < cubes; ++i) world.add({.shape = shape, .position = {0, 0.25 + 0.5 * i, 0}, .mass = 1});
+    const double top = 0.25 + 0.5 * cubes;
+    const taut_body load = world.add(
+        {.shape = shape, .position = {off * std::cos(angle), top + height, off * std::sin(angle)}, .mass = mass});
+    world.step(400);
+    const BodyState now = state(load);
+    return std::abs(now.position.y - top) < 0.02 && norm(now.velocity) < 0.01;
+}
+
+TEST(TowerUnderAFallingLoad, HoldsInThirtyFiveOfThirtySixStarts) {
+    int held = 0, starts = 0;
+    for (int cubes : {8, 10, 12})
+        for (double mass : {10.0, 100.0, 1000.0})
+            for (double height : {0.3, 0.5})
+                for (double off : {0.0, 0.03}) {
+                    ++starts;
+                    held += stands(cubes, mass, height, off, 0.7 * cubes + height);
+                }
+    EXPECT_GE(held, 35);
+    EXPECT_EQ(starts, 36);
+}
+
+}  // namespace
