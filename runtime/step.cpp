@@ -6,6 +6,7 @@
 #include "check/quarantine.h"
 #include "detect/detect.h"
 #include "integrate/integrate.h"
+#include "models/cable.h"
 #include "publish/publish.h"
 #include "system/assemble.h"
 #include "world.h"
@@ -105,6 +106,7 @@ void step(World& w) {
     w.profile = {};
     w.profile.struct_size = sizeof(taut_profile);
     w.frozen.clear();
+    reel_cables(w);
     remember_poses(w.nodes);
     detect(w, watch);
     const Solver& solver = *solvers()[w.def.solver];

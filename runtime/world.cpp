@@ -9,6 +9,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       nodes(memory),
       shapes(memory),
       joints(memory),
+      cables(memory),
       broadphase(memory),
       pairs(memory),
       partition(memory),
@@ -35,6 +36,11 @@ taut_joint World::joint_handle(uint32_t joint) const {
 taut_shape World::shape_handle(uint32_t shape) const {
     if (shape == kNone) return {0};
     return {pack_handle({shape, shapes.ids.generation(shape), id})};
+}
+
+taut_cable World::cable_handle(uint32_t cable) const {
+    if (cable == kNone) return {0};
+    return {pack_handle({cable, cables.ids.generation(cable), id})};
 }
 
 }  // namespace taut

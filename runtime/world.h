@@ -6,6 +6,7 @@
 #include "collision/collide.h"
 #include "partition/partition.h"
 #include "solvers/solver.h"
+#include "state/cables.h"
 #include "state/handle.h"
 #include "state/joints.h"
 #include "state/nodes.h"
@@ -26,6 +27,7 @@ struct World {
     Nodes nodes;
     Shapes shapes;
     Joints joints;
+    Cables cables;
     collision::Broadphase broadphase;
     Pairs pairs;
     double accumulator = 0;  // frame time not yet stepped [s]
@@ -46,6 +48,7 @@ struct World {
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;
     taut_shape shape_handle(uint32_t shape) const;
+    taut_cable cable_handle(uint32_t cable) const;
 };
 
 // One fixed time step. Throws std::bad_alloc only before the state changes or with the state still consistent.

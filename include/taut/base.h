@@ -41,7 +41,7 @@ typedef enum taut_result {
     TAUT_LOCKED = 6,           /**< the world is inside a step (or a second thread is using it) */
     TAUT_TOO_SMALL = 7,        /**< the array is too small; *count holds the number needed */
     TAUT_OUT_OF_MEMORY = 8,
-    TAUT_IN_USE = 9,       /**< a shape that bodies still use cannot be removed */
+    TAUT_IN_USE = 9,       /**< a shape that bodies still use, or a body of a cable, cannot be removed */
     TAUT_LIMIT = 10,       /**< a stated limit is reached (worlds, vertices of a hull) */
     TAUT_UNSUPPORTED = 11, /**< this machine or build lacks what is needed; the text says what */
     TAUT_RESULT_MAX = 0x7fffffff
@@ -76,6 +76,11 @@ typedef struct taut_shape {
 typedef struct taut_joint {
     uint64_t bits;
 } taut_joint;
+
+/** A cable. Zero is null. */
+typedef struct taut_cable {
+    uint64_t bits;
+} taut_cable;
 
 /** Severity of a log line. */
 typedef enum taut_log_level {

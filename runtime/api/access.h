@@ -150,9 +150,11 @@ taut_result find_shape(const char* call, const char* field, const World& world, 
 inline const IdPool& pool_of(const World& world, taut_body) { return world.nodes.ids; }
 inline const IdPool& pool_of(const World& world, taut_shape) { return world.shapes.ids; }
 inline const IdPool& pool_of(const World& world, taut_joint) { return world.joints.ids; }
+inline const IdPool& pool_of(const World& world, taut_cable) { return world.cables.ids; }
 constexpr const char* name_of(taut_body) { return "body"; }
 constexpr const char* name_of(taut_shape) { return "shape"; }
 constexpr const char* name_of(taut_joint) { return "joint"; }
+constexpr const char* name_of(taut_cable) { return "cable"; }
 
 // ---------------------------------------------------------------- act
 
@@ -182,7 +184,7 @@ taut_result with_world(const char* call, taut_world handle, Use use, Act&& act) 
     });
 }
 
-// act(World&, index) for a handle of a body, shape or joint, with its world held.
+// act(World&, index) for a handle of a body, shape, joint or cable, with its world held.
 template <class Handle, class Act>
 taut_result with(const char* call, Handle handle, Use use, Act&& act) noexcept {
     return contain(call, [&] {

@@ -5,6 +5,7 @@
 
 #include "api/access.h"
 #include "api/body_mass.h"
+#include "models/bodies.h"
 
 using namespace taut;
 
@@ -79,20 +80,6 @@ Entry& at_stride(Entry* first, uint32_t index, size_t stride) {
 
 // ---------------------------------------------------------------- act
 
-// The shape's box at the node's pose, grown by the contact margin.
-collision::Box contact_box(const World& world, uint32_t node) {
-    const collision::Placement at{world.nodes.origin(node),
-                                  world.nodes.motion[node].q.toRotationMatrix().cast<float>()};
-    collision::Box box = collision::bounds(world.shapes.record[world.nodes.info[node].shape].shape, at);
-    box.lo.array() -= kContactMargin;
-    box.hi.array() += kContactMargin;
-    return box;
-}
-
-NodePose origin_pose(const World& world, uint32_t node) {
-    return {world.nodes.origin(node), world.nodes.motion[node].q};
-}
-
 taut_pose to_pose(const Vec3& position, const Quat& rotation) { return {to_pos(position), to_quat(rotation), {0, 0}}; }
 
 void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
@@ -100,43 +87,11 @@ void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
     motion.w = motion.slow_w = w;
 }
 
-taut_result add_node(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
+taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                      taut_body* out) {
-    Nodes& nodes = world.nodes;
-    if (!check.require(nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT)) return check.result();
-    const uint32_t node = nodes.add();
-    nodes.info[node] = info;
-    nodes.motion[node] = motion;
-    nodes.mass[node] = mass;
-    nodes.before[node] = origin_pose(world, node);
-    if (info.shape != kNone) {
-        try {
-            world.broadphase.add(node, contact_box(world, node), info.kind != NodeKind::fixed);
-        } catch (...) {
-            nodes.remove(node);
-            throw;
-        }
-        ++world.shapes.record[info.shape].users;
-    }
-    *out = world.body_handle(node);
+    if (!check.require(world.nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT)) return check.result();
+    *out = world.body_handle(add_node(world, info, motion, mass));
     return TAUT_OK;
-}
-
-void remove_node(World& world, uint32_t node) {
-    // What may fail comes first.
-    reserve_ended(world.pairs, node);
-    const uint32_t shape = world.nodes.info[node].shape;
-    if (shape != kNone) {
-        world.broadphase.remove(node);
-        --world.shapes.record[shape].users;
-    }
-    forget_pairs_of(world.pairs, world.nodes, node);
-    for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
-        if (!world.joints.ids.live(joint)) continue;
-        const Joint& record = world.joints.record[joint];
-        if (record.node[0] == node || record.node[1] == node) world.joints.remove(joint);
-    }
-    world.nodes.remove(node);
 }
 
 // Rotation vector of q, at most pi long [rad]. By Newton's iteration on rotation_from_vector, whose bits no C
@@ -209,7 +164,7 @@ taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, tau
         motion.q = to_quat(def->rotation);
         motion.x = to_vec(def->position) + motion.q * mass.centre;
         set_velocity(motion, to_vec(def->linear_velocity), to_vec(def->angular_velocity));
-        return add_node(check, world, info, motion, mass, out);
+        return add_body(check, world, info, motion, mass, out);
     });
 }
 
@@ -232,12 +187,16 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         motion.x = to_vec(def->position);
         set_velocity(motion, to_vec(def->velocity), Vec3::Zero());
         const NodeInfo info{NodeKind::particle, kNone, kDefaultMaterial, kDefaultFilter, def->user_data};
-        return add_node(check, world, info, motion, mass, out);
+        return add_body(check, world, info, motion, mass, out);
     });
 }
 
 taut_result taut_body_remove(taut_body handle) {
-    return with(__func__, handle, Use::write, [](World& world, uint32_t node) {
+    Check check(__func__);
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        check.require(world.nodes.info[node].cable == kNone, "body is part of a cable, which is removed as a whole",
+                      TAUT_IN_USE);
+        if (!check) return check.result();
         remove_node(world, node);
         return TAUT_OK;
     });

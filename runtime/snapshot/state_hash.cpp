@@ -64,6 +64,25 @@ void add_joints(Hash& hash, const Joints& joints) {
     }
 }
 
+void add_cables(Hash& hash, const Cables& cables) {
+    for (uint32_t i = 0; i < cables.ids.slots(); ++i) {
+        if (!cables.ids.live(i)) continue;
+        const Cable& cable = cables.record[i];
+        hash.add(static_cast<uint64_t>(i) << 8 | static_cast<uint64_t>(cable.kind));
+        for (uint32_t node : cable.node) hash.add(static_cast<uint64_t>(node));
+        for (const JointRef& joint : cable.joint) hash.add(static_cast<uint64_t>(joint.slot));
+        for (double length : cable.length) hash.add(length);
+        for (const CableEnd& end : cable.end) {
+            hash.add(static_cast<uint64_t>(end.joint.slot));
+            for (double x : {end.reel_speed, end.wanted_speed, end.acceleration, end.paid, end.owed, end.lost})
+                hash.add(x);
+        }
+        for (double x : {cable.nominal, cable.mass_per_metre, cable.radius, cable.stretch_compliance,
+                         cable.stretch_damping, cable.bending_stiffness, cable.bending_damping, cable.gravity_scale})
+            hash.add(x);
+    }
+}
+
 void add_pairs(Hash& hash, const Pairs& pairs) {
     for (const Pair& pair : pairs.list) {
         if (pair.manifold.count == 0) continue;
@@ -87,6 +106,7 @@ uint64_t state_hash(const World& world) {
     hash.add(world.accumulator);
     add_nodes(hash, world.nodes);
     add_joints(hash, world.joints);
+    add_cables(hash, world.cables);
     add_pairs(hash, world.pairs);
     for (const Block& block : world.partition.blocks) {
         hash.add(block.memory.excess_energy);

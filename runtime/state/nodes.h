@@ -41,6 +41,7 @@ struct NodeInfo {
     taut_material material{};
     taut_filter filter{};
     uint64_t user_data = 0;
+    uint32_t cable = kNone;  // that it is part of
 };
 
 struct NodePose {  // of the body's origin, for rendering

@@ -1,0 +1,270 @@
+#include "models/cable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include "constraints/ball.h"
+#include "constraints/distance.h"
+#include "constraints/joint_frames.h"
+#include "models/bodies.h"
+
+namespace taut {
+namespace {
+
+static_assert(offsetof(BallData, anchor_b) == sizeof(Vec3) && offsetof(DistanceData, anchor_b) == sizeof(Vec3) &&
+                  offsetof(JointFrames, anchor_b) == sizeof(Vec3),
+              "set_anchor relies on it");
+
+template <class Data>
+void write_data(Joint& joint, const Data& data) {
+    static_assert(sizeof(Data) <= Joint::kDataSize);
+    std::memcpy(joint.data, static_cast<const void*>(&data), sizeof data);
+}
+
+constexpr int32_t kFirstGroup = -1000000001;  // of links that do not collide with each other
+
+bool links(const Cable& cable) { return cable.kind == CableKind::links; }
+
+Vec3 along(double length) { return {0, length, 0}; }
+
+// A solid cylinder's: at m r^2/2 about its axis. Its ends count for mass, not for the shape's round caps.
+NodeMass mass_of(const Cable& cable, double length, NodeKind kind) {
+    NodeMass mass;
+    mass.gravity_scale = cable.gravity_scale;
+    mass.mass = cable.mass_per_metre * length;
+    mass.inv_mass = 1 / mass.mass;
+    mass.isotropic = kind == NodeKind::particle;
+    if (mass.isotropic) return mass;
+    const double rr = cable.radius * cable.radius;
+    const double across = mass.mass * (3 * rr + length * length) / 12, about = mass.mass * rr / 2;
+    mass.inertia = {across, about, across, 0, 0, 0};
+    mass.inv_inertia = {1 / across, 1 / about, 1 / across, 0, 0, 0};
+    return mass;
+}
+
+// Metres of cable that are the mass of node i.
+double share_of(const Cable& cable, uint32_t i) {
+    if (links(cable)) return cable.length[i];
+    const double before = i == 0 ? 0 : cable.length[i - 1], after = i == cable.segments() ? 0 : cable.length[i];
+    return 0.5 * (before + after);
+}
+
+collision::Shape shape_of(const Cable& cable, double length) {
+    collision::Shape shape;
+    shape.kind = collision::ShapeKind::capsule;
+    shape.size = {static_cast<float>(cable.radius), static_cast<float>(0.5 * length), 0};
+    return shape;
+}
+
+Joint make_end_joint(const World& world, const Cable& cable, int e, const CableTie& tie) {
+    const uint32_t i = e == 0 ? 0 : static_cast<uint32_t>(cable.node.size()) - 1;
+    const uint32_t node = cable.node[i];
+    Vec3 anchor[2];
+    Quat frame[2] = {Quat::Identity(), Quat::Identity()};
+    const int outside = e == 0 ? 0 : 1, inside = 1 - outside;
+    Joint joint;
+    joint.node[outside] = tie.node;
+    joint.node[inside] = node;
+    joint.user_data = cable.user_data;
+    anchor[outside] = tie.anchor;
+    anchor[inside] = links(cable) ? along((e == 0 ? -0.5 : 0.5) * cable.length[i]) : Vec3::Zero();
+    if (tie.clamped) {
+        const Quat body = tie.node == kNone ? Quat::Identity() : world.nodes.motion[tie.node].q;
+        frame[outside] = body.conjugate() * world.nodes.motion[node].q;
+        joint.type = &kFixed;
+        write_data(joint, JointFrames{anchor[0], anchor[1], frame[0], frame[1]});
+    } else {
+        joint.type = &kBall;
+        write_data(joint, BallData{anchor[0], anchor[1]});
+    }
+    if (links(cable)) set_softness(cable, joint, 0.5 * cable.length[i]);
+    return joint;
+}
+
+void add_parts(World& world, uint32_t index, std::span<const Vec3> points, const CableTie (&tie)[2]) {
+    Cable& cable = world.cables.record[index];
+    const auto segments = static_cast<uint32_t>(points.size()) - 1;
+    const uint32_t count = links(cable) ? segments : segments + 1;
+    cable.node.reserve(count);
+    cable.joint.reserve(segments);
+    cable.length.reserve(segments);
+    for (uint32_t i = 0; i < segments; ++i) cable.length.push_back((points[i + 1] - points[i]).norm());
+    cable.nominal = cable_length(cable) / segments;
+
+    Vec3 direction = Vec3::UnitY();
+    NodeMotion motion;
+    for (uint32_t i = 0; i < count; ++i) {
+        motion.x = points[i];
+        if (links(cable)) {
+            // No twist from link to link.
+            const Vec3 next = (points[i + 1] - points[i]).normalized();
+            motion.q = (turn_between(direction, next) * motion.q).normalized();
+            motion.x = 0.5 * (points[i] + points[i + 1]);
+            direction = next;
+        }
+        cable.node.push_back(add_cable_node(world, index, motion, share_of(cable, i)));
+    }
+    for (uint32_t i = 0; i + 1 < count; ++i) {
+        const uint32_t slot = world.joints.add(make_inner_joint(cable, i));
+        cable.joint.push_back({slot, world.joints.record[slot].serial});
+    }
+    for (int e = 0; e < 2; ++e) {
+        if (!tie[e].attached) continue;
+        const uint32_t slot = world.joints.add(make_end_joint(world, cable, e, tie[e]));
+        cable.end[e].joint = {slot, world.joints.record[slot].serial};
+    }
+}
+
+}  // namespace
+
+Quat turn_between(const Vec3& from, const Vec3& to) {
+    const double c = from.dot(to);
+    if (c < -1 + 1e-9) {  // about any axis across
+        const Vec3 axis = std::abs(from.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitZ();
+        const Vec3 across = from.cross(axis).normalized();
+        return Quat(0, across.x(), across.y(), across.z());
+    }
+    const Vec3 v = from.cross(to);
+    return Quat(1 + c, v.x(), v.y(), v.z()).normalized();
+}
+
+double span_before(const Cable& cable, uint32_t i) {
+    return 0.5 * (cable.length[i] + (i == 0 ? 0 : cable.length[i - 1]));
+}
+
+double span_after(const Cable& cable, uint32_t i) {
+    return 0.5 * (cable.length[i] + (i + 1 == cable.segments() ? 0 : cable.length[i + 1]));
+}
+
+void set_anchor(Joint& joint, int side, const Vec3& anchor) {
+    std::memcpy(joint.data + side * sizeof(Vec3), static_cast<const void*>(&anchor), sizeof(Vec3));
+}
+
+void set_softness(const Cable& cable, Joint& joint, double span) {
+    joint.compliance = cable.stretch_compliance * span;
+    joint.damping = cable.stretch_damping / span;
+    if (joint.type != &kFixed) return;
+    joint.angular_compliance = span / cable.bending_stiffness;
+    joint.angular_damping = cable.bending_damping / span;
+}
+
+Joint make_inner_joint(const Cable& cable, uint32_t i) {
+    Joint joint;
+    joint.node[0] = cable.node[i];
+    joint.node[1] = cable.node[i + 1];
+    joint.user_data = cable.user_data;
+    if (!links(cable)) {
+        joint.type = &kDistance;
+        write_data(joint, DistanceData{Vec3::Zero(), Vec3::Zero(), cable.length[i]});
+        set_softness(cable, joint, cable.length[i]);
+        return joint;
+    }
+    const Vec3 a = along(0.5 * cable.length[i]), b = along(-0.5 * cable.length[i + 1]);
+    if (cable.bending_stiffness > 0) {
+        joint.type = &kFixed;
+        write_data(joint, JointFrames{a, b, Quat::Identity(), Quat::Identity()});
+    } else {
+        joint.type = &kBall;
+        write_data(joint, BallData{a, b});
+    }
+    set_softness(cable, joint, span_after(cable, i));
+    return joint;
+}
+
+uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, double length) {
+    const Cable& cable = world.cables.record[index];
+    NodeInfo info{links(cable) ? NodeKind::dynamic : NodeKind::particle,
+                  kNone,
+                  cable.material,
+                  cable.filter,
+                  cable.user_data,
+                  index};
+    if (!links(cable)) return add_node(world, info, motion, mass_of(cable, length, info.kind));
+    info.shape = world.shapes.add(shape_of(cable, length));
+    try {
+        return add_node(world, info, motion, mass_of(cable, length, info.kind));
+    } catch (...) {
+        world.shapes.remove(info.shape);
+        throw;
+    }
+}
+
+void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
+    const uint32_t node = cable.node[i];
+    const NodeInfo& info = world.nodes.info[node];
+    const double length = share_of(cable, i);
+    if (moves_by_forces(info.kind)) world.nodes.mass[node] = mass_of(cable, length, info.kind);
+    if (info.shape != kNone) world.shapes.record[info.shape].shape = shape_of(cable, length);
+}
+
+void drop_cable_node(World& world, uint32_t node) {
+    const uint32_t shape = world.nodes.info[node].shape;
+    forget_pairs_of(world.pairs, world.nodes, node);
+    if (shape != kNone) {
+        world.broadphase.remove(node);
+        world.shapes.remove(shape);
+    }
+    world.nodes.remove(node);
+}
+
+uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points, const CableTie (&tie)[2]) {
+    world.cables.reserve_one();
+    const uint32_t index = world.cables.add(Cable(plan));
+    taut_filter& filter = world.cables.record[index].filter;
+    if (links(plan) && !plan.self_collision && filter.group == 0)
+        filter.group = kFirstGroup - static_cast<int32_t>(index);
+    try {
+        add_parts(world, index, points, tie);
+    } catch (...) {
+        remove_cable(world, index);  // no pairs yet: does not throw
+        throw;
+    }
+    return index;
+}
+
+void remove_cable(World& world, uint32_t index) {
+    const auto own = [&](uint32_t node) { return node != kNone && world.nodes.info[node].cable == index; };
+    // What may fail comes first.
+    Pairs& pairs = world.pairs;
+    const auto touching = std::count_if(pairs.list.begin(), pairs.list.end(), [&](const Pair& pair) {
+        return pair.touching && (own(pair.a()) || own(pair.b()));
+    });
+    pairs.ended.reserve(pairs.ended.size() + static_cast<size_t>(touching));
+    for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
+        if (!world.joints.ids.live(joint)) continue;
+        const Joint& record = world.joints.record[joint];
+        if (own(record.node[0]) || own(record.node[1])) world.joints.remove(joint);
+    }
+    for (uint32_t node : world.cables.record[index].node) drop_cable_node(world, node);
+    world.cables.remove(index);
+}
+
+Vec3 cable_point(const World& world, const Cable& cable, uint32_t point) {
+    if (!links(cable)) return world.nodes.motion[cable.node[point]].x;
+    const bool last = point == cable.segments();
+    const uint32_t link = last ? point - 1 : point;
+    const NodeMotion& m = world.nodes.motion[cable.node[link]];
+    return m.x + m.q * along((last ? 0.5 : -0.5) * cable.length[link]);
+}
+
+double cable_tension(const World& world, const Cable& cable, uint32_t segment) {
+    if (!links(cable)) {
+        const Joint* joint = find(world.joints, cable.joint[segment]);
+        return joint ? -joint->lambda[0] : 0;
+    }
+    // lambda is the force on the node towards end 1; the middle has the mean of both ends.
+    Vec3 pull = Vec3::Zero();
+    for (const JointRef& ref : {joint_before(cable, segment), joint_after(cable, segment)})
+        if (const Joint* joint = find(world.joints, ref)) pull -= 0.5 * Vec3::Map(joint->lambda);
+    return pull.dot(world.nodes.motion[cable.node[segment]].q * Vec3::UnitY());
+}
+
+double cable_length(const Cable& cable) {
+    double sum = 0;
+    for (double length : cable.length) sum += length;
+    return sum;
+}
+
+}  // namespace taut

@@ -1,0 +1,156 @@
+// Light cables that carry heavy loads over edges and round pulleys.
+#include "physics/cable_lab.h"
+
+namespace {
+
+using namespace lab;
+
+constexpr double kDiameter = 0.03;
+constexpr int32_t kOwnGroup = -7;  // cable and load do not touch each other
+
+double deepest(const World& world) {
+    double depth = 0;
+    for (const taut_contact& contact : world.contacts())
+        depth = std::max(depth, -static_cast<double>(contact.separation));
+    return depth;
+}
+
+taut_cable_def laid_along(const std::vector<taut_pos>& path, double segment, double friction) {
+    taut_cable_def d = CableLab::plan(TAUT_CABLE_LINKS);
+    d.points = path.data();
+    d.point_count = static_cast<uint32_t>(path.size());
+    d.segment_length = static_cast<float>(segment);
+    d.diameter = kDiameter;
+    d.material.friction = static_cast<float>(friction);
+    d.filter.group = kOwnGroup;
+    return d;
+}
+
+taut_body hang(const CableLab& lab, double mass, const Vec& at) {
+    return lab.add({.position = at, .mass = mass, .inertia = {0.04 * mass, 0.04 * mass, 0.04 * mass}});
+}
+
+struct Support {
+    const char* name;
+    bool round;
+    double segment, load;
+};
+
+void PrintTo(const Support& s, std::ostream* out) { *out << s.name; }
+
+class LoadedOver : public testing::TestWithParam<Support> {};
+
+// From a ring on the ground over an edge, or over a fixed drum, to a load that hangs.
+TEST_P(LoadedOver, HoldsTogetherAndOut) {
+    const Support& s = GetParam();
+    constexpr double kRadius = 0.3, r = 0.5 * kDiameter;
+    CableLab lab;
+    std::vector<taut_pos> path = {{-2, r, 0}};
+    if (s.round) {
+        const Quat across = Quat::turn({1, 0, 0}, kPi / 2);
+        lab.add({.kind = TAUT_BODY_STATIC,
+                 .shape = lab.capsule(kRadius, 1),
+                 .position = {0, -kRadius, 0},
+                 .rotation = across,
+                 .friction = 0.5});
+        for (int i = 0; i <= 12; ++i) {
+            const double a = kPi / 2 * i / 12;
+            path.push_back({(kRadius + r) * std::sin(a), (kRadius + r) * std::cos(a) - kRadius, 0});
+        }
+        path.push_back({kRadius + r, -3, 0});
+    } else {
+        lab.add({.kind = TAUT_BODY_STATIC, .shape = lab.box({2, 2, 2}), .position = {-2, -2, 0}, .friction = 0.5});
+        path.push_back({r, r, 0});
+        path.push_back({r, -3, 0});
+    }
+    taut_cable_def d = laid_along(path, s.segment, 0.5);
+    const Vec end = path.back();
+    const taut_body load = hang(lab, s.load, end - Vec(0, 0.25, 0));
+    d.end[0] = to_world(path.front());
+    d.end[1] = to_body(load, {0, 0.25, 0});
+    const taut_cable cable = lab.cable(d);
+    double gap = 0, late_depth = 0;  // at first the path cuts the drum's curve short
+    for (int i = 0; i < 600; ++i) {
+        lab.step();
+        gap = std::max(gap, static_cast<double>(lab.profile().joint_error));
+        if (i >= 300) late_depth = std::max(late_depth, deepest(lab));
+    }
+    const auto t = tensions_of(cable);
+    RecordProperty("gap_um", std::to_string(1e6 * gap));
+    RecordProperty("depth_um", std::to_string(1e6 * late_depth));
+    EXPECT_LT(gap, 5e-5);
+    EXPECT_LT(late_depth, 5e-4);
+    EXPECT_LT(norm(velocity(load)), 0.1);  // it swings a little
+    EXPECT_NEAR(t.back(), s.load * kG, 0.02 * s.load * kG);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, LoadedOver,
+    testing::Values(Support{"edge_250mm_100", false, 0.25, 100}, Support{"edge_250mm_1000", false, 0.25, 1000},
+                    Support{"edge_100mm_1000", false, 0.1, 1000}, Support{"drum_100mm_100", true, 0.1, 100},
+                    Support{"drum_100mm_1000", true, 0.1, 1000}, Support{"drum_50mm_1000", true, 0.05, 1000}),
+    [](const auto& tested) { return tested.param.name; });
+
+struct Capstan {
+    const char* name;
+    double friction, ratio;
+    bool holds;
+};
+
+void PrintTo(const Capstan& c, std::ostream* out) { *out << c.name; }
+
+class OverADrum : public testing::TestWithParam<Capstan> {};
+
+// Euler and Eytelwein: over half a turn the cable slides where the loads' ratio is more than e^(mu pi).
+TEST_P(OverADrum, SlidesOrHolds) {
+    const Capstan& c = GetParam();
+    constexpr double kRadius = 0.3, r = 0.5 * kDiameter, kLight = 100, kDown = -2;
+    constexpr int kChords = 10;
+    CableLab lab;
+    const Quat across = Quat::turn({1, 0, 0}, kPi / 2);
+    lab.add({.kind = TAUT_BODY_STATIC,
+             .shape = lab.capsule(kRadius, 1),
+             .position = {0, 0, 0},
+             .rotation = across,
+             .friction = c.friction});
+    // Chords whose middles touch the drum, and as long ones on both sides.
+    const double half = kPi / kChords / 2, out = (kRadius + r) / std::cos(half), chord = 2 * out * std::sin(half);
+    std::vector<taut_pos> path;
+    const int straight = static_cast<int>(-kDown / chord);
+    for (int i = straight; i > 0; --i) path.push_back({-kRadius - r, -i * chord - 0.5 * chord, 0});
+    for (int i = 0; i <= kChords; ++i) {
+        const double a = kPi * i / kChords - kPi / 2;
+        path.push_back({out * std::sin(a), out * std::cos(a), 0});
+    }
+    for (int i = 1; i <= straight; ++i) path.push_back({kRadius + r, -i * chord - 0.5 * chord, 0});
+    taut_cable_def d = laid_along(path, 0, c.friction);
+    const taut_body light = hang(lab, kLight, Vec(path.front()) - Vec(0, 0.25, 0));
+    const taut_body heavy = hang(lab, kLight * c.ratio, Vec(path.back()) - Vec(0, 0.25, 0));
+    d.end[0] = to_body(light, {0, 0.25, 0});
+    d.end[1] = to_body(heavy, {0, 0.25, 0});
+    lab.cable(d);
+    double gap = 0, depth = 0;
+    lab.step(30);
+    const double settled = position(heavy).y;
+    for (int i = 0; i < 60; ++i) {
+        lab.step();
+        gap = std::max(gap, static_cast<double>(lab.profile().joint_error));
+        depth = std::max(depth, deepest(lab));
+    }
+    const double sunk = settled - position(heavy).y;
+    const double free = 0.5 * kG * (c.ratio - 1) / (c.ratio + 1) * (1.5 * 1.5 - 0.5 * 0.5);  // without friction
+    RecordProperty("sunk_mm", std::to_string(1e3 * sunk));
+    EXPECT_LT(gap, 5e-4);
+    EXPECT_LT(depth, 3e-3);
+    EXPECT_LT(sunk, c.holds ? 1e-3 : free);
+    EXPECT_GT(sunk, c.holds ? -1e-3 : (c.friction == 0 ? 0.95 : 0.5) * free);
+}
+
+// What holds does so with room to spare: once a light cable slides, its friction is less than Coulomb's.
+INSTANTIATE_TEST_SUITE_P(Of, OverADrum,
+                         testing::Values(Capstan{"smooth", 0, 1.5, false}, Capstan{"slides", 0.1, 2, false},
+                                         Capstan{"holds_a_tenth", 0.4, 1.1, true},
+                                         Capstan{"holds_a_fifth", 0.6, 1.2, true}, Capstan{"holds_twice", 1, 2, true}),
+                         [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
