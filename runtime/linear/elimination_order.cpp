@@ -4,8 +4,12 @@
 #include <functional>
 #include <queue>
 
+#include "linear/dissection.h"
+
 namespace taut {
 namespace {
+
+constexpr size_t kCouplingShare = 4;  // in a net, nodes for each end of a coupling between two nodes
 
 int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
 
@@ -13,16 +17,23 @@ int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
 
 EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unknowns, std::span<const uint64_t> links)
     : order(memory),
-      neighbours(unknowns.size(), Array<uint32_t>(memory), memory),
       unknowns_(unknowns),
       graph_(unknowns.size(), Array<uint32_t>(memory), memory),
       ends_(unknowns.size(), Array<uint32_t>(memory), memory),
       done_(unknowns.size(), 0, memory),
       freedoms_(unknowns.size(), 0, memory),
+      neighbours_(memory),
       merged_(memory) {
     read_links(links);
+    if (meshed())
+        dissect();
+    else
+        run_greedily();
+}
+
+void EliminationOrder::run_greedily() {
+    Memory& memory = *order.get_allocator().memory;
     std::priority_queue<uint64_t, Array<uint64_t>, std::greater<>> queue(std::greater<>{}, Array<uint64_t>(memory));
-    nodes_first_ = meshed();
     for (uint32_t i = 0; i < unknowns_.size(); ++i)
         if (!unknowns_[i].multiplier) queue.push(key(i));
     while (!queue.empty()) {  // entries whose degree has changed since are out of date
@@ -31,7 +42,7 @@ EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unkn
         const auto i = static_cast<uint32_t>(next);
         if (done_[i] || next != key(i) || !ready(i)) continue;
         eliminate(i);
-        for (uint32_t j : neighbours[i]) queue.push(key(j));
+        for (uint32_t j : neighbours_) queue.push(key(j));
     }
 }
 
@@ -59,10 +70,10 @@ void EliminationOrder::eliminate(uint32_t i) {
     }
     done_[i] = 1;
     order.push_back(i);
-    neighbours[i].swap(graph_[i]);
-    for (uint32_t j : neighbours[i]) {
+    neighbours_.swap(graph_[i]);
+    for (uint32_t j : neighbours_) {
         merged_.clear();
-        std::set_union(graph_[j].begin(), graph_[j].end(), neighbours[i].begin(), neighbours[i].end(),
+        std::set_union(graph_[j].begin(), graph_[j].end(), neighbours_.begin(), neighbours_.end(),
                        std::back_inserter(merged_));
         merged_.erase(std::remove_if(merged_.begin(), merged_.end(), [&](uint32_t k) { return k == i || k == j; }),
                       merged_.end());
@@ -98,23 +109,46 @@ uint64_t EliminationOrder::key(uint32_t i) const {
         const uint32_t other = ends_[m][0] == i ? ends_[m][1] : ends_[m][0];
         if (other != i && (ends_[m][0] == i || ends_[m][1] == i) && linked(i, other)) --degree;
     }
-    if (nodes_first_) return (2 * degree + (unknowns_[i].multiplier ? 1u << 30 : 0)) << 32 | i;
     return (2 * degree + !unknowns_[i].multiplier) << 32 | i;
 }
 
-// More multipliers than nodes, and nodes that only multipliers tie together: a net. There the graph of multipliers,
-// which is left once all nodes are gone, has the smaller separators (3 rows a joint against 6 freedoms a body).
+// More multipliers than nodes, and few nodes tied together by anything else: a net of bodies and joints.
 bool EliminationOrder::meshed() const {
-    size_t multipliers = 0;
+    size_t nodes = 0, couplings = 0;
     for (uint32_t i = 0; i < unknowns_.size(); ++i) {
-        if (unknowns_[i].multiplier) {
-            ++multipliers;
-            continue;
-        }
-        for (uint32_t j : graph_[i])
-            if (!unknowns_[j].multiplier) return false;
+        if (unknowns_[i].multiplier) continue;
+        ++nodes;
+        for (uint32_t j : graph_[i]) couplings += !unknowns_[j].multiplier;
     }
-    return 2 * multipliers > unknowns_.size();
+    return unknowns_.size() > 2 * nodes && couplings * kCouplingShare <= nodes;
+}
+
+// All nodes first. The graph of multipliers that is left has the smaller separators (3 rows a joint against 6 freedoms
+// a body): where the nodes are cut in two, the multipliers across the cut come after those of the halves.
+void EliminationOrder::dissect() {
+    Memory& memory = *order.get_allocator().memory;
+    const auto count = static_cast<uint32_t>(unknowns_.size());
+    Array<uint32_t> nodes(memory);
+    Array<uint64_t> edges(memory);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!unknowns_[i].multiplier) nodes.push_back(i);
+        const auto& tied = unknowns_[i].multiplier ? ends_[i] : graph_[i];
+        for (uint32_t a : tied)
+            for (uint32_t b : unknowns_[i].multiplier ? tied : Array<uint32_t>(1, i, memory))
+                if (a != b && !unknowns_[a].multiplier) edges.push_back(static_cast<uint64_t>(a) << 32 | b);
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    const Dissection halves(memory, count, nodes, edges);
+    order.assign(halves.sequence.begin(), halves.sequence.end());
+    for (const auto& region : halves.regions)
+        for (uint32_t at = region.begin; at < region.end; ++at)
+            for (uint32_t m : graph_[halves.sequence[at]]) {
+                auto inside = [&](uint32_t j) { return halves.place[j] >= region.begin && halves.place[j] < region.end; };
+                if (done_[m] || !unknowns_[m].multiplier || !std::all_of(ends_[m].begin(), ends_[m].end(), inside)) continue;
+                done_[m] = 1;
+                order.push_back(m);
+            }
 }
 
 }  // namespace taut
