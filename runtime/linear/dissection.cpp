@@ -100,7 +100,9 @@ void Dissection::try_between(uint32_t begin, uint32_t end, int u, int v, int w) 
     for (uint32_t i = 0, crossing = 0; i + margin < count; ++i) {
         for (uint32_t j : next_to(keys_[i].second))
             if (place[j] >= begin && place[j] < end) crossing += rank_[j] > i ? 1 : -1u;
-        const auto off_middle = [&](uint32_t middle) { return std::abs(2 * static_cast<int>(middle) - static_cast<int>(count)); };
+        const auto off_middle = [&](uint32_t middle) {
+            return std::abs(2 * static_cast<int>(middle) - static_cast<int>(count));
+        };
         if (i + 1 < margin || crossing > best_crossing_) continue;
         if (crossing == best_crossing_ && off_middle(i + 1) >= off_middle(best_middle_)) continue;
         best_crossing_ = crossing;

@@ -4,12 +4,10 @@
 #include <functional>
 #include <queue>
 
-#include "linear/dissection.h"
-
 namespace taut {
 namespace {
 
-constexpr size_t kCouplingShare = 4;  // in a net, nodes for each end of a coupling between two nodes
+constexpr size_t kCouplingShare = 4;  // of the nodes of a net, that couplings between nodes may tie together
 
 int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
 
@@ -62,14 +60,18 @@ void EliminationOrder::read_links(std::span<const uint64_t> links) {
     }
 }
 
-// Takes i out and ties its neighbours together.
-void EliminationOrder::eliminate(uint32_t i) {
+void EliminationOrder::take(uint32_t i) {
     if (unknowns_[i].multiplier) {
         const uint32_t node = node_to_claim(i);
         if (node < unknowns_.size()) freedoms_[node] = static_cast<uint8_t>(freedoms_[node] - need(i, node));
     }
     done_[i] = 1;
     order.push_back(i);
+}
+
+// Takes i and ties its neighbours together.
+void EliminationOrder::eliminate(uint32_t i) {
+    take(i);
     neighbours_.swap(graph_[i]);
     for (uint32_t j : neighbours_) {
         merged_.clear();
@@ -112,43 +114,66 @@ uint64_t EliminationOrder::key(uint32_t i) const {
     return (2 * degree + !unknowns_[i].multiplier) << 32 | i;
 }
 
-// More multipliers than nodes, and few nodes tied together by anything else: a net of bodies and joints.
+// More multipliers than nodes: a net. Where the nodes are cut in two, what lies on the cut comes after the halves.
 bool EliminationOrder::meshed() const {
-    size_t nodes = 0, couplings = 0;
-    for (uint32_t i = 0; i < unknowns_.size(); ++i) {
-        if (unknowns_[i].multiplier) continue;
-        ++nodes;
-        for (uint32_t j : graph_[i]) couplings += !unknowns_[j].multiplier;
-    }
-    return unknowns_.size() > 2 * nodes && couplings * kCouplingShare <= nodes;
+    const auto nodes = std::count_if(unknowns_.begin(), unknowns_.end(), [](auto& u) { return !u.multiplier; });
+    return unknowns_.size() > 2 * static_cast<size_t>(nodes);
 }
 
-// All nodes first. The graph of multipliers that is left has the smaller separators (3 rows a joint against 6 freedoms
-// a body): where the nodes are cut in two, the multipliers across the cut come after those of the halves.
 void EliminationOrder::dissect() {
-    Memory& memory = *order.get_allocator().memory;
-    const auto count = static_cast<uint32_t>(unknowns_.size());
-    Array<uint32_t> nodes(memory);
-    Array<uint64_t> edges(memory);
-    for (uint32_t i = 0; i < count; ++i) {
+    Array<uint32_t> nodes(order.get_allocator());
+    Array<uint64_t> edges(order.get_allocator());
+    auto tie = [&](uint32_t a, uint32_t b) {
+        edges.push_back(static_cast<uint64_t>(a) << 32 | b);
+        edges.push_back(static_cast<uint64_t>(b) << 32 | a);
+    };
+    for (uint32_t i = 0; i < unknowns_.size(); ++i) {
         if (!unknowns_[i].multiplier) nodes.push_back(i);
-        const auto& tied = unknowns_[i].multiplier ? ends_[i] : graph_[i];
-        for (uint32_t a : tied)
-            for (uint32_t b : unknowns_[i].multiplier ? tied : Array<uint32_t>(1, i, memory))
-                if (a != b && !unknowns_[a].multiplier) edges.push_back(static_cast<uint64_t>(a) << 32 | b);
+        for (uint32_t j : graph_[i])
+            if (j > i && !unknowns_[i].multiplier && !unknowns_[j].multiplier) tie(i, j);
     }
+    const bool coupled = edges.size() * kCouplingShare > nodes.size();
+    for (const auto& ends : ends_)
+        for (size_t a = 0; a < ends.size(); ++a)
+            for (size_t b = 0; b < a; ++b) tie(ends[a], ends[b]);
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    const Dissection halves(memory, count, nodes, edges);
-    order.assign(halves.sequence.begin(), halves.sequence.end());
-    for (const auto& region : halves.regions)
+    const Dissection halves(*order.get_allocator().memory, static_cast<uint32_t>(unknowns_.size()), nodes, edges);
+    coupled ? cut_at_nodes(halves) : cut_at_multipliers(halves);
+}
+
+// A node of the second half with a neighbour in the first lies on the cut. Multipliers come as soon as they may.
+void EliminationOrder::cut_at_nodes(const Dissection& halves) {
+    Array<uint64_t> last(halves.sequence.size(), 0, order.get_allocator());  // region waited for << 32 | place
+    for (uint32_t r = 0; r < halves.regions.size(); ++r) {
+        const Dissection::Region& region = halves.regions[r];
+        auto in_first = [&](uint32_t j) { return halves.place[j] >= region.begin && halves.place[j] < region.middle; };
+        for (uint32_t at = region.middle; at < region.end; ++at) {
+            const auto around = halves.next_to(halves.sequence[at]);
+            if (region.single() || std::any_of(around.begin(), around.end(), in_first))
+                last[at] = static_cast<uint64_t>(r) << 32 | at;
+        }
+    }
+    std::sort(last.begin(), last.end());
+    for (uint64_t entry : last) {
+        const uint32_t node = halves.sequence[static_cast<uint32_t>(entry)];
+        take(node);
+        for (uint32_t m : graph_[node])
+            if (unknowns_[m].multiplier && !done_[m] && ready(m)) take(m);
+    }
+}
+
+// All nodes first: the graph of multipliers that is left has the smaller cuts (3 rows a joint against 6 freedoms a
+// body). A multiplier lies on the cut that parts its nodes.
+void EliminationOrder::cut_at_multipliers(const Dissection& halves) {
+    for (uint32_t node : halves.sequence) take(node);
+    for (const Dissection::Region& region : halves.regions) {
+        auto inside = [&](uint32_t j) { return halves.place[j] >= region.begin && halves.place[j] < region.end; };
         for (uint32_t at = region.begin; at < region.end; ++at)
-            for (uint32_t m : graph_[halves.sequence[at]]) {
-                auto inside = [&](uint32_t j) { return halves.place[j] >= region.begin && halves.place[j] < region.end; };
-                if (done_[m] || !unknowns_[m].multiplier || !std::all_of(ends_[m].begin(), ends_[m].end(), inside)) continue;
-                done_[m] = 1;
-                order.push_back(m);
-            }
+            for (uint32_t m : graph_[halves.sequence[at]])
+                if (unknowns_[m].multiplier && !done_[m] && std::all_of(ends_[m].begin(), ends_[m].end(), inside))
+                    take(m);
+    }
 }
 
 }  // namespace taut

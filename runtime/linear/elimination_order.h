@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "base/memory.h"
+#include "linear/dissection.h"
 
 namespace taut {
 
@@ -26,6 +26,7 @@ public:
 
 private:
     void read_links(std::span<const uint64_t> links);
+    void take(uint32_t i);
     void eliminate(uint32_t i);
     bool ready(uint32_t i) const;
     uint32_t node_to_claim(uint32_t multiplier) const;  // or the number of unknowns
@@ -35,11 +36,13 @@ private:
     bool meshed() const;
     void run_greedily();
     void dissect();
+    void cut_at_nodes(const Dissection& halves);
+    void cut_at_multipliers(const Dissection& halves);
 
     std::span<const Unknown> unknowns_;
-    Array<Array<uint32_t>> graph_;    // as elimination leaves it
-    Array<Array<uint32_t>> ends_;     // nodes of a multiplier
-    Array<uint8_t> done_, freedoms_;  // freedoms of a node that no multiplier claimed yet
+    Array<Array<uint32_t>> graph_;         // as elimination leaves it
+    Array<Array<uint32_t>> ends_;          // nodes of a multiplier
+    Array<uint8_t> done_, freedoms_;       // freedoms of a node that no multiplier claimed yet
     Array<uint32_t> neighbours_, merged_;  // of the last one eliminated; space
 };
 

@@ -8,14 +8,10 @@ namespace taut {
 namespace {
 
 typedef double Vector __attribute__((vector_size(32)));
+typedef double Unaligned __attribute__((vector_size(32), aligned(8), may_alias));
 
-inline Vector load(const double* p) {
-    Vector v;
-    __builtin_memcpy(&v, p, sizeof v);
-    return v;
-}
-
-inline void store(double* p, const Vector& v, size_t count = 4) { __builtin_memcpy(p, &v, count * sizeof(double)); }
+inline Unaligned& at(double* p) { return *reinterpret_cast<Unaligned*>(p); }
+inline const Unaligned& at(const double* p) { return *reinterpret_cast<const Unaligned*>(p); }
 
 // Inverse of the symmetric 3 x 3 matrix in the lower triangle of a, definite of the given sign.
 inline bool invert(const double* a, size_t ld, double sign, double* inverse) {
@@ -36,26 +32,27 @@ inline bool invert(const double* a, size_t ld, double sign, double* inverse) {
 // out = a d, d 3 x 3; writes whole vectors.
 inline void scale(double* out, const double* a, size_t ld, const double* d, size_t rows) {
     for (size_t i = 0; i < rows; i += 4) {
-        const Vector a0 = load(a + i), a1 = load(a + ld + i), a2 = load(a + 2 * ld + i);
-        for (size_t c = 0; c < 3; ++c) store(out + c * ld + i, a0 * d[c] + a1 * d[3 + c] + a2 * d[6 + c]);
+        const Vector a0 = at(a + i), a1 = at(a + ld + i), a2 = at(a + 2 * ld + i);
+        for (size_t c = 0; c < 3; ++c) at(out + c * ld + i) = a0 * d[c] + a1 * d[3 + c] + a2 * d[6 + c];
     }
 }
 
 // Three columns of x -= l a^T, l with k columns; a: three rows.
 template <size_t Triples>
 inline void subtract(double* x, size_t ldx, const double* l, const double* a, size_t ld, size_t k) {
-    constexpr size_t kVectors = (3 * Triples + 3) / 4, kLast = 3 * Triples - 4 * (kVectors - 1);
+    constexpr size_t kVectors = (3 * Triples + 3) / 4, kLast = kVectors - 1;
     Vector sum[3][kVectors];
     for (size_t c = 0; c < 3; ++c)
-        for (size_t v = 0; v < kVectors; ++v) sum[c][v] = load(x + c * ldx + 4 * v);
+        for (size_t v = 0; v < kVectors; ++v) sum[c][v] = at(x + c * ldx + 4 * v);
     for (; k > 0; --k, l += ld, a += ld)
         for (size_t v = 0; v < kVectors; ++v) {
-            const Vector e = load(l + 4 * v);
+            const Vector e = at(l + 4 * v);
             for (size_t c = 0; c < 3; ++c) sum[c][v] -= e * a[c];
         }
-    for (size_t c = 0; c < 3; ++c)
-        for (size_t v = 0; v < kVectors; ++v)
-            store(x + c * ldx + 4 * v, sum[c][v], v + 1 < kVectors ? 4 : kLast);
+    for (size_t c = 0; c < 3; ++c) {
+        for (size_t v = 0; v < kLast; ++v) at(x + c * ldx + 4 * v) = sum[c][v];
+        __builtin_memcpy(x + c * ldx + 4 * kLast, &sum[c][kLast], (3 * Triples - 4 * kLast) * sizeof(double));
+    }
 }
 
 inline void subtract(double* x, size_t ldx, const double* l, const double* a, size_t ld, size_t k, size_t triples) {
@@ -100,47 +97,35 @@ bool factor(const PanelMatrix& m) {
     return true;
 }
 
-inline void gather(const PanelMatrix& m, const Panel& p, const double* x, double* local) {
-    const uint32_t* row = m.row + p.row_begin;
-    for (size_t i = 0; i < p.rows; ++i)
-        for (size_t c = 0; c < 3; ++c) local[3 * i + c] = x[3 * row[i] + c];
-}
-
 inline void times(const double* d, const double* x, double* out) {
     for (size_t r = 0; r < 3; ++r) out[r] = d[r] * x[0] + d[3 + r] * x[1] + d[6 + r] * x[2];
 }
 
 void solve(const PanelMatrix& m, double* x) {
-    double* local = m.scratch;
     for (const Panel* p = m.panel; p != m.panel_end; ++p) {
         const size_t ld = p->ld();
         const uint32_t* row = m.row + p->row_begin;
-        gather(m, *p, x, local);
         for (size_t k = 0; k < p->pivots; ++k) {
             const double* a = m.value + p->value + 3 * k * ld;
             double u[3];
-            times(m.inverse + 9 * (p->first + k), local + 3 * k, u);
-            for (size_t c = 0; c < 3; ++c) local[3 * k + c] = u[c];
-            for (size_t i = 3 * (k + 1); i < ld; i += 4)
-                store(local + i, load(local + i) -
-                                     (load(a + i) * u[0] + load(a + ld + i) * u[1] + load(a + 2 * ld + i) * u[2]));
+            times(m.inverse + 9 * (p->first + k), x + 4 * row[k], u);
+            for (size_t c = 0; c < 3; ++c) x[4 * row[k] + c] = u[c];
+            for (size_t i = k + 1; i < p->rows; ++i)
+                at(x + 4 * row[i]) -= at(a + 3 * i) * u[0] + at(a + ld + 3 * i) * u[1] + at(a + 2 * ld + 3 * i) * u[2];
         }
-        for (size_t i = 0; i < p->rows; ++i)
-            for (size_t c = 0; c < 3; ++c) x[3 * row[i] + c] = local[3 * i + c];
     }
     for (const Panel* p = m.panel_end; p-- != m.panel;) {
         const size_t ld = p->ld();
-        gather(m, *p, x, local);
-        for (size_t i = ld; i < ld + kPanelPadding; ++i) local[i] = 0;
+        const uint32_t* row = m.row + p->row_begin;
         for (size_t k = p->pivots; k-- > 0;) {
             const double* a = m.value + p->value + 3 * k * ld;
             Vector sum[3] = {};
-            for (size_t i = 3 * (k + 1); i < ld; i += 4)
-                for (size_t c = 0; c < 3; ++c) sum[c] += load(a + c * ld + i) * load(local + i);
+            for (size_t i = k + 1; i < p->rows; ++i)
+                for (size_t c = 0; c < 3; ++c) sum[c] += at(a + c * ld + 3 * i) * at(x + 4 * row[i]);
             double dot[3], z[3];
-            for (size_t c = 0; c < 3; ++c) dot[c] = (sum[c][0] + sum[c][1]) + (sum[c][2] + sum[c][3]);
+            for (size_t c = 0; c < 3; ++c) dot[c] = sum[c][0] + sum[c][1] + sum[c][2];
             times(m.inverse + 9 * (p->first + k), dot, z);
-            for (size_t c = 0; c < 3; ++c) x[3 * (p->first + k) + c] = local[3 * k + c] -= z[c];
+            for (size_t c = 0; c < 3; ++c) x[4 * row[k] + c] -= z[c];
         }
     }
 }

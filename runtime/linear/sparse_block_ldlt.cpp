@@ -6,7 +6,6 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kNoParent = ~0u;
-constexpr uint32_t kZeros = 4;  // blocks of zeros that a panel may take in to join the next one
 
 }  // namespace
 
@@ -132,7 +131,7 @@ void SparseBlockLdlt::find_columns() {
     blocks_ = static_cast<uint32_t>(column_.size());
 }
 
-// A column's rows are among its parent and the parent's rows: a panel has the rows of its last column.
+// A column's rows are among its parent and the parent's rows: as many are the same ones.
 void SparseBlockLdlt::find_panels() {
     const uint32_t n = unknowns();
     panel_.clear();
@@ -141,11 +140,9 @@ void SparseBlockLdlt::find_panels() {
     size_t values = 0, largest = 0;
     for (uint32_t k = 0, first = 0; k < n; ++k) {
         const uint32_t begin = column_begin_[k], end = column_begin_[k + 1];
-        if (parent_[k] == k + 1) {
-            const uint32_t zeros = 1 + column_begin_[k + 2] - end - (end - begin);
-            if (zeros * (k + 1 - first) <= kZeros) continue;
-        }
-        Panel panel = {pivot_[first], pivot_[k + 1] - pivot_[first], static_cast<uint32_t>(row_.size()), 0, 0, 0, values};
+        if (parent_[k] == k + 1 && end - begin == 1 + column_begin_[k + 2] - end) continue;
+        Panel panel = {pivot_[first], pivot_[k + 1] - pivot_[first], static_cast<uint32_t>(row_.size()), 0, 0, 0,
+                       values};
         for (uint32_t p = pivot_[first]; p < pivot_[k + 1]; ++p) row_.push_back(p);
         for (uint32_t p = begin; p < end; ++p)
             for (uint32_t row = pivot_[column_[p]]; row < pivot_[column_[p] + 1]; ++row) row_.push_back(row);
@@ -160,7 +157,7 @@ void SparseBlockLdlt::find_panels() {
     value_.assign(values + kPanelPadding, 0);
     scratch_.assign(largest + kPanelPadding, 0);
     inverse_.resize(9 * pivot_.back());
-    work_.resize(3 * pivot_.back());
+    work_.assign(4 * pivot_.back(), 0);
     sign_.clear();
     for (uint32_t i : order_) sign_.resize(sign_.size() + triples(i), unknown_[i].multiplier ? -1.0 : 1.0);
 }
@@ -206,23 +203,30 @@ void SparseBlockLdlt::add(uint32_t i, uint32_t j, const double* m, int rows, int
     const auto at = static_cast<size_t>(std::lower_bound(begin, begin + p.rows, pivot_[position_[i]]) - begin);
     double* block = &value_[p.value + (3 * (pivot - p.first) + static_cast<size_t>(column)) * p.ld() + 3 * at +
                             static_cast<size_t>(row)];
-    for (size_t c = 0; c < static_cast<size_t>(columns); ++c)
-        for (size_t r = 0; r < static_cast<size_t>(rows); ++r) block[c * p.ld() + r] += m[r * down + c * right];
+    for (int c = 0; c < columns; ++c, block += p.ld(), m += right) {
+        const double* from = m;
+        for (int r = 0; r < rows; ++r, from += down) block[r] += *from;
+    }
 }
 
 PanelMatrix SparseBlockLdlt::matrix() const {
-    return {panel_.data(), panel_.data() + panel_.size(), update_.data(),  run_.data(),    row_.data(),
-            sign_.data(),  value_.data(),                 inverse_.data(), scratch_.data()};
+    return {panel_.data(),  panel_.data() + panel_.size(),
+            update_.data(), run_.data(),
+            row_.data(),    sign_.data(),
+            value_.data(),  inverse_.data(),
+            scratch_.data()};
 }
 
 void SparseBlockLdlt::solve(double* x, const PanelKernels& kernels) const {
-    double* y = work_.data();
-    for (uint32_t i : order_) y = std::copy_n(x + 6 * i, unknown_[i].size, y);
+    auto triples_of = [&](uint32_t i, auto visit) {  // in x and in the order of elimination
+        for (uint32_t t = 0; t < triples(i); ++t) visit(x + 6 * i + 3 * t, &work_[4 * (pivot_[position_[i]] + t)]);
+    };
+    for (uint32_t i = 0; i < unknowns(); ++i)
+        triples_of(i, [](const double* outer, double* inner) { std::copy_n(outer, 3, inner); });
     kernels.solve(matrix(), work_.data());
-    const double* from = work_.data();
-    for (uint32_t i : order_) {
-        std::fill_n(std::copy_n(from, unknown_[i].size, x + 6 * i), 6 - unknown_[i].size, 0.0);
-        from += unknown_[i].size;
+    for (uint32_t i = 0; i < unknowns(); ++i) {
+        std::fill_n(x + 6 * i + 3, 3, 0.0);
+        triples_of(i, [](double* outer, const double* inner) { std::copy_n(inner, 3, outer); });
     }
 }
 

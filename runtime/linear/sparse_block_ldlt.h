@@ -50,10 +50,10 @@ private:
     uint32_t blocks_ = 0;
     Array<Unknown> unknown_;
     Array<uint64_t> links_;
-    Array<uint32_t> order_, position_;                // and its inverse
-    Array<uint32_t> parent_;                          // in the elimination tree, by position
-    Array<uint32_t> column_begin_, column_, pivot_;   // blocks of L and first pivot, by position
-    Array<uint32_t> panel_of_;                        // of each pivot
+    Array<uint32_t> order_, position_;               // and its inverse
+    Array<uint32_t> parent_;                         // in the elimination tree, by position
+    Array<uint32_t> column_begin_, column_, pivot_;  // blocks of L and first pivot, by position
+    Array<uint32_t> panel_of_;                       // of each pivot
     Array<Panel> panel_;
     Array<PanelUpdate> update_;
     Array<PanelRun> run_;
