@@ -47,11 +47,9 @@ void SparseBlockLdlt::analyse() {
     EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
     order_.assign(elimination.order.begin(), elimination.order.end());
     position_.resize(unknowns());
-    for (int pass = 0; pass < 2; ++pass) {
-        for (uint32_t k = 0; k < unknowns(); ++k) position_[order_[k]] = k;
-        find_parents();
-        if (pass == 0) sort_by_tree();
-    }
+    for (uint32_t k = 0; k < unknowns(); ++k) position_[order_[k]] = k;
+    find_parents();
+    sort_by_tree();
     find_columns();
     find_panels();
     find_updates();
@@ -82,20 +80,23 @@ void SparseBlockLdlt::find_parents() {
 // Children right before their parents, which leaves L as it is and lets pivots with the same rows follow each other.
 void SparseBlockLdlt::sort_by_tree() {
     const uint32_t n = unknowns();
-    Array<uint32_t> size(n, 1, order_.get_allocator()), place(n + 1, 0, order_.get_allocator());
+    Array<uint32_t> size(n, 1, order_.get_allocator());  // of the tree under each
+    Array<uint32_t> at(n, 0, order_.get_allocator());    // where each goes
+    Array<uint32_t> room(at);                            // end of what is left for its children
     for (uint32_t k = 0; k < n; ++k)
         if (parent_[k] != kNoParent) size[parent_[k]] += size[k];
-    uint32_t roots = 0;
-    for (uint32_t k = 0; k < n; ++k)
-        if (parent_[k] == kNoParent) roots += size[k];
-    Array<uint32_t> sorted(order_);
-    for (uint32_t k = n; k-- > 0;) {  // place: end of what is left for the children of k
-        uint32_t& end = parent_[k] == kNoParent ? roots : place[parent_[k]];
-        sorted[end - 1] = order_[k];
-        place[k] = end - 1;
+    uint32_t roots = n;
+    for (uint32_t k = n; k-- > 0;) {
+        uint32_t& end = parent_[k] == kNoParent ? roots : room[parent_[k]];
+        at[k] = room[k] = end - 1;
         end -= size[k];
     }
-    order_.swap(sorted);
+    const Array<uint32_t> parent(parent_);
+    for (uint32_t k = 0; k < n; ++k) {
+        parent_[at[k]] = parent[k] == kNoParent ? kNoParent : at[parent[k]];
+        position_[order_[k]] = at[k];
+    }
+    for (uint32_t i = 0; i < n; ++i) order_[position_[i]] = i;
 }
 
 // Each column: its links and the columns of its children.
@@ -203,10 +204,11 @@ void SparseBlockLdlt::add(uint32_t i, uint32_t j, const double* m, int rows, int
     const auto at = static_cast<size_t>(std::lower_bound(begin, begin + p.rows, pivot_[position_[i]]) - begin);
     double* block = &value_[p.value + (3 * (pivot - p.first) + static_cast<size_t>(column)) * p.ld() + 3 * at +
                             static_cast<size_t>(row)];
-    for (int c = 0; c < columns; ++c, block += p.ld(), m += right) {
-        const double* from = m;
-        for (int r = 0; r < rows; ++r, from += down) block[r] += *from;
-    }
+    auto sum = [&](int height) {  // a known height is unrolled
+        for (int c = 0; c < columns; ++c, block += p.ld(), m += right)
+            for (int r = 0; r < height; ++r) block[r] += m[static_cast<size_t>(r) * down];
+    };
+    rows == 3 ? sum(3) : rows == 6 ? sum(6) : sum(rows);
 }
 
 PanelMatrix SparseBlockLdlt::matrix() const {
