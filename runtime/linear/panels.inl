@@ -1,5 +1,5 @@
-// Factorisation and solution by panels. Sums run in the same order in every build: a vector holds four sums, and
-// nothing is fused.
+// Factorisation and solution by panels. Every place of a vector has a sum of its own, and nothing is fused: the width
+// of vectors makes no difference to any bit.
 #pragma once
 
 #include "linear/panels.h"
@@ -7,8 +7,14 @@
 namespace taut {
 namespace {
 
-typedef double Vector __attribute__((vector_size(32)));
-typedef double Unaligned __attribute__((vector_size(32), aligned(8), may_alias));
+#if defined(__AVX2__)
+constexpr size_t kWidth = 4;
+#else
+constexpr size_t kWidth = 2;
+#endif
+
+typedef double Vector __attribute__((vector_size(8 * kWidth)));
+typedef double Unaligned __attribute__((vector_size(8 * kWidth), aligned(8), may_alias));
 
 inline Unaligned& at(double* p) { return *reinterpret_cast<Unaligned*>(p); }
 inline const Unaligned& at(const double* p) { return *reinterpret_cast<const Unaligned*>(p); }
@@ -31,7 +37,7 @@ inline bool invert(const double* a, size_t ld, double sign, double* inverse) {
 
 // out = a d, d 3 x 3; writes whole vectors.
 inline void scale(double* out, const double* a, size_t ld, const double* d, size_t rows) {
-    for (size_t i = 0; i < rows; i += 4) {
+    for (size_t i = 0; i < rows; i += kWidth) {
         const Vector a0 = at(a + i), a1 = at(a + ld + i), a2 = at(a + 2 * ld + i);
         for (size_t c = 0; c < 3; ++c) at(out + c * ld + i) = a0 * d[c] + a1 * d[3 + c] + a2 * d[6 + c];
     }
@@ -40,23 +46,24 @@ inline void scale(double* out, const double* a, size_t ld, const double* d, size
 // Three columns of x -= l a^T, l with k columns; a: three rows.
 template <size_t Triples>
 inline void subtract(double* x, size_t ldx, const double* l, const double* a, size_t ld, size_t k) {
-    constexpr size_t kVectors = (3 * Triples + 3) / 4, kLast = kVectors - 1;
+    constexpr size_t kVectors = (3 * Triples + kWidth - 1) / kWidth, kLast = kVectors - 1;
     Vector sum[3][kVectors];
     for (size_t c = 0; c < 3; ++c)
-        for (size_t v = 0; v < kVectors; ++v) sum[c][v] = at(x + c * ldx + 4 * v);
+        for (size_t v = 0; v < kVectors; ++v) sum[c][v] = at(x + c * ldx + kWidth * v);
     for (; k > 0; --k, l += ld, a += ld)
         for (size_t v = 0; v < kVectors; ++v) {
-            const Vector e = at(l + 4 * v);
+            const Vector e = at(l + kWidth * v);
             for (size_t c = 0; c < 3; ++c) sum[c][v] -= e * a[c];
         }
     for (size_t c = 0; c < 3; ++c) {
-        for (size_t v = 0; v < kLast; ++v) at(x + c * ldx + 4 * v) = sum[c][v];
-        __builtin_memcpy(x + c * ldx + 4 * kLast, &sum[c][kLast], (3 * Triples - 4 * kLast) * sizeof(double));
+        for (size_t v = 0; v < kLast; ++v) at(x + c * ldx + kWidth * v) = sum[c][v];
+        __builtin_memcpy(x + c * ldx + kWidth * kLast, &sum[c][kLast], (3 * Triples - kWidth * kLast) * sizeof(double));
     }
 }
 
 inline void subtract(double* x, size_t ldx, const double* l, const double* a, size_t ld, size_t k, size_t triples) {
-    for (; triples >= 4; triples -= 4, x += 12, l += 12) subtract<4>(x, ldx, l, a, ld, k);
+    for (; triples >= kWidth; triples -= kWidth, x += 3 * kWidth, l += 3 * kWidth)
+        subtract<kWidth>(x, ldx, l, a, ld, k);
     if (triples == 3) subtract<3>(x, ldx, l, a, ld, k);
     if (triples == 2) subtract<2>(x, ldx, l, a, ld, k);
     if (triples == 1) subtract<1>(x, ldx, l, a, ld, k);
@@ -111,7 +118,10 @@ void solve(const PanelMatrix& m, double* x) {
             times(m.inverse + 9 * (p->first + k), x + 4 * row[k], u);
             for (size_t c = 0; c < 3; ++c) x[4 * row[k] + c] = u[c];
             for (size_t i = k + 1; i < p->rows; ++i)
-                at(x + 4 * row[i]) -= at(a + 3 * i) * u[0] + at(a + ld + 3 * i) * u[1] + at(a + 2 * ld + 3 * i) * u[2];
+                for (size_t w = 0; w < 4; w += kWidth) {
+                    const double* below = a + 3 * i + w;
+                    at(x + 4 * row[i] + w) -= at(below) * u[0] + at(below + ld) * u[1] + at(below + 2 * ld) * u[2];
+                }
         }
     }
     for (const Panel* p = m.panel_end; p-- != m.panel;) {
@@ -119,11 +129,13 @@ void solve(const PanelMatrix& m, double* x) {
         const uint32_t* row = m.row + p->row_begin;
         for (size_t k = p->pivots; k-- > 0;) {
             const double* a = m.value + p->value + 3 * k * ld;
-            Vector sum[3] = {};
+            Vector sum[3][4 / kWidth] = {};
             for (size_t i = k + 1; i < p->rows; ++i)
-                for (size_t c = 0; c < 3; ++c) sum[c] += at(a + c * ld + 3 * i) * at(x + 4 * row[i]);
+                for (size_t c = 0; c < 3; ++c)
+                    for (size_t w = 0; w < 4; w += kWidth)
+                        sum[c][w / kWidth] += at(a + c * ld + 3 * i + w) * at(x + 4 * row[i] + w);
             double dot[3], z[3];
-            for (size_t c = 0; c < 3; ++c) dot[c] = sum[c][0] + sum[c][1] + sum[c][2];
+            for (size_t c = 0; c < 3; ++c) dot[c] = sum[c][0][0] + sum[c][0][1] + sum[c][2 / kWidth][2 % kWidth];
             times(m.inverse + 9 * (p->first + k), dot, z);
             for (size_t c = 0; c < 3; ++c) x[4 * row[k] + c] -= z[c];
         }

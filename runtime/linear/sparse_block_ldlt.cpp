@@ -224,7 +224,7 @@ void SparseBlockLdlt::solve(double* x, const PanelKernels& kernels) const {
         for (uint32_t t = 0; t < triples(i); ++t) visit(x + 6 * i + 3 * t, &work_[4 * (pivot_[position_[i]] + t)]);
     };
     for (uint32_t i = 0; i < unknowns(); ++i)
-        triples_of(i, [](const double* outer, double* inner) { std::copy_n(outer, 3, inner); });
+        triples_of(i, [](const double* outer, double* inner) { *std::copy_n(outer, 3, inner) = 0; });
     kernels.solve(matrix(), work_.data());
     for (uint32_t i = 0; i < unknowns(); ++i) {
         std::fill_n(x + 6 * i + 3, 3, 0.0);
