@@ -7,22 +7,31 @@
 namespace taut {
 namespace {
 
+constexpr size_t kCouplingShare = 4;  // of the nodes of a net, that couplings between nodes may tie together
+
 int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
 
 }  // namespace
 
 EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unknowns, std::span<const uint64_t> links)
     : order(memory),
-      neighbours(unknowns.size(), Array<uint32_t>(memory), memory),
       unknowns_(unknowns),
       graph_(unknowns.size(), Array<uint32_t>(memory), memory),
       ends_(unknowns.size(), Array<uint32_t>(memory), memory),
       done_(unknowns.size(), 0, memory),
       freedoms_(unknowns.size(), 0, memory),
+      neighbours_(memory),
       merged_(memory) {
     read_links(links);
+    if (meshed())
+        dissect();
+    else
+        run_greedily();
+}
+
+void EliminationOrder::run_greedily() {
+    Memory& memory = *order.get_allocator().memory;
     std::priority_queue<uint64_t, Array<uint64_t>, std::greater<>> queue(std::greater<>{}, Array<uint64_t>(memory));
-    nodes_first_ = meshed();
     for (uint32_t i = 0; i < unknowns_.size(); ++i)
         if (!unknowns_[i].multiplier) queue.push(key(i));
     while (!queue.empty()) {  // entries whose degree has changed since are out of date
@@ -31,7 +40,7 @@ EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unkn
         const auto i = static_cast<uint32_t>(next);
         if (done_[i] || next != key(i) || !ready(i)) continue;
         eliminate(i);
-        for (uint32_t j : neighbours[i]) queue.push(key(j));
+        for (uint32_t j : neighbours_) queue.push(key(j));
     }
 }
 
@@ -51,18 +60,22 @@ void EliminationOrder::read_links(std::span<const uint64_t> links) {
     }
 }
 
-// Takes i out and ties its neighbours together.
-void EliminationOrder::eliminate(uint32_t i) {
+void EliminationOrder::take(uint32_t i) {
     if (unknowns_[i].multiplier) {
         const uint32_t node = node_to_claim(i);
         if (node < unknowns_.size()) freedoms_[node] = static_cast<uint8_t>(freedoms_[node] - need(i, node));
     }
     done_[i] = 1;
     order.push_back(i);
-    neighbours[i].swap(graph_[i]);
-    for (uint32_t j : neighbours[i]) {
+}
+
+// Takes i and ties its neighbours together.
+void EliminationOrder::eliminate(uint32_t i) {
+    take(i);
+    neighbours_.swap(graph_[i]);
+    for (uint32_t j : neighbours_) {
         merged_.clear();
-        std::set_union(graph_[j].begin(), graph_[j].end(), neighbours[i].begin(), neighbours[i].end(),
+        std::set_union(graph_[j].begin(), graph_[j].end(), neighbours_.begin(), neighbours_.end(),
                        std::back_inserter(merged_));
         merged_.erase(std::remove_if(merged_.begin(), merged_.end(), [&](uint32_t k) { return k == i || k == j; }),
                       merged_.end());
@@ -98,23 +111,69 @@ uint64_t EliminationOrder::key(uint32_t i) const {
         const uint32_t other = ends_[m][0] == i ? ends_[m][1] : ends_[m][0];
         if (other != i && (ends_[m][0] == i || ends_[m][1] == i) && linked(i, other)) --degree;
     }
-    if (nodes_first_) return (2 * degree + (unknowns_[i].multiplier ? 1u << 30 : 0)) << 32 | i;
     return (2 * degree + !unknowns_[i].multiplier) << 32 | i;
 }
 
-// More multipliers than nodes, and nodes that only multipliers tie together: a net. There the graph of multipliers,
-// which is left once all nodes are gone, has the smaller separators (3 rows a joint against 6 freedoms a body).
+// More multipliers than nodes: a net. Where the nodes are cut in two, what lies on the cut comes after the halves.
 bool EliminationOrder::meshed() const {
-    size_t multipliers = 0;
+    const auto nodes = std::count_if(unknowns_.begin(), unknowns_.end(), [](auto& u) { return !u.multiplier; });
+    return unknowns_.size() > 2 * static_cast<size_t>(nodes);
+}
+
+void EliminationOrder::dissect() {
+    Array<uint32_t> nodes(order.get_allocator());
+    Array<uint64_t> edges(order.get_allocator());
+    auto tie = [&](uint32_t a, uint32_t b) {
+        edges.push_back(static_cast<uint64_t>(a) << 32 | b);
+        edges.push_back(static_cast<uint64_t>(b) << 32 | a);
+    };
     for (uint32_t i = 0; i < unknowns_.size(); ++i) {
-        if (unknowns_[i].multiplier) {
-            ++multipliers;
-            continue;
-        }
+        if (!unknowns_[i].multiplier) nodes.push_back(i);
         for (uint32_t j : graph_[i])
-            if (!unknowns_[j].multiplier) return false;
+            if (j > i && !unknowns_[i].multiplier && !unknowns_[j].multiplier) tie(i, j);
     }
-    return 2 * multipliers > unknowns_.size();
+    const bool coupled = edges.size() * kCouplingShare > nodes.size();
+    for (const auto& ends : ends_)
+        for (size_t a = 0; a < ends.size(); ++a)
+            for (size_t b = 0; b < a; ++b) tie(ends[a], ends[b]);
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    const Dissection halves(*order.get_allocator().memory, static_cast<uint32_t>(unknowns_.size()), nodes, edges);
+    coupled ? cut_at_nodes(halves) : cut_at_multipliers(halves);
+}
+
+// A node of the second half with a neighbour in the first lies on the cut. Multipliers come as soon as they may.
+void EliminationOrder::cut_at_nodes(const Dissection& halves) {
+    Array<uint64_t> last(halves.sequence.size(), 0, order.get_allocator());  // region waited for << 32 | place
+    for (uint32_t r = 0; r < halves.regions.size(); ++r) {
+        const Dissection::Region& region = halves.regions[r];
+        auto in_first = [&](uint32_t j) { return halves.place[j] >= region.begin && halves.place[j] < region.middle; };
+        for (uint32_t at = region.middle; at < region.end; ++at) {
+            const auto around = halves.next_to(halves.sequence[at]);
+            if (region.single() || std::any_of(around.begin(), around.end(), in_first))
+                last[at] = static_cast<uint64_t>(r) << 32 | at;
+        }
+    }
+    std::sort(last.begin(), last.end());
+    for (uint64_t entry : last) {
+        const uint32_t node = halves.sequence[static_cast<uint32_t>(entry)];
+        take(node);
+        for (uint32_t m : graph_[node])
+            if (unknowns_[m].multiplier && !done_[m] && ready(m)) take(m);
+    }
+}
+
+// All nodes first: the graph of multipliers that is left has the smaller cuts (3 rows a joint against 6 freedoms a
+// body). A multiplier lies on the cut that parts its nodes.
+void EliminationOrder::cut_at_multipliers(const Dissection& halves) {
+    for (uint32_t node : halves.sequence) take(node);
+    for (const Dissection::Region& region : halves.regions) {
+        auto inside = [&](uint32_t j) { return halves.place[j] >= region.begin && halves.place[j] < region.end; };
+        for (uint32_t at = region.begin; at < region.end; ++at)
+            for (uint32_t m : graph_[halves.sequence[at]])
+                if (unknowns_[m].multiplier && !done_[m] && std::all_of(ends_[m].begin(), ends_[m].end(), inside))
+                    take(m);
+    }
 }
 
 }  // namespace taut

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "base/memory.h"
+#include "linear/dissection.h"
 
 namespace taut {
 
@@ -22,11 +22,11 @@ public:
     // links: pairs of unknowns, smaller << 32 | larger.
     EliminationOrder(Memory& memory, std::span<const Unknown> unknowns, std::span<const uint64_t> links);
 
-    Array<uint32_t> order;              // unknowns, first eliminated first
-    Array<Array<uint32_t>> neighbours;  // of each unknown when it is eliminated, ascending: its column of L
+    Array<uint32_t> order;  // unknowns, first eliminated first
 
 private:
     void read_links(std::span<const uint64_t> links);
+    void take(uint32_t i);
     void eliminate(uint32_t i);
     bool ready(uint32_t i) const;
     uint32_t node_to_claim(uint32_t multiplier) const;  // or the number of unknowns
@@ -34,13 +34,16 @@ private:
     bool linked(uint32_t i, uint32_t j) const;
     uint64_t key(uint32_t i) const;
     bool meshed() const;
+    void run_greedily();
+    void dissect();
+    void cut_at_nodes(const Dissection& halves);
+    void cut_at_multipliers(const Dissection& halves);
 
     std::span<const Unknown> unknowns_;
-    bool nodes_first_ = false;
-    Array<Array<uint32_t>> graph_;    // as elimination leaves it
-    Array<Array<uint32_t>> ends_;     // nodes of a multiplier
-    Array<uint8_t> done_, freedoms_;  // freedoms of a node that no multiplier claimed yet
-    Array<uint32_t> merged_;
+    Array<Array<uint32_t>> graph_;         // as elimination leaves it
+    Array<Array<uint32_t>> ends_;          // nodes of a multiplier
+    Array<uint8_t> done_, freedoms_;       // freedoms of a node that no multiplier claimed yet
+    Array<uint32_t> neighbours_, merged_;  // of the last one eliminated; space
 };
 
 }  // namespace taut

@@ -1,89 +1,32 @@
 #include "linear/sparse_block_ldlt.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace taut {
 namespace {
 
-constexpr int kLd = 6;
-
-// inverse of the symmetric positive definite N x N matrix m, by Cholesky; false if a pivot is not positive.
-template <int N>
-bool invert_positive(const double* m, double sign, double* inverse) {
-    double l[N][N], recip[N];
-    for (int j = 0; j < N; ++j) {
-        double d = sign * m[j * kLd + j];
-        for (int k = 0; k < j; ++k) d -= l[j][k] * l[j][k];
-        if (!(d > 0 && std::isfinite(d))) return false;
-        const double root = std::sqrt(d);
-        recip[j] = 1 / root;
-        for (int i = j + 1; i < N; ++i) {
-            double s = sign * m[i * kLd + j];
-            for (int k = 0; k < j; ++k) s -= l[i][k] * l[j][k];
-            l[i][j] = s * recip[j];
-        }
-    }
-    double w[N][N];  // inverse of l, lower
-    for (int j = 0; j < N; ++j) {
-        w[j][j] = recip[j];
-        for (int i = j + 1; i < N; ++i) {
-            double s = 0;
-            for (int k = j; k < i; ++k) s += l[i][k] * w[k][j];
-            w[i][j] = -s * recip[i];
-        }
-    }
-    for (int i = 0; i < N; ++i)
-        for (int j = 0; j <= i; ++j) {
-            double s = 0;
-            for (int k = i; k < N; ++k) s += w[k][i] * w[k][j];
-            inverse[i * kLd + j] = inverse[j * kLd + i] = sign * s;
-        }
-    return std::isfinite(recip[N - 1]);
-}
-
-// out[R][N] = a[R][N] d[N][N]
-template <int R, int N>
-void multiply(const double* a, const double* d, double* out) {
-    for (int r = 0; r < R; ++r) {
-        double row[N] = {};
-        for (int n = 0; n < N; ++n)
-            for (int c = 0; c < N; ++c) row[c] += a[r * kLd + n] * d[n * kLd + c];
-        for (int c = 0; c < N; ++c) out[r * kLd + c] = row[c];
-    }
-}
-
-// x[R][C] -= l[R][N] t[N][C]
-template <int R, int N, int C>
-void multiply_subtract(double* x, const double* l, const double* t) {
-    for (int r = 0; r < R; ++r) {
-        double row[C];
-        for (int c = 0; c < C; ++c) row[c] = x[r * kLd + c];
-        for (int n = 0; n < N; ++n)
-            for (int c = 0; c < C; ++c) row[c] -= l[r * kLd + n] * t[n * kLd + c];
-        for (int c = 0; c < C; ++c) x[r * kLd + c] = row[c];
-    }
-}
-
-template <int N>
-using UpdateTable = void (*[2][2])(double*, const double*, const double*);
+constexpr uint32_t kNoParent = ~0u;
 
 }  // namespace
 
 SparseBlockLdlt::SparseBlockLdlt(Memory& memory)
     : unknown_(memory),
-      position_(memory),
-      unknown_at_(memory),
-      size_at_(memory),
       links_(memory),
+      order_(memory),
+      position_(memory),
+      parent_(memory),
       column_begin_(memory),
-      row_of_(memory),
-      target_begin_(memory),
-      target_(memory),
-      diagonal_(memory),
+      column_(memory),
+      pivot_(memory),
+      panel_of_(memory),
+      panel_(memory),
+      update_(memory),
+      run_(memory),
+      row_(memory),
+      sign_(memory),
+      value_(memory),
       inverse_(memory),
-      below_(memory),
-      scaled_(memory),
+      scratch_(memory),
       work_(memory) {}
 
 void SparseBlockLdlt::begin(uint32_t unknowns) {
@@ -101,130 +44,191 @@ void SparseBlockLdlt::link(uint32_t i, uint32_t j) {
 }
 
 void SparseBlockLdlt::analyse() {
-    const uint32_t n = unknowns();
-    const EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
-    unknown_at_.assign(elimination.order.begin(), elimination.order.end());
-    position_.resize(n);
-    size_at_.resize(n);
-    for (uint32_t k = 0; k < n; ++k) {
-        position_[unknown_at_[k]] = k;
-        size_at_[k] = unknown_[unknown_at_[k]].size;
-    }
-    column_begin_.assign(1, 0);
-    row_of_.clear();
-    for (uint32_t k = 0; k < n; ++k) {
-        const auto first = static_cast<std::ptrdiff_t>(row_of_.size());
-        for (uint32_t j : elimination.neighbours[unknown_at_[k]]) row_of_.push_back(position_[j]);
-        std::sort(row_of_.begin() + first, row_of_.end());
-        column_begin_.push_back(static_cast<uint32_t>(row_of_.size()));
-    }
-    target_begin_.assign(1, 0);
-    target_.clear();
-    for (uint32_t k = 0; k < n; ++k) {
-        for (uint32_t p = column_begin_[k]; p < column_begin_[k + 1]; ++p)
-            for (uint32_t q = column_begin_[k]; q < p; ++q) target_.push_back(find(row_of_[p], row_of_[q]));
-        target_begin_.push_back(static_cast<uint32_t>(target_.size()));
-    }
-    diagonal_.resize(n * kStride);
-    inverse_.resize(n * kStride);
-    below_.resize(row_of_.size() * kStride);
-    scaled_.resize(row_of_.size() * kStride);
-    work_.resize(n * kLd);
+    EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
+    order_.assign(elimination.order.begin(), elimination.order.end());
+    position_.resize(unknowns());
+    for (uint32_t k = 0; k < unknowns(); ++k) position_[order_[k]] = k;
+    find_parents();
+    sort_by_tree();
+    find_columns();
+    find_panels();
+    find_updates();
     analysed_ = true;
 }
 
-uint32_t SparseBlockLdlt::find(uint32_t row, uint32_t column) const {
-    const auto begin = row_of_.begin() + column_begin_[column], end = row_of_.begin() + column_begin_[column + 1];
-    return static_cast<uint32_t>(std::lower_bound(begin, end, row) - row_of_.begin());
+// Links by the later of their two ends, and from them the elimination tree (Liu 1990).
+void SparseBlockLdlt::find_parents() {
+    Array<uint64_t> later(links_.get_allocator());
+    for (uint64_t link : links_) {
+        const uint32_t i = position_[link >> 32], j = position_[static_cast<uint32_t>(link)];
+        later.push_back(static_cast<uint64_t>(std::max(i, j)) << 32 | std::min(i, j));
+    }
+    std::sort(later.begin(), later.end());
+    parent_.assign(unknowns(), kNoParent);
+    Array<uint32_t> top(parent_);  // known so far, to skip what lies between
+    for (uint64_t link : later) {
+        const auto end = static_cast<uint32_t>(link >> 32);
+        for (auto i = static_cast<uint32_t>(link); i != end && i != kNoParent;) {
+            const uint32_t next = top[i];
+            top[i] = end;
+            if (next == kNoParent) parent_[i] = end;
+            i = next;
+        }
+    }
 }
 
-void SparseBlockLdlt::clear() {
-    std::fill(diagonal_.begin(), diagonal_.end(), 0.0);
-    std::fill(below_.begin(), below_.end(), 0.0);
+// Children right before their parents, which leaves L as it is and lets pivots with the same rows follow each other.
+void SparseBlockLdlt::sort_by_tree() {
+    const uint32_t n = unknowns();
+    Array<uint32_t> size(n, 1, order_.get_allocator());  // of the tree under each
+    Array<uint32_t> at(n, 0, order_.get_allocator());    // where each goes
+    Array<uint32_t> room(at);                            // end of what is left for its children
+    for (uint32_t k = 0; k < n; ++k)
+        if (parent_[k] != kNoParent) size[parent_[k]] += size[k];
+    uint32_t roots = n;
+    for (uint32_t k = n; k-- > 0;) {
+        uint32_t& end = parent_[k] == kNoParent ? roots : room[parent_[k]];
+        at[k] = room[k] = end - 1;
+        end -= size[k];
+    }
+    const Array<uint32_t> parent(parent_);
+    for (uint32_t k = 0; k < n; ++k) {
+        parent_[at[k]] = parent[k] == kNoParent ? kNoParent : at[parent[k]];
+        position_[order_[k]] = at[k];
+    }
+    for (uint32_t i = 0; i < n; ++i) order_[position_[i]] = i;
 }
+
+// Each column: its links and the columns of its children.
+void SparseBlockLdlt::find_columns() {
+    const uint32_t n = unknowns();
+    Array<uint64_t> earlier(links_.get_allocator());
+    for (uint64_t link : links_) {
+        const uint32_t i = position_[link >> 32], j = position_[static_cast<uint32_t>(link)];
+        earlier.push_back(static_cast<uint64_t>(std::min(i, j)) << 32 | std::max(i, j));
+    }
+    std::sort(earlier.begin(), earlier.end());
+    Array<uint32_t> child(n, kNoParent, order_.get_allocator()), sibling(child), seen(child);
+    column_begin_.assign(1, 0);
+    column_.clear();
+    pivot_.assign(1, 0);
+    auto link = earlier.begin();
+    for (uint32_t k = 0; k < n; ++k) {
+        auto take = [&](uint32_t row) {
+            if (row == k || seen[row] == k) return;
+            seen[row] = k;
+            column_.push_back(row);
+        };
+        for (; link != earlier.end() && *link >> 32 == k; ++link) take(static_cast<uint32_t>(*link));
+        for (uint32_t c = child[k]; c != kNoParent; c = sibling[c])
+            for (uint32_t p = column_begin_[c]; p < column_begin_[c + 1]; ++p) take(column_[p]);
+        std::sort(column_.begin() + column_begin_[k], column_.end());
+        column_begin_.push_back(static_cast<uint32_t>(column_.size()));
+        pivot_.push_back(pivot_.back() + triples(order_[k]));
+        if (parent_[k] == kNoParent) continue;
+        sibling[k] = child[parent_[k]];
+        child[parent_[k]] = k;
+    }
+    blocks_ = static_cast<uint32_t>(column_.size());
+}
+
+// A column's rows are among its parent and the parent's rows: as many are the same ones.
+void SparseBlockLdlt::find_panels() {
+    const uint32_t n = unknowns();
+    panel_.clear();
+    panel_of_.clear();
+    row_.clear();
+    size_t values = 0, largest = 0;
+    for (uint32_t k = 0, first = 0; k < n; ++k) {
+        const uint32_t begin = column_begin_[k], end = column_begin_[k + 1];
+        if (parent_[k] == k + 1 && end - begin == 1 + column_begin_[k + 2] - end) continue;
+        Panel panel = {pivot_[first], pivot_[k + 1] - pivot_[first], static_cast<uint32_t>(row_.size()), 0, 0, 0,
+                       values};
+        for (uint32_t p = pivot_[first]; p < pivot_[k + 1]; ++p) row_.push_back(p);
+        for (uint32_t p = begin; p < end; ++p)
+            for (uint32_t row = pivot_[column_[p]]; row < pivot_[column_[p] + 1]; ++row) row_.push_back(row);
+        panel.rows = static_cast<uint32_t>(row_.size()) - panel.row_begin;
+        panel_of_.resize(pivot_[k + 1], static_cast<uint32_t>(panel_.size()));
+        panel_.push_back(panel);
+        const size_t size = 3 * panel.pivots * panel.ld();
+        values += size;
+        largest = std::max(largest, size);
+        first = k + 1;
+    }
+    value_.assign(values + kPanelPadding, 0);
+    scratch_.assign(largest + kPanelPadding, 0);
+    inverse_.resize(9 * pivot_.back());
+    work_.assign(4 * pivot_.back(), 0);
+    sign_.clear();
+    for (uint32_t i : order_) sign_.resize(sign_.size() + triples(i), unknown_[i].multiplier ? -1.0 : 1.0);
+}
+
+void SparseBlockLdlt::find_updates() {
+    update_.clear();
+    run_.clear();
+    for (Panel& p : panel_) {
+        const uint32_t* row = &row_[p.row_begin];
+        p.update_begin = static_cast<uint32_t>(update_.size());
+        for (uint32_t begin = p.pivots, end; begin < p.rows; begin = end) {
+            const uint32_t to = panel_of_[row[begin]];
+            for (end = begin; end < p.rows && panel_of_[row[end]] == to;) ++end;
+            const auto first_run = static_cast<uint32_t>(run_.size());
+            const uint32_t* target = &row_[panel_[to].row_begin];
+            for (uint32_t i = begin, t = 0; i < p.rows; ++i, ++t) {
+                const uint32_t expected = t;
+                while (target[t] != row[i]) ++t;
+                if (i > begin && t == expected)
+                    ++run_.back().end;
+                else
+                    run_.push_back({i, i + 1, t});
+            }
+            update_.push_back({to, begin, end, first_run, static_cast<uint32_t>(run_.size())});
+        }
+        p.update_end = static_cast<uint32_t>(update_.size());
+    }
+}
+
+void SparseBlockLdlt::clear() { std::fill(value_.begin(), value_.end(), 0.0); }
 
 void SparseBlockLdlt::add(uint32_t i, uint32_t j, const double* m, int rows, int columns, int ld, int row, int column) {
-    const uint32_t pi = position_[i], pj = position_[j];
-    if (pi >= pj) {
-        double* block = (pi == pj ? &diagonal_[pi * kStride] : below(find(pi, pj))) + row * kLd + column;
-        for (int r = 0; r < rows; ++r)
-            for (int c = 0; c < columns; ++c) block[r * kLd + c] += m[r * ld + c];
-    } else {
-        double* block = below(find(pj, pi)) + column * kLd + row;
-        for (int r = 0; r < rows; ++r)
-            for (int c = 0; c < columns; ++c) block[c * kLd + r] += m[r * ld + c];
+    auto down = static_cast<size_t>(ld), right = size_t{1};
+    if (position_[i] < position_[j]) {  // what is stored is the mirrored block
+        std::swap(i, j);
+        std::swap(rows, columns);
+        std::swap(row, column);
+        std::swap(down, right);
     }
+    const uint32_t pivot = pivot_[position_[j]];
+    const Panel& p = panel_[panel_of_[pivot]];
+    const auto begin = row_.begin() + p.row_begin;
+    const auto at = static_cast<size_t>(std::lower_bound(begin, begin + p.rows, pivot_[position_[i]]) - begin);
+    double* block = &value_[p.value + (3 * (pivot - p.first) + static_cast<size_t>(column)) * p.ld() + 3 * at +
+                            static_cast<size_t>(row)];
+    auto sum = [&](int height) {  // a known height is unrolled
+        for (int c = 0; c < columns; ++c, block += p.ld(), m += right)
+            for (int r = 0; r < height; ++r) block[r] += m[static_cast<size_t>(r) * down];
+    };
+    rows == 3 ? sum(3) : rows == 6 ? sum(6) : sum(rows);
 }
 
-template <int N>
-bool SparseBlockLdlt::eliminate(uint32_t k) {
-    // The scaled column L = A D^-1 replaces nothing: the updates below need A as well.
-    constexpr UpdateTable<N> update = {{multiply_subtract<3, N, 3>, multiply_subtract<3, N, 6>},
-                                       {multiply_subtract<6, N, 3>, multiply_subtract<6, N, 6>}};
-    double* inverse = &inverse_[k * kStride];
-    const double sign = unknown_[unknown_at_[k]].multiplier ? -1.0 : 1.0;
-    if (!invert_positive<N>(&diagonal_[k * kStride], sign, inverse)) return false;
-
-    const uint32_t first = column_begin_[k], last = column_begin_[k + 1];
-    for (uint32_t p = first; p < last; ++p) {
-        if (size_at_[row_of_[p]] == 3)
-            multiply<3, N>(below(p), inverse, &scaled_[p * kStride]);
-        else
-            multiply<6, N>(below(p), inverse, &scaled_[p * kStride]);
-    }
-    for (uint32_t q = first; q < last; ++q) {  // A_j^T of the block in row j, then every block (i, j), i >= j
-        const bool wide_q = size_at_[row_of_[q]] == 6;
-        double transposed[N * kLd];
-        const double* a = below(q);
-        for (int c = 0; c < (wide_q ? 6 : 3); ++c)
-            for (int n = 0; n < N; ++n) transposed[n * kLd + c] = a[c * kLd + n];
-        update[wide_q][wide_q](&diagonal_[row_of_[q] * kStride], &scaled_[q * kStride], transposed);
-        for (uint32_t p = q + 1; p < last; ++p) {
-            const uint32_t i = p - first, pair = i * (i - 1) / 2 + (q - first);
-            update[size_at_[row_of_[p]] == 6][wide_q](below(target_[target_begin_[k] + pair]), &scaled_[p * kStride],
-                                                      transposed);
-        }
-    }
-    return true;
+PanelMatrix SparseBlockLdlt::matrix() const {
+    return {panel_.data(),  panel_.data() + panel_.size(),
+            update_.data(), run_.data(),
+            row_.data(),    sign_.data(),
+            value_.data(),  inverse_.data(),
+            scratch_.data()};
 }
 
-bool SparseBlockLdlt::factor() {
-    const uint32_t n = unknowns();
-    for (uint32_t k = 0; k < n; ++k)
-        if (!(size_at_[k] == 3 ? eliminate<3>(k) : eliminate<6>(k))) return false;
-    return true;
-}
-
-void SparseBlockLdlt::solve(double* x) const {
-    const uint32_t n = unknowns();
-    double* y = work_.data();
-    for (uint32_t k = 0; k < n; ++k)
-        for (int c = 0; c < kLd; ++c) y[k * kLd + c] = c < size_at_[k] ? x[unknown_at_[k] * kLd + c] : 0.0;
-    for (uint32_t k = 0; k < n; ++k) {
-        const int columns = size_at_[k];
-        for (uint32_t p = column_begin_[k]; p < column_begin_[k + 1]; ++p) {
-            const double* l = &scaled_[p * kStride];
-            double* to = y + row_of_[p] * kLd;
-            for (int r = 0; r < size_at_[row_of_[p]]; ++r) {
-                double s = 0;
-                for (int c = 0; c < columns; ++c) s += l[r * kLd + c] * y[k * kLd + c];
-                to[r] -= s;
-            }
-        }
-    }
-    for (uint32_t k = n; k-- > 0;) {
-        const int columns = size_at_[k];
-        const double* inverse = &inverse_[k * kStride];
-        double z[kLd] = {};
-        for (int r = 0; r < columns; ++r)
-            for (int c = 0; c < columns; ++c) z[r] += inverse[r * kLd + c] * y[k * kLd + c];
-        for (uint32_t p = column_begin_[k]; p < column_begin_[k + 1]; ++p) {
-            const double* l = &scaled_[p * kStride];
-            const double* from = y + row_of_[p] * kLd;
-            for (int r = 0; r < size_at_[row_of_[p]]; ++r)
-                for (int c = 0; c < columns; ++c) z[c] -= l[r * kLd + c] * from[r];
-        }
-        for (int c = 0; c < kLd; ++c) x[unknown_at_[k] * kLd + c] = y[k * kLd + c] = c < columns ? z[c] : 0.0;
+void SparseBlockLdlt::solve(double* x, const PanelKernels& kernels) const {
+    auto triples_of = [&](uint32_t i, auto visit) {  // in x and in the order of elimination
+        for (uint32_t t = 0; t < triples(i); ++t) visit(x + 6 * i + 3 * t, &work_[4 * (pivot_[position_[i]] + t)]);
+    };
+    for (uint32_t i = 0; i < unknowns(); ++i)
+        triples_of(i, [](const double* outer, double* inner) { *std::copy_n(outer, 3, inner) = 0; });
+    kernels.solve(matrix(), work_.data());
+    for (uint32_t i = 0; i < unknowns(); ++i) {
+        std::fill_n(x + 6 * i + 3, 3, 0.0);
+        triples_of(i, [](double* outer, const double* inner) { std::copy_n(inner, 3, outer); });
     }
 }
 

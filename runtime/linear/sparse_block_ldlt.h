@@ -5,11 +5,9 @@
 // that (Tournier et al. 2015, eq. 21, is such a matrix), so no other pivoting is needed.
 #pragma once
 
-#include <span>
-
-#include "base/math.h"
 #include "base/memory.h"
 #include "linear/elimination_order.h"
+#include "linear/panels.h"
 
 namespace taut {
 
@@ -32,30 +30,36 @@ public:
     // mirrored block follows by symmetry, so give each pair once.
     void add(uint32_t i, uint32_t j, const double* m, int rows, int columns, int ld, int row = 0, int column = 0);
     // False if a pivot is not of the sign that its kind demands or not finite.
-    bool factor();
+    bool factor(const PanelKernels& kernels = panel_kernels()) { return kernels.factor(matrix()); }
     // x: 6 doubles an unknown (a block of 3 uses the first three), right-hand side in, solution out.
-    void solve(double* x) const;
+    void solve(double* x, const PanelKernels& kernels = panel_kernels()) const;
 
     uint32_t unknowns() const { return static_cast<uint32_t>(unknown_.size()); }
-    uint32_t blocks() const { return static_cast<uint32_t>(row_of_.size()); }  // below the diagonal, fill included
+    uint32_t blocks() const { return blocks_; }  // below the diagonal, fill included
 
 private:
-    static constexpr int kStride = 36;  // doubles a block, row-major with leading dimension 6
-
-    double* below(uint32_t slot) { return &below_[slot * kStride]; }
-    uint32_t find(uint32_t row, uint32_t column) const;
-    template <int N>
-    bool eliminate(uint32_t k);
+    uint32_t triples(uint32_t i) const { return unknown_[i].size / 3u; }
+    void find_parents();
+    void sort_by_tree();
+    void find_columns();
+    void find_panels();
+    void find_updates();
+    PanelMatrix matrix() const;
 
     bool analysed_ = false;
+    uint32_t blocks_ = 0;
     Array<Unknown> unknown_;
-    Array<uint32_t> position_, unknown_at_;  // order and its inverse
-    Array<uint8_t> size_at_;                 // by position
     Array<uint64_t> links_;
-    Array<uint32_t> column_begin_, row_of_;  // structure of L, by position
-    Array<uint32_t> target_begin_, target_;  // replayed slots of the updates of each column
-    Array<double> diagonal_, inverse_, below_, scaled_;
-    mutable Array<double> work_;
+    Array<uint32_t> order_, position_;               // and its inverse
+    Array<uint32_t> parent_;                         // in the elimination tree, by position
+    Array<uint32_t> column_begin_, column_, pivot_;  // blocks of L and first pivot, by position
+    Array<uint32_t> panel_of_;                       // of each pivot
+    Array<Panel> panel_;
+    Array<PanelUpdate> update_;
+    Array<PanelRun> run_;
+    Array<uint32_t> row_;
+    Array<double> sign_;
+    mutable Array<double> value_, inverse_, scratch_, work_;
 };
 
 }  // namespace taut

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cstring>
 #include <ctime>
 #include <limits>
 #include <map>
@@ -205,20 +206,55 @@ TEST(SparseBlockLdlt, SolvesChainsHeldAtBothEnds) {
     }
 }
 
+// A square net; a part of its joints couples their nodes.
+void weave(Problem& p, int side, int size, double coupled) {
+    std::vector<uint32_t> nodes;
+    for (int i = 0; i < side * side; ++i) nodes.push_back(p.add_node(size));
+    auto join = [&](int a, int b) {
+        p.join(nodes[static_cast<size_t>(a)], nodes[static_cast<size_t>(b)], 1e-3,
+               std::abs(p.random(1, 1)(0, 0)) < coupled);
+    };
+    for (int i = 0; i < side; ++i)
+        for (int k = 0; k < side; ++k) {
+            const int here = i * side + k;
+            if (k + 1 < side) join(here, here + 1);
+            if (i + 1 < side) join(here, here + side);
+        }
+    p.hold(nodes[0]);
+}
+
 TEST(SparseBlockLdlt, SolvesNets) {
-    for (int side : {2, 4, 9}) {
-        Problem p(static_cast<uint64_t>(side));
-        std::vector<uint32_t> nodes;
-        for (int i = 0; i < side * side; ++i) nodes.push_back(p.add_node(3));
-        for (int i = 0; i < side; ++i)
-            for (int k = 0; k < side; ++k) {
-                const auto here = static_cast<size_t>(i * side + k), n = static_cast<size_t>(side);
-                if (k + 1 < side) p.join(nodes[here], nodes[here + 1], 1e-3, true);
-                if (i + 1 < side) p.join(nodes[here], nodes[here + n], 1e-3, true);
+    for (int side : {2, 4, 9})
+        for (int size : {3, 6})
+            for (double coupled : {0.0, 0.02, 0.5, 1.0}) {
+                SCOPED_TRACE(testing::Message() << "side " << side << ", size " << size << ", coupled " << coupled);
+                Problem p(static_cast<uint64_t>(side));
+                weave(p, side, size, coupled);
+                expect_like_dense(p, 1e-10);
             }
-        p.hold(nodes[0]);
-        expect_like_dense(p, 1e-10);
-    }
+}
+
+TEST(SparseBlockLdlt, Avx2HasTheBitsOfTheBaseBuild) {
+    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
+    EXPECT_STREQ(panel_kernels().name, "avx2");
+    for (int size : {3, 6})
+        for (double coupled : {0.0, 0.5}) {
+            Problem p(8);
+            weave(p, 8, size, coupled);
+            SparseBlockLdlt matrix(p.memory);
+            bool done = false;
+            const Array<double> x = p.solve(matrix, p.random(static_cast<int>(p.dense().rows()), 1), done);
+            ASSERT_TRUE(done);
+            std::vector<double> solution[2];
+            for (const PanelKernels* kernels : {&kPanelKernelsBase, &kPanelKernelsAvx2}) {
+                std::vector<double>& y = solution[kernels == &kPanelKernelsAvx2];
+                y.assign(x.begin(), x.end());
+                p.fill(matrix);
+                ASSERT_TRUE(matrix.factor(*kernels));
+                matrix.solve(y.data(), *kernels);
+            }
+            EXPECT_EQ(std::memcmp(solution[0].data(), solution[1].data(), 8 * x.size()), 0);
+        }
 }
 
 // The order is found once; numbers may change under it, and may come in pieces and in either triangle.
