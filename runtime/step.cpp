@@ -45,7 +45,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         predict(system, group, w.nodes, gravity);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         w.profile.predict_us += watch.lap();
-        evaluate_rows(system, 1 - (i + 1.0) / group.substeps);
+        evaluate_rows(system, 1 - (i + 1.0) / group.substeps, frame);
         w.profile.assemble_us += watch.lap();
         Substep substep{system,   group,  w.partition.blocks, w.nodes,
                         settings, report, w.scratch,          i + 1 == group.substeps};

@@ -28,18 +28,6 @@ void evaluate(const World& world, const Joint& joint, double* error) {
     joint.type->evaluate(joint.data, poses, error, nullptr);
 }
 
-// What a joint with drift does not do in its frame. Damping would take what drift brings for motion and brake the reel.
-// The projection that closes gaps after a substep would bring all of the drift at once; it leaves elastic rows alone,
-// and a compliance of nothing makes them so.
-void spare(Joint& joint) {
-    constexpr double kNotRigid = 1e-20;  // [m/N]
-    for (double drift : joint.drift) {
-        if (drift == 0) continue;
-        joint.damping = joint.angular_damping = 0;
-        joint.compliance = std::max(joint.compliance, kNotRigid);
-    }
-}
-
 // A joint before a change, to be let go after it.
 class Kept {
 public:
@@ -62,7 +50,6 @@ public:
             const double growth = compliance_[angle] > 0 ? now[angle] / compliance_[angle] : 1;
             joint->drift[r] = error[r] - growth * error_[r];
         }
-        spare(*joint);
     }
 
 private:
@@ -81,20 +68,6 @@ public:
         return find(world_.joints, end_.joint) && moves(outer()) && (links() || (moves(second()) && segment_joint()));
     }
     bool works() const { return tied() && (end_.reel_speed != 0 || end_.wanted_speed != 0 || end_.owed != 0); }
-
-    // Gives joints back what the last step spared.
-    void restore() {
-        if (end_.paid == 0) return;
-        const auto joints = static_cast<uint32_t>(c_.joint.size());
-        for (uint32_t k = 0; k < std::min(joints, 3u); ++k) {
-            const uint32_t i = e_ == 0 ? k : joints - 1 - k;
-            if (Joint* joint = find(world_.joints, c_.joint[i]))
-                set_softness(c_, *joint, links() ? span_after(c_, i) : c_.length[i]);
-        }
-        for (int end = 0; links() && end < 2; ++end)
-            if (Joint* joint = find(world_.joints, c_.end[end].joint))
-                set_softness(c_, *joint, 0.5 * (end == 0 ? c_.length.front() : c_.length.back()));
-    }
 
     // Cuts and joins segments until the end segment can change by what is planned.
     void fit() {
@@ -287,7 +260,6 @@ private:
             joint.lambda[r] = force[r];
             joint.drift[r] = (angle ? joint.angular_compliance : joint.compliance) * force[r];
         }
-        spare(joint);
         set_cable_mass(world_, c_, inner_link);
         retie(inner_link);
         retie(outer_link);
@@ -454,7 +426,6 @@ void for_each_reel(World& world, Act act) {
 
 void reel_cables(World& world) {
     for_each_reel(world, [](Reel reel) {
-        reel.restore();
         if (reel.works()) reel.fit();
     });
     for_each_reel(world, [](Reel reel) { reel.works() ? reel.advance() : reel.rest(); });

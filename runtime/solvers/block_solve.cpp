@@ -415,6 +415,7 @@ bool BlockSolve::settle() {
         const double* jacobian = &sys_.rows.jacobian[block.jacobian];
         double lever = 0, gap = 0;
         for (int r = 0; r < rows; ++r) {
+            error[r] -= sys_.frame_left * block.drift[r];
             if (block.elastic(r) || !block.locked(r)) error[r] = 0;  // not a gap to close
             if (!block.angular(r)) gap = std::max(gap, std::abs(error[r]));
         }

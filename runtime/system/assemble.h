@@ -13,8 +13,8 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
 // Once a substep: rows of the contacts that blocks own, after those of joints, at system.pose.
 void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes);
 // Once a substep: C and J at system.pose; impulses from the forces of the last substep. frame_left: share of the
-// frame that is left after this substep, of which the drift of C is still to come.
-void evaluate_rows(System& system, double frame_left);
+// frame [s] that is left after this substep, of which the drift of C is still to come.
+void evaluate_rows(System& system, double frame_left, double frame);
 // Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
 double row_residual(const System& system);
 // After a substep: impulses of contact rows back into the pairs.

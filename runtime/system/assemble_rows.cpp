@@ -136,7 +136,8 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
     }
 }
 
-void evaluate_rows(System& system, double frame_left) {
+void evaluate_rows(System& system, double frame_left, double frame) {
+    system.frame_left = frame_left;
     Rows& rows = system.rows;
     for (const RowBlock& block : rows.block) {
         Pose poses[kMaxNodes];
@@ -145,7 +146,9 @@ void evaluate_rows(System& system, double frame_left) {
         if (!block.force) continue;
         for (int r = 0; r < block.type->rows; ++r) {
             rows.impulse[block.row + r] = system.h * block.force[r];
-            rows.error[block.row + r] -= frame_left * block.drift[r];
+            // Damping acts on how fast C changes, drift included.
+            const double damped = block.relaxation[block.compliance_block ? 0 : block.angular(r)] / frame;
+            rows.error[block.row + r] += (damped - frame_left) * block.drift[r];
         }
     }
 }

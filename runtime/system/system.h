@@ -86,7 +86,8 @@ struct System {
           rows(memory),
           contacts(memory) {}
 
-    double h = 0;  // substep [s]
+    double h = 0;           // substep [s]
+    double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
 
     // by node + 1
     Array<Pose> pose;               // at the start of the substep; predict()

@@ -100,7 +100,7 @@ public:
         shift_kinematic(w.system, w.nodes, 0);
         taut::predict(w.system, group(), w.nodes, gravity);
         build_block_contacts(w.system, group(), w.partition.blocks, w.pairs, w.nodes);
-        evaluate_rows(w.system, 0);
+        evaluate_rows(w.system, 0, h);
     }
     void solve() {
         Substep s = substep();
