@@ -14,9 +14,9 @@ struct Unknown {
     uint8_t rows = 6;  // of a multiplier, without padding
 };
 
-// Greedy minimum degree with one rule: a multiplier comes only after a node with freedoms left that no other
-// multiplier claimed (a rigid body has five: two ball joints on one body fix their distance twice), or after all its
-// nodes. On a tree that is leaf to root without fill, on loops a fill-reducing order.
+// One rule: a multiplier comes only after a node with freedoms left that no other multiplier claimed (a rigid body has
+// five: two ball joints on one body fix their distance twice), or after all its nodes. Under it, trees and single loops
+// go by greedy minimum degree, which is leaf to root without fill on a tree; nets go by nested dissection.
 class EliminationOrder {
 public:
     // links: pairs of unknowns, smaller << 32 | larger.
