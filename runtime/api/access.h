@@ -211,7 +211,9 @@ int32_t is_valid(Handle handle) noexcept {
 // ---------------------------------------------------------------- values
 
 // The world itself comes from its allocator too.
-inline uint64_t held_bytes(const World& world) { return world.memory.bytes() + sizeof(World); }
+inline uint64_t held_bytes(const World& world) {
+    return world.memory.bytes() + Memory::whole(sizeof(World), alignof(World));
+}
 
 inline Vec3 to_vec(const taut_vec3& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_vec(const taut_pos& p) { return {p.x, p.y, p.z}; }

@@ -10,22 +10,38 @@
 
 namespace taut {
 
+// Pieces that the world lets go stay with it for the next one of their size, so that a world whose blocks and lists
+// come and go asks the host for nothing once it is warm.
 class Memory {
 public:
     explicit Memory(const taut_hooks& hooks) : hooks_(hooks) {}
+    ~Memory();
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
     void* allocate(size_t size, size_t alignment);  // throws std::bad_alloc
     void release(void* pointer, size_t size, size_t alignment) noexcept;
 
-    uint64_t bytes() const { return bytes_; }
-    uint64_t calls() const { return calls_; }
+    uint64_t bytes() const { return bytes_; }  // held from the host
+    uint64_t calls() const { return calls_; }  // to the host
+    // What a request of this size takes from the host.
+    static size_t whole(size_t size, size_t alignment);
 
 private:
+    struct Piece {  // one that is kept, in the piece itself
+        Piece* next;
+    };
+    static constexpr size_t kLeast = 64, kAlignment = 64;  // of pieces that are kept
+    static constexpr int kSizes = 13;                      // 64 bytes to 256 KiB, by twos
+
+    static int size_class(size_t size, size_t alignment);  // or kSizes: not kept
+    void* take_from_host(size_t size, size_t alignment);
+    void give_to_host(void* pointer, size_t size, size_t alignment) noexcept;
+
     taut_hooks hooks_;
     uint64_t bytes_ = 0;
     uint64_t calls_ = 0;
+    Piece* kept_[kSizes] = {};
 };
 
 template <class T>

@@ -160,9 +160,7 @@ TEST(CollisionBroadphase, RemovedIdsLeaveAndMayComeBack) {
         broadphase.add(1, box, true);
         EXPECT_TRUE(broadphase.refresh_pairs());
         EXPECT_EQ(copy(broadphase), std::vector<uint64_t>{key(0, 1)});
-        EXPECT_GT(memory.bytes(), 0u);
     }
-    EXPECT_EQ(memory.bytes(), 0u);
 }
 
 }  // namespace
