@@ -44,15 +44,10 @@ public:
     }
     explicit RunningScene(const std::string& name) : RunningScene(scenes::make_scene(name)) {}
 
-    void step() {
-        world.step();
-        taut_events events{};
-        ok(taut_world_get_events(world.world, &events));
-        quarantined += events.quarantined_count;
-    }
+    void step() { world.step(); }
     BodyState body(size_t i) const { return state(world.bodies[i]); }
     bool sound() const {
-        if (quarantined > 0) return false;
+        if (world.quarantined > 0) return false;
         return std::all_of(world.bodies.begin(), world.bodies.end(), [](taut_body b) { return finite(b); });
     }
     double pile_speed() const {  // fastest
@@ -67,13 +62,8 @@ public:
         return most;
     }
     double joint_error() const {  // [m]
-        float most = 0;
-        for (taut_joint joint : world.joints) {
-            float error = 0;
-            ok(taut_joint_get_error(joint, &error));
-            most = std::isnan(error) ? INFINITY : std::max(most, error);
-        }
-        return static_cast<double>(most);
+        const double most = world.joint_error();
+        return std::isnan(most) ? INFINITY : most;
     }
     // From the anchor along the points of a cable [m].
     double cable_length() const {
@@ -91,7 +81,6 @@ public:
     scenes::Scene scene;
     scenes::TautWorld world;
     std::vector<BodyState> start;
-    uint32_t quarantined = 0;
 };
 
 }  // namespace lab
