@@ -15,7 +15,7 @@ using render::Vec3;
 using scenes::Look;
 using scenes::ShapeKind;
 
-constexpr float kRodRadius = 0.04f, kRopeRadius = 0.022f, kPointRadius = 0.05f,
+constexpr float kRodRadius = 0.04f, kRopeRadius = 0.028f, kPointRadius = 0.05f,
                 kCableWeightRadius = 0.30f;  // drawn sizes [m]
 constexpr float kContactRadius = 0.03f, kNormalLength = 0.30f;
 

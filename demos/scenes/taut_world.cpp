@@ -130,6 +130,7 @@ void TautWorld::build() {
         check(add_joint(world, joint, end(joint.body_a), end(joint.body_b), joints.size(), &handle), "adding a joint");
         joints.push_back(handle);
     }
+    broken.reserve(joints.size());
 }
 
 // Where everything with a plan is to be at the end of the step.

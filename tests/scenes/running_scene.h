@@ -65,6 +65,23 @@ public:
         const double most = world.joint_error();
         return std::isnan(most) ? INFINITY : most;
     }
+    double angular_error() const {  // [rad]
+        float most = 0;
+        for (size_t i = 0; i < world.joints.size(); ++i) {
+            float error = 0;
+            if (!world.is_whole(i)) continue;
+            ok(taut_joint_get_angular_error(world.joints[i], &error));
+            most = std::isnan(error) ? INFINITY : std::max(most, error);
+        }
+        return static_cast<double>(most);
+    }
+    double energy() const {  // kinetic and of height [J]
+        std::vector<taut_body> moving;
+        for (size_t i = 0; i < scene.bodies.size(); ++i)
+            if (scene.bodies[i].kind == TAUT_BODY_DYNAMIC) moving.push_back(world.bodies[i]);
+        const Totals sum = totals(moving);
+        return sum.kinetic + kG * sum.height;
+    }
     // From the anchor along the points of a cable [m].
     double cable_length() const {
         const scenes::Chain& chain = *scene.roles.chain;
