@@ -40,7 +40,9 @@ std::string distance_of(double metres) {
     if (metres < 1e-8) return text_of("%.2g nm", metres * 1e9);
     if (metres < 1e-6) return text_of("%.0f nm", metres * 1e9);
     if (metres < 1e-4) return text_of("%.1f um", metres * 1e6);
-    return text_of("%.2f mm", metres * 1e3);
+    if (metres < 0.1) return text_of("%.2f mm", metres * 1e3);
+    if (metres < 1e3) return text_of("%.2f m", metres);
+    return text_of("%.0e m", metres);
 }
 
 }  // namespace
@@ -48,7 +50,10 @@ std::string distance_of(double metres) {
 void add_hud(render::DrawList& list, const HudFigures& f) {
     constexpr float kLine = 19;
     float x = kMargin + kPadding, y = kMargin + kPadding;
-    float width = std::max(396.0f, static_cast<float>(f.description.size()) * 8 * kAdvance + 2 * kPadding);
+    std::string counts = text_of("%u bodies  %u joints  %u contacts", f.bodies, f.joints, f.points);
+    if (f.broken > 0) counts += text_of("  %zu broken", f.broken);
+    const size_t longest = std::max(f.description.size() * 8, counts.size() * static_cast<size_t>(kText));
+    float width = std::max(396.0f, static_cast<float>(longest) * kAdvance + 2 * kPadding);
     float height = kTitle + 14 + 8 + 16 + 2 * kLine + 16 + (f.has_joints ? 2 : 1) * kLine + 2 * kPadding - 6;
     list.rects.push_back({kMargin, kMargin, width, height, kRadius, kPanel, kPanel, kPanelAlpha});
     auto line = [&](std::string text, float cap, Colour colour, float step) {
@@ -67,7 +72,16 @@ void add_hud(render::DrawList& list, const HudFigures& f) {
     if (f.has_joints)
         line("joint error " + distance_of(f.joint_error) + ", worst " + distance_of(f.worst_joint_error), kText, kWhite,
              kLine);
-    line(text_of("%u bodies  %u joints  %u contacts", f.bodies, f.joints, f.points), kText, kDim, kLine);
+    line(counts, kText, kDim, kLine);
+}
+
+void add_caption(render::DrawList& list, const Caption& caption, float centre, const render::HudCanvas& canvas) {
+    constexpr float kWidth = 330, kHeight = 62;
+    const float left = centre - kWidth / 2, top = canvas.height - 2 * kMargin - 66 - kHeight;  // above the legend
+    list.rects.push_back({left, top, kWidth, kHeight, kRadius, kPanel, kPanel, kPanelAlpha});
+    list.texts.push_back({left + kPadding, top + 14, 11, caption.text, kWhite, 1});
+    list.texts.push_back(
+        {left + kPadding, top + 38, kText, "joint error " + distance_of(caption.joint_error), kDim, 1});
 }
 
 void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas) {

@@ -15,11 +15,18 @@ struct HudFigures {
     double time = 0;  // simulated [s]
     double step_ms = 0, budget_ms = 0;
     double joint_error = 0, worst_joint_error = 0;  // now, and so far [m]
-    bool has_joints = false;
+    bool has_joints = false;                        // rigid ones
     uint32_t bodies = 0, joints = 0, pairs = 0, points = 0;
+    size_t broken = 0;  // joints so far
 };
 
 void add_hud(render::DrawList& list, const HudFigures& figures);
+// What one side of a picture shows, and its joint error [m] now.
+struct Caption {
+    std::string text;
+    double joint_error = 0;
+};
+void add_caption(render::DrawList& list, const Caption& caption, float centre, const render::HudCanvas& canvas);
 void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas);
 
 }  // namespace demo

@@ -1,6 +1,7 @@
 // taut-demo: runs a scene of Taut and renders it without a window.
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +32,7 @@ double ms_since(Clock::time_point begin) {
 
 // Figures over all frames so far.
 struct Figures {
-    uint32_t frames = 0;
+    uint32_t frames = 0, drawn = 0;
     double step_sum_ms = 0, step_worst_ms = 0, draw_sum_ms = 0, write_sum_ms = 0;
     double joint_error = 0, penetration = 0;  // worst [m]
     uint32_t quarantined = 0;
@@ -53,6 +54,35 @@ scenes::Scene scene_of(const Options& options) {
     return scene;
 }
 
+// The same scene without geometric stiffness, drawn beside it.
+class Twin {
+public:
+    Twin(const scenes::Scene& scene, render::Renderer& renderer)
+        : scene_(without_stiffness(scene)), world_(scene_), view_(scene_, world_, renderer) {}
+
+    void step() {
+        world_.step();
+        joint_error_ = world_.joint_error();
+        worst_ = std::fmax(worst_, joint_error_);
+    }
+    const SceneView& view() const { return view_; }
+    double joint_error() const { return joint_error_; }
+    nlohmann::ordered_json json() const {
+        return {{"worst_joint_error_mm", 1e3 * worst_}, {"quarantined", world_.quarantined}};
+    }
+
+private:
+    static scenes::Scene without_stiffness(scenes::Scene scene) {
+        scene.world.geometric_stiffness = 0;
+        return scene;
+    }
+
+    scenes::Scene scene_;
+    scenes::TautWorld world_;
+    SceneView view_;
+    double joint_error_ = 0, worst_ = 0;  // [m]
+};
+
 // One film: world, renderer and files.
 class Run {
 public:
@@ -60,18 +90,20 @@ public:
         : options_(options), scene_(scene), frames_(options.frames.value_or(scene.steps)), world_(scene) {
         if (!options.render) return;
         if (!options.video.empty())
-            video_ = std::make_unique<Video>(options.video, options.width, options.height, 1.0 / scene.world.time_step);
+            video_ = std::make_unique<Video>(options.video, options.width, options.height,
+                                             1.0 / (scene.world.time_step * options.every));
         if (!options.out.empty()) std::filesystem::create_directories(options.out);
         renderer_ = std::make_unique<render::Renderer>(render::RendererOptions{options.width, options.height, 4, 2048});
         std::fprintf(stderr, "%s\n", renderer_->description().c_str());
         view_ = std::make_unique<SceneView>(scene, world_, *renderer_);
         list_.camera = view_->camera();
+        if (options.compare) set_up_twin();
     }
 
     void go() {
         for (uint32_t frame = 0; frame < frames_; ++frame) {
             step();
-            if (renderer_) draw(frame);
+            if (renderer_ && (frame + 1) % options_.every == 0) draw(frame);
             show_progress(frame + 1);
         }
         if (video_) video_->finish();
@@ -82,37 +114,68 @@ public:
     const Figures& figures() const { return figures_; }
 
 private:
+    // Both in view: further off, each in the middle of its half of the picture.
+    void set_up_twin() {
+        constexpr float kFurther = 1.45f;
+        twin_ = std::make_unique<Twin>(scene_, *renderer_);
+        render::Camera& camera = list_.camera;
+        const render::Vec3 back = (camera.eye - camera.target) * kFurther;
+        camera.eye = camera.target + back;
+        const float aspect = static_cast<float>(options_.width) / static_cast<float>(options_.height);
+        const float half_width = length(back) * std::tan(0.5f * camera.vertical_fov) * aspect;
+        aside_ = render::view_axes(render::normalised(back * -1.0f)).right * (0.5f * half_width);
+        render::Stage stage = view_->stage();
+        const render::Vec3 reach = {std::fabs(aside_.x), 0, std::fabs(aside_.z)};
+        renderer_->set_stage({stage.low - reach, stage.high + reach, stage.ground_height});
+    }
+
+    void add_scene(const SceneView& view, bool tension, render::Vec3 offset) {
+        const size_t first = list_.instances.size();
+        view.add_bodies(list_, tension);
+        view.add_joints(list_, tension);
+        for (size_t i = first; i < list_.instances.size(); ++i)
+            list_.instances[i].position = list_.instances[i].position + offset;
+    }
+
     void step() {
+        if (twin_) twin_->step();
         auto begin = Clock::now();
         world_.step();
         step_ms_ = ms_since(begin);
         profile_ = world_.profile();
-        taut_events events{};
-        scenes::check(taut_world_get_events(world_.world, &events), "reading the events");
         ++figures_.frames;
         figures_.step_sum_ms += step_ms_;
         figures_.step_worst_ms = std::fmax(figures_.step_worst_ms, step_ms_);
-        figures_.joint_error = std::fmax(figures_.joint_error, profile_.joint_error);
+        joint_error_ = world_.joint_error();
+        figures_.joint_error = std::fmax(figures_.joint_error, joint_error_);
         figures_.penetration = std::fmax(figures_.penetration, profile_.penetration);
-        figures_.quarantined += events.quarantined_count;
+        figures_.quarantined = world_.quarantined;
     }
 
     void draw(uint32_t frame) {
         auto begin = Clock::now();
         list_.clear();
         bool tension = options_.tension.value_or(!scene_.joints.empty());
-        view_->add_bodies(list_, tension);
-        view_->add_joints(list_, tension);
-        if (options_.contacts) view_->add_contacts(list_);
+        add_scene(*view_, tension, aside_ * -1.0f);
+        if (twin_) add_scene(twin_->view(), tension, aside_);
+        if (options_.contacts && !twin_) view_->add_contacts(list_);
         if (options_.hud) add_figures(frame);
         if (options_.hud && tension && !scene_.joints.empty())
             add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
+        if (options_.hud && twin_) add_captions();
         const render::Picture& picture = renderer_->draw(list_);
+        ++figures_.drawn;
         figures_.draw_sum_ms += ms_since(begin);
         begin = Clock::now();
         if (!options_.out.empty()) write_png(frame_path(frame), picture);
         if (video_) video_->add(picture);
         figures_.write_sum_ms += ms_since(begin);
+    }
+
+    void add_captions() {
+        const render::HudCanvas canvas(options_.width, options_.height);
+        add_caption(list_, {"with geometric stiffness", joint_error_}, 0.25f * canvas.width, canvas);
+        add_caption(list_, {"without", twin_->joint_error()}, 0.75f * canvas.width, canvas);
     }
 
     void add_figures(uint32_t frame) {
@@ -124,11 +187,13 @@ private:
         hud.time = (frame + 1) * static_cast<double>(scene_.world.time_step);
         hud.step_ms = step_ms_;
         hud.budget_ms = 1000.0 / 60.0;
-        hud.joint_error = profile_.joint_error;
+        hud.joint_error = joint_error_;
         hud.worst_joint_error = figures_.joint_error;
-        hud.has_joints = !scene_.joints.empty();
+        hud.has_joints = std::any_of(scene_.joints.begin(), scene_.joints.end(),
+                                     [](const scenes::Joint& joint) { return joint.compliance <= 0; });
         hud.bodies = profile_.bodies;
         hud.joints = profile_.joints;
+        hud.broken = world_.broken.size();
         hud.pairs = profile_.touching;
         hud.points = profile_.points;
         add_hud(list_, hud);
@@ -152,10 +217,12 @@ private:
     scenes::TautWorld world_;
     std::unique_ptr<render::Renderer> renderer_;
     std::unique_ptr<SceneView> view_;
+    std::unique_ptr<Twin> twin_;
+    render::Vec3 aside_{};  // from the middle to the twin [m]
     std::unique_ptr<Video> video_;
     render::DrawList list_;
     taut_profile profile_{};
-    double step_ms_ = 0;
+    double step_ms_ = 0, joint_error_ = 0;
     Figures figures_;
 };
 
@@ -175,27 +242,30 @@ nlohmann::ordered_json Run::json() const {
     json["mean_step_ms"] = figures_.step_sum_ms / frames;
     json["worst_step_ms"] = figures_.step_worst_ms;
     json["worst_joint_error_mm"] = 1e3 * figures_.joint_error;
+    json["broken_joints"] = world_.broken.size();
     json["worst_penetration_mm"] = 1e3 * figures_.penetration;
     json["quarantined"] = figures_.quarantined;
     json["state_hash"] = hash_text;
+    if (twin_) json["without_geometric_stiffness"] = twin_->json();
     if (!renderer_) return json;
     json["size"] = std::to_string(options_.width) + "x" + std::to_string(options_.height);
     json["gl_renderer"] = renderer_->gl_renderer();
     json["software"] = renderer_->software();
     json["samples"] = renderer_->samples();
-    json["mean_draw_ms"] = figures_.draw_sum_ms / frames;
-    json["mean_write_ms"] = figures_.write_sum_ms / frames;
+    json["mean_draw_ms"] = figures_.draw_sum_ms / std::max(1u, figures_.drawn);
+    json["mean_write_ms"] = figures_.write_sum_ms / std::max(1u, figures_.drawn);
     if (!options_.out.empty()) json["out"] = options_.out;
     if (!options_.video.empty()) json["video"] = options_.video;
     return json;
 }
 
 void Run::print_summary() const {
-    if (renderer_ && !options_.out.empty())
-        std::fprintf(stderr, "frames: %u PNG in %s, %s to %s\n", figures_.frames, options_.out.c_str(),
-                     std::filesystem::path(frame_path(0)).filename().c_str(),
-                     std::filesystem::path(frame_path(figures_.frames - 1)).filename().c_str());
-    if (video_) std::fprintf(stderr, "video: %u frames in %s\n", figures_.frames, options_.video.c_str());
+    const uint32_t every = options_.every;
+    if (renderer_ && !options_.out.empty() && figures_.drawn > 0)
+        std::fprintf(stderr, "frames: %u PNG in %s, %s to %s\n", figures_.drawn, options_.out.c_str(),
+                     std::filesystem::path(frame_path(every - 1)).filename().c_str(),
+                     std::filesystem::path(frame_path(figures_.drawn * every - 1)).filename().c_str());
+    if (video_) std::fprintf(stderr, "video: %u frames in %s\n", figures_.drawn, options_.video.c_str());
     std::fprintf(stderr, "step: mean %.3f ms, worst %.3f ms\n", figures_.step_sum_ms / figures_.frames,
                  figures_.step_worst_ms);
 }

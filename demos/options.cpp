@@ -45,6 +45,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_flag("--list", list, "print all scenes");
     CLI::Option* frames_flag = app.add_option("--frames", frames, "frames, one step each (default: the scene's)")
                                    ->check(CLI::Range(1, 1000000));
+    app.add_option("--every", options.every, "draw one frame of so many")->check(CLI::Range(1, 1000000));
     app.add_option("--out", options.out, "folder for PNG frames (default: out; none with --video alone)");
     app.add_option("--size", size, "picture size, WxH (default: 1280x720)");
     app.add_option("--video", options.video, "film, made by ffmpeg");
@@ -60,6 +61,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_flag("--no-render", no_render, "simulate only");
     app.add_flag("--no-hud", no_hud, "leave out the figures in the picture");
     app.add_flag("--contacts", options.contacts, "draw contact points and normals");
+    app.add_flag("--compare", options.compare, "draw the same scene without geometric stiffness beside it");
     CLI::Option* tension_flag = app.add_flag("--tension,!--no-tension", tension,
                                              "colour joints by their force (default: on in scenes with joints)");
     try {

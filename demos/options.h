@@ -11,6 +11,7 @@ struct Options {
     std::string scene = "main";
     std::string mesh;
     std::optional<uint32_t> frames;  // else the scene's own number
+    uint32_t every = 1;              // draws the last of each so many frames
     std::string out;                 // folder of the PNG frames, empty: none
     std::string video, json;         // files, empty: none
     int width = 1280, height = 720;
@@ -21,6 +22,7 @@ struct Options {
     bool render = true;
     bool hud = true;
     bool contacts = false;
+    bool compare = false;         // beside it the same scene without geometric stiffness
     std::optional<bool> tension;  // else on for scenes with joints
 };
 

@@ -15,13 +15,17 @@ using render::Vec3;
 using scenes::Look;
 using scenes::ShapeKind;
 
-constexpr float kRodRadius = 0.04f, kPointRadius = 0.05f, kCableWeightRadius = 0.30f;  // drawn sizes [m]
+constexpr float kRodRadius = 0.04f, kRopeRadius = 0.028f, kPointRadius = 0.05f,
+                kCableWeightRadius = 0.30f;  // drawn sizes [m]
 constexpr float kContactRadius = 0.03f, kNormalLength = 0.30f;
 
 const Colour kCrates[] = {from_srgb(0xE4572E), from_srgb(0xF3A712), from_srgb(0xF2E3BC),
                           from_srgb(0x4B9C8E), from_srgb(0x2E6F95), from_srgb(0x8E5572)};
 const Colour kBricks[] = {from_srgb(0xC4553B), from_srgb(0xD6704A), from_srgb(0xB5473A), from_srgb(0xE08E5A)};
 const Colour kSteel = from_srgb(0x3B424C), kLinkGrey = from_srgb(0xA9B4C0), kStone = from_srgb(0xB9B4A7);
+const Colour kWood[] = {from_srgb(0xB98A58), from_srgb(0xA97A4C), from_srgb(0xC79A68)};
+const Colour kCloth[] = {from_srgb(0x35618E), from_srgb(0x3D6B99)};
+const Colour kPaint = from_srgb(0xE0B03A), kSkin = from_srgb(0xE3A983), kStop = from_srgb(0xFF2F4F);
 const Colour kWall = from_srgb(0x8FA3B5), kDecoration = from_srgb(0xE8B23A), kPin = from_srgb(0x2A2F36);
 const Colour kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
 
@@ -47,6 +51,14 @@ Colour colour_of(Look look, size_t index) {
             return kStone;
         case Look::wall:
             return kWall;
+        case Look::wood:
+            return pick(kWood, index);
+        case Look::paint:
+            return kPaint;
+        case Look::skin:
+            return kSkin;
+        case Look::cloth:
+            return pick(kCloth, index);
         case Look::crate:
         case Look::hidden:
         case Look::ground:
@@ -77,8 +89,10 @@ Instance ball(Vec3 centre, float radius, Colour colour, float gloss) {
     return instance;
 }
 
+// 0 for a joint that broke.
 float force_on(taut_joint joint) {
     taut_vec3 force{};
+    if (!taut_joint_is_valid(joint)) return 0;
     scenes::check(taut_joint_get_force(joint, &force), "reading a joint's force");
     return std::sqrt(force.x * force.x + force.y * force.y + force.z * force.z);
 }
@@ -86,6 +100,11 @@ float force_on(taut_joint joint) {
 }  // namespace
 
 TensionScale::TensionScale(const scenes::Scene& scene) {
+    if (scene.forces) {
+        low_ = scene.forces->low;
+        high_ = scene.forces->high;
+        return;
+    }
     if (!scene.roles.chain) return;
     double gravity = std::fabs(scene.world.gravity.y), least = 1e30, all = 0;
     for (int index : scene.roles.chain->bodies) {
@@ -129,8 +148,10 @@ SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world,
         }
         meshes_.push_back(mesh);
     }
-    renderer.set_stage({vec(scene.stage.low), vec(scene.stage.high), 0});
+    renderer.set_stage(stage());
 }
+
+render::Stage SceneView::stage() const { return {vec(scene_.stage.low), vec(scene_.stage.high), 0}; }
 
 render::Camera SceneView::camera() const {
     return {vec(scene_.camera.eye), vec(scene_.camera.target),
@@ -212,22 +233,51 @@ bool SceneView::is_in_the_way(size_t index) const {
 }
 
 float SceneView::thickness_at(const scenes::Joint& joint) const {
-    for (int end : {joint.body_a, joint.body_b}) {
+    for (int end : {joint.body_b, joint.body_a}) {
         if (end == scenes::kWorld || scene_.bodies[static_cast<size_t>(end)].look != Look::link) continue;
-        return scene_.shapes[static_cast<size_t>(scene_.bodies[static_cast<size_t>(end)].shape)].half_extents.y;
+        const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(scene_.bodies[static_cast<size_t>(end)].shape)];
+        return shape.kind == ShapeKind::capsule ? shape.radius : shape.half_extents.y;
     }
     return kPointRadius;
 }
 
+// A pin along the hinge's axis, red while a stop pushes.
+void SceneView::add_hinge(render::DrawList& list, size_t index, Vec3 at) const {
+    const scenes::Joint& joint = scene_.joints[index];
+    taut_axis_forces forces{};
+    scenes::check(taut_joint_get_axis_forces(world_.joints[index], 0, &forces), "reading a hinge's forces");
+    const taut_quat body = world_.pose(static_cast<size_t>(joint.body_b)).rotation, own = joint.rotation_b;
+    const Vec3 axis =
+        render::rotate({body.x, body.y, body.z, body.w}, render::rotate({own.x, own.y, own.z, own.w}, {1, 0, 0}));
+    const scenes::Body& end = scene_.bodies[static_cast<size_t>(joint.body_b)];
+    const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(end.shape)];
+    const float half = shape.kind == ShapeKind::box ? 1.08f * shape.half_extents.z : 1.3f * shape.radius;
+    const float radius = shape.kind == ShapeKind::box ? 0.55f * shape.half_extents.y : 0.8f * shape.radius;
+    const bool stopped = forces.active_stop != 0;
+    list.instances.push_back(rod(at - axis * half, at + axis * half, std::min(radius, 0.08f) * (stopped ? 1.6f : 1.0f),
+                                 stopped ? kStop : kPin));
+}
+
 void SceneView::add_joints(render::DrawList& list, bool tension) const {
     for (size_t i = 0; i < scene_.joints.size(); ++i) {
+        if (!world_.is_whole(i)) continue;
         taut_pos a{}, b{};
         scenes::check(taut_joint_get_anchors(world_.joints[i], &a, &b), "reading a joint's anchors");
-        if (scene_.joints[i].kind == TAUT_JOINT_DISTANCE) {
-            Colour colour = tension ? scale_.colour(force_on(world_.joints[i])) : kLinkGrey;
-            list.instances.push_back(rod(vec(a), vec(b), kRodRadius, colour));
-        } else {
-            list.instances.push_back(ball(vec(b), 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));
+        switch (scene_.joints[i].kind) {
+            case TAUT_JOINT_DISTANCE: {
+                Colour colour = tension ? scale_.colour(force_on(world_.joints[i])) : kLinkGrey;
+                const bool rope = scene_.joints[i].max_length > 0;
+                list.instances.push_back(rod(vec(a), vec(b), rope ? kRopeRadius : kRodRadius, colour));
+                break;
+            }
+            case TAUT_JOINT_HINGE:
+                add_hinge(list, i, vec(b));
+                break;
+            case TAUT_JOINT_BALL:
+                list.instances.push_back(ball(vec(b), 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));
+                break;
+            default:
+                break;  // inside the bodies that they join
         }
     }
 }

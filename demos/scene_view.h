@@ -28,6 +28,7 @@ public:
     SceneView(const scenes::Scene& scene, const scenes::TautWorld& world, render::Renderer& renderer);
 
     render::Camera camera() const;
+    render::Stage stage() const;
     void add_bodies(render::DrawList& list, bool tension) const;
     void add_joints(render::DrawList& list, bool tension) const;
     void add_contacts(render::DrawList& list);
@@ -35,6 +36,7 @@ public:
 
 private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
+    void add_hinge(render::DrawList& list, size_t index, render::Vec3 at) const;
     bool is_in_the_way(size_t index) const;
     float thickness_at(const scenes::Joint& joint) const;
 

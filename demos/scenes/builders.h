@@ -22,4 +22,12 @@ Scene build_wrecking_ball(double n, double r, const Options& options);
 Scene build_cable(double n, double r, const Options& options);
 Scene build_falling_cable(double n, double r, const Options& options);
 
+Scene build_crane(double n, double r, const Options& options);
+Scene build_bridge(double n, double r, const Options& options);
+Scene build_bridge_breaking(double n, double r, const Options& options);
+Scene build_hinges(double n, double r, const Options& options);
+Scene build_ragdoll_liana(double n, double r, const Options& options);
+Scene build_ferris_wheel(double n, double r, const Options& options);
+Scene build_tensegrity(double n, double r, const Options& options);
+
 }  // namespace scenes

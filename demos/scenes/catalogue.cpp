@@ -67,6 +67,17 @@ const std::vector<Family>& families() {
          build_wrecking_ball, 0},
         {"deep_start", "deep_start", "a cube made 0.2 m inside the ground", 300, false, build_deep_start, 0},
         {"swing_rR", "swing_r100", "ten 1 kg links and R kg swing freely from 30 degrees", 1800, false, build_swing, 0},
+        {"crane", "crane", "a derrick lifts 5 t on 10 m and 500 kg of cable", 1200, false, build_crane, 0},
+        {"bridge", "bridge", "a truck of 8 t drives over a suspension bridge", 720, false, build_bridge, 0},
+        {"bridge_breaking", "bridge_breaking", "the same truck on a bridge that is too weak", 720, false,
+         build_bridge_breaking, 0},
+        {"hingesN", "hinges50", "N bodies on hinges that stop at 20 degrees", 600, false, build_hinges, 200},
+        {"ragdoll_liana", "ragdoll_liana", "a ragdoll of 12 bodies on a liana of 10 links that is shaken", 720, false,
+         build_ragdoll_liana, 0},
+        {"ferris_wheelN", "ferris_wheel10", "a Ferris wheel of N cars turned by a motor", 720, false,
+         build_ferris_wheel, 40},
+        {"tensegrity", "tensegrity", "six struts held apart by 24 tight ropes, dropped", 360, false, build_tensegrity,
+         0},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

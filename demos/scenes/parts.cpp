@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <numbers>
 
+#include "pose.h"
+
 namespace scenes {
 
 namespace {
 
 constexpr int32_t kChainGroup = -1;  // links and weight of one chain don't collide with each other
-
-taut_pos plus(taut_pos p, double dx, double dy, double dz) { return {p.x + dx, p.y + dy, p.z + dz}; }
-
-taut_quat times(taut_quat a, taut_quat b) {
-    return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-            a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
-}
 
 // Turns the whole chain about its anchor in the x-y plane.
 void turn_chain(Scene& scene, const Chain& chain, double angle) {
@@ -49,6 +44,70 @@ int sphere_shape(Scene& scene, double radius) {
     shape.kind = ShapeKind::sphere;
     shape.radius = static_cast<float>(radius);
     return scene.add_shape(std::move(shape));
+}
+
+int capsule_shape(Scene& scene, double radius, double half_length) {
+    Shape shape;
+    shape.kind = ShapeKind::capsule;
+    shape.radius = static_cast<float>(radius);
+    shape.half_length = static_cast<float>(half_length);
+    return scene.add_shape(std::move(shape));
+}
+
+int add_capsule(Scene& scene, taut_pos from, taut_pos to, double radius, double mass, Look look, int32_t group) {
+    const taut_pos along = minus(to, from);
+    Body body = crate(capsule_shape(scene, radius, length(along) / 2), middle(from, to), mass, look);
+    body.rotation = turn_from_to({0, 1, 0}, along);
+    body.group = group;
+    // A slim rod's, but about its length not as little as its own: it would spin up (TAUT_LINT_THIN_INERTIA).
+    constexpr double kMostRatio = 80;
+    const double reach = length(along) + 2 * radius, across = mass * (reach * reach / 12 + radius * radius / 4);
+    const auto round = static_cast<float>(std::fmax(mass * radius * radius / 2, across / kMostRatio));
+    if (mass > 0) body.inertia = {static_cast<float>(across), round, static_cast<float>(across), 0, 0, 0};
+    return scene.add_body(body);
+}
+
+Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b, taut_pos pivot, taut_pos axis_a,
+               taut_pos axis_b) {
+    Joint joint;
+    joint.kind = kind;
+    joint.body_a = body_a;
+    joint.body_b = body_b;
+    joint.anchor_a = in_body(scene, body_a, pivot);
+    joint.anchor_b = in_body(scene, body_b, pivot);
+    const taut_quat axes = turn_from_to({1, 0, 0}, axis_a);
+    joint.rotation_a = in_body(scene, body_a, axes);
+    joint.rotation_b = in_body(scene, body_b, times(turn_from_to(axis_a, axis_b), axes));
+    return joint;
+}
+
+Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b, taut_pos pivot, taut_pos axis) {
+    return joint_at(scene, kind, body_a, body_b, pivot, axis, axis);
+}
+
+Joint rod_at(const Scene& scene, int body_a, taut_pos point_a, int body_b, taut_pos point_b) {
+    Joint joint;
+    joint.kind = TAUT_JOINT_DISTANCE;
+    joint.body_a = body_a;
+    joint.body_b = body_b;
+    joint.anchor_a = in_body(scene, body_a, point_a);
+    joint.anchor_b = in_body(scene, body_b, point_b);
+    joint.length = static_cast<float>(length(minus(point_b, point_a)));
+    return joint;
+}
+
+taut_axis_def free_axis() {
+    taut_axis_def axis;
+    taut_axis_def_init(&axis);
+    return axis;
+}
+
+taut_axis_def limited_axis(double lower, double upper) {
+    taut_axis_def axis = free_axis();
+    axis.mode = TAUT_AXIS_LIMITED;
+    axis.lower = static_cast<float>(lower);
+    axis.upper = static_cast<float>(upper);
+    return axis;
 }
 
 void add_ground(Scene& scene) {
@@ -125,10 +184,14 @@ void perturb(Scene& scene, uint64_t seed, ChainStart start) {
             in_chain[index] = true;
         }
     }
+    std::vector<bool> jointed(scene.bodies.size(), false);
+    for (const Joint& joint : scene.joints)
+        for (int end : {joint.body_a, joint.body_b})
+            if (end != kWorld) jointed[static_cast<size_t>(end)] = true;
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
         Body& body = scene.bodies[i];
-        if (in_chain[i] || body.kind == TAUT_BODY_STATIC) continue;
-        taut_vec3 offset = random.in_cube(1e-3);  // [m]
+        if (in_chain[i] || body.kind == TAUT_BODY_STATIC || body.kind == TAUT_BODY_KINEMATIC) continue;
+        taut_vec3 offset = random.in_cube(jointed[i] ? 0 : 1e-3);  // [m]
         body.position = plus(body.position, offset.x, std::fabs(offset.y), offset.z);
         body.linear_velocity = random.in_cube(1e-2);   // [m/s]
         body.angular_velocity = random.in_cube(1e-2);  // [rad/s]

@@ -13,6 +13,7 @@ Scene empty_scene();
 int box_shape(Scene& scene, double half_x, double half_y, double half_z);
 int cube_shape(Scene& scene, double side);
 int sphere_shape(Scene& scene, double radius);
+int capsule_shape(Scene& scene, double radius, double half_length);
 
 void add_ground(Scene& scene);
 void add_static_box(Scene& scene, taut_pos centre, double half_x, double half_y, double half_z, Look look);
@@ -30,8 +31,25 @@ struct ChainPlan {
 };
 void add_chain(Scene& scene, const ChainPlan& plan);
 
+// A capsule from one point to another, its round ends beyond them; its y axis points along.
+int add_capsule(Scene& scene, taut_pos from, taut_pos to, double radius, double mass, Look look, int32_t group = 0);
+
+// A joint of two bodies at a world point, as the bodies lie now: its x axis along `axis` on both.
+Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b, taut_pos pivot,
+               taut_pos axis = {1, 0, 0});
+// The same with an axis for each end, the second turned to the first by the shortest way: no twist between them.
+Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b, taut_pos pivot, taut_pos axis_a,
+               taut_pos axis_b);
+// A rod of the length that the two world points are apart.
+Joint rod_at(const Scene& scene, int body_a, taut_pos point_a, int body_b, taut_pos point_b);
+
+taut_axis_def free_axis();
+taut_axis_def limited_axis(double lower, double upper);
+constexpr double degrees(double angle) { return angle * 0.017453292519943295; }
+
 // The same start for the same seed; nothing for seed 0. Chains: turned by up to 30 degrees about the anchor in
-// their plane, and velocities that don't fit together; others: offsets of millimetres and small velocities.
+// their plane, and velocities that don't fit together; others: small velocities, and offsets of millimetres where no
+// joint holds them.
 enum class ChainStart { turned, laid_out };
 void perturb(Scene& scene, uint64_t seed, ChainStart start = ChainStart::turned);
 

@@ -27,7 +27,21 @@ struct Shape {
 };
 
 // How a body looks; physics doesn't read it.
-enum class Look : uint8_t { hidden, crate, brick, steel, link, particle, stone, wall, ground };
+enum class Look : uint8_t {
+    hidden,
+    crate,
+    brick,
+    steel,
+    link,
+    particle,
+    stone,
+    wall,
+    ground,
+    wood,
+    paint,
+    skin,
+    cloth
+};
 
 struct Body {
     taut_body_kind kind = TAUT_BODY_DYNAMIC;
@@ -37,6 +51,7 @@ struct Body {
     taut_vec3 linear_velocity{}, angular_velocity{};
     float mass = 0;        // [kg], 0: from density
     float density = 1000;  // [kg/m^3]
+    taut_sym3 inertia{};   // all zero: from the shape [kg m^2]
     float friction = 0.5f;
     int32_t group = 0;  // bodies of the same negative group don't collide
     Look look = Look::crate;
@@ -45,8 +60,35 @@ struct Body {
 struct Joint {
     taut_joint_kind kind = TAUT_JOINT_BALL;
     int body_a = kWorld, body_b = kWorld;
-    taut_pos anchor_a{}, anchor_b{};  // in each body's frame, in the world for kWorld
-    float length = 0;                 // of a distance joint [m]
+    taut_pos anchor_a{}, anchor_b{};                           // in each body's frame, in the world for kWorld
+    taut_quat rotation_a{0, 0, 0, 1}, rotation_b{0, 0, 0, 1};  // from the joint's axes; not of ball and distance joints
+    std::vector<taut_axis_def> axes;          // as taut_joint_set_axis counts them; the rest keep their defaults
+    float length = 0;                         // of a rod [m]
+    float max_length = 0;                     // above 0: a rope instead [m]
+    float compliance = 0;                     // of positions, a rod or a rope [m/N]
+    float damping = 0;                        // the same [N s/m]
+    float break_force = 0, break_torque = 0;  // 0: never [N, N m]
+};
+
+// A number over time: cubic between its keys, on at the last one's rate after it.
+struct Track {
+    struct Key {
+        double time = 0, value = 0, rate = 0;  // [s], [unit], [unit/s]
+    };
+    struct Shake {  // amplitude sin(2 pi frequency (t - begin)) on top, swelling and fading for a period each
+        double amplitude = 0, frequency = 1, begin = 0, end = 0;  // [unit], [Hz], [s], [s]
+    };
+    std::vector<Key> keys;
+    Shake shake;
+};
+
+// What moves by plan: a kinematic body, by its track along a direction from its start; or the drive of a joint, whose
+// target and speed follow the track.
+struct Motion {
+    int body = -1, joint = -1;
+    uint32_t axis = 0;  // of the joint
+    taut_vec3 along{};  // of the body, [m] a unit of the track
+    Track track;
 };
 
 // A chain or cable, from its held end to its weight.
@@ -69,6 +111,12 @@ struct Roles {
     std::optional<Chain> chain;
     std::optional<Bounds> bin;  // centres outside count as escaped
     bool swings = false;        // the chain swings freely: measure its period
+    int load = -1;              // what is lifted, driven or shaken
+};
+
+// The joint forces that colours tell apart, in powers of ten [N].
+struct ForceScale {
+    int low = 0, high = 5;
 };
 
 struct Camera {
@@ -89,8 +137,10 @@ struct Scene {
     std::vector<Shape> shapes;
     std::vector<Body> bodies;
     std::vector<Joint> joints;
+    std::vector<Motion> motions;
     std::vector<Decoration> decorations;
     Roles roles;
+    std::optional<ForceScale> forces;  // else from the chain's weights
     Camera camera;
     Bounds stage{{-8, 0, -8}, {8, 8, 8}};  // where shadows fall
 

@@ -1,5 +1,8 @@
 #include "taut_world.h"
 
+#include "taut_joint.h"
+#include "track.h"
+
 namespace scenes {
 
 namespace {
@@ -63,30 +66,9 @@ taut_result add_body(taut_world world, const Body& body, taut_shape shape, uint6
     def.filter.group = body.group;
     def.density = body.density;
     def.mass = body.mass;
+    def.inertia = body.inertia;
     def.user_data = index;
     return taut_world_add_body(world, &def, out);
-}
-
-taut_result add_joint(taut_world world, const Joint& joint, taut_body a, taut_body b, uint64_t index, taut_joint* out) {
-    if (joint.kind == TAUT_JOINT_DISTANCE) {
-        taut_distance_joint_def def;
-        taut_distance_joint_def_init(&def);
-        def.body_a = a;
-        def.body_b = b;
-        def.anchor_a = joint.anchor_a;
-        def.anchor_b = joint.anchor_b;
-        def.length = joint.length;
-        def.user_data = index;
-        return taut_world_add_distance_joint(world, &def, out);
-    }
-    taut_ball_joint_def def;
-    taut_ball_joint_def_init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    def.anchor_a = joint.anchor_a;
-    def.anchor_b = joint.anchor_b;
-    def.user_data = index;
-    return taut_world_add_ball_joint(world, &def, out);
 }
 
 constexpr struct {
@@ -118,10 +100,10 @@ void check(taut_result result, const char* what) {
     throw TautError(std::string(what) + ": " + taut_result_name(result) + ": " + taut_last_error());
 }
 
-TautWorld::TautWorld(const Scene& scene) {
+TautWorld::TautWorld(const Scene& scene) : scene_(scene) {
     check(taut_world_create(&scene.world, &world), "creating the world");
     try {
-        build(scene);
+        build();
     } catch (...) {
         taut_world_destroy(world);
         throw;
@@ -130,30 +112,76 @@ TautWorld::TautWorld(const Scene& scene) {
 
 TautWorld::~TautWorld() { taut_world_destroy(world); }
 
-void TautWorld::build(const Scene& scene) {
-    for (const Shape& shape : scene.shapes) {
+void TautWorld::build() {
+    for (const Shape& shape : scene_.shapes) {
         taut_shape handle{};
         std::string what = shape.source.empty() ? "adding a shape" : shape.source;
         check(add_shape(world, shape, &handle), what.c_str());
         shapes.push_back(handle);
     }
-    for (const Body& body : scene.bodies) {
+    for (const Body& body : scene_.bodies) {
         taut_body handle{};
         taut_shape shape = body.shape < 0 ? taut_shape{} : shapes[static_cast<size_t>(body.shape)];
         check(add_body(world, body, shape, bodies.size(), &handle), "adding a body");
         bodies.push_back(handle);
     }
-    for (const Joint& joint : scene.joints) {
+    for (const Joint& joint : scene_.joints) {
         taut_joint handle{};
         check(add_joint(world, joint, end(joint.body_a), end(joint.body_b), joints.size(), &handle), "adding a joint");
         joints.push_back(handle);
     }
+    broken.reserve(joints.size());
+}
+
+// Where everything with a plan is to be at the end of the step.
+void TautWorld::follow_plans() {
+    const double time = static_cast<double>(steps_ + 1) * static_cast<double>(scene_.world.time_step);
+    for (const Motion& motion : scene_.motions) {
+        const TrackPoint point = at(motion.track, time);
+        if (motion.body >= 0) {
+            const Body& start = scene_.bodies[static_cast<size_t>(motion.body)];
+            taut_pose pose{};
+            pose.position = {start.position.x + point.value * static_cast<double>(motion.along.x),
+                             start.position.y + point.value * static_cast<double>(motion.along.y),
+                             start.position.z + point.value * static_cast<double>(motion.along.z)};
+            pose.rotation = start.rotation;
+            check(taut_body_move_kinematic(bodies[static_cast<size_t>(motion.body)], &pose), "moving a body");
+        } else if (is_whole(static_cast<size_t>(motion.joint))) {
+            // A motor that holds a speed alone takes no target, which grows beyond a turn.
+            const auto joint = static_cast<size_t>(motion.joint);
+            const bool aims = scene_.joints[joint].axes[motion.axis].drive.stiffness > 0;
+            check(taut_joint_set_target(joints[joint], motion.axis, aims ? static_cast<float>(point.value) : 0.0f,
+                                        static_cast<float>(point.rate)),
+                  "driving a joint");
+        }
+    }
+}
+
+void TautWorld::step() {
+    follow_plans();
+    check(taut_world_step(world), "taking a step");
+    ++steps_;
+    taut_events events{};
+    check(taut_world_get_events(world, &events), "reading the events");
+    for (uint32_t i = 0; i < events.broken_count; ++i) broken.push_back(static_cast<int>(events.broken[i].user_data));
+    quarantined += events.quarantined_count;
 }
 
 taut_pose TautWorld::pose(size_t body) const {
     taut_pose pose{};
     check(taut_body_get_pose(bodies[body], &pose), "reading a pose");
     return pose;
+}
+
+double TautWorld::joint_error() const {
+    float most = 0;
+    for (size_t i = 0; i < joints.size(); ++i) {
+        if (scene_.joints[i].compliance > 0 || !is_whole(i)) continue;
+        float error = 0;
+        check(taut_joint_get_error(joints[i], &error), "reading a joint's error");
+        if (!(error <= most)) most = error;  // a NaN too
+    }
+    return static_cast<double>(most);
 }
 
 taut_profile TautWorld::profile() const {

@@ -26,24 +26,33 @@ void check(taut_result result, const char* what);
 
 class TautWorld {
 public:
-    // Bodies, joints and shapes get their indices in the scene as user data and as places in these lists.
+    // Bodies, joints and shapes get their indices in the scene as user data and as places in these lists. The scene is
+    // kept.
     explicit TautWorld(const Scene& scene);
     ~TautWorld();
     TautWorld(const TautWorld&) = delete;
     TautWorld& operator=(const TautWorld&) = delete;
 
-    void step() { check(taut_world_step(world), "taking a step"); }
+    void step();  // what has a plan follows it
+    bool is_whole(size_t joint) const { return taut_joint_is_valid(joints[joint]) != 0; }
     taut_pose pose(size_t body) const;
     taut_profile profile() const;
+    double joint_error() const;  // largest of the rigid joints that are whole [m]
 
     taut_world world{};
     std::vector<taut_shape> shapes;
     std::vector<taut_body> bodies;
     std::vector<taut_joint> joints;
+    std::vector<int> broken;   // joints of the scene, in the order in which they broke
+    uint32_t quarantined = 0;  // bodies
 
 private:
-    void build(const Scene& scene);
+    void build();
+    void follow_plans();
     taut_body end(int index) const { return index == kWorld ? taut_body{} : bodies[static_cast<size_t>(index)]; }
+
+    Scene scene_;
+    uint64_t steps_ = 0;
 };
 
 }  // namespace scenes

@@ -101,7 +101,7 @@ private:
     }
 
     void add(const scenes::Joint& joint) {
-        if (joint.kind != TAUT_JOINT_BALL) throw scenes::BadScene("--engine bullet: Bullet has no distance joint");
+        if (joint.kind != TAUT_JOINT_BALL) throw scenes::BadScene("--engine bullet runs ball joints only");
         btRigidBody& b = *bodies_[static_cast<size_t>(joint.body_b)];
         std::unique_ptr<btPoint2PointConstraint> made;
         if (joint.body_a == scenes::kWorld) {

@@ -44,15 +44,10 @@ public:
     }
     explicit RunningScene(const std::string& name) : RunningScene(scenes::make_scene(name)) {}
 
-    void step() {
-        world.step();
-        taut_events events{};
-        ok(taut_world_get_events(world.world, &events));
-        quarantined += events.quarantined_count;
-    }
+    void step() { world.step(); }
     BodyState body(size_t i) const { return state(world.bodies[i]); }
     bool sound() const {
-        if (quarantined > 0) return false;
+        if (world.quarantined > 0) return false;
         return std::all_of(world.bodies.begin(), world.bodies.end(), [](taut_body b) { return finite(b); });
     }
     double pile_speed() const {  // fastest
@@ -67,13 +62,25 @@ public:
         return most;
     }
     double joint_error() const {  // [m]
+        const double most = world.joint_error();
+        return std::isnan(most) ? INFINITY : most;
+    }
+    double angular_error() const {  // [rad]
         float most = 0;
-        for (taut_joint joint : world.joints) {
+        for (size_t i = 0; i < world.joints.size(); ++i) {
             float error = 0;
-            ok(taut_joint_get_error(joint, &error));
+            if (!world.is_whole(i)) continue;
+            ok(taut_joint_get_angular_error(world.joints[i], &error));
             most = std::isnan(error) ? INFINITY : std::max(most, error);
         }
         return static_cast<double>(most);
+    }
+    double energy() const {  // kinetic and of height [J]
+        std::vector<taut_body> moving;
+        for (size_t i = 0; i < scene.bodies.size(); ++i)
+            if (scene.bodies[i].kind == TAUT_BODY_DYNAMIC) moving.push_back(world.bodies[i]);
+        const Totals sum = totals(moving);
+        return sum.kinetic + kG * sum.height;
     }
     // From the anchor along the points of a cable [m].
     double cable_length() const {
@@ -91,7 +98,6 @@ public:
     scenes::Scene scene;
     scenes::TautWorld world;
     std::vector<BodyState> start;
-    uint32_t quarantined = 0;
 };
 
 }  // namespace lab

@@ -1,4 +1,5 @@
-// Ten minutes of the main demo and of a pile that bodies join and leave; the short forms take ten seconds of it.
+// Ten minutes of the main demo, of a pile that bodies join and leave, of a bridge that breaks and of a ragdoll that is
+// shaken; the short forms take ten seconds of it.
 #include <ctime>
 
 #include <cstdio>
@@ -31,9 +32,19 @@ public:
     explicit Figures(uint64_t warm_up) : warm_up_(warm_up) {}
 
     void step(taut_world world) {
+        step(world, [world] { ok(taut_world_step(world)); });
+    }
+    // With what the scene moves by plan; of its joints only the rigid ones count.
+    void step(scenes::TautWorld& scene) {
+        const double before = joint_error;
+        step(scene.world, [&scene] { scene.step(); });
+        joint_error = std::max(before, scene.joint_error());
+    }
+    template <typename Take>
+    void step(taut_world world, const Take& take) {
         const uint64_t taken = soak::allocations();
         const double start = processor_ms();
-        ok(taut_world_step(world));
+        take();
         ms_.push_back(processor_ms() - start);
         if (ms_.size() > warm_up_) allocations += soak::allocations() - taken;
         taut_events events{};
@@ -158,6 +169,86 @@ void run_pile(int frames) {
         EXPECT_LT(p99, kBudget);
     }
 }
+
+// Running least of an energy and how far it rose above that.
+struct Rise {
+    double least = INFINITY, most = 0;  // [J]
+
+    void sample(double energy) {
+        least = std::min(least, energy);
+        most = std::max(most, energy - least);
+    }
+};
+
+// The truck's motors stand still after 12 s: from then on nothing brings energy in but ropes that were tight.
+void run_breaking_bridge(int frames) {
+    constexpr int kMotors = 720;
+    RunningScene run("bridge_breaking");
+    Figures figures(static_cast<uint64_t>(frames / 2));
+    Rise rise;
+    const double start = run.energy();
+    double most = 0;
+    for (int i = 0; i < frames; ++i) {
+        figures.step(run.world);
+        ASSERT_TRUE(i % 60 != 59 || run.sound()) << "frame " << i;
+        if (i < kMotors)
+            most = std::max(most, run.energy());
+        else if (i % 10 == 0)
+            rise.sample(run.energy());
+    }
+    const double p99 = figures.report("bridge_breaking");
+    std::printf("bridge_breaking: %zu joints broke, energy rose by %.1f kJ under power, %.3f kJ after\n",
+                run.world.broken.size(), 1e-3 * (most - start), 1e-3 * rise.most);
+    EXPECT_GE(run.world.broken.size(), 10u);
+    EXPECT_EQ(figures.quarantined, 0u);
+    EXPECT_LE(figures.joint_error, 0.005);
+    EXPECT_LE(most - start, 100e3) << "8 t at 4 m/s are 64 kJ";
+    EXPECT_LE(rise.most, 20);
+    if (kTimed) {
+        EXPECT_LT(p99, kBudget);
+    }
+}
+
+// Shaken for all but the last part, in which it must calm down by itself.
+void run_shaken_ragdoll(int frames, int calm) {
+    scenes::Scene scene = scenes::make_scene("ragdoll_liana");
+    scene.motions.front().track.shake.end = (frames - calm) / 60.0;
+    RunningScene run(std::move(scene));
+    Figures figures(static_cast<uint64_t>(frames / 2));
+    Rise rise;
+    const double start = run.energy();
+    double most = 0, angle = 0;
+    int over = 0;  // frames with a stop overrun by more than 2 degrees
+    for (int i = 0; i < frames; ++i) {
+        figures.step(run.world);
+        ASSERT_TRUE(i % 60 != 59 || run.sound()) << "frame " << i;
+        const double off = run.angular_error();
+        angle = std::max(angle, off);
+        over += off > 2 * kPi / 180;
+        if (i < frames - calm)
+            most = std::max(most, run.energy());
+        else
+            rise.sample(run.energy());
+    }
+    const double p99 = figures.report("ragdoll_liana");
+    std::printf(
+        "ragdoll_liana: shaken up by %.0f J, rose by %.2f J after, angles off by %.2f degrees, %d frames by 2\n",
+        most - start, rise.most, angle * 180 / kPi, over);
+    EXPECT_EQ(figures.quarantined, 0u);
+    EXPECT_LE(figures.joint_error, 0.012);
+    EXPECT_LE(over, frames / 1000);
+    EXPECT_LE(angle, 8 * kPi / 180);
+    EXPECT_LE(most - start, 5000) << "75 kg and 20 kg of liana, thrown 5 m up";
+    EXPECT_LE(rise.most, 1);
+    if (kTimed) {
+        EXPECT_LT(p99, kBudget);
+    }
+}
+
+TEST(BreakingBridgeShort, HoldsForTwentySeconds) { run_breaking_bridge(1200); }
+TEST(ShakenRagdollShort, HoldsForTenSeconds) { run_shaken_ragdoll(600, 240); }
+TEST(BreakingBridge, HoldsForTenMinutes) { run_breaking_bridge(36000); }
+TEST(ShakenRagdoll, HoldsForTenMinutes) { run_shaken_ragdoll(36000, 1800); }
 
 TEST(MainShort, HoldsForTenSeconds) { run_main(600); }
 TEST(PileShort, HoldsForTenSeconds) { run_pile(600); }

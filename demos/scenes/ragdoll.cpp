@@ -1,0 +1,98 @@
+// A ragdoll of twelve bodies and 75 kg that holds on to a liana with both hands.
+#include "builders.h"
+#include "parts.h"
+#include "pose.h"
+
+namespace scenes {
+
+namespace {
+
+// Which way the limbs bend. x is to the doll's left, z where it looks.
+struct Doll {
+    Scene& scene;
+    taut_pos hip;      // middle of the pelvis
+    double stiff = 4;  // friction of every joint [N m]
+
+    taut_pos at(double x, double y, double z = 0) const { return plus(hip, x, y, z); }
+    int limb(taut_pos from, taut_pos to, double radius, double mass, Look look) const {
+        // The round ends reach the joints.
+        return add_capsule(scene, toward(from, to, radius), toward(to, from, radius), radius, mass, look);
+    }
+    void cone(int a, int b, taut_pos pivot, taut_pos axis_a, taut_pos axis_b, double swing, double twist) const {
+        Joint joint = joint_at(scene, TAUT_JOINT_CONE_TWIST, a, b, pivot, axis_a, axis_b);
+        taut_axis_def cone = limited_axis(0, swing), roll = limited_axis(-twist, twist);
+        cone.lower = -INFINITY;
+        cone.friction = roll.friction = static_cast<float>(stiff);
+        joint.axes = {cone, roll};
+        scene.add_joint(joint);
+    }
+    void hinge(int a, int b, taut_pos pivot, taut_pos axis, double most) const {
+        Joint joint = joint_at(scene, TAUT_JOINT_HINGE, a, b, pivot, axis);
+        taut_axis_def bend = limited_axis(0, most);
+        bend.friction = static_cast<float>(stiff);
+        joint.axes = {bend};
+        scene.add_joint(joint);
+    }
+    void leg(int pelvis, double side) const {
+        const taut_pos top = at(0.11 * side, -0.06), knee = at(0.12 * side, -0.48), foot = at(0.12 * side, -0.92);
+        const int thigh = limb(top, knee, 0.075, 8.5, Look::cloth), shin = limb(knee, foot, 0.055, 4.3, Look::skin);
+        cone(pelvis, thigh, top, {0.15 * side, -0.85, 0.5}, minus(knee, top), degrees(60), degrees(30));
+        hinge(thigh, shin, knee, {1, 0, 0}, degrees(140));
+    }
+    // Returns the forearm; the hand is at the grip.
+    int arm(int chest, double side, taut_pos grip) const {
+        const taut_pos shoulder = at(0.2 * side, 0.47);
+        const double reach = length(minus(grip, shoulder));
+        const taut_pos elbow = toward(shoulder, grip, 0.52 * reach);
+        const int upper = limb(shoulder, elbow, 0.045, 2.2, Look::cloth),
+                  fore = limb(elbow, grip, 0.04, 1.9, Look::skin);
+        const taut_pos out = {0.6 * side, 0.35, 0.7}, along = minus(elbow, shoulder);
+        cone(chest, upper, shoulder, out, along, degrees(110), degrees(80));
+        // Flexing brings the raised hand forwards and down.
+        hinge(upper, fore, elbow, {1, 0, 0}, degrees(145));
+        return fore;
+    }
+};
+
+}  // namespace
+
+Scene build_ragdoll_liana(double, double, const Options& options) {
+    constexpr double kTop = 7.5, kLink = 0.5, kShake = 0.35;
+    constexpr int kLinks = 10;
+    Scene scene = empty_scene();
+    add_ground(scene);
+
+    Body branch = crate(box_shape(scene, 0.25, 0.08, 0.25), {0, kTop + 0.08, 0}, 0, Look::wood);
+    branch.kind = TAUT_BODY_KINEMATIC;
+    int last = scene.add_body(branch);
+    scene.motions.push_back({last, -1, 0, {1, 0.35f, 0.3f}, {{}, {kShake, 0.9, 1, 7}}});
+    for (int i = 0; i < kLinks; ++i) {
+        const taut_pos top = {0, kTop - i * kLink, 0};
+        const int link = add_capsule(scene, top, plus(top, 0, -kLink, 0), 0.035, 2, Look::link, -1);
+        scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, last, link, top));
+        last = link;
+    }
+
+    const Doll doll{scene, {0, kTop - kLinks * kLink - 0.98, 0}};
+    const int pelvis = doll.limb(doll.at(-0.16, 0), doll.at(0.16, 0), 0.095, 11, Look::cloth);
+    const int belly = doll.limb(doll.at(0, 0.05), doll.at(0, 0.27), 0.1, 10, Look::cloth);
+    const int chest = doll.limb(doll.at(-0.17, 0.38), doll.at(0.17, 0.38), 0.115, 16, Look::cloth);
+    const int head = doll.limb(doll.at(0, 0.52, 0.03), doll.at(0, 0.76, 0.06), 0.095, 5, Look::skin);
+    doll.cone(pelvis, belly, doll.at(0, 0.08), {0, 1, 0}, {0, 1, 0}, degrees(25), degrees(20));
+    doll.cone(belly, chest, doll.at(0, 0.27), {0, 1, 0}, {0, 1, 0}, degrees(25), degrees(20));
+    doll.cone(chest, head, doll.at(0, 0.52, 0.02), {0, 1, 0}, {0, 1, 0}, degrees(35), degrees(50));
+    for (double side : {-1.0, 1.0}) {
+        doll.leg(pelvis, side);
+        const taut_pos grip = doll.at(0.07 * side, 0.98);
+        const int fore = doll.arm(chest, side, grip);
+        scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, last, fore, grip));
+    }
+    scene.roles.load = chest;
+    scene.forces = ForceScale{2, 4};
+    perturb(scene, options.seed);
+    scene.camera = {{2.8, 4.1, 9.2}, {-0.5, 4.15, 0}, 46};
+    scene.stage = {{-5, 0, -5}, {5, 9, 5}};
+    return scene;
+}
+
+}  // namespace scenes
