@@ -22,6 +22,24 @@ void turn_chain(Scene& scene, const Chain& chain, double angle) {
     }
 }
 
+struct Slim {
+    double radius, length;  // [m]
+};
+
+// A body along y from one point to another. Its inertia is a slim rod's, but about its length not as little as its
+// own: it would spin up (TAUT_LINT_THIN_INERTIA).
+int add_slim(Scene& scene, int shape, taut_pos from, taut_pos to, Slim size, double mass, Look look, int32_t group) {
+    constexpr double kMostRatio = 80;
+    Body body = crate(shape, middle(from, to), mass, look);
+    body.rotation = turn_from_to({0, 1, 0}, minus(to, from));
+    body.group = group;
+    const double square = size.radius * size.radius, across = mass * (size.length * size.length / 12 + square / 4);
+    const auto wide = static_cast<float>(across);
+    const auto round = static_cast<float>(std::fmax(mass * square / 2, across / kMostRatio));
+    if (mass > 0) body.inertia = {wide, round, wide, 0, 0, 0};
+    return scene.add_body(body);
+}
+
 }  // namespace
 
 Scene empty_scene() {
@@ -55,16 +73,15 @@ int capsule_shape(Scene& scene, double radius, double half_length) {
 }
 
 int add_capsule(Scene& scene, taut_pos from, taut_pos to, double radius, double mass, Look look, int32_t group) {
-    const taut_pos along = minus(to, from);
-    Body body = crate(capsule_shape(scene, radius, length(along) / 2), middle(from, to), mass, look);
-    body.rotation = turn_from_to({0, 1, 0}, along);
-    body.group = group;
-    // A slim rod's, but about its length not as little as its own: it would spin up (TAUT_LINT_THIN_INERTIA).
-    constexpr double kMostRatio = 80;
-    const double reach = length(along) + 2 * radius, across = mass * (reach * reach / 12 + radius * radius / 4);
-    const auto round = static_cast<float>(std::fmax(mass * radius * radius / 2, across / kMostRatio));
-    if (mass > 0) body.inertia = {static_cast<float>(across), round, static_cast<float>(across), 0, 0, 0};
-    return scene.add_body(body);
+    const double reach = length(minus(to, from));
+    const int shape = capsule_shape(scene, radius, reach / 2);
+    return add_slim(scene, shape, from, to, {radius, reach + 2 * radius}, mass, look, group);
+}
+
+int add_beam(Scene& scene, taut_pos from, taut_pos to, double half_width, double mass, Look look, int32_t group) {
+    const double reach = length(minus(to, from));
+    const int shape = box_shape(scene, half_width, reach / 2, half_width);
+    return add_slim(scene, shape, from, to, {half_width, reach}, mass, look, group);
 }
 
 Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b, taut_pos pivot, taut_pos axis_a,

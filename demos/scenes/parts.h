@@ -33,6 +33,8 @@ void add_chain(Scene& scene, const ChainPlan& plan);
 
 // A capsule from one point to another, its round ends beyond them; its y axis points along.
 int add_capsule(Scene& scene, taut_pos from, taut_pos to, double radius, double mass, Look look, int32_t group = 0);
+// A square beam likewise, from end to end; unlike a capsule it does not roll.
+int add_beam(Scene& scene, taut_pos from, taut_pos to, double half_width, double mass, Look look, int32_t group = 0);
 
 // A joint of two bodies at a world point, as the bodies lie now: its x axis along `axis` on both.
 Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b, taut_pos pivot,

@@ -6,7 +6,7 @@
 namespace scenes {
 
 Scene build_tensegrity(double, double, const Options& options) {
-    constexpr double kHalf = 1.0, kMass = 20, kRadius = 0.05, kHeight = 3.4, kShorter = 0.97;
+    constexpr double kHalf = 1.0, kMass = 20, kHalfWidth = 0.05, kHeight = 3.4, kShorter = 0.97;
     constexpr double kCompliance = 1.2e-5, kDamping = 300;
     Scene scene = empty_scene();
     add_ground(scene);
@@ -29,7 +29,7 @@ Scene build_tensegrity(double, double, const Options& options) {
                 c[(axis + 1) % 3] = off;
                 return taut_pos{c[0], c[1], c[2]};
             };
-            const int strut = add_capsule(scene, world(point(-kHalf)), world(point(kHalf)), kRadius, kMass, Look::wood);
+            const int strut = add_beam(scene, world(point(-kHalf)), world(point(kHalf)), kHalfWidth, kMass, Look::wood);
             scene.roles.pile.push_back(strut);
             ends.push_back({strut, point(-kHalf)});
             ends.push_back({strut, point(kHalf)});
