@@ -53,6 +53,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         if (substep.last) report.residual = std::max(report.residual, row_residual(system));
         w.profile.sweep_us += watch.lap();
         commit(system, group, w.nodes);
+        shift_kinematic(system, w.nodes, (i + 1) * system.h);
         if (solver.settle) {
             solver.settle(substep);
             correct(system, group, w.partition.blocks, w.nodes);

@@ -7,6 +7,8 @@
 namespace taut {
 namespace {
 
+constexpr size_t kLeastNet = 300;  // unknowns
+
 constexpr size_t kCouplingShare = 4;  // of the nodes of a net, that couplings between nodes may tie together
 
 int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
@@ -114,10 +116,12 @@ uint64_t EliminationOrder::key(uint32_t i) const {
     return (2 * degree + !unknowns_[i].multiplier) << 32 | i;
 }
 
-// More multipliers than nodes: a net. Where the nodes are cut in two, what lies on the cut comes after the halves.
+// More multipliers than nodes, and many of both: a net. On small ones the greedy order fills less (a wheel of 56 bodies
+// and 81 hinges factors three times faster). Where the nodes are cut in two, what lies on the cut comes after the
+// halves.
 bool EliminationOrder::meshed() const {
     const auto nodes = std::count_if(unknowns_.begin(), unknowns_.end(), [](auto& u) { return !u.multiplier; });
-    return unknowns_.size() > 2 * static_cast<size_t>(nodes);
+    return unknowns_.size() > kLeastNet && unknowns_.size() > 2 * static_cast<size_t>(nodes);
 }
 
 void EliminationOrder::dissect() {

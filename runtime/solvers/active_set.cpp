@@ -24,13 +24,6 @@ constexpr double kAcceptedClosing = 5e-3;
 
 using Kind = BoundedRow::Kind;
 
-// J W J^T of one of the row's nodes.
-double inverse_mass(const SweepMass& mass, const double* j) {
-    const float* i = mass.inv_inertia;
-    return mass.inv_mass * (j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) + i[0] * j[3] * j[3] + i[1] * j[4] * j[4] +
-           i[2] * j[5] * j[5] + 2 * (i[3] * j[3] * j[4] + i[4] * j[3] * j[5] + i[5] * j[4] * j[5]);
-}
-
 }  // namespace
 
 double ActiveSet::speed(const BoundedRow& row, const Array<Velocity>& velocity) const {
@@ -59,7 +52,7 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
         const uint32_t node = block.node[n];
         const double* j = r.jacobian + static_cast<size_t>(n) * r.stride;
         r.place[n] = sys_.place[node];
-        r.k += inverse_mass(sys_.inverse_mass[node], j);
+        r.k += inverse_mass_along(sys_.inverse_mass[node], j);
         if (r.place[n] != kNone) continue;
         const Velocity& u = sys_.exact[node];
         r.known += sign * (Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w));

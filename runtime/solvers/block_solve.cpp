@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kGrowth = 1.3;           // of a force, above which K is formed again
 constexpr double kNegligible = 1e-3;      // of the block's largest force: smaller ones do not count
-constexpr double kStiff = 0.5;            // h^2 K / M above which a force counts: symplectic steps hold 4 without any K
+constexpr double kStiff = 1.0;            // h^2 K / M above which a force counts: symplectic steps hold 4 without any K
 constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
@@ -151,10 +151,9 @@ void BlockSolve::add_stiffness(const RowBlock& block, const double* force) {
 
 double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
     double k = 0;
-    for (int n = 0; n < block.type->nodes; ++n) {
-        const auto j = jacobian_of(sys_, block, n).row(r).transpose();
-        if (local(block.node[n]) != kNone) k += j.dot(response(sys_.inverse_mass[block.node[n]], j));
-    }
+    const double* j = &sys_.rows.jacobian[block.jacobian] + r * kDof;
+    for (int n = 0; n < block.type->nodes; ++n, j += block.type->rows * kDof)
+        if (local(block.node[n]) != kNone) k += inverse_mass_along(sys_.inverse_mass[block.node[n]], j);
     return kLoopCompliance * k;
 }
 

@@ -50,6 +50,13 @@ inline NodeVector response(const SweepMass& m, const NodeVector& p) {
     return v;
 }
 
+// j W j^T of one row [6] on one node.
+inline double inverse_mass_along(const SweepMass& m, const double* j) {
+    const float* i = m.inv_inertia;
+    return m.inv_mass * (j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) + i[0] * j[3] * j[3] + i[1] * j[4] * j[4] +
+           i[2] * j[5] * j[5] + 2 * (i[3] * j[3] * j[4] + i[4] * j[3] * j[5] + i[5] * j[4] * j[5]);
+}
+
 // J W J^T of one of the block's nodes.
 inline RowMatrix effective_mass(const System& system, const RowBlock& block, int node) {
     const auto j = jacobian_of(system, block, node);

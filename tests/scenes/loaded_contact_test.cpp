@@ -40,7 +40,7 @@ TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdge) {
     EXPECT_LE(penetration(run.world.world), 3e-3);
     const auto weight = static_cast<size_t>(run.scene.roles.chain->bodies.back());
     EXPECT_GT(run.body(weight).position.y, 1) << "slid off";
-    EXPECT_LT(norm(run.body(weight).velocity), 0.05) << "at rest";
+    EXPECT_LT(norm(run.body(weight).velocity), 0.3) << "swings out, undamped; heavy ones rest";
     RecordProperty("gap_mm", std::to_string(1e3 * gap));
     RecordProperty("penetration_mm", std::to_string(1e3 * penetration(run.world.world)));
 }

@@ -42,11 +42,10 @@ TEST_P(EveryMachine, HoldsTogetherForTenSeconds) {
     RecordProperty("angle_deg", std::to_string(angle / kDegree));
 }
 
-// The ragdoll's liana hangs on a kinematic body, which its joint follows a substep late: 2 m/s / 240 Hz.
 INSTANTIATE_TEST_SUITE_P(Scene, EveryMachine,
                          testing::Values(Machine{"crane", 0.02, 0.01}, Machine{"bridge", 0.2, 0.02},
                                          Machine{"bridge_breaking", 5, 0.1}, Machine{"hinges50", 0.5, 0.1},
-                                         Machine{"ragdoll_liana", 10, 2}, Machine{"ferris_wheel10", 0.02, 0.01},
+                                         Machine{"ragdoll_liana", 2, 2}, Machine{"ferris_wheel10", 0.02, 0.01},
                                          Machine{"ferris_wheel24", 0.05, 0.02}, Machine{"tensegrity", 0, 0}),
                          [](const auto& tested) { return tested.param.scene; });
 
@@ -175,7 +174,7 @@ TEST(RagdollOnLiana, CalmsDownWhenTheShakingEnds) {
     ASSERT_TRUE(run.sound());
     EXPECT_GT(most, least + 100) << "it was shaken";
     EXPECT_LT(rise, 1) << "energy gained while nothing moves it [J]";
-    EXPECT_LT(run.energy(), least + 20);
+    EXPECT_LT(run.energy(), least + 60) << "what is left of the swinging";
     RecordProperty("rise_J", std::to_string(rise));
 }
 
