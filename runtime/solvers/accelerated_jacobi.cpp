@@ -4,7 +4,7 @@
 //   beta_{k+1} = theta_k (1 - theta_k) / (theta_k^2 + theta_{k+1})
 // S is the block's diagonal with each node's inverse mass multiplied by the number of blocks on it: the mass
 // splitting bound, under which the plain iteration (omega = 1) cannot diverge. The momentum restarts where it
-// points against the descent.
+// points against the descent. Of joints with axes it solves what is locked: stops, drives and friction are left out.
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -69,6 +69,14 @@ private:
         RowMatrix softness = soft_.impulse_scale / soft_.mass_scale * own;
         if (block.elastic(0)) softness = compliance_of(block, sys_.h);
         split.diagonal().array() += 1e-12 * split.trace();
+        for (int r = 0; r < rows; ++r) {  // rows that are not locked stay out
+            if (block.locked(r)) continue;
+            split.row(r).setZero();
+            split.col(r).setZero();
+            softness.row(r).setZero();
+            softness.col(r).setZero();
+            split(r, r) = 1;
+        }
         const RowMatrix inverse = (split + softness).inverse();
         inverse_.insert(inverse_.end(), inverse.data(), inverse.data() + rows * rows);
         softness_.insert(softness_.end(), softness.data(), softness.data() + rows * rows);
@@ -98,7 +106,11 @@ private:
     }
 
     static void project(const RowBlock& block, RowVector& mu) {
-        if (block.type->bound != Bound::cone) return;
+        if (block.type->bound != Bound::cone) {
+            for (int r = 0; r < block.type->rows; ++r)
+                if (!block.locked(r)) mu[r] = 0;
+            return;
+        }
         mu[0] = std::max(0.0, mu[0]);
         const double limit = block.friction * mu[0], size = std::sqrt(mu[1] * mu[1] + mu[2] * mu[2]);
         if (size > limit) mu.tail(2) *= limit / size;
@@ -111,6 +123,8 @@ private:
             v << sys_.exact[block.node[n]].v, sys_.exact[block.node[n]].w;
             r += jacobian_of(sys_, block, n) * v;
         }
+        for (int row = 0; row < block.type->rows; ++row)
+            if (!block.locked(row)) r[row] = 0;
         const RowVector error = error_of(sys_, block);
         if (block.type->bound == Bound::cone) {  // only the normal row has a target
             const double gap = error[0];

@@ -24,6 +24,8 @@ constexpr double kAcceptedClosing = 5e-3;
 
 using Kind = BoundedRow::Kind;
 
+double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
 }  // namespace
 
 double ActiveSet::speed(const BoundedRow& row, const Array<Velocity>& velocity) const {
@@ -92,7 +94,7 @@ void ActiveSet::begin_slip(BoundedRow* tangents, const BoundedRow& normal) {
     const double approach = std::max(0.0, -speed(normal, sys_.free));
     const double at_rest = 0.25 * sys_.h * std::sqrt(s_.settings.gravity_squared);
     const double push = std::max(0.0, normal.mu) + std::max(approach, at_rest) / normal.k;
-    const double slide = std::hypot(speed(tangents[0], sys_.free), speed(tangents[1], sys_.free));
+    const double slide = length(speed(tangents[0], sys_.free), speed(tangents[1], sys_.free));
     *tangents[0].slip = static_cast<float>(slide / std::max(1e-30, tangents[0].limit * push));
     for (int i = 0; i < 2; ++i) tangents[i].c = std::max<double>(tangents[i].least, *tangents[i].slip);
 }
@@ -217,15 +219,15 @@ bool ActiveSet::acceptable() const {
         total += std::abs(r.mu);
         pull += std::max(0.0, -r.mu);
         if (i + 2 < all.size() && all[i + 1].kind == Kind::tangent)
-            excess += std::max(0.0, std::hypot(all[i + 1].mu, all[i + 2].mu) - all[i + 1].limit * std::max(0.0, r.mu));
+            excess += std::max(0.0, length(all[i + 1].mu, all[i + 2].mu) - all[i + 1].limit * std::max(0.0, r.mu));
     }
     return pull <= kAcceptedPull * total && excess <= kAcceptedPull * total && closing <= kAcceptedClosing;
 }
 
 // c of a contact's friction in the next substep, and its impulse within the cone.
 void ActiveSet::follow_slip(BoundedRow* tangents, double bound) const {
-    const double slide = std::hypot(speed(tangents[0], sys_.kept), speed(tangents[1], sys_.kept));
-    const double size = std::hypot(tangents[0].mu, tangents[1].mu), excess = std::max(0.0, size - bound);
+    const double slide = length(speed(tangents[0], sys_.kept), speed(tangents[1], sys_.kept));
+    const double size = length(tangents[0].mu, tangents[1].mu), excess = std::max(0.0, size - bound);
     const bool slid = tangents[0].c > tangents[0].least;
     double next = 0;
     if (slid || excess > 1e-6 * bound) {

@@ -422,6 +422,25 @@ TEST(SoftJoint, KnowsStopsAndMotors) {
     EXPECT_LT(error(joint), 2e-3);
 }
 
+// A bar swings on its hinge from horizontal to horizontal, whatever solves it; a quarter swing takes
+// sqrt(2 I / (m g L/2)) * 1.31103 (the elliptic integral of a drop from 90 degrees over sqrt 2).
+TEST(FreeHinge, SwingsUnderEverySolver) {
+    for (const taut_solver solver :
+         {TAUT_SOLVER_BLOCK_LDLT, TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL, TAUT_SOLVER_ACCELERATED_JACOBI}) {
+        SCOPED_TRACE(static_cast<int>(solver));
+        World world([&](taut_world_def& def) { def.solver = solver; });
+        const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1});
+        const double quarter = std::sqrt(2 * kAboutEnd / (kBarMass * kG * 0.5)) * 1.31103;
+        int frames = 0;
+        while (motion(joint).value > -kPi / 2 && frames < 200) {
+            world.step();
+            ++frames;
+        }
+        EXPECT_NEAR(frames * world.frame(), quarter, 1.5 * world.frame());
+        EXPECT_LT(error(joint), 0.01);
+    }
+}
+
 // ---------------------------------------------------------------- changes in motion
 
 // A joint made between bodies that move as it wants, or taken away, changes no velocity.
