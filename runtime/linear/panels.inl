@@ -14,10 +14,13 @@ constexpr size_t kWidth = 2;
 #endif
 
 typedef double Vector __attribute__((vector_size(8 * kWidth)));
-typedef double Unaligned __attribute__((vector_size(8 * kWidth), aligned(8), may_alias));
-
-inline Unaligned& at(double* p) { return *reinterpret_cast<Unaligned*>(p); }
-inline const Unaligned& at(const double* p) { return *reinterpret_cast<const Unaligned*>(p); }
+// From and to any address of a double.
+inline Vector load(const double* p) {
+    Vector v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
+inline void store(double* p, const Vector& v) { __builtin_memcpy(p, &v, sizeof v); }
 
 // Inverse of the symmetric 3 x 3 matrix in the lower triangle of a, definite of the given sign.
 inline bool invert(const double* a, size_t ld, double sign, double* inverse) {
@@ -38,8 +41,8 @@ inline bool invert(const double* a, size_t ld, double sign, double* inverse) {
 // out = a d, d 3 x 3; writes whole vectors.
 inline void scale(double* out, const double* a, size_t ld, const double* d, size_t rows) {
     for (size_t i = 0; i < rows; i += kWidth) {
-        const Vector a0 = at(a + i), a1 = at(a + ld + i), a2 = at(a + 2 * ld + i);
-        for (size_t c = 0; c < 3; ++c) at(out + c * ld + i) = a0 * d[c] + a1 * d[3 + c] + a2 * d[6 + c];
+        const Vector a0 = load(a + i), a1 = load(a + ld + i), a2 = load(a + 2 * ld + i);
+        for (size_t c = 0; c < 3; ++c) store(out + c * ld + i, a0 * d[c] + a1 * d[3 + c] + a2 * d[6 + c]);
     }
 }
 
@@ -49,14 +52,14 @@ inline void subtract(double* x, size_t ldx, const double* l, const double* a, si
     constexpr size_t kVectors = (3 * Triples + kWidth - 1) / kWidth, kLast = kVectors - 1;
     Vector sum[3][kVectors];
     for (size_t c = 0; c < 3; ++c)
-        for (size_t v = 0; v < kVectors; ++v) sum[c][v] = at(x + c * ldx + kWidth * v);
+        for (size_t v = 0; v < kVectors; ++v) sum[c][v] = load(x + c * ldx + kWidth * v);
     for (; k > 0; --k, l += ld, a += ld)
         for (size_t v = 0; v < kVectors; ++v) {
-            const Vector e = at(l + kWidth * v);
+            const Vector e = load(l + kWidth * v);
             for (size_t c = 0; c < 3; ++c) sum[c][v] -= e * a[c];
         }
     for (size_t c = 0; c < 3; ++c) {
-        for (size_t v = 0; v < kLast; ++v) at(x + c * ldx + kWidth * v) = sum[c][v];
+        for (size_t v = 0; v < kLast; ++v) store(x + c * ldx + kWidth * v, sum[c][v]);
         __builtin_memcpy(x + c * ldx + kWidth * kLast, &sum[c][kLast], (3 * Triples - kWidth * kLast) * sizeof(double));
     }
 }
@@ -120,7 +123,8 @@ void solve(const PanelMatrix& m, double* x) {
             for (size_t i = k + 1; i < p->rows; ++i)
                 for (size_t w = 0; w < 4; w += kWidth) {
                     const double* below = a + 3 * i + w;
-                    at(x + 4 * row[i] + w) -= at(below) * u[0] + at(below + ld) * u[1] + at(below + 2 * ld) * u[2];
+                    double* to = x + 4 * row[i] + w;
+                    store(to, load(to) - (load(below) * u[0] + load(below + ld) * u[1] + load(below + 2 * ld) * u[2]));
                 }
         }
     }
@@ -133,7 +137,7 @@ void solve(const PanelMatrix& m, double* x) {
             for (size_t i = k + 1; i < p->rows; ++i)
                 for (size_t c = 0; c < 3; ++c)
                     for (size_t w = 0; w < 4; w += kWidth)
-                        sum[c][w / kWidth] += at(a + c * ld + 3 * i + w) * at(x + 4 * row[i] + w);
+                        sum[c][w / kWidth] += load(a + c * ld + 3 * i + w) * load(x + 4 * row[i] + w);
             double dot[3], z[3];
             for (size_t c = 0; c < 3; ++c) dot[c] = sum[c][0][0] + sum[c][0][1] + sum[c][2 / kWidth][2 % kWidth];
             times(m.inverse + 9 * (p->first + k), dot, z);
