@@ -20,10 +20,10 @@ void remember_poses(Nodes& nodes) {
 }
 
 void detect(World& w, Stopwatch& watch) {
-    update_bounds(w.nodes, w.shapes, w.broadphase, w.def.time_step);
-    update_pairs(w.nodes, w.joints, w.broadphase, w.pairs);
+    update_bounds(w.nodes, w.colliders, w.shapes, w.broadphase, w.def.time_step);
+    update_pairs(w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
     w.profile.broadphase_us = watch.lap();
-    find_contacts(w.nodes, w.shapes, w.pairs, w.def.time_step);
+    find_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     w.profile.narrowphase_us = watch.lap();
 }
 
@@ -40,7 +40,8 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
         quarantine(w.nodes, group.nodes, w.frozen, system.h);
-        if (i > 0) find_contacts_again(w.nodes, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
+        if (i > 0)
+            find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(system, group, w.nodes, gravity);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);

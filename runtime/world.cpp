@@ -8,6 +8,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       id(world_id),
       nodes(memory),
       shapes(memory),
+      colliders(memory),
       joints(memory),
       cables(memory),
       broadphase(memory),
@@ -36,6 +37,11 @@ taut_joint World::joint_handle(uint32_t joint) const {
 taut_shape World::shape_handle(uint32_t shape) const {
     if (shape == kNone) return {0};
     return {pack_handle({shape, shapes.ids.generation(shape), id})};
+}
+
+taut_collider World::collider_handle(uint32_t collider) const {
+    if (collider == kNone) return {0};
+    return {pack_handle({collider, colliders.ids.generation(collider), id})};
 }
 
 taut_cable World::cable_handle(uint32_t cable) const {

@@ -7,6 +7,7 @@
 #include "partition/partition.h"
 #include "solvers/solver.h"
 #include "state/cables.h"
+#include "state/colliders.h"
 #include "state/handle.h"
 #include "state/joints.h"
 #include "state/nodes.h"
@@ -26,6 +27,7 @@ struct World {
     // state: lives across frames
     Nodes nodes;
     Shapes shapes;
+    Colliders colliders;
     Joints joints;
     Cables cables;
     collision::Broadphase broadphase;
@@ -48,6 +50,7 @@ struct World {
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;
     taut_shape shape_handle(uint32_t shape) const;
+    taut_collider collider_handle(uint32_t collider) const;
     taut_cable cable_handle(uint32_t cable) const;
 };
 

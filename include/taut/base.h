@@ -72,6 +72,10 @@ typedef struct taut_body {
 typedef struct taut_shape {
     uint64_t bits;
 } taut_shape;
+/** A shape on a body, at a place of its own: what collides. Zero is null. */
+typedef struct taut_collider {
+    uint64_t bits;
+} taut_collider;
 /** A joint. Zero is null. */
 typedef struct taut_joint {
     uint64_t bits;

@@ -7,6 +7,7 @@
 #define TAUT_BODY_H
 
 #include <taut/base.h>
+#include <taut/collider.h>
 #include <taut/math.h>
 
 #ifdef __cplusplus
@@ -18,28 +19,11 @@ typedef enum taut_body_kind {
     TAUT_BODY_STATIC = 0,    /**< never moves */
     TAUT_BODY_KINEMATIC = 1, /**< moves at its own velocity; pushes, is not pushed */
     TAUT_BODY_DYNAMIC = 2,   /**< moved by forces, contacts and joints; 6 degrees of freedom */
-    TAUT_BODY_PARTICLE = 3,  /**< point mass; 3 degrees of freedom, no shape, no rotation */
+    TAUT_BODY_PARTICLE = 3,  /**< point mass; 3 degrees of freedom, no rotation; at most a sphere as shape */
     TAUT_BODY_KIND_MAX = 0x7fffffff
 } taut_body_kind;
 
-/** Surface of a body. A pair uses sqrt(friction_a * friction_b) and max(restitution_a, restitution_b). */
-typedef struct taut_material {
-    float friction;    /**< Coulomb coefficient, [0, 100]. Default 0.5 */
-    float restitution; /**< approach speed kept as separation speed, [0, 1]. Default 0 */
-} taut_material;
-
-/**
- * Who collides with whom: two bodies collide when they share a non-zero group with positive sign, never
- * when they share a negative one; else when each one's category is in the other's mask.
- */
-typedef struct taut_filter {
-    uint64_t category; /**< default 1 */
-    uint64_t mask;     /**< default all bits */
-    int32_t group;     /**< default 0 */
-    uint32_t reserved; /**< zero */
-} taut_filter;
-
-/** A rigid body. */
+/** A rigid body. Its shape, if any, becomes its first collider; the colliders of the def follow in their order. */
 typedef struct taut_body_def {
     uint32_t struct_size;
     taut_body_kind kind;        /**< default TAUT_BODY_DYNAMIC; particles have their own def */
@@ -47,20 +31,21 @@ typedef struct taut_body_def {
     taut_quat rotation;         /**< default identity */
     taut_vec3 linear_velocity;  /**< of the centre of mass [m/s]; zero for a static body */
     taut_vec3 angular_velocity; /**< world axes [rad/s]; zero for a static body */
-    taut_shape shape;           /**< null: no collisions; a dynamic body then needs mass and inertia */
-    taut_material material;
-    taut_filter filter;
-    float density;            /**< [kg/m^3], (0, 1e8]. Used when mass is 0. Default 1000 */
-    float mass;               /**< [kg], 0 or [1e-6, 1e15]. 0: from shape and density. Default 0 */
-    taut_vec3 centre_of_mass; /**< in the body's frame [m]; used when inertia is given. Default 0 */
-    taut_sym3 inertia;   /**< about the centre of mass [kg m^2], positive definite, within 1e30; all zero: from shape,
-                            scaled to mass */
-    float gravity_scale; /**< [-1000, 1000]. Default 1 */
-    uint32_t reserved;   /**< zero */
+    taut_shape shape;           /**< null: none; a dynamic body without colliders needs mass and inertia */
+    taut_material material;     /**< of shape */
+    taut_filter filter;         /**< of shape */
+    float density;              /**< of shape [kg/m^3], (0, 1e8]. Default 1000 */
+    float mass;                 /**< [kg], 0 or [1e-6, 1e15]. 0: from the colliders' densities. Default 0 */
+    taut_vec3 centre_of_mass;   /**< in the body's frame [m]; used when inertia is given. Default 0 */
+    taut_sym3 inertia;          /**< about the centre of mass [kg m^2], positive definite, within 1e30; all zero: from
+                                   the colliders, scaled to mass */
+    float gravity_scale;        /**< [-1000, 1000]. Default 1 */
+    uint32_t collider_count;    /**< of colliders. Default 0 */
     uint64_t user_data;
+    const taut_collider_def* colliders; /**< collider_count of them, copied; null if there are none */
 } taut_body_def;
 
-/** A particle: a point mass that joints connect to particles, rigid bodies and the world. */
+/** A particle: a point mass that joints connect to particles, rigid bodies and the world; a grain, with a shape. */
 typedef struct taut_particle_def {
     uint32_t struct_size;
     float mass;          /**< [kg], [1e-9, 1e21]. Default 1 */
@@ -68,6 +53,9 @@ typedef struct taut_particle_def {
     taut_vec3 velocity;  /**< [m/s] */
     float gravity_scale; /**< [-1000, 1000]. Default 1 */
     uint64_t user_data;
+    taut_shape shape;       /**< a sphere about the particle, which gives it contacts; null: none. Default null */
+    taut_material material; /**< of shape */
+    taut_filter filter;     /**< of shape */
 } taut_particle_def;
 
 /** Position of the body's origin and rotation of its frame. */
@@ -101,7 +89,9 @@ TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
 /** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
 TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia);
+/** Material of the first collider. @return TAUT_INVALID_ARGUMENT for a body without colliders. */
 TAUT_API taut_result taut_body_get_material(taut_body body, taut_material* out);
+/** Material of all colliders of the body. */
 TAUT_API taut_result taut_body_set_material(taut_body body, const taut_material* material);
 
 /** Pose after the last step. */

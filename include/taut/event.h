@@ -15,10 +15,12 @@
 extern "C" {
 #endif
 
-/** Two bodies began or stopped touching in the last step. */
+/** Two colliders began or stopped touching in the last step. */
 typedef struct taut_contact_event {
     taut_body body_a;
     taut_body body_b;
+    taut_collider collider_a; /**< of body_a */
+    taut_collider collider_b; /**< of body_b */
 } taut_contact_event;
 
 /** A dynamic, kinematic or particle body that the last step moved. */
@@ -66,6 +68,8 @@ typedef struct taut_contact {
     float separation;       /**< [m], negative when overlapping */
     float normal_impulse;   /**< of the last substep [N s] */
     float friction_impulse; /**< magnitude, of the last substep [N s] */
+    taut_collider collider_a;
+    taut_collider collider_b;
 } taut_contact;
 
 TAUT_API taut_result taut_world_get_events(taut_world world, taut_events* out);

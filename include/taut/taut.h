@@ -8,6 +8,7 @@
 #include <taut/base.h>
 #include <taut/body.h>
 #include <taut/cable.h>
+#include <taut/collider.h>
 #include <taut/event.h>
 #include <taut/joint.h>
 #include <taut/lint.h>

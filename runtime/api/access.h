@@ -1,8 +1,10 @@
 // What every entry point shares: checking arguments, finding and holding a world, keeping exceptions inside.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -149,10 +151,12 @@ taut_result find_shape(const char* call, const char* field, const World& world, 
 
 inline const IdPool& pool_of(const World& world, taut_body) { return world.nodes.ids; }
 inline const IdPool& pool_of(const World& world, taut_shape) { return world.shapes.ids; }
+inline const IdPool& pool_of(const World& world, taut_collider) { return world.colliders.ids; }
 inline const IdPool& pool_of(const World& world, taut_joint) { return world.joints.ids; }
 inline const IdPool& pool_of(const World& world, taut_cable) { return world.cables.ids; }
 constexpr const char* name_of(taut_body) { return "body"; }
 constexpr const char* name_of(taut_shape) { return "shape"; }
+constexpr const char* name_of(taut_collider) { return "collider"; }
 constexpr const char* name_of(taut_joint) { return "joint"; }
 constexpr const char* name_of(taut_cable) { return "cable"; }
 
@@ -184,7 +188,7 @@ taut_result with_world(const char* call, taut_world handle, Use use, Act&& act) 
     });
 }
 
-// act(World&, index) for a handle of a body, shape, joint or cable, with its world held.
+// act(World&, index) for a handle of a body, shape, collider, joint or cable, with its world held.
 template <class Handle, class Act>
 taut_result with(const char* call, Handle handle, Use use, Act&& act) noexcept {
     return contain(call, [&] {
@@ -219,9 +223,12 @@ inline Vec3 to_vec(const taut_vec3& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_vec(const taut_pos& p) { return {p.x, p.y, p.z}; }
 inline Quat to_quat(const taut_quat& q) { return Quat(q.w, q.x, q.y, q.z).normalized(); }
 inline taut_pos to_pos(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-inline taut_vec3 to_vec3(const Vec3& v) {
-    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+// What outgrows single precision is told as the largest float: no reading is infinite.
+inline float to_float(double x) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
 }
+inline taut_vec3 to_vec3(const Vec3& v) { return {to_float(v.x()), to_float(v.y()), to_float(v.z())}; }
 inline taut_quat to_quat(const Quat& q) {
     return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), static_cast<float>(q.w())};
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "api/access.h"
 #include "api/body_mass.h"
+#include "api/collider_def.h"
 #include "models/bodies.h"
 
 using namespace taut;
@@ -13,15 +15,8 @@ namespace {
 
 constexpr taut_body_kind kPublicKind[] = {TAUT_BODY_STATIC, TAUT_BODY_KINEMATIC, TAUT_BODY_DYNAMIC, TAUT_BODY_PARTICLE};
 constexpr NodeKind kNodeKind[] = {NodeKind::fixed, NodeKind::kinematic, NodeKind::dynamic};
-constexpr taut_filter kDefaultFilter{1, UINT64_MAX, 0, 0};
-constexpr taut_material kDefaultMaterial{0.5f, 0};
 
 // ---------------------------------------------------------------- check
-
-Check& check_material(Check& check, const char* friction, const char* restitution, const taut_material& material) {
-    return check.number(friction, material.friction, kFriction)
-        .number(restitution, material.restitution, kUnitInterval);
-}
 
 Check& check_inertia(Check& check, const taut_sym3& m) {
     return check.number("inertia.xx", m.xx, kInertia)
@@ -48,9 +43,16 @@ Check& check_def(Check& check, const taut_body_def& def) {
         .number("density", def.density, kDensity)
         .zero_or("mass", def.mass, kBodyMass)
         .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
-    return check_inertia(check, def.inertia)
-        .number("gravity_scale", def.gravity_scale, kGravityScale)
-        .zero("reserved", def.reserved);
+    check_inertia(check, def.inertia).number("gravity_scale", def.gravity_scale, kGravityScale);
+    if (def.collider_count > 0) check.pointer("colliders", def.colliders);
+    if (!check) return check;
+    char scope[32];
+    for (uint32_t i = 0; i < def.collider_count; ++i) {
+        std::snprintf(scope, sizeof scope, "colliders[%u].", i);
+        check_collider_def(check.within(scope), def.colliders[i]);
+        if (!check) return check;
+    }
+    return check.within("");
 }
 
 Check& check_pose(Check& check, const taut_pose& pose, const char* position, const char* rotation) {
@@ -88,9 +90,38 @@ void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
 }
 
 taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
-                     taut_body* out) {
-    if (!check.require(world.nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT)) return check.result();
-    *out = world.body_handle(add_node(world, info, motion, mass));
+                     std::span<const Collider> colliders, taut_body* out) {
+    check.require(world.nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT);
+    check.require(world.colliders.ids.slots() + colliders.size() < kMaxSlots, "too many colliders", TAUT_LIMIT);
+    if (!check) return check.result();
+    *out = world.body_handle(add_node(world, info, motion, mass, colliders));
+    return TAUT_OK;
+}
+
+// The collider that a def's own shape, material and filter make.
+template <class Def>
+taut_collider_def own_collider(const Def& def, float density) {
+    taut_collider_def own;
+    taut_collider_def_init(&own);
+    own.density = density;
+    own.shape = def.shape;
+    own.material = def.material;
+    own.filter = def.filter;
+    own.user_data = def.user_data;
+    return own;
+}
+
+// Of a checked def, its own shape first.
+taut_result make_colliders(Check& check, const World& world, NodeKind kind, const taut_body_def& def,
+                           std::vector<Collider>& out) {
+    if (def.shape.bits != 0) {
+        const taut_result made = make_collider(check, world, kind, own_collider(def, def.density), out.emplace_back());
+        if (made != TAUT_OK) return made;
+    }
+    for (uint32_t i = 0; i < def.collider_count; ++i) {
+        const taut_result made = make_collider(check, world, kind, def.colliders[i], out.emplace_back());
+        if (made != TAUT_OK) return made;
+    }
     return TAUT_OK;
 }
 
@@ -141,6 +172,8 @@ void taut_particle_def_init(taut_particle_def* def) {
     def->struct_size = sizeof *def;
     def->mass = 1;
     def->gravity_scale = 1;
+    def->material = kDefaultMaterial;
+    def->filter = kDefaultFilter;
 }
 
 taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, taut_body* out) {
@@ -148,23 +181,23 @@ taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, tau
     if (!check.pointer("def", def).pointer("out", out)) return check.result();
     if (!check_def(check, *def)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        NodeInfo info{kNodeKind[def->kind], kNone, def->material, def->filter, def->user_data};
-        if (def->shape.bits != 0) {
-            const taut_result found = find_shape(check.call(), "shape", world, def->shape, info.shape);
-            if (found != TAUT_OK) return found;
-        }
-        const bool has_shape = info.shape != kNone;
+        NodeInfo info;
+        info.kind = kNodeKind[def->kind];
+        info.user_data = def->user_data;
+        std::vector<Collider> colliders;
+        const taut_result made = make_colliders(check, world, info.kind, *def, colliders);
+        if (made != TAUT_OK) return made;
         NodeMass mass;
         mass.gravity_scale = def->gravity_scale;
         if (info.kind == NodeKind::dynamic) {
-            set_body_mass(check, *def, has_shape ? &world.shapes.record[info.shape].shape : nullptr, mass);
+            set_body_mass(check, *def, world.shapes, colliders, mass);
             if (!check) return check.result();
         }
         NodeMotion motion;
         motion.q = to_quat(def->rotation);
         motion.x = to_vec(def->position) + motion.q * mass.centre;
         set_velocity(motion, to_vec(def->linear_velocity), to_vec(def->angular_velocity));
-        return add_body(check, world, info, motion, mass, out);
+        return add_body(check, world, info, motion, mass, colliders, out);
     });
 }
 
@@ -176,8 +209,16 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         .bounded("position", def->position, kPosition)
         .bounded("velocity", def->velocity, kSpeed)
         .number("gravity_scale", def->gravity_scale, kGravityScale);
+    check_material(check, "material.friction", "material.restitution", def->material)
+        .zero("filter.reserved", def->filter.reserved);
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const bool has_shape = def->shape.bits != 0;
+        Collider collider;
+        if (has_shape) {
+            const taut_result made = make_collider(check, world, NodeKind::particle, own_collider(*def, 0), collider);
+            if (made != TAUT_OK) return made;
+        }
         NodeMass mass;
         mass.mass = def->mass;
         mass.inv_mass = 1 / mass.mass;
@@ -186,8 +227,10 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         NodeMotion motion;
         motion.x = to_vec(def->position);
         set_velocity(motion, to_vec(def->velocity), Vec3::Zero());
-        const NodeInfo info{NodeKind::particle, kNone, kDefaultMaterial, kDefaultFilter, def->user_data};
-        return add_body(check, world, info, motion, mass, out);
+        NodeInfo info;
+        info.kind = NodeKind::particle;
+        info.user_data = def->user_data;
+        return add_body(check, world, info, motion, mass, {&collider, has_shape ? 1u : 0u}, out);
     });
 }
 
@@ -247,7 +290,9 @@ taut_result taut_body_get_material(taut_body handle, taut_material* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
-        *out = world.nodes.info[node].material;
+        const uint32_t first = world.nodes.info[node].collider;
+        if (!check.require(first != kNone, "body has no collider")) return check.result();
+        *out = world.colliders.record[first].material;
         return TAUT_OK;
     });
 }
@@ -257,7 +302,8 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, "friction", "restitution", *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
-        world.nodes.info[node].material = *material;
+        for_colliders(world.nodes, world.colliders, node,
+                      [&](uint32_t c) { world.colliders.record[c].material = *material; });
         return TAUT_OK;
     });
 }
@@ -282,18 +328,15 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
         if (info.kind != NodeKind::particle) motion.q = to_quat(pose->rotation);
         motion.x = to_vec(pose->position) + motion.q * world.nodes.mass[node].centre;
         set_velocity(motion, motion.v, motion.w);
-        if (info.shape != kNone) {
-            try {
-                world.broadphase.update(node, contact_box(world, node), Vec3f::Zero());
-            } catch (...) {
-                motion = old;
-                throw;
-            }
+        try {
+            refresh_boxes(world, node);
+        } catch (...) {
+            motion = old;
+            throw;
         }
         world.nodes.before[node] = origin_pose(world, node);  // no streak while rendering between the two
         for (Pair& pair : world.pairs.list) {
-            if (pair.a() == node || pair.b() == node)
-                std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
+            if (ends_on(node)(pair)) std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
         }
         return TAUT_OK;
     });

@@ -43,35 +43,77 @@ bool is_isotropic(const Sym3& m) {
     return off <= kIsotropic * largest_moment(m);
 }
 
+// Inverses, from mass and inertia that are in range.
+void complete(Check& check, NodeMass& out) {
+    if (!check.require(positive_definite(out.inertia), "inertia is not positive definite")) return;
+    out.inv_mass = 1 / out.mass;
+    out.inv_inertia = inverse(out.inertia);
+    out.isotropic = is_isotropic(out.inertia);
+}
+
 }  // namespace
 
-void set_body_mass(Check& check, const taut_body_def& def, const collision::Shape* shape, NodeMass& out) {
+// Of the parts, I = sum R I_p R^T + m_p (d.d - d d^T), d from the common centre to the part's (Steiner).
+collision::MassProperties mass_of(const Shapes& shapes, std::span<const Collider> colliders) {
+    if (colliders.size() == 1 && colliders[0].at_origin())
+        return collision::mass_properties(shapes.record[colliders[0].shape].shape,
+                                          static_cast<double>(colliders[0].density));
+    const auto part_of = [&](const Collider& c) {
+        collision::MassProperties part =
+            collision::mass_properties(shapes.record[c.shape].shape, static_cast<double>(c.density));
+        part.centre = c.position + c.rotation * part.centre;
+        return part;
+    };
+    collision::MassProperties out;
+    for (const Collider& c : colliders) {
+        const collision::MassProperties part = part_of(c);
+        out.mass += part.mass;
+        out.centre += part.mass * part.centre;
+    }
+    if (out.mass > 0) out.centre /= out.mass;
+    Mat3 inertia = Mat3::Zero();
+    for (const Collider& c : colliders) {
+        const collision::MassProperties part = part_of(c);
+        const Mat3 R = c.rotation.toRotationMatrix();
+        const Vec3 d = part.centre - out.centre;
+        inertia += R * part.inertia.matrix() * R.transpose() +
+                   part.mass * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    }
+    out.inertia = Sym3::of(inertia);
+    return out;
+}
+
+void set_body_mass(Check& check, const taut_body_def& def, const Shapes& shapes, std::span<const Collider> colliders,
+                   NodeMass& out) {
     const bool given = !is_zero(def.inertia);
-    if (!shape) {
-        check.require(def.mass > 0, "mass is 0, expected [1e-06, 1e+15] for a dynamic body without a shape");
-        check.require(given, "inertia is 0, expected positive definite for a dynamic body without a shape");
-    } else {
-        check.require(shape->kind != collision::ShapeKind::plane,
-                      "shape is a plane, which only static and kinematic bodies may have");
+    if (colliders.empty()) {
+        check.require(def.mass > 0, "mass is 0, expected [1e-06, 1e+15] for a dynamic body without colliders");
+        check.require(given, "inertia is 0, expected positive definite for a dynamic body without colliders");
     }
     if (!check) return;
-
-    collision::MassProperties from_shape;
-    if (shape) from_shape = collision::mass_properties(*shape, def.density);
-    out.mass = def.mass > 0 ? static_cast<double>(def.mass) : from_shape.mass;
-    if (!check.number("mass from shape and density", static_cast<float>(out.mass), kBodyMass)) return;
+    const collision::MassProperties sum = mass_of(shapes, colliders);
+    out.mass = def.mass > 0 ? static_cast<double>(def.mass) : sum.mass;
+    if (!check.number("mass from shapes and densities", static_cast<float>(out.mass), kBodyMass)) return;
     if (given) {
         const taut_sym3& m = def.inertia;
         out.inertia = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
         out.centre = to_vec(def.centre_of_mass);
     } else {
-        out.inertia = scaled(from_shape.inertia, out.mass / from_shape.mass);
-        out.centre = from_shape.centre;
+        check.require(sum.mass > 0, "inertia is 0, expected positive definite where no collider has a density");
+        if (!check) return;
+        out.inertia = scaled(sum.inertia, out.mass / sum.mass);
+        out.centre = sum.centre;
     }
-    if (!check.require(positive_definite(out.inertia), "inertia is not positive definite")) return;
-    out.inv_mass = 1 / out.mass;
-    out.inv_inertia = inverse(out.inertia);
-    out.isotropic = is_isotropic(out.inertia);
+    complete(check, out);
+}
+
+void set_body_mass(Check& check, const Shapes& shapes, std::span<const Collider> colliders, NodeMass& out) {
+    const collision::MassProperties sum = mass_of(shapes, colliders);
+    if (!check.number("mass of the colliders", static_cast<float>(sum.mass), kBodyMass)) return;
+    out.mass = sum.mass;
+    out.centre = sum.centre;
+    out.inertia = sum.inertia;
+    complete(check, out);
 }
 
 }  // namespace taut

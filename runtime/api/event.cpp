@@ -42,8 +42,8 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
         *count = needed;
         for (const Pair& pair : world.pairs.list) {
             if (!pair.touching) continue;
-            const taut_body a = world.body_handle(pair.a()), b = world.body_handle(pair.b());
-            const Vec3 origin = world.nodes.origin(pair.a());
+            const taut_body a = world.body_handle(pair.a), b = world.body_handle(pair.b);
+            const Vec3 origin = world.nodes.origin(pair.a);
             const Vec3f& normal = pair.manifold.normal;
             for (int i = 0; i < pair.manifold.count; ++i) {
                 const collision::ContactPoint& point = pair.manifold.points[i];
@@ -54,7 +54,9 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
                                {normal.x(), normal.y(), normal.z()},
                                point.separation,
                                impulse.normal,
-                               std::hypot(impulse.tangent1, impulse.tangent2)};
+                               std::hypot(impulse.tangent1, impulse.tangent2),
+                               world.collider_handle(pair.collider_a()),
+                               world.collider_handle(pair.collider_b())};
             }
         }
         return TAUT_OK;

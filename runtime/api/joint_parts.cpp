@@ -41,12 +41,12 @@ Check& check_distance(Check& check, const World& world, const Joint& joint) {
 }
 
 void reserve_pair_of_ends(World& world, const Joint& joint) {
-    if (joint.node[0] != kNone) reserve_ended(world.pairs, joint.node[0]);
+    if (joint.node[0] != kNone) reserve_ended(world.pairs, ends_on(joint.node[0]));
 }
 
 void forget_pair_of_ends(World& world, const Joint& joint) {
     if (joint.node[0] == kNone || joint.node[1] == kNone) return;
-    forget_pair(world.pairs, world.nodes, joint.node[0], joint.node[1]);
+    forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(joint.node[0], joint.node[1]));
 }
 
 void replace_joint(const Nodes& nodes, Joint& joint, const Joint& changed) {

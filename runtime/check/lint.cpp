@@ -97,13 +97,13 @@ private:
             for (uint32_t p : partition.groups[g].direct_pairs) {
                 if (p >= world_.pairs.active.size()) continue;  // of a step that ran out of memory
                 const ActivePair& pair = world_.pairs.active[p];
-                direct_pairs_.push_back(static_cast<uint64_t>(pair.a) << 32 | pair.b);
+                direct_pairs_.push_back(pair_key(pair.a, pair.b));
             }
         }
         std::sort(direct_pairs_.begin(), direct_pairs_.end());
     }
     bool direct(const Pair& pair) const {
-        return std::binary_search(direct_pairs_.begin(), direct_pairs_.end(), pair.key);
+        return std::binary_search(direct_pairs_.begin(), direct_pairs_.end(), pair_key(pair.a, pair.b));
     }
 
     void masses_of_blocks() {
@@ -131,7 +131,7 @@ private:
     // A body on a lighter one, against gravity; without gravity nothing rests.
     void masses_of_contacts() {
         for (const Pair& pair : world_.pairs.list) {
-            uint32_t light = pair.a(), heavy = pair.b();
+            uint32_t light = pair.a, heavy = pair.b;
             if (!pair.touching || !moves(light) || !moves(heavy)) continue;
             if (mass(light) > mass(heavy)) std::swap(light, heavy);
             if ((nodes_.motion[heavy].x - nodes_.motion[light].x).dot(gravity()) >= 0) continue;
@@ -158,7 +158,7 @@ private:
         };
         for_joints([&](uint32_t, const Joint& joint) { meet(joint.node[0], joint.node[1], !direct(joint)); });
         for (const Pair& pair : world_.pairs.list)
-            if (pair.touching) meet(pair.a(), pair.b(), !direct(pair));
+            if (pair.touching) meet(pair.a, pair.b, !direct(pair));
         for (uint32_t node = 0; node < nodes_.slots(); ++node) {
             const Neighbours& n = around[node];
             if (n.second == 0) continue;

@@ -10,34 +10,26 @@ constexpr float kSamePoint = 0.02f;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
 
-collision::Placement placement_of(const Nodes& nodes, uint32_t node, double elapsed = 0) {
-    const NodeMotion& m = nodes.motion[node];
-    const bool ahead = nodes.info[node].kind == NodeKind::kinematic && elapsed > 0;  // moves at the end of the frame
-    const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
-    const Vec3 x = ahead ? Vec3(m.x + elapsed * m.v) : m.x;
-    const Mat3 R = q.toRotationMatrix();
-    return {x - R * nodes.mass[node].centre, R.cast<float>()};
-}
-
 bool filters_agree(const taut_filter& a, const taut_filter& b) {
     if (a.group != 0 && a.group == b.group) return a.group > 0;
     return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
-bool may_collide(const Nodes& nodes, const Pairs& pairs, uint64_t key) {
-    const NodeInfo &a = nodes.info[static_cast<uint32_t>(key >> 32)], &b = nodes.info[static_cast<uint32_t>(key)];
-    if (!moves_by_forces(a.kind) && !moves_by_forces(b.kind)) return false;
-    return filters_agree(a.filter, b.filter) && !std::binary_search(pairs.joined.begin(), pairs.joined.end(), key);
+bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const Pair& pair) {
+    if (pair.a == pair.b) return false;
+    if (!moves_by_forces(nodes.info[pair.a].kind) && !moves_by_forces(nodes.info[pair.b].kind)) return false;
+    const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
+    return filters_agree(a.filter, b.filter) &&
+           !std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(pair.a, pair.b));
 }
 
-// Keys of bodies that a joint forbids to collide, sorted.
+// Keys of nodes that a joint forbids to collide, sorted.
 void refresh_joined(const Joints& joints, Pairs& pairs) {
     if (pairs.joined_version == joints.version) return;
     pairs.joined.clear();
     for (const Joint& joint : joints.record) {
         if (!joint.type || joint.collide_connected || joint.node[0] == kNone || joint.node[1] == kNone) continue;
-        const uint64_t low = std::min(joint.node[0], joint.node[1]), high = std::max(joint.node[0], joint.node[1]);
-        pairs.joined.push_back(low << 32 | high);
+        pairs.joined.push_back(pair_key(joint.node[0], joint.node[1]));
     }
     std::sort(pairs.joined.begin(), pairs.joined.end());
     pairs.joined_version = joints.version;
@@ -74,14 +66,32 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, const c
     }
 }
 
+// Two surfaces in touch: the geometric mean of their friction, the livelier restitution.
+void combine_surfaces(const Collider& a, const Collider& b, Pair& pair) {
+    pair.friction = std::sqrt(a.material.friction * b.material.friction);
+    pair.restitution = std::max(a.material.restitution, b.material.restitution);
+}
+
+// From the origin of a collider's shape, which the narrowphase knows, to that of its node.
+void move_to_node(const Collider& a, const collision::Placement& at, collision::Manifold& manifold) {
+    if (a.position == Vec3::Zero()) return;
+    const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
+    const Vec3f offset = body_rotation * a.position.cast<float>();
+    for (int k = 0; k < manifold.count; ++k) manifold.points[k].position += offset;
+}
+
 // Manifold of one pair at the present placements, with the impulses of the last one.
-void find_points(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, Pair& pair, double time) {
-    const uint32_t a = pair.a(), b = pair.b();
+void find_points(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs, Pair& pair,
+                 double time) {
+    const uint32_t a = pair.collider_a(), b = pair.collider_b();
+    const Collider &collider_a = colliders.record[a], &collider_b = colliders.record[b];
     const collision::Manifold old = pair.manifold;
-    collision::collide(shapes.record[nodes.info[a].shape].shape, pairs.placement[a],
-                       shapes.record[nodes.info[b].shape].shape, pairs.placement[b],
-                       margin_of(nodes.motion[a], nodes.motion[b], time), pair.cache, pair.manifold);
+    collision::collide(shapes.record[collider_a.shape].shape, pairs.placement[a], shapes.record[collider_b.shape].shape,
+                       pairs.placement[b], margin_of(nodes.motion[pair.a], nodes.motion[pair.b], time), pair.cache,
+                       pair.manifold);
     if (pair.manifold.count == 0) return;
+    move_to_node(collider_a, pairs.placement[a], pair.manifold);
+    combine_surfaces(collider_a, collider_b, pair);
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
         return;
@@ -93,21 +103,41 @@ void find_points(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, Pair& p
 
 }  // namespace
 
-void update_bounds(const Nodes& nodes, const Shapes& shapes, collision::Broadphase& broadphase, double time_step) {
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
-        const NodeInfo& info = nodes.info[node];
-        if (info.shape == kNone || info.kind == NodeKind::fixed || info.kind == NodeKind::dead) continue;
-        collision::Box box = collision::bounds(shapes.record[info.shape].shape, placement_of(nodes, node));
-        Vec3f reach = (time_step * nodes.motion[node].v).cast<float>();
+collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
+    const NodeMotion& m = nodes.motion[collider.node];
+    const bool ahead = nodes.info[collider.node].kind == NodeKind::kinematic && elapsed > 0;
+    const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
+    const Vec3 x = ahead ? Vec3(m.x + elapsed * m.v) : m.x;
+    const Mat3 R = q.toRotationMatrix();
+    const Vec3 origin = x - R * nodes.mass[collider.node].centre;
+    if (collider.at_origin()) return {origin, R.cast<float>()};
+    return {origin + R * collider.position, (R * collider.rotation.toRotationMatrix()).cast<float>()};
+}
+
+collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider) {
+    collision::Box box = collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider));
+    box.lo.array() -= kContactMargin;
+    box.hi.array() += kContactMargin;
+    return box;
+}
+
+void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+                   collision::Broadphase& broadphase, double time_step) {
+    for (uint32_t c = 0; c < colliders.record.size(); ++c) {
+        const Collider& collider = colliders.record[c];
+        if (collider.node == kNone || nodes.info[collider.node].kind == NodeKind::fixed) continue;
+        collision::Box box = contact_box(nodes, shapes, collider);
+        Vec3f reach = (time_step * nodes.motion[collider.node].v).cast<float>();
         const float length = reach.norm();
         if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
-        box.lo = (box.lo + reach.cwiseMin(0.0f)).array() - kContactMargin;
-        box.hi = (box.hi + reach.cwiseMax(0.0f)).array() + kContactMargin;
-        broadphase.update(node, box, reach);
+        box.lo += reach.cwiseMin(0.0f);
+        box.hi += reach.cwiseMax(0.0f);
+        broadphase.update(c, box, reach);
     }
 }
 
-void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphase& broadphase, Pairs& pairs) {
+void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
+                  collision::Broadphase& broadphase, Pairs& pairs) {
     refresh_joined(joints, pairs);
     const bool changed = broadphase.refresh_pairs();
     const auto keys = broadphase.pairs();
@@ -116,7 +146,7 @@ void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphas
     size_t old = 0;
     for (uint64_t key : keys) {
         for (; old < pairs.list.size() && pairs.list[old].key < key; ++old) {  // left the broadphase
-            if (pairs.list[old].touching) report_end(pairs, nodes, pairs.list[old]);
+            if (pairs.list[old].touching) report_end(pairs, nodes, colliders, pairs.list[old]);
         }
         if (old < pairs.list.size() && pairs.list[old].key == key) {
             pairs.scratch.push_back(pairs.list[old++]);
@@ -124,39 +154,43 @@ void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphas
         }
         Pair& pair = pairs.scratch.emplace_back();
         pair.key = key;
-        pair.filtered = !may_collide(nodes, pairs, key);
+        pair.a = colliders.record[pair.collider_a()].node;
+        pair.b = colliders.record[pair.collider_b()].node;
+        pair.filtered = !may_collide(nodes, colliders, pairs, pair);
     }
     for (; old < pairs.list.size(); ++old)
-        if (pairs.list[old].touching) report_end(pairs, nodes, pairs.list[old]);
+        if (pairs.list[old].touching) report_end(pairs, nodes, colliders, pairs.list[old]);
     pairs.list.swap(pairs.scratch);
 }
 
-void find_contacts_again(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, std::span<const uint32_t> active_pairs,
-                         double elapsed, double substep) {
+void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                         std::span<const uint32_t> active_pairs, double elapsed, double substep) {
     for (uint32_t p : active_pairs) {
         ActivePair& active = pairs.active[p];
-        for (uint32_t node : {active.a, active.b}) pairs.placement[node] = placement_of(nodes, node, elapsed);
         Pair& pair = pairs.list[active.pair];
-        find_points(nodes, shapes, pairs, pair, substep);
+        for (uint32_t c : {pair.collider_a(), pair.collider_b()})
+            pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
+        find_points(nodes, colliders, shapes, pairs, pair, substep);
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }
 }
 
-void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, double time_step) {
-    pairs.placement.resize(nodes.slots());
-    for (uint32_t node = 0; node < nodes.slots(); ++node)
-        if (nodes.info[node].shape != kNone) pairs.placement[node] = placement_of(nodes, node);
+void find_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                   double time_step) {
+    pairs.placement.resize(colliders.record.size());
+    for (uint32_t c = 0; c < colliders.record.size(); ++c)
+        if (colliders.record[c].node != kNone) pairs.placement[c] = placement_of(nodes, colliders.record[c]);
     pairs.active.clear();
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         Pair& pair = pairs.list[i];
         if (pair.filtered) continue;
-        find_points(nodes, shapes, pairs, pair, time_step);
+        find_points(nodes, colliders, shapes, pairs, pair, time_step);
         if (pair.manifold.count == 0) {
-            if (pair.touching) report_end(pairs, nodes, pair);
+            if (pair.touching) report_end(pairs, nodes, colliders, pair);
             pair.touching = false;
             continue;
         }
-        pairs.active.push_back({pair.a(), pair.b(), i, static_cast<uint32_t>(pair.manifold.count)});
+        pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
     }
 }
 

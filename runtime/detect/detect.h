@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "state/colliders.h"
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
@@ -10,18 +11,26 @@
 
 namespace taut {
 
+// Where a collider's shape is, `elapsed` after the start of the frame: kinematic bodies move at its end.
+collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed = 0);
+// The shape's box at the node's pose, grown by the contact margin.
+collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider);
+
 // Tight boxes reaching as far as the nodes move in a frame, into the broadphase.
-void update_bounds(const Nodes& nodes, const Shapes& shapes, collision::Broadphase& broadphase, double time_step);
+void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+                   collision::Broadphase& broadphase, double time_step);
 
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
-void update_pairs(const Nodes& nodes, const Joints& joints, collision::Broadphase& broadphase, Pairs& pairs);
+void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
+                  collision::Broadphase& broadphase, Pairs& pairs);
 
 // Manifolds of all pairs at the present poses; impulses follow their features.
-void find_contacts(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, double time_step);
+void find_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                   double time_step);
 
 // The same within a frame, `elapsed` after its start, for some of Pairs::active: those of blocks, whose light links
 // turn far in a substep. A pair may lose its points, none is added to the list.
-void find_contacts_again(const Nodes& nodes, const Shapes& shapes, Pairs& pairs, std::span<const uint32_t> active_pairs,
-                         double elapsed, double substep);
+void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                         std::span<const uint32_t> active_pairs, double elapsed, double substep);
 
 }  // namespace taut

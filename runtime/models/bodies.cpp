@@ -1,50 +1,104 @@
 #include "models/bodies.h"
 
-namespace taut {
+#include <cstring>
 
-collision::Box contact_box(const World& world, uint32_t node) {
-    const collision::Placement at{world.nodes.origin(node),
-                                  world.nodes.motion[node].q.toRotationMatrix().cast<float>()};
-    collision::Box box = collision::bounds(world.shapes.record[world.nodes.info[node].shape].shape, at);
-    box.lo.array() -= kContactMargin;
-    box.hi.array() += kContactMargin;
-    return box;
+#include "detect/detect.h"
+#include "state/joint_reading.h"
+
+namespace taut {
+namespace {
+
+void remove_colliders(World& world, uint32_t node) {
+    while (world.nodes.info[node].collider != kNone) remove_collider(world, world.nodes.info[node].collider);
 }
 
-uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass) {
+// What leads to a collider: its node or the collider before it.
+uint32_t& link_to(World& world, uint32_t node, uint32_t collider) {
+    uint32_t* link = &world.nodes.info[node].collider;
+    while (*link != collider) link = &world.colliders.record[*link].next;
+    return *link;
+}
+
+}  // namespace
+
+uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
+                  std::span<const Collider> colliders) {
     Nodes& nodes = world.nodes;
     const uint32_t node = nodes.add();
     nodes.info[node] = info;
+    nodes.info[node].collider = kNone;
     nodes.motion[node] = motion;
     nodes.mass[node] = mass;
     nodes.before[node] = origin_pose(world, node);
-    if (info.shape != kNone) {
-        try {
-            world.broadphase.add(node, contact_box(world, node), info.kind != NodeKind::fixed);
-        } catch (...) {
-            nodes.remove(node);
-            throw;
+    try {
+        for (Collider collider : colliders) {
+            collider.node = node;
+            add_collider(world, collider);
         }
-        ++world.shapes.record[info.shape].users;
+    } catch (...) {
+        remove_colliders(world, node);  // no pairs yet: does not throw
+        nodes.remove(node);
+        throw;
     }
     return node;
 }
 
 void remove_node(World& world, uint32_t node) {
     // What may fail comes first.
-    reserve_ended(world.pairs, node);
-    const uint32_t shape = world.nodes.info[node].shape;
-    if (shape != kNone) {
-        world.broadphase.remove(node);
-        --world.shapes.record[shape].users;
-    }
-    forget_pairs_of(world.pairs, world.nodes, node);
+    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
+    remove_colliders(world, node);
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
         const Joint& record = world.joints.record[joint];
         if (record.node[0] == node || record.node[1] == node) world.joints.remove(joint);
     }
     world.nodes.remove(node);
+}
+
+uint32_t add_collider(World& world, const Collider& collider) {
+    world.colliders.reserve_one();
+    const uint32_t index = world.colliders.add(collider);
+    Collider& record = world.colliders.record[index];
+    record.next = kNone;
+    try {
+        const bool moves = world.nodes.info[record.node].kind != NodeKind::fixed;
+        world.broadphase.add(index, contact_box(world.nodes, world.shapes, record), moves);
+    } catch (...) {
+        world.colliders.remove(index);
+        throw;
+    }
+    link_to(world, record.node, kNone) = index;
+    ++world.shapes.record[record.shape].users;
+    return index;
+}
+
+void remove_collider(World& world, uint32_t collider) {
+    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
+    const Collider& record = world.colliders.record[collider];
+    link_to(world, record.node, collider) = record.next;
+    world.broadphase.remove(collider);
+    --world.shapes.record[record.shape].users;
+    world.colliders.remove(collider);
+}
+
+void refresh_boxes(World& world, uint32_t node) {
+    for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
+        world.broadphase.update(c, contact_box(world.nodes, world.shapes, world.colliders.record[c]), Vec3f::Zero());
+    });
+}
+
+void shift_centre(World& world, uint32_t node, const Vec3& offset) {
+    NodeMotion& m = world.nodes.motion[node];
+    m.x += offset;
+    m.v += m.w.cross(offset);
+    m.slow_v += m.slow_w.cross(offset);
+    const Vec3 local = m.q.conjugate() * offset;
+    for (Joint& joint : world.joints.record) {
+        if (!joint.type) continue;
+        for (int side = 0; side < 2; ++side) {
+            if (joint.node[side] == node) set_anchor(joint, side, anchor_of(joint, side) - local);
+        }
+    }
 }
 
 }  // namespace taut

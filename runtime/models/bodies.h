@@ -1,21 +1,33 @@
-// Adding and removing a node with all that hangs on it: shape and broadphase, pairs, joints.
+// Adding and removing nodes and colliders with all that hangs on them: broadphase, pairs, joints.
 #pragma once
+
+#include <span>
 
 #include "world.h"
 
 namespace taut {
 
-// The shape's box at the node's pose, grown by the contact margin.
-collision::Box contact_box(const World& world, uint32_t node);
-
 inline NodePose origin_pose(const World& world, uint32_t node) {
     return {world.nodes.origin(node), world.nodes.motion[node].q};
 }
 
-// Throws std::bad_alloc with nothing changed.
-uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass);
-// With every joint that ends on it. Throws std::bad_alloc with nothing changed, and not at all where
-// reserve_ended(world.pairs, node) has gone before.
+// A node with its colliders, whose node and next are set here. Throws std::bad_alloc with nothing changed.
+uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
+                  std::span<const Collider> colliders = {});
+// With its colliders and every joint that ends on it. Throws std::bad_alloc with nothing changed, and not at all where
+// reserve_ended(world.pairs, ends_on(node)) has gone before.
 void remove_node(World& world, uint32_t node);
+
+// Appends to the colliders of collider.node; next is set here. Throws std::bad_alloc with nothing changed.
+uint32_t add_collider(World& world, const Collider& collider);
+// Throws std::bad_alloc with nothing changed, and not at all after reserve_ended.
+void remove_collider(World& world, uint32_t collider);
+
+// Brings the fat boxes of a node's colliders to where it is. Throws std::bad_alloc; what was done by then does no harm,
+// as the next step does it again.
+void refresh_boxes(World& world, uint32_t node);
+
+// Moves a body's centre of mass by an offset [m], world axes: what the body does, and where its joints hold it, stays.
+void shift_centre(World& world, uint32_t node, const Vec3& offset);
 
 }  // namespace taut

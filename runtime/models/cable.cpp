@@ -138,10 +138,6 @@ double span_after(const Cable& cable, uint32_t i) {
     return 0.5 * (cable.length[i] + (i + 1 == cable.segments() ? 0 : cable.length[i + 1]));
 }
 
-void set_anchor(Joint& joint, int side, const Vec3& anchor) {
-    std::memcpy(joint.data + side * sizeof(Vec3), static_cast<const void*>(&anchor), sizeof(Vec3));
-}
-
 void set_softness(const Cable& cable, Joint& joint, double span) {
     joint.compliance = cable.stretch_compliance * span;
     joint.damping = cable.stretch_damping / span;
@@ -175,18 +171,20 @@ Joint make_inner_joint(const Cable& cable, uint32_t i) {
 
 uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, double length) {
     const Cable& cable = world.cables.record[index];
-    NodeInfo info{links(cable) ? NodeKind::dynamic : NodeKind::particle,
-                  kNone,
-                  cable.material,
-                  cable.filter,
-                  cable.user_data,
-                  index};
-    if (!links(cable)) return add_node(world, info, motion, mass_of(cable, length, info.kind));
-    info.shape = world.shapes.add(shape_of(cable, length));
+    NodeInfo info;
+    info.kind = links(cable) ? NodeKind::dynamic : NodeKind::particle;
+    info.cable = index;
+    info.user_data = cable.user_data;
+    const NodeMass mass = mass_of(cable, length, info.kind);
+    if (!links(cable)) return add_node(world, info, motion, mass);
+    Collider collider;
+    collider.shape = world.shapes.add(shape_of(cable, length));
+    collider.material = cable.material;
+    collider.filter = cable.filter;
     try {
-        return add_node(world, info, motion, mass_of(cable, length, info.kind));
+        return add_node(world, info, motion, mass, {&collider, 1});
     } catch (...) {
-        world.shapes.remove(info.shape);
+        world.shapes.remove(collider.shape);
         throw;
     }
 }
@@ -196,14 +194,16 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
     const NodeInfo& info = world.nodes.info[node];
     const double length = share_of(cable, i);
     if (moves_by_forces(info.kind)) world.nodes.mass[node] = mass_of(cable, length, info.kind);
-    if (info.shape != kNone) world.shapes.record[info.shape].shape = shape_of(cable, length);
+    for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
+        world.shapes.record[world.colliders.record[c].shape].shape = shape_of(cable, length);
+    });
 }
 
 void drop_cable_node(World& world, uint32_t node) {
-    const uint32_t shape = world.nodes.info[node].shape;
-    forget_pairs_of(world.pairs, world.nodes, node);
-    if (shape != kNone) {
-        world.broadphase.remove(node);
+    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
+    while (world.nodes.info[node].collider != kNone) {
+        const uint32_t collider = world.nodes.info[node].collider, shape = world.colliders.record[collider].shape;
+        remove_collider(world, collider);
         world.shapes.remove(shape);
     }
     world.nodes.remove(node);
@@ -227,11 +227,7 @@ uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points
 void remove_cable(World& world, uint32_t index) {
     const auto own = [&](uint32_t node) { return node != kNone && world.nodes.info[node].cable == index; };
     // What may fail comes first.
-    Pairs& pairs = world.pairs;
-    const auto touching = std::count_if(pairs.list.begin(), pairs.list.end(), [&](const Pair& pair) {
-        return pair.touching && (own(pair.a()) || own(pair.b()));
-    });
-    pairs.ended.reserve(pairs.ended.size() + static_cast<size_t>(touching));
+    reserve_ended(world.pairs, [&](const Pair& pair) { return own(pair.a) || own(pair.b); });
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
         const Joint& record = world.joints.record[joint];

@@ -49,7 +49,6 @@ double span_before(const Cable& cable, uint32_t i);
 double span_after(const Cable& cable, uint32_t i);
 
 // Anchor of end 0 (a) or 1 (b) of a joint.
-void set_anchor(Joint& joint, int side, const Vec3& anchor);
 void set_softness(const Cable& cable, Joint& joint, double span);
 // Joint i with its data, between nodes whose segments have their lengths.
 Joint make_inner_joint(const Cable& cable, uint32_t i);

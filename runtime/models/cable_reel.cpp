@@ -9,6 +9,7 @@
 #include "constraints/distance.h"
 #include "models/bodies.h"
 #include "models/cable.h"
+#include "state/joint_reading.h"
 
 namespace taut {
 namespace {
@@ -192,22 +193,6 @@ private:
         return out;
     }
 
-    // Shifts a link's centre; what others have tied to it stays in place.
-    void shift_centre(uint32_t node, const Vec3& offset) {
-        NodeMotion& m = motion(node);
-        m = moved(m, offset);
-        const Vec3 local = m.q.conjugate() * offset;
-        for (Joint& joint : world_.joints.record) {
-            if (!joint.type) continue;
-            for (int side = 0; side < 2; ++side) {
-                if (joint.node[side] != node) continue;
-                Vec3 anchor;
-                std::memcpy(static_cast<void*>(&anchor), joint.data + side * sizeof anchor, sizeof anchor);
-                set_anchor(joint, side, anchor - local);
-            }
-        }
-    }
-
     // Anchors and softness of the joints of link i after changes of length.
     void retie(uint32_t i) {
         if (Joint* joint = find(world_.joints, joint_before(c_, i))) {
@@ -226,7 +211,7 @@ private:
         const uint32_t i = at();
         const Kept outer_joint(world_, end_.joint), inner_joint(world_, inner(i));
         // The inner end stays on the next link; what is new comes out of where the cable is tied.
-        shift_centre(outer(), 0.5 * d * outward(motion(outer())));
+        shift_centre(world_, outer(), 0.5 * d * outward(motion(outer())));
         c_.length[i] += d;
         set_cable_mass(world_, c_, i);
         retie(i);
@@ -239,7 +224,7 @@ private:
         const uint32_t old = outer();
         const double l = length(), n = c_.nominal, rest = l - n;
         const Vec3 out = outward(motion(old));
-        reserve_ended(world_.pairs, old);
+        reserve_ended(world_.pairs, ends_on(old));
         JointRef ref;
         const uint32_t node = add_parts(moved(motion(old), 0.5 * n * out), rest, ref);
 
@@ -247,7 +232,7 @@ private:
         double force[kMaxRows] = {};  // at the cut
         blend(inner(at()), rest / l, force);
         blend(end_.joint, n / l, force);
-        shift_centre(old, -0.5 * rest * out);
+        shift_centre(world_, old, -0.5 * rest * out);
         length() = n;
         insert(c_.node, node, 0);
         insert(c_.length, rest, 0);
@@ -267,7 +252,7 @@ private:
         inner_joint.let_go();
         // The old link may touch from now on what the new one hangs on.
         const uint32_t tie = find(world_.joints, end_.joint)->node[e_ == 0 ? 0 : 1];
-        if (tie != kNone) forget_pair(world_.pairs, world_.nodes, old, tie);
+        if (tie != kNone) forget_pairs(world_.pairs, world_.nodes, world_.colliders, between_nodes(old, tie));
     }
 
     void blend(const JointRef& ref, double weight, double* force) const {
@@ -305,7 +290,7 @@ private:
         now.w = spin(far.v - near.v, b.w);
         now.slow_v = 0.5 * (far.slow_v + near.slow_v);
         now.slow_w = spin(far.slow_v - near.slow_v, b.slow_w);
-        shift_centre(kept, now.x - b.x);
+        shift_centre(world_, kept, now.x - b.x);
         b = now;
 
         end_.lost += total - joined;
@@ -321,15 +306,11 @@ private:
         inner_joint.let_go();
         remove_joints_of(gone);
         drop_cable_node(world_, gone);
-        if (tie != kNone) forget_pair(world_.pairs, world_.nodes, kept, tie);
+        if (tie != kNone) forget_pairs(world_.pairs, world_.nodes, world_.colliders, between_nodes(kept, tie));
     }
 
     void reserve_ended_of(uint32_t a, uint32_t b) {
-        Pairs& pairs = world_.pairs;
-        const auto touching = std::count_if(pairs.list.begin(), pairs.list.end(), [&](const Pair& pair) {
-            return pair.touching && (pair.a() == a || pair.b() == a || pair.a() == b || pair.b() == b);
-        });
-        pairs.ended.reserve(pairs.ended.size() + static_cast<size_t>(touching));
+        reserve_ended(world_.pairs, [&](const Pair& pair) { return ends_on(a)(pair) || ends_on(b)(pair); });
     }
 
     // ------------------------------------------------------------ particles

@@ -210,7 +210,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
         const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
         Block& block = block_at(mover(a, b));
         block.pairs.push_back(p);
-        if (moving(nodes, a) && moving(nodes, b)) block.links.push_back(pairs.list[pairs.active[p].pair].key);
+        if (moving(nodes, a) && moving(nodes, b)) block.links.push_back(pair_key(a, b));
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);

@@ -19,7 +19,7 @@ void break_joints(World& world) {
                                 {torque.x(), torque.y(), torque.z()}});
         // The two bodies may collide from the next step on: a pair that was filtered is found anew, and touched nobody.
         if (!joint.collide_connected && joint.node[0] != kNone && joint.node[1] != kNone)
-            forget_pair(world.pairs, world.nodes, joint.node[0], joint.node[1]);
+            forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(joint.node[0], joint.node[1]));
         world.joints.remove(index);
     }
 }

@@ -32,7 +32,9 @@ void publish_contacts(World& world) {
         const bool before = pair.touching;
         pair.touching = touches(pair);
         if (pair.touching == before) continue;
-        const taut_contact_event event{world.body_handle(pair.a()), world.body_handle(pair.b())};
+        const taut_contact_event event{world.body_handle(pair.a), world.body_handle(pair.b),
+                                       world.collider_handle(pair.collider_a()),
+                                       world.collider_handle(pair.collider_b())};
         (pair.touching ? world.contact_begin : world.contact_end).push_back(event);
     }
 }

@@ -17,12 +17,22 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
         hash.add(nodes.mass[i].gravity_scale);
         hash.add(nodes.load[i].force);
         hash.add(nodes.load[i].torque);
-        hash.add(info.material.friction);
-        hash.add(info.material.restitution);
-        hash.add(static_cast<uint64_t>(info.shape));
-        hash.add(info.filter.category);
-        hash.add(info.filter.mask);
-        hash.add(static_cast<uint64_t>(static_cast<uint32_t>(info.filter.group)));
+    }
+}
+
+void add_colliders(Hash& hash, const Colliders& colliders) {
+    for (uint32_t i = 0; i < colliders.record.size(); ++i) {
+        const Collider& collider = colliders.record[i];
+        if (collider.node == kNone) continue;
+        hash.add(static_cast<uint64_t>(i) << 32 | collider.node);
+        hash.add(static_cast<uint64_t>(collider.shape));
+        hash.add(collider.position);
+        hash.add(collider.rotation);
+        hash.add(collider.material.friction);
+        hash.add(collider.material.restitution);
+        hash.add(collider.filter.category);
+        hash.add(collider.filter.mask);
+        hash.add(static_cast<uint64_t>(static_cast<uint32_t>(collider.filter.group)));
     }
 }
 
@@ -105,6 +115,7 @@ uint64_t state_hash(const World& world) {
     for (float g : {world.def.gravity.x, world.def.gravity.y, world.def.gravity.z}) hash.add(g);
     hash.add(world.accumulator);
     add_nodes(hash, world.nodes);
+    add_colliders(hash, world.colliders);
     add_joints(hash, world.joints);
     add_cables(hash, world.cables);
     add_pairs(hash, world.pairs);

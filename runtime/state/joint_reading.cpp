@@ -9,12 +9,6 @@ namespace {
 constexpr double kLeast = 1e-9;  // share of an inverse mass that counts as nothing
 constexpr double kTurn = 2 * 3.14159265358979323846;
 
-JointAnchors anchors_of(const Joint& joint) {
-    JointAnchors anchors;
-    std::memcpy(static_cast<void*>(&anchors), joint.data, sizeof anchors);
-    return anchors;
-}
-
 const double* row_of(const Joint& joint, const JointReading& reading, int end, int row) {
     return reading.jacobian + (end * joint.type->rows + row) * kDof;
 }
@@ -39,6 +33,16 @@ double coupling(const Nodes& nodes, const Joint& joint, const JointReading& read
 
 }  // namespace
 
+Vec3 anchor_of(const Joint& joint, int end) {
+    Vec3 anchor;
+    std::memcpy(static_cast<void*>(&anchor), joint.data + end * sizeof anchor, sizeof anchor);
+    return anchor;
+}
+
+void set_anchor(Joint& joint, int end, const Vec3& anchor) {
+    std::memcpy(joint.data + end * sizeof anchor, static_cast<const void*>(&anchor), sizeof anchor);
+}
+
 Pose pose_of(const Nodes& nodes, uint32_t node) {
     if (node == kNone) return {};
     const NodeMotion& motion = nodes.motion[node];
@@ -47,9 +51,8 @@ Pose pose_of(const Nodes& nodes, uint32_t node) {
 }
 
 Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end) {
-    const JointAnchors anchors = anchors_of(joint);
     const Pose pose = pose_of(nodes, joint.node[end]);
-    return pose.x + pose.R * (end == 0 ? anchors.a : anchors.b);
+    return pose.x + pose.R * anchor_of(joint, end);
 }
 
 JointReading read_joint(const Nodes& nodes, const Joint& joint) {
@@ -120,7 +123,7 @@ Wrench wrench_of(const Joint& joint, const JointReading& reading) {
         wrench.torque += joint.lambda[row] * angular_part(j);
     }
     // J^T lambda is about the centre of mass: move it to the anchor.
-    wrench.torque -= (reading.pose[1].R * anchors_of(joint).b).cross(wrench.force);
+    wrench.torque -= (reading.pose[1].R * anchor_of(joint, 1)).cross(wrench.force);
     return wrench;
 }
 

@@ -9,6 +9,8 @@ namespace taut {
 struct JointAnchors {
     Vec3 a, b;
 };
+Vec3 anchor_of(const Joint& joint, int end);
+void set_anchor(Joint& joint, int end, const Vec3& anchor);
 
 // Pose of a node; kNone and particles are unturned.
 Pose pose_of(const Nodes& nodes, uint32_t node);

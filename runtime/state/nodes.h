@@ -8,7 +8,7 @@
 
 namespace taut {
 
-constexpr uint32_t kNone = UINT32_MAX;  // no node, no shape: the world, or nothing
+constexpr uint32_t kNone = UINT32_MAX;  // no node, no collider: the world, or nothing
 
 enum class NodeKind : uint8_t { fixed, kinematic, dynamic, particle, dead };
 
@@ -37,11 +37,9 @@ struct NodeLoad {                                      // of the next step
 
 struct NodeInfo {
     NodeKind kind = NodeKind::dead;
-    uint32_t shape = kNone;
-    taut_material material{};
-    taut_filter filter{};
+    uint32_t collider = kNone;  // the first of its colliders
+    uint32_t cable = kNone;     // that it is part of
     uint64_t user_data = 0;
-    uint32_t cable = kNone;  // that it is part of
 };
 
 struct NodePose {  // of the body's origin, for rendering

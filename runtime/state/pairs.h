@@ -1,10 +1,12 @@
-// Contact pairs: one record for each overlapping pair of fat boxes, sorted by key, carried over frames.
+// Contact pairs: one record for each pair of colliders whose fat boxes overlap, sorted by key, carried over frames.
 #pragma once
 
 #include <taut/event.h>
 
+#include <algorithm>
+
 #include "collision/collide.h"
-#include "state/nodes.h"
+#include "state/colliders.h"
 
 namespace taut {
 
@@ -17,16 +19,24 @@ struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1,
 };
 
 struct Pair {
-    uint64_t key = 0;  // a << 32 | b, a < b
+    uint64_t key = 0;       // of the two colliders, see pair_key
+    uint32_t a = 0, b = 0;  // their nodes, in the order of the key
     collision::PairCache cache;
-    collision::Manifold manifold;  // of this frame
+    collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
     Impulse impulse[4];            // by point: carried in, updated by the solver
-    bool filtered = false;         // never collides (filter, joint); kept to remember the answer
-    bool touching = false;         // had a point at the end of the last step
+    float friction = 0;            // of the two surfaces together
+    float restitution = 0;
+    bool filtered = false;  // never collides (filter, joint); kept to remember the answer
+    bool touching = false;  // had a point at the end of the last step
 
-    uint32_t a() const { return static_cast<uint32_t>(key >> 32); }
-    uint32_t b() const { return static_cast<uint32_t>(key); }
+    uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
+    uint32_t collider_b() const { return static_cast<uint32_t>(key); }
 };
+
+// The smaller index first; of colliders or of nodes.
+constexpr uint64_t pair_key(uint32_t one, uint32_t other) {
+    return one < other ? static_cast<uint64_t>(one) << 32 | other : static_cast<uint64_t>(other) << 32 | one;
+}
 
 // Tangents of a contact normal: the same for the same normal, continuous but for the switch of the helper axis.
 inline Vec3f tangent_of(const Vec3f& n) {
@@ -50,20 +60,43 @@ struct Pairs {
     Array<ActivePair> active;               // sorted as list is; find_contacts()
     Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;                     // id of the world, for the handles in ended
-    Array<uint64_t> joined;                 // keys of bodies whose joint forbids contacts, sorted
+    Array<uint64_t> joined;                 // keys of nodes whose joint forbids contacts, sorted
     uint64_t joined_version = 0;            // of the joints that they were taken from
-    Array<collision::Placement> placement;  // by node; find_contacts()
+    Array<collision::Placement> placement;  // by collider; find_contacts()
 };
 
 // Notes that a touching pair ended.
-void report_end(Pairs& pairs, const Nodes& nodes, const Pair& pair);
+void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const Pair& pair);
 
-// Drops the records of a pair or of every pair of a node, for which touching ones leave an end event. The step makes
-// them anew from the broadphase's list, if that still holds them. Throws std::bad_alloc before anything changes, and
-// not at all after reserve_ended.
-void forget_pair(Pairs& pairs, const Nodes& nodes, uint32_t a, uint32_t b);
-void forget_pairs_of(Pairs& pairs, const Nodes& nodes, uint32_t node);
-// Room for the end events of a node's touching pairs.
-void reserve_ended(Pairs& pairs, uint32_t node);
+// Room for the end events of the touching pairs that meet a condition.
+template <class Condition>
+void reserve_ended(Pairs& pairs, Condition&& condition) {
+    size_t needed = pairs.ended.size();
+    for (const Pair& pair : pairs.list) needed += pair.touching && condition(pair);
+    if (needed > pairs.ended.capacity()) pairs.ended.reserve(std::max(needed, 2 * pairs.ended.capacity()));
+}
+
+// Drops the records of the pairs that meet a condition, for which touching ones leave an end event. The step makes them
+// anew from the broadphase's list, if that still holds them. Throws std::bad_alloc before anything changes, and not at
+// all after reserve_ended.
+template <class Condition>
+void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, Condition&& condition) {
+    reserve_ended(pairs, condition);
+    for (const Pair& pair : pairs.list) {
+        if (pair.touching && condition(pair)) report_end(pairs, nodes, colliders, pair);
+    }
+    std::erase_if(pairs.list, condition);
+}
+
+// Conditions: pairs of one node, pairs of one collider, pairs of two nodes.
+inline auto ends_on(uint32_t node) {
+    return [node](const Pair& pair) { return pair.a == node || pair.b == node; };
+}
+inline auto ends_on_collider(uint32_t collider) {
+    return [collider](const Pair& pair) { return pair.collider_a() == collider || pair.collider_b() == collider; };
+}
+inline auto between_nodes(uint32_t a, uint32_t b) {
+    return [key = pair_key(a, b)](const Pair& pair) { return pair_key(pair.a, pair.b) == key; };
+}
 
 }  // namespace taut

@@ -28,23 +28,21 @@ void fill_lane(LanePoint& p, int lane, const collision::ContactPoint& point, con
 
 // One pair into one lane of a group; its points into the group's first points.
 void fill_pair(System& system, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
-    const auto &ma = nodes.info[pair.a()].material, &mb = nodes.info[pair.b()].material;
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
-    g.a[lane] = pair.a() + 1;
-    g.b[lane] = pair.b() + 1;
-    g.friction[lane] = std::sqrt(ma.friction * mb.friction);
+    g.a[lane] = pair.a + 1;
+    g.b[lane] = pair.b + 1;
+    g.friction[lane] = pair.friction;
     for (int i = 0; i < 3; ++i) {
         g.normal[i][lane] = n[i];
         g.tangent[i][lane] = t1[i];
     }
-    const float restitution = std::max(ma.restitution, mb.restitution);
-    system.contacts.bounces = system.contacts.bounces || restitution > 0;
-    const Vec3 origin = nodes.origin(pair.a());  // points are relative to it
-    const Vec3f com_a = (nodes.motion[pair.a()].x - origin).cast<float>();
-    const Vec3f com_b = (nodes.motion[pair.b()].x - origin).cast<float>();
+    system.contacts.bounces = system.contacts.bounces || pair.restitution > 0;
+    const Vec3 origin = nodes.origin(pair.a);  // points are relative to it
+    const Vec3f com_a = (nodes.motion[pair.a].x - origin).cast<float>();
+    const Vec3f com_b = (nodes.motion[pair.b].x - origin).cast<float>();
     for (int k = 0; k < pair.manifold.count; ++k)
         fill_lane(system.contacts.point[g.first_point + static_cast<uint32_t>(k)], lane, pair.manifold.points[k], com_a,
-                  com_b, pair.impulse[k], restitution);
+                  com_b, pair.impulse[k], pair.restitution);
 }
 
 // One lane group of at most eight active pairs of a colour; the first has the most points.

@@ -42,9 +42,9 @@ void add_joint(System& system, Joint& joint) {
 // Effective anchors and offset of a contact point, so that C is the gap and zero slip at the present poses.
 ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
     const collision::ContactPoint& point = pair.manifold.points[k];
-    const Pose& a = system.pose[pair.a() + 1];
-    const Pose& b = system.pose[pair.b() + 1];
-    const Vec3 at = a.x - a.R * nodes.mass[pair.a()].centre + point.position.cast<double>();
+    const Pose& a = system.pose[pair.a + 1];
+    const Pose& b = system.pose[pair.b + 1];
+    const Vec3 at = a.x - a.R * nodes.mass[pair.a].centre + point.position.cast<double>();
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
     ContactData data;
     data.anchor_a = a.R.transpose() * (at - a.x);
@@ -60,7 +60,7 @@ double bounce_speed(const System& system, const Pair& pair, const ContactData& p
         const Velocity& u = system.exact[node + 1];
         return Vec3(u.v + u.w.cross(system.pose[node + 1].R * anchor));
     };
-    const Vec3 apart = velocity_at(pair.b(), point.anchor_b) - velocity_at(pair.a(), point.anchor_a);
+    const Vec3 apart = velocity_at(pair.b, point.anchor_b) - velocity_at(pair.a, point.anchor_a);
     const double approach = -apart.dot(point.basis.row(0));
     return approach > kBounceSpeed ? restitution * approach : 0.0;
 }
@@ -70,16 +70,14 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
     Rows& rows = system.rows;
     for (uint32_t p : active_pairs) {
         Pair& pair = pairs.list[pairs.active[p].pair];
-        const auto& ma = nodes.info[pair.a()].material;
-        const auto& mb = nodes.info[pair.b()].material;
         for (int k = 0; k < pair.manifold.count; ++k) {
             rows.data.push_back(contact_data(system, nodes, pair, k));
             RowBlock& block = add_block(system, kContact);
             block.data = &rows.data.back();
-            block.node[0] = pair.a() + 1;
-            block.node[1] = pair.b() + 1;
-            block.friction = std::sqrt(static_cast<double>(ma.friction) * mb.friction);
-            block.bounce = bounce_speed(system, pair, rows.data.back(), std::max(ma.restitution, mb.restitution));
+            block.node[0] = pair.a + 1;
+            block.node[1] = pair.b + 1;
+            block.friction = pair.friction;
+            block.bounce = bounce_speed(system, pair, rows.data.back(), pair.restitution);
             block.contact = &pair.impulse[k];
             rows.impulse[block.row] = block.contact->normal;
             rows.impulse[block.row + 1] = block.contact->tangent1;

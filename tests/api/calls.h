@@ -260,6 +260,20 @@ inline std::vector<Call<taut_body>> body_calls() {
          [](taut_body b) {
              return taut_body_apply_impulse_at(b, {1, 0, 0}, {0, 0, 0});
          }},
+        {"taut_body_get_colliders",
+         [](taut_body b) {
+             taut_collider out[8];
+             uint32_t count;
+             return taut_body_get_colliders(b, out, 8, &count);
+         }},
+        {"taut_body_set_mass_from_colliders", [](taut_body b) { return taut_body_set_mass_from_colliders(b); }},
+        {"taut_body_add_collider",
+         [](taut_body b) {
+             taut_collider_def def;
+             taut_collider_def_init(&def);
+             taut_collider out;
+             return taut_body_add_collider(b, &def, &out);
+         }},
         {"taut_body_remove", [](taut_body b) { return taut_body_remove(b); }},
     };
 }
@@ -278,6 +292,43 @@ inline std::vector<Call<taut_shape>> shape_calls() {
              return taut_shape_hull_triangles(s, out, 400, &count);
          }},
         {"taut_shape_remove", [](taut_shape s) { return taut_shape_remove(s); }},
+    };
+}
+
+inline std::vector<Call<taut_collider>> collider_calls(const Populated& p) {
+    return {
+        {"taut_collider_get_def",
+         [](taut_collider c) {
+             taut_collider_def out;
+             return taut_collider_get_def(c, &out);
+         }},
+        {"taut_collider_get_body",
+         [](taut_collider c) {
+             taut_body out;
+             return taut_collider_get_body(c, &out);
+         }},
+        {"taut_collider_get_user_data",
+         [](taut_collider c) {
+             uint64_t out;
+             return taut_collider_get_user_data(c, &out);
+         }},
+        {"taut_collider_set_user_data", [](taut_collider c) { return taut_collider_set_user_data(c, 7); }},
+        {"taut_collider_set_shape",
+         [box = p.box](taut_collider c) {
+             return taut_collider_set_shape(c, box, {0, 0, 0}, {0, 0, 0, 1});
+         }},
+        {"taut_collider_set_material",
+         [](taut_collider c) {
+             const taut_material material = {0.5f, 0};
+             return taut_collider_set_material(c, &material);
+         }},
+        {"taut_collider_set_filter",
+         [](taut_collider c) {
+             const taut_filter filter = {1, 1, 0, 0};
+             return taut_collider_set_filter(c, &filter);
+         }},
+        {"taut_collider_set_density", [](taut_collider c) { return taut_collider_set_density(c, 10); }},
+        {"taut_collider_remove", [](taut_collider c) { return taut_collider_remove(c); }},
     };
 }
 

@@ -124,14 +124,13 @@ TEST_F(Refusals, Body) {
     refuse("kind", [](Def& d) { d.kind = TAUT_BODY_PARTICLE; });
     refuse("kind", [](Def& d) { d.kind = TAUT_BODY_KIND_MAX; });
     refuse("filter.reserved", [](Def& d) { d.filter.reserved = 1; });
-    refuse("reserved", [](Def& d) { d.reserved = 1; });
     refuse("linear_velocity", [](Def& d) { d.kind = TAUT_BODY_STATIC, d.linear_velocity.x = 1; });
     refuse("angular_velocity", [](Def& d) { d.kind = TAUT_BODY_STATIC, d.angular_velocity.z = 1; });
     refuse("shape is a plane", [&](Def& d) { d.shape = p.plane; });
     refuse("mass is 0", [](Def& d) { d.shape = {0}; });
     refuse("inertia is 0", [](Def& d) { d.shape = {0}, d.mass = 1; });
     refuse("mass is 0", [](Def& d) { d.shape = {0}, d.inertia = {1, 1, 1, 0, 0, 0}; });
-    refuse("mass from shape and density", [](Def& d) { d.density = 1e-30f; });
+    refuse("mass from shapes and densities", [](Def& d) { d.density = 1e-30f; });
     refuse("positive definite", [](Def& d) { d.inertia = {1, 1, -1, 0, 0, 0}; });
     refuse("positive definite", [](Def& d) { d.inertia = {1, 1, 0, 0, 0, 0}; });
     refuse("positive definite", [](Def& d) { d.inertia = {1, 1, 1, 1, 0, 0}; });

@@ -252,6 +252,18 @@ private:
         if (added) keep(shapes_, out, w);
     }
 
+    taut_collider_def collider_def(size_t w) {
+        taut_collider_def def;
+        taut_collider_def_init(&def);
+        spoil(def.struct_size);
+        def.shape = pick(shapes_, w);
+        def.position = vec(1);
+        def.rotation = quat();
+        def.density = real(0, 5000);
+        def.material = {real(0, 2), real(0, 1)};
+        return def;
+    }
+
     void add_body() {
         if (live(bodies_, taut_body_is_valid) >= kMostBodies) return;
         const size_t w = pick_world();
@@ -275,6 +287,9 @@ private:
         if (one_in(8)) def.centre_of_mass = vec(1);
         if (one_in(8)) def.filter = {word(), word(), static_cast<int32_t>(byte() % 5) - 2, one_in(32) ? 1u : 0u};
         def.gravity_scale = real(-2, 2);
+        taut_collider_def colliders[2];
+        for (taut_collider_def& collider : colliders) collider = collider_def(w);
+        if (one_in(8)) def.colliders = colliders, def.collider_count = 1 + byte() % 2;
         taut_body out = {0};
         if (run("taut_world_add_body", [&] { return taut_world_add_body(worlds_[w], &def, &out); }))
             keep(bodies_, out, w);
@@ -289,6 +304,7 @@ private:
         def.mass = one_in(4) ? real(1e-9, 1e6) : real(0.1, 10);
         def.position = pos(10);
         def.velocity = vec(10);
+        if (one_in(2)) def.shape = pick(shapes_, w);
         taut_body out = {0};
         if (run("taut_world_add_particle", [&] { return taut_world_add_particle(worlds_[w], &def, &out); })) {
             keep(bodies_, out, w);

@@ -29,10 +29,12 @@ TEST_F(Handles, NullIsStale) {
     expect_stale(world_calls(p), taut_world{0}, "null");
     expect_stale(body_calls(), taut_body{0}, "null");
     expect_stale(shape_calls(), taut_shape{0}, "null");
+    expect_stale(collider_calls(p), taut_collider{0}, "null");
     expect_stale(joint_calls(), taut_joint{0}, "null");
     EXPECT_FALSE(taut_world_is_valid({0}));
     EXPECT_FALSE(taut_body_is_valid({0}));
     EXPECT_FALSE(taut_shape_is_valid({0}));
+    EXPECT_FALSE(taut_collider_is_valid({0}));
     EXPECT_FALSE(taut_joint_is_valid({0}));
 }
 
@@ -43,6 +45,7 @@ TEST_F(Handles, InventedBitsAreStale) {
         expect_stale(world_calls(p), taut_world{bits}, "invented bits");
         expect_stale(body_calls(), taut_body{bits}, "invented bits");
         expect_stale(shape_calls(), taut_shape{bits}, "invented bits");
+        expect_stale(collider_calls(p), taut_collider{bits}, "invented bits");
         expect_stale(joint_calls(), taut_joint{bits}, "invented bits");
     }
     // One bit off a good handle.
@@ -64,6 +67,7 @@ TEST_F(Handles, RemovedIsStale) {
     expect_stale(joint_calls(), p.rod, "a removed joint");
     expect_stale(body_calls(), p.crate, "a removed body");
     expect_stale(shape_calls(), p.box, "a removed shape");
+    expect_stale(collider_calls(p), p.collider, "a collider of a removed body");
     EXPECT_FALSE(taut_joint_is_valid(p.rod));
     EXPECT_FALSE(taut_body_is_valid(p.crate));
     EXPECT_FALSE(taut_shape_is_valid(p.box));
@@ -74,6 +78,7 @@ TEST_F(Handles, RemovedIsStale) {
     expect_stale(joint_calls(), p.rod, "a removed joint");
     expect_stale(body_calls(), p.crate, "a removed body");
     expect_stale(shape_calls(), p.box, "a removed shape");
+    expect_stale(collider_calls(p), p.collider, "a collider of a removed body");
     EXPECT_TRUE(taut_body_is_valid(crate));
 
     taut_body_def def = body_def(TAUT_BODY_DYNAMIC, p.box);
@@ -128,6 +133,7 @@ TEST_F(Handles, OfADestroyedWorldAreStale) {
     expect_stale(world_calls(p), gone.world, "a destroyed world");
     expect_stale(body_calls(), gone.crate, "a body of a destroyed world");
     expect_stale(shape_calls(), gone.box, "a shape of a destroyed world");
+    expect_stale(collider_calls(p), gone.collider, "a collider of a destroyed world");
     expect_stale(joint_calls(), gone.ball, "a joint of a destroyed world");
     EXPECT_FALSE(taut_body_is_valid(gone.crate));
     taut_body_def def = body_def(TAUT_BODY_DYNAMIC, gone.box);

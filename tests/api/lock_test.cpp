@@ -20,6 +20,7 @@ void expect_locked(const Populated& p) {
     expect(world_calls(p), p.world);
     expect(body_calls(), p.crate);
     expect(shape_calls(), p.hull);
+    expect(collider_calls(p), p.collider);
     expect(joint_calls(), p.rod);
     EXPECT_TRUE(taut_world_is_valid(p.world));
     EXPECT_FALSE(taut_body_is_valid(p.crate));

@@ -207,6 +207,8 @@ struct Populated {
         bob = add_particle(world, 10, 5, 0);
         ball = add_ball(world, wedge, {0}, {0, 0, 0}, {-5, 4, 0});
         rod = add_rod(world, bob, {0}, {0, 0, 0}, {12, 5, 0});
+        uint32_t count = 0;
+        EXPECT_EQ(taut_body_get_colliders(crate, &collider, 1, &count), TAUT_OK) << taut_last_error();
         for (int i = 0; i < 3; ++i) EXPECT_EQ(taut_world_step(world), TAUT_OK) << taut_last_error();
     }
     ~Populated() { taut_world_destroy(world); }
@@ -216,6 +218,7 @@ struct Populated {
     taut_world world;
     taut_shape plane, box, hull;
     taut_body ground, crate, lift, wedge, bob;
+    taut_collider collider;  // of the crate
     taut_joint ball, rod;
 };
 

@@ -156,12 +156,11 @@ void build_pile(Rig& rig, uint64_t seed) {
         const Vec3 x = 2 * random.vector(), v = random.vector(), spin = random.vector();
         const double a = 0.5 + random.unit(), b = 0.5 + random.unit(), c = (a + b) * (0.6 + 0.4 * random.unit());
         rig.body(mass, 0.1 * mass * Vec3(a, b, c), x, random.rotation(), v, spin);
-        rig.w.nodes.info[i + 1].material.friction = static_cast<float>(random.unit());
     }
     for (uint32_t a = 0; a < kBodies; ++a) {
         for (uint32_t b : {a + 1, a + 1 + static_cast<uint32_t>(random.unit() * (kBodies - a))}) {
             if (a > 0 && b == a) continue;
-            const uint64_t key = static_cast<uint64_t>(a) << 32 | b;
+            const uint64_t key = pair_key(a, b);
             bool known = false;
             for (const Pair& pair : rig.w.pairs.list) known = known || pair.key == key;
             if (known) continue;
@@ -175,6 +174,7 @@ void build_pile(Rig& rig, uint64_t seed) {
             rig.contact(a, b, random.vector().normalized().cast<float>(), points);
             for (Pair& pair : rig.w.pairs.list) {
                 if (pair.key != key) continue;
+                pair.friction = static_cast<float>(random.unit());
                 for (int k = 0; k < pair.manifold.count; ++k) {
                     pair.impulse[k].normal = static_cast<float>(random.unit());
                     pair.impulse[k].tangent1 = static_cast<float>(0.2 * random.unit());
@@ -262,9 +262,9 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
                 const collision::ContactPoint& point = pair.manifold.points[k];
                 double moved[2];
                 for (int end = 0; end < 2; ++end) {
-                    const uint32_t node = end == 0 ? pair.a() : pair.b();
+                    const uint32_t node = end == 0 ? pair.a : pair.b;
                     const System::Found& found = rig.w.system.found[node + 1];
-                    const System::Found& of_a = rig.w.system.found[pair.a() + 1];  // its centre is its origin here
+                    const System::Found& of_a = rig.w.system.found[pair.a + 1];  // its centre is its origin here
                     const Vec3 at = of_a.x + point.position.cast<double>();
                     const NodeMotion& m = rig.w.nodes.motion[node];
                     const Vec3 now = m.x + m.q * (found.q.conjugate() * (at - found.x));

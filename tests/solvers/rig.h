@@ -71,7 +71,10 @@ public:
     // Contact points in the world; a < b.
     void contact(uint32_t a, uint32_t b, const Vec3f& normal, const std::vector<std::pair<Vec3, double>>& points) {
         Pair& pair = w.pairs.list.emplace_back();
-        pair.key = static_cast<uint64_t>(a) << 32 | b;
+        pair.key = pair_key(a, b);
+        pair.a = a;
+        pair.b = b;
+        pair.friction = 0.5f;
         pair.manifold.normal = normal;
         pair.manifold.count = static_cast<int>(points.size());
         for (size_t i = 0; i < points.size(); ++i)
@@ -81,7 +84,7 @@ public:
         w.pairs.active.clear();
         for (uint32_t i = 0; i < w.pairs.list.size(); ++i) {
             const Pair& p = w.pairs.list[i];
-            w.pairs.active.push_back({p.a(), p.b(), i, static_cast<uint32_t>(p.manifold.count)});
+            w.pairs.active.push_back({p.a, p.b, i, static_cast<uint32_t>(p.manifold.count)});
         }
     }
 
@@ -130,7 +133,6 @@ private:
     uint32_t add(NodeKind kind, double mass, const Vec3& inertia, const Vec3& x) {
         const uint32_t node = w.nodes.add();
         w.nodes.info[node].kind = kind;
-        w.nodes.info[node].material.friction = 0.5f;
         w.nodes.motion[node].x = x;
         NodeMass& m = w.nodes.mass[node];
         m.mass = mass;

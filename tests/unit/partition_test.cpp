@@ -41,7 +41,9 @@ struct Graph {
     }
     void touch(uint32_t a, uint32_t b) {
         Pair& pair = pairs.list.emplace_back();
-        pair.key = static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+        pair.key = pair_key(a, b);
+        pair.a = std::min(a, b);
+        pair.b = std::max(a, b);
         pair.manifold.normal = Vec3f::UnitY();
         pair.manifold.count = 1;
     }
@@ -49,7 +51,7 @@ struct Graph {
         std::sort(pairs.list.begin(), pairs.list.end(), [](const Pair& p, const Pair& q) { return p.key < q.key; });
         pairs.active.clear();
         for (uint32_t i = 0; i < pairs.list.size(); ++i)
-            pairs.active.push_back({pairs.list[i].a(), pairs.list[i].b(), i, 1});
+            pairs.active.push_back({pairs.list[i].a, pairs.list[i].b, i, 1});
         partition.build(nodes, joints, pairs, rules);
     }
     bool moving(uint32_t node) const { return node != kNone && moves_by_forces(nodes.info[node].kind); }
@@ -171,7 +173,7 @@ TEST_P(RandomGraph, HasItsComponentsAsIslandsAndBlocks) {
     EXPECT_EQ(grouped_pairs + direct_pairs, pairs.list.size());
     size_t with_jointed = 0;
     for (const Pair& pair : pairs.list)
-        with_jointed += (moving(pair.a()) && jointed.count(pair.a())) || (moving(pair.b()) && jointed.count(pair.b()));
+        with_jointed += (moving(pair.a) && jointed.count(pair.a)) || (moving(pair.b) && jointed.count(pair.b));
     EXPECT_EQ(direct_pairs, with_jointed);
 }
 

@@ -1,0 +1,98 @@
+/**
+ * @file collider.h
+ * Colliders: shapes on a body, each at a place in the body's frame with its own surface and filter. A body has as many
+ * as it needs: a table is five boxes. A body made with a shape has one from the start, a particle at most one.
+ * Each function here: thread safety: one thread at a time per world, not inside a step.
+ */
+#ifndef TAUT_COLLIDER_H
+#define TAUT_COLLIDER_H
+
+#include <taut/base.h>
+#include <taut/math.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Surface of a collider. A pair uses sqrt(friction_a * friction_b) and max(restitution_a, restitution_b). */
+typedef struct taut_material {
+    float friction;    /**< Coulomb coefficient, [0, 100]. Default 0.5 */
+    float restitution; /**< approach speed kept as separation speed, [0, 1]. Default 0 */
+} taut_material;
+
+/**
+ * Who collides with whom: two colliders collide when they share a non-zero group with positive sign, never
+ * when they share a negative one; else when each one's category is in the other's mask. Those of one body never do.
+ */
+typedef struct taut_filter {
+    uint64_t category; /**< default 1 */
+    uint64_t mask;     /**< default all bits */
+    int32_t group;     /**< default 0 */
+    uint32_t reserved; /**< zero */
+} taut_filter;
+
+/** A shape on a body. */
+typedef struct taut_collider_def {
+    uint32_t struct_size;
+    float density;      /**< its share in a mass taken from colliders [kg/m^3], [0, 1e8]; 0: none. Default 1000 */
+    taut_shape shape;   /**< of the body's world; not null */
+    taut_vec3 position; /**< of the shape's origin in the body's frame [m], within TAUT_SHAPE_MAX_SIZE. Default 0 */
+    taut_quat rotation; /**< of the shape in the body's frame. Default identity */
+    taut_material material;
+    taut_filter filter;
+    uint64_t user_data;
+} taut_collider_def;
+
+TAUT_API void taut_collider_def_init(taut_collider_def* def);
+
+/**
+ * Adds a collider to a body. The body's mass stays as it is; see taut_body_set_mass_from_colliders.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names field and value; a plane on a dynamic body; a particle, whose
+ *         collider comes with its def), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE,
+ *         TAUT_IN_USE (a body of a cable), TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_add_collider(taut_body body, const taut_collider_def* def, taut_collider* out);
+/**
+ * Removes a collider. The body's mass stays as it is; its contacts end with the next step's events.
+ * @return TAUT_OK; TAUT_IN_USE (of a cable), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_collider_remove(taut_collider collider);
+/** 1 if the handle names a live collider, else 0. */
+TAUT_API int32_t taut_collider_is_valid(taut_collider collider);
+
+/**
+ * Copies the colliders of a body in the order in which they were added.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_body_get_colliders(taut_body body, taut_collider* colliders, uint32_t capacity,
+                                             uint32_t* count);
+/**
+ * Gives a dynamic body the mass, centre of mass and inertia of its colliders at their densities. Joints stay where they
+ * hold it; the motion of every point of the body stays.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT if the body is not dynamic or the sum is not within [1e-6, 1e15] kg;
+ *         TAUT_IN_USE (a body of a cable), TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_body_set_mass_from_colliders(taut_body body);
+
+/** The collider as a def would make it anew. */
+TAUT_API taut_result taut_collider_get_def(taut_collider collider, taut_collider_def* out);
+TAUT_API taut_result taut_collider_get_body(taut_collider collider, taut_body* out);
+TAUT_API taut_result taut_collider_get_user_data(taut_collider collider, uint64_t* out);
+TAUT_API taut_result taut_collider_set_user_data(taut_collider collider, uint64_t value);
+/**
+ * Changes the shape, and where it is in the body's frame. Contact impulses carried over go on where points stay.
+ * @return as taut_body_add_collider; a particle's shape must be a sphere at its centre.
+ */
+TAUT_API taut_result taut_collider_set_shape(taut_collider collider, taut_shape shape, taut_vec3 position,
+                                             taut_quat rotation);
+TAUT_API taut_result taut_collider_set_material(taut_collider collider, const taut_material* material);
+/** Changes who collides with it, from the next step on. */
+TAUT_API taut_result taut_collider_set_filter(taut_collider collider, const taut_filter* filter);
+/** Changes its share in a mass taken from colliders [kg/m^3], [0, 1e8]; the body's mass stays as it is. */
+TAUT_API taut_result taut_collider_set_density(taut_collider collider, float density);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,233 @@
+#include <taut/collider.h>
+
+#include <vector>
+
+#include "api/access.h"
+#include "api/body_mass.h"
+#include "api/collider_def.h"
+#include "detect/detect.h"
+#include "models/bodies.h"
+
+using namespace taut;
+
+namespace taut {
+
+Check& check_material(Check& check, const char* friction, const char* restitution, const taut_material& material) {
+    return check.number(friction, material.friction, kFriction)
+        .number(restitution, material.restitution, kUnitInterval);
+}
+
+Check& check_collider_def(Check& check, const taut_collider_def& def) {
+    check.struct_size(def.struct_size, sizeof def)
+        .zero_or("density", def.density, kDensity)
+        .vector("position", def.position, kShapeCoordinate)
+        .rotation("rotation", def.rotation);
+    return check_material(check, "material.friction", "material.restitution", def.material)
+        .zero("filter.reserved", def.filter.reserved);
+}
+
+taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def,
+                          Collider& out) {
+    const taut_result found = find_shape(check.call(), "shape", world, def.shape, out.shape);
+    if (found != TAUT_OK) return found;
+    const collision::ShapeKind shape = world.shapes.record[out.shape].shape.kind;
+    check.require(!moves_by_forces(kind) || shape != collision::ShapeKind::plane,
+                  "shape is a plane, which only static and kinematic bodies may have");
+    check.require(kind != NodeKind::particle || shape == collision::ShapeKind::sphere,
+                  "shape is not a sphere, the only one that a particle may have");
+    out.position = to_vec(def.position);
+    out.rotation = to_quat(def.rotation);
+    check.require(kind != NodeKind::particle || out.position == Vec3::Zero(), "position is not 0 on a particle");
+    out.density = def.density;
+    out.material = def.material;
+    out.filter = def.filter;
+    out.user_data = def.user_data;
+    return check.result();
+}
+
+}  // namespace taut
+
+namespace {
+
+// Colliders of cables belong to the cable.
+Check& check_own(Check& check, const World& world, uint32_t node) {
+    return check.require(world.nodes.info[node].cable == kNone, "the body is part of a cable", TAUT_IN_USE);
+}
+
+taut_collider_def def_of(const World& world, const Collider& collider) {
+    taut_collider_def def;
+    taut_collider_def_init(&def);
+    def.density = collider.density;
+    def.shape = world.shape_handle(collider.shape);
+    def.position = to_vec3(collider.position);
+    def.rotation = to_quat(collider.rotation);
+    def.material = collider.material;
+    def.filter = collider.filter;
+    def.user_data = collider.user_data;
+    return def;
+}
+
+}  // namespace
+
+void taut_collider_def_init(taut_collider_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->density = 1000;
+    def->rotation = {0, 0, 0, 1};
+    def->material = kDefaultMaterial;
+    def->filter = kDefaultFilter;
+}
+
+taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* def, taut_collider* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    if (!check_collider_def(check, *def)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        const NodeKind kind = world.nodes.info[node].kind;
+        check.require(kind != NodeKind::particle, "body is a particle, whose shape comes with its def");
+        if (!check_own(check, world, node)) return check.result();
+        Collider collider;
+        collider.node = node;
+        const taut_result made = make_collider(check, world, kind, *def, collider);
+        if (made != TAUT_OK) return made;
+        if (!check.require(world.colliders.ids.slots() < kMaxSlots, "too many colliders", TAUT_LIMIT))
+            return check.result();
+        *out = world.collider_handle(add_collider(world, collider));
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_remove(taut_collider handle) {
+    Check check(__func__);
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
+        remove_collider(world, collider);
+        return TAUT_OK;
+    });
+}
+
+int32_t taut_collider_is_valid(taut_collider handle) { return is_valid(handle); }
+
+taut_result taut_body_get_colliders(taut_body handle, taut_collider* colliders, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        uint32_t needed = 0;
+        for_colliders(world.nodes, world.colliders, node, [&](uint32_t) { ++needed; });
+        *count = needed;
+        if (needed > capacity) {
+            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
+        }
+        if (needed > 0 && !check.pointer("colliders", colliders)) return check.result();
+        for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) { *colliders++ = world.collider_handle(c); });
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_mass_from_colliders(taut_body handle) {
+    Check check(__func__);
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        check.require(world.nodes.info[node].kind == NodeKind::dynamic, "body is not dynamic");
+        if (!check_own(check, world, node)) return check.result();
+        std::vector<Collider> colliders;
+        for_colliders(world.nodes, world.colliders, node,
+                      [&](uint32_t c) { colliders.push_back(world.colliders.record[c]); });
+        NodeMass& mass = world.nodes.mass[node];
+        NodeMass fresh = mass;
+        set_body_mass(check, world.shapes, colliders, fresh);
+        if (!check) return check.result();
+        shift_centre(world, node, world.nodes.motion[node].q * (fresh.centre - mass.centre));
+        mass = fresh;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_get_def(taut_collider handle, taut_collider_def* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
+        *out = def_of(world, world.colliders.record[collider]);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_get_body(taut_collider handle, taut_body* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
+        *out = world.body_handle(world.colliders.record[collider].node);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_get_user_data(taut_collider handle, uint64_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
+        *out = world.colliders.record[collider].user_data;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_user_data(taut_collider handle, uint64_t value) {
+    return with(__func__, handle, Use::write, [&](World& world, uint32_t collider) {
+        world.colliders.record[collider].user_data = value;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut_vec3 position, taut_quat rotation) {
+    Check check(__func__);
+    check.vector("position", position, kShapeCoordinate).rotation("rotation", rotation);
+    if (!check) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        Collider& collider = world.colliders.record[index];
+        if (!check_own(check, world, collider.node)) return check.result();
+        taut_collider_def def = def_of(world, collider);
+        def.shape = shape;
+        def.position = position;
+        def.rotation = rotation;
+        Collider changed = collider;
+        const taut_result made = make_collider(check, world, world.nodes.info[collider.node].kind, def, changed);
+        if (made != TAUT_OK) return made;
+        world.broadphase.update(index, contact_box(world.nodes, world.shapes, changed), Vec3f::Zero());
+        --world.shapes.record[collider.shape].users;
+        ++world.shapes.record[changed.shape].users;
+        collider = changed;
+        for (Pair& pair : world.pairs.list)
+            if (ends_on_collider(index)(pair)) pair.cache = {};
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_material(taut_collider handle, const taut_material* material) {
+    Check check(__func__);
+    if (!check.pointer("material", material)) return check.result();
+    if (!check_material(check, "friction", "restitution", *material)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        world.colliders.record[collider].material = *material;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_filter(taut_collider handle, const taut_filter* filter) {
+    Check check(__func__);
+    if (!check.pointer("filter", filter)) return check.result();
+    if (!check.zero("reserved", filter->reserved)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
+        forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));  // asked anew by the step
+        world.colliders.record[collider].filter = *filter;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_density(taut_collider handle, float density) {
+    Check check(__func__);
+    if (!check.zero_or("density", density, kDensity)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        world.colliders.record[collider].density = density;
+        return TAUT_OK;
+    });
+}

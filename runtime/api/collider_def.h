@@ -1,0 +1,17 @@
+// Colliders from their defs, as bodies, particles and the calls of collider.h make them.
+#pragma once
+
+#include "api/access.h"
+
+namespace taut {
+
+constexpr taut_material kDefaultMaterial{0.5f, 0};
+constexpr taut_filter kDefaultFilter{1, UINT64_MAX, 0, 0};
+
+Check& check_material(Check& check, const char* friction, const char* restitution, const taut_material& material);
+Check& check_collider_def(Check& check, const taut_collider_def& def);
+
+// The collider that a checked def asks for on a body of this kind, but for its node; its shape is looked up.
+taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def, Collider& out);
+
+}  // namespace taut
