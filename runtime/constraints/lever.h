@@ -13,14 +13,14 @@ namespace taut {
 inline Mat3 lever_stiffness(const Vec3& f, const Vec3& r, Curvature part) {
     const double fr = f.dot(r);
     if (part == Curvature::raw) return fr * Mat3::Identity() - r * f.transpose();
-    const double scale = f.norm() * r.norm();
+    const double size = f.norm(), arm = r.norm(), scale = size * arm;
     if (!(scale > 1e-30)) return Mat3::Zero();
-    const Vec3 fh = f.normalized(), rh = r.normalized();
+    const Vec3 fh = f * (1 / size), rh = r * (1 / arm);
     const Vec3 m = rh - fh, n = rh.cross(fh);
-    const double mm = m.norm(), nn = n.norm();
-    if (mm < 1e-4) return scale * (Mat3::Identity() - rh * rh.transpose());  // parallel: tension
-    if (nn < 1e-4) return Mat3::Zero();                                      // anti-parallel: compression
-    return 0.5 * (fr + scale) / (mm * mm) * m * m.transpose() + std::max(0.0, fr) / (nn * nn) * n * n.transpose();
+    const double mm = m.squaredNorm(), nn = n.squaredNorm();
+    if (mm < 1e-8) return scale * (Mat3::Identity() - rh * rh.transpose());  // parallel: tension
+    if (nn < 1e-8) return Mat3::Zero();                                      // anti-parallel: compression
+    return 0.5 * (fr + scale) / mm * m * m.transpose() + std::max(0.0, fr) / nn * n * n.transpose();
 }
 
 // Writes a 3x3 block of the [6 nodes][6 nodes] matrix k of a two-node constraint.

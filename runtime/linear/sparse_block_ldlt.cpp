@@ -24,6 +24,9 @@ SparseBlockLdlt::SparseBlockLdlt(Memory& memory)
       run_(memory),
       row_(memory),
       sign_(memory),
+      entry_(memory),
+      number_(memory),
+      kept_(memory),
       value_(memory),
       inverse_(memory),
       scratch_(memory),
@@ -53,6 +56,7 @@ void SparseBlockLdlt::analyse() {
     find_columns();
     find_panels();
     find_updates();
+    find_entries();
     analysed_ = true;
 }
 
@@ -188,27 +192,67 @@ void SparseBlockLdlt::find_updates() {
     }
 }
 
-void SparseBlockLdlt::clear() { std::fill(value_.begin(), value_.end(), 0.0); }
-
-void SparseBlockLdlt::add(uint32_t i, uint32_t j, const double* m, int rows, int columns, int ld, int row, int column) {
-    auto down = static_cast<size_t>(ld), right = size_t{1};
-    if (position_[i] < position_[j]) {  // what is stored is the mirrored block
-        std::swap(i, j);
-        std::swap(rows, columns);
-        std::swap(row, column);
-        std::swap(down, right);
+void SparseBlockLdlt::find_entries() {
+    Array<uint64_t> keys(links_.get_allocator());
+    for (uint64_t k = 0; k < unknowns(); ++k) keys.push_back(k << 32 | k);
+    for (uint64_t link : links_) {
+        const uint32_t i = position_[link >> 32], j = position_[static_cast<uint32_t>(link)];
+        keys.push_back(static_cast<uint64_t>(std::min(i, j)) << 32 | std::max(i, j));
     }
-    const uint32_t pivot = pivot_[position_[j]];
-    const Panel& p = panel_[panel_of_[pivot]];
-    const auto begin = row_.begin() + p.row_begin;
-    const auto at = static_cast<size_t>(std::lower_bound(begin, begin + p.rows, pivot_[position_[i]]) - begin);
-    double* block = &value_[p.value + (3 * (pivot - p.first) + static_cast<size_t>(column)) * p.ld() + 3 * at +
-                            static_cast<size_t>(row)];
-    auto sum = [&](int height) {  // a known height is unrolled
-        for (int c = 0; c < columns; ++c, block += p.ld(), m += right)
-            for (int r = 0; r < height; ++r) block[r] += m[static_cast<size_t>(r) * down];
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    entry_.clear();
+    uint32_t numbers = 0;
+    for (uint64_t key : keys) {
+        const uint32_t column = pivot_[key >> 32], row = pivot_[static_cast<uint32_t>(key)];
+        const Panel& p = panel_[panel_of_[column]];
+        const auto begin = row_.begin() + p.row_begin;
+        const auto at = static_cast<size_t>(std::lower_bound(begin, begin + p.rows, row) - begin);
+        const uint8_t columns = unknown_[order_[key >> 32]].size,
+                      rows = unknown_[order_[static_cast<uint32_t>(key)]].size;
+        entry_.push_back({key, p.value + 3 * (column - p.first) * p.ld() + 3 * at, static_cast<uint32_t>(p.ld()),
+                          numbers, rows, columns});
+        numbers += static_cast<uint32_t>(rows * columns);
+    }
+    number_.assign(numbers, 0);
+}
+
+BlockPlace SparseBlockLdlt::place(uint32_t i, uint32_t j) const {
+    const uint64_t from = position_[j], to = position_[i];
+    const uint64_t key = std::min(from, to) << 32 | std::max(from, to);
+    const auto at = std::lower_bound(entry_.begin(), entry_.end(), key,
+                                     [](const Entry& e, uint64_t wanted) { return e.key < wanted; });
+    return {at->begin, at->rows, to < from};
+}
+
+void SparseBlockLdlt::add(BlockPlace at, const BlockPiece& piece) {
+    const size_t height = at.height;
+    const auto row = static_cast<size_t>(piece.row), column = static_cast<size_t>(piece.column);
+    double* to = &number_[at.begin + (at.mirrored ? row * height + column : column * height + row)];
+    const size_t down = at.mirrored ? height : 1, right = at.mirrored ? 1 : height;
+    auto sum = [&](size_t columns) {  // a known width is unrolled
+        const double* m = piece.m;
+        for (int r = 0; r < piece.rows; ++r, m += piece.ld, to += down)
+            for (size_t c = 0; c < columns; ++c) to[c * right] += piece.weight * m[c];
     };
-    rows == 3 ? sum(3) : rows == 6 ? sum(6) : sum(rows);
+    piece.columns == 3 ? sum(3) : piece.columns == 6 ? sum(6) : sum(static_cast<size_t>(piece.columns));
+}
+
+// Entries to where they are eliminated, zeros to where L fills in.
+void SparseBlockLdlt::load() {
+    std::fill(value_.begin(), value_.end(), 0.0);
+    for (const Entry& e : entry_) {
+        const double* from = &number_[e.begin];
+        double* to = &value_[e.value];
+        for (int c = 0; c < e.columns; ++c, to += e.ld)
+            for (int t = 0; t < e.rows; t += 3, from += 3)
+                for (int r = 0; r < 3; ++r) to[t + r] = from[r];
+    }
+}
+
+bool SparseBlockLdlt::factor(const PanelKernels& kernels) {
+    load();
+    return kernels.factor(matrix());
 }
 
 PanelMatrix SparseBlockLdlt::matrix() const {
@@ -223,12 +267,15 @@ void SparseBlockLdlt::solve(double* x, const PanelKernels& kernels) const {
     auto triples_of = [&](uint32_t i, auto visit) {  // in x and in the order of elimination
         for (uint32_t t = 0; t < triples(i); ++t) visit(x + 6 * i + 3 * t, &work_[4 * (pivot_[position_[i]] + t)]);
     };
+    auto copy = [](const double* from, double* to) {
+        for (int r = 0; r < 3; ++r) to[r] = from[r];
+    };
     for (uint32_t i = 0; i < unknowns(); ++i)
-        triples_of(i, [](const double* outer, double* inner) { *std::copy_n(outer, 3, inner) = 0; });
+        triples_of(i, [&](const double* outer, double* inner) { copy(outer, inner), inner[3] = 0; });
     kernels.solve(matrix(), work_.data());
     for (uint32_t i = 0; i < unknowns(); ++i) {
         std::fill_n(x + 6 * i + 3, 3, 0.0);
-        triples_of(i, [](double* outer, const double* inner) { std::copy_n(inner, 3, outer); });
+        triples_of(i, [&](double* outer, const double* inner) { copy(inner, outer); });
     }
 }
 

@@ -5,11 +5,28 @@
 // that (Tournier et al. 2015, eq. 21, is such a matrix), so no other pivoting is needed.
 #pragma once
 
+#include <algorithm>
+
 #include "base/memory.h"
 #include "linear/elimination_order.h"
 #include "linear/panels.h"
 
 namespace taut {
+
+// Where block (i, j) is among the entries of a matrix; for i != j the mirrored block follows by symmetry.
+struct BlockPlace {
+    uint32_t begin = 0;     // of its numbers, column by column
+    uint8_t height = 0;     // of a column
+    bool mirrored = false;  // what is stored is block (j, i)
+};
+
+// rows x columns numbers, row-major, for the part of a block that begins at (row, column).
+struct BlockPiece {
+    const double* m;
+    int rows, columns, ld;
+    int row = 0, column = 0;
+    double weight = 1;
+};
 
 class SparseBlockLdlt {
 public:
@@ -24,13 +41,15 @@ public:
     bool analysed() const { return analysed_; }
     void forget() { analysed_ = false; }
 
-    // --- numeric
-    void clear();
-    // Adds rows x columns of m (row-major, leading dimension ld) into block (i, j) at (row, column); for i != j the
-    // mirrored block follows by symmetry, so give each pair once.
-    void add(uint32_t i, uint32_t j, const double* m, int rows, int columns, int ld, int row = 0, int column = 0);
+    BlockPlace place(uint32_t i, uint32_t j) const;  // of a block that was linked, or i = j
+
+    // --- numeric: entries stay as they are while the matrix is factored
+    void clear() { std::fill(number_.begin(), number_.end(), 0.0); }
+    void add(BlockPlace at, const BlockPiece& piece);  // give each pair of unknowns once
+    void keep() { kept_.assign(number_.begin(), number_.end()); }
+    void restore() { std::copy(kept_.begin(), kept_.end(), number_.begin()); }  // the entries last kept
     // False if a pivot is not of the sign that its kind demands or not finite.
-    bool factor(const PanelKernels& kernels = panel_kernels()) { return kernels.factor(matrix()); }
+    bool factor(const PanelKernels& kernels = panel_kernels());
     // x: 6 doubles an unknown (a block of 3 uses the first three), right-hand side in, solution out.
     void solve(double* x, const PanelKernels& kernels = panel_kernels()) const;
 
@@ -38,12 +57,21 @@ public:
     uint32_t blocks() const { return blocks_; }  // below the diagonal, fill included
 
 private:
+    struct Entry {     // a block of A
+        uint64_t key;  // earlier position << 32 | later one
+        size_t value;  // of its first number in the panels
+        uint32_t ld, begin;
+        uint8_t rows, columns;
+    };
+
     uint32_t triples(uint32_t i) const { return unknown_[i].size / 3u; }
     void find_parents();
     void sort_by_tree();
     void find_columns();
     void find_panels();
     void find_updates();
+    void find_entries();
+    void load();
     PanelMatrix matrix() const;
 
     bool analysed_ = false;
@@ -59,6 +87,8 @@ private:
     Array<PanelRun> run_;
     Array<uint32_t> row_;
     Array<double> sign_;
+    Array<Entry> entry_;           // ascending: in the order of the panels
+    Array<double> number_, kept_;  // of entries
     mutable Array<double> value_, inverse_, scratch_, work_;
 };
 

@@ -244,6 +244,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
         Block& old = blocks[at];
         if (old.identity == block.identity) {
             std::swap(old.matrix, block.matrix);
+            std::swap(old.places, block.places);
             std::swap(old.solution, block.solution);
             std::swap(old.known, block.known);
             std::swap(old.force, block.force);

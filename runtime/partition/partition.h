@@ -27,7 +27,7 @@ struct BlockMemory {
 // What a direct solve takes together, with what it remembers over frames.
 struct Block {
     explicit Block(Memory& m)
-        : nodes(m), joints(m), pairs(m), links(m), identity(m), matrix(m), solution(m), known(m), force(m) {}
+        : nodes(m), joints(m), pairs(m), links(m), identity(m), matrix(m), places(m), solution(m), known(m), force(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
@@ -35,6 +35,7 @@ struct Block {
     Array<uint64_t> links;                 // pairs of its nodes that touch: smaller << 32 | larger
     Array<uint64_t> identity;              // of joints, nodes and links: the graph of the matrix
     SparseBlockLdlt matrix;                // unknowns: nodes, then joints
+    Array<BlockPlace> places;              // of its nodes and joints in the matrix; see solvers/block_matrix.cpp
     Array<double> solution, known, force;  // scratch of its solve
     bool tower = false;                    // no joints: bodies that stand on each other
     bool refused = false;                  // this substep's tower did not stand as one: its contacts were swept

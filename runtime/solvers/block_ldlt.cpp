@@ -1,7 +1,8 @@
 // Direct solve of blocks, with the contacts that touch them; all other contacts by coloured sweeps around it.
 //
-// K is formed from the force lambda of the last substep. Where a force grew by more than 30 % the block is solved
-// once more with K(old) + K(new), which is never too soft; a block's first substep is solved twice, with K(new).
+// K is formed from the force lambda of the last substep. Where the stiffness of a joint outgrew that by more than steps
+// bear, the block is solved once more with K(old) + K(new), which is never too soft; a block's first substep is solved
+// twice, with K(new).
 // A block that gains energy is solved without s and twice for a while: see energy_guard.cpp.
 #include <algorithm>
 

@@ -37,21 +37,28 @@ private:
     int size_of(uint32_t i) const { return s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6; }
     bool looped() const;
 
-    bool factor_rounds(bool with_new);
-    void assemble(bool with_new);
+    // block_matrix.cpp
+    void find_places();
+    BlockPlace& place(uint32_t j, uint32_t which);
+    void assemble(bool with_old);
+    void add_new_stiffness();
     void add_mass(uint32_t i);
-    Vec3 line_turn(const RowBlock& block, const Line& line) const;
-    void slow_velocities(const RowBlock& block, const Pose* poses, const uint32_t* at, double* slow) const;
-    void filter_lines();
-    void add_stiffness(const RowBlock& block, const double* force);
+    void stiffness_of(const RowBlock& block, const double* force, double* k) const;
+    void add_stiffness(uint32_t j, const double* force);
     void add_joint(uint32_t j);
     void add_bounded();
     double loop_compliance(const RowBlock& block, int r) const;
+
+    // block_solve.cpp
+    Vec3 line_turn(const RowBlock& block, const Line& line) const;
+    void slow_velocities(const RowBlock& block, double* slow) const;
+    void filter_lines();
+    bool factor_rounds();
     void right_hand_side();
     void solve_known();
     void take_solution();
     void take_forces();
-    bool stiff(const RowBlock& block, const double* force) const;
+    bool outgrown(const RowBlock& block, const double* force) const;
     bool force_grew() const;
 
     double* node_known(uint32_t i) { return &b_.known[i * kDof]; }

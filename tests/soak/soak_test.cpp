@@ -94,7 +94,7 @@ void run_main(int frames) {
     }
     const double p99 = figures.report("main");
     EXPECT_EQ(figures.quarantined, 0u);
-    EXPECT_LE(figures.joint_error, 0.008);
+    EXPECT_LE(figures.joint_error, 0.005);
     if (kTimed) {
         EXPECT_LT(p99, kBudget);
     }

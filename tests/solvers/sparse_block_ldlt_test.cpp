@@ -17,6 +17,10 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+BlockPiece piece(const RowMajor& m) {
+    return {m.data(), static_cast<int>(m.rows()), static_cast<int>(m.cols()), static_cast<int>(m.cols())};
+}
+
 // [H J^T; J -c I] by blocks.
 struct Problem {
     struct Unknown {
@@ -74,9 +78,7 @@ struct Problem {
         for (uint32_t i = 0; i < unknown.size(); ++i) matrix.set_unknown(i, unknown[i].size, unknown[i].multiplier);
         for (const auto& [at, m] : block) matrix.link(at.first, at.second);
         matrix.analyse();
-        Array<double> x(6 * unknown.size(), 0.0, memory);
-        for (size_t i = 0, row = 0; i < unknown.size(); ++i)
-            for (int k = 0; k < unknown[i].size; ++k) x[6 * i + static_cast<size_t>(k)] = b[static_cast<long>(row++)];
+        Array<double> x = by_blocks(b);
         fill(matrix);
         done = matrix.factor();
         if (done) matrix.solve(x.data());
@@ -84,9 +86,19 @@ struct Problem {
     }
     void fill(SparseBlockLdlt& matrix) const {
         matrix.clear();
-        for (const auto& [at, m] : block)
-            matrix.add(at.first, at.second, m.data(), static_cast<int>(m.rows()), static_cast<int>(m.cols()),
-                       static_cast<int>(m.cols()));
+        for (const auto& [at, m] : block) matrix.add(matrix.place(at.first, at.second), piece(m));
+    }
+
+    Array<double> by_blocks(const Vector& v) {
+        Array<double> x(6 * unknown.size(), 0.0, memory);
+        for (size_t i = 0, row = 0; i < unknown.size(); ++i)
+            for (int k = 0; k < unknown[i].size; ++k) x[6 * i + static_cast<size_t>(k)] = v[static_cast<long>(row++)];
+        return x;
+    }
+    void expect_solution(const SparseBlockLdlt& matrix, const Vector& b, const Array<double>& expected) {
+        Array<double> x = by_blocks(b);
+        matrix.solve(x.data());
+        for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], expected[i], 1e-12 * (1 + std::abs(expected[i])));
     }
 
     std::vector<long> offsets() const {
@@ -274,16 +286,19 @@ TEST(SparseBlockLdlt, FactorsAgainAfterTheNumbersChanged) {
         const RowMajor mirrored = 2 * m.transpose();  // twice the matrix, by the other triangle
         for (int r = 0; r < m.cols(); r += 3)
             for (int k = 0; k < m.rows(); k += 3)
-                matrix.add(at.second, at.first, mirrored.data() + r * m.rows() + k, 3, 3, static_cast<int>(m.rows()), r,
-                           k);
+                matrix.add(matrix.place(at.second, at.first),
+                           {mirrored.data() + r * m.rows() + k, 3, 3, static_cast<int>(m.rows()), r, k});
     }
     ASSERT_TRUE(matrix.factor());
-    Array<double> x(once.size(), 0.0, p.memory);
-    for (size_t i = 0, row = 0; i < p.unknown.size(); ++i)
-        for (int k = 0; k < p.unknown[i].size; ++k)
-            x[6 * i + static_cast<size_t>(k)] = 2 * rhs[static_cast<long>(row++)];
-    matrix.solve(x.data());
-    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], once[i], 1e-12 * (1 + std::abs(once[i])));
+    p.expect_solution(matrix, 2 * rhs, once);
+
+    matrix.keep();
+    const RowMajor heavier = RowMajor::Identity(6, 6);
+    matrix.add(matrix.place(a, a), {heavier.data(), 6, 6, 6, 0, 0, 1e3});
+    ASSERT_TRUE(matrix.factor());
+    matrix.restore();
+    ASSERT_TRUE(matrix.factor());
+    p.expect_solution(matrix, 2 * rhs, once);
 }
 
 TEST(SparseBlockLdlt, RefusesPivotsOfTheWrongSign) {

@@ -1,0 +1,210 @@
+// The numbers of a block's matrix: masses, joints and stiffness into its entries, bounded rows on top of them.
+#include <algorithm>
+
+#include "solvers/block_solve.h"
+
+namespace taut {
+namespace {
+
+constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
+
+// Block::places: diagonals of the nodes, then so many of each joint, those that its type has.
+constexpr uint32_t kPairs = kMaxNodes * (kMaxNodes - 1) / 2, kPlaces = 1 + kMaxNodes + kPairs;
+constexpr uint32_t kDiagonal = 0, kJacobian = 1, kCoupling = 1 + kMaxNodes;
+
+uint32_t coupling(int n, int m) { return kCoupling + static_cast<uint32_t>(n * (n - 1) / 2 + m); }  // m < n
+
+int locked_rows(const RowBlock& block) {
+    int count = 0;
+    for (int r = 0; r < block.type->rows; ++r) count += block.locked(r);
+    return count;
+}
+
+// sum += w a^T b, 6 x 6.
+void add_product(const double* a, const double* b, double w, double* sum) {
+    for (int r = 0; r < kDof; ++r) {
+        const double scaled = w * a[r];
+        for (int c = 0; c < kDof; ++c) sum[r * kDof + c] += scaled * b[c];
+    }
+}
+
+}  // namespace
+
+void BlockSolve::analyse() {
+    SparseBlockLdlt& matrix = b_.matrix;
+    if (matrix.analysed()) return;
+    matrix.begin(nodes_ + joints());
+    for (uint32_t i = 0; i < nodes_; ++i) matrix.set_unknown(i, size_of(i), false);
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const ConstraintType& type = *row(j).type;
+        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, locked_rows(row(j)));
+        for (int n = 0; n < type.nodes; ++n) {
+            const uint32_t i = local(row(j).node[n]);
+            if (i == kNone) continue;
+            matrix.link(nodes_ + j, i);
+            for (int m = 0; m < n && (type.couples_nodes || row(j).axis); ++m) {
+                const uint32_t k = local(row(j).node[m]);
+                if (k != kNone) matrix.link(i, k);
+            }
+        }
+    }
+    for (uint64_t link : b_.links)
+        matrix.link(local(static_cast<uint32_t>(link >> 32) + 1), local(static_cast<uint32_t>(link) + 1));
+    b_.solution.resize((nodes_ + joints()) * kDof);
+    b_.known.resize(nodes_ * kDof);
+    b_.force.resize(joints() * kMaxRows);
+    matrix.analyse();
+    find_places();
+    b_.looped = looped();
+}
+
+// More joints than a tree on the nodes (and the ground, where something is held) can have.
+bool BlockSolve::looped() const {
+    bool held = false;
+    for (uint32_t j = 0; j < joints(); ++j)
+        for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;
+    return joints() + 1 > nodes_ + (held ? 1u : 0u);
+}
+
+BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[nodes_ + j * kPlaces + which]; }
+
+void BlockSolve::find_places() {
+    b_.places.assign(nodes_ + joints() * kPlaces, {});
+    for (uint32_t i = 0; i < nodes_; ++i) b_.places[i] = b_.matrix.place(i, i);
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const RowBlock& block = row(j);
+        place(j, kDiagonal) = b_.matrix.place(nodes_ + j, nodes_ + j);
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const uint32_t i = local(block.node[n]);
+            if (i == kNone) continue;
+            place(j, kJacobian + static_cast<uint32_t>(n)) = b_.matrix.place(nodes_ + j, i);
+            for (int m = 0; m < n && block.type->couples_nodes; ++m) {
+                const uint32_t k = local(block.node[m]);
+                if (k != kNone) place(j, coupling(n, m)) = b_.matrix.place(i, k);
+            }
+        }
+    }
+}
+
+void BlockSolve::add_mass(uint32_t i) {
+    const uint32_t node = b_.nodes[i];
+    const double mass = s_.nodes.mass[node].mass;
+    const double diagonal[9] = {mass, 0, 0, 0, mass, 0, 0, 0, mass};
+    b_.matrix.add(b_.places[i], {diagonal, 3, 3, 3});
+    if (size_of(i) == 6) b_.matrix.add(b_.places[i], {sys_.inertia[node + 1].data(), 3, 3, 3, 3, 3});
+}
+
+// K of a joint's force at this substep's poses: (6 nodes) x (6 nodes).
+void BlockSolve::stiffness_of(const RowBlock& block, const double* force, double* k) const {
+    Pose poses[kMaxNodes];
+    for (int n = 0; n < block.type->nodes; ++n) poses[n] = sys_.pose[block.node[n]];
+    block.type->stiffness(block.data, poses, force, Curvature::positive, k);
+}
+
+// h^2 K into the matrix and h^2 K s onto the known side. A translation of all nodes changes no force, so K of a type
+// that does not couple them is of their rotations only.
+void BlockSolve::add_stiffness(uint32_t j, const double* force) {
+    const RowBlock& block = row(j);
+    const ConstraintType& type = *block.type;
+    const int width = kDof * type.nodes, first = type.couples_nodes ? 0 : 3;
+    const double hh = sys_.h * sys_.h;
+    double k[kDof * kMaxNodes * kDof * kMaxNodes], slow[kDof * kMaxNodes] = {};
+    stiffness_of(block, force, k);
+    const bool spare = s_.settings.velocity_filter > 0 && b_.memory.guard_left == 0;
+    if (spare) slow_velocities(block, slow);
+    for (int n = 0; n < type.nodes; ++n) {
+        const uint32_t to = local(block.node[n]);
+        if (to == kNone) continue;
+        for (int m = 0; m < type.nodes; ++m) {
+            const uint32_t from = local(block.node[m]);
+            if (from == kNone || (m != n && !type.couples_nodes)) continue;
+            const double* part = k + (kDof * n + first) * width + kDof * m + first;
+            const int rows = size_of(to) - first, columns = size_of(from) - first;
+            for (int r = 0; spare && r < rows; ++r) {
+                double sum = 0;
+                for (int c = 0; c < columns; ++c) sum += part[r * width + c] * slow[kDof * m + first + c];
+                node_known(to)[first + r] += hh * sum;
+            }
+            if (m <= n)
+                b_.matrix.add(m == n ? b_.places[to] : place(j, coupling(n, m)),
+                              {part, rows, columns, width, first, first, hh});
+        }
+    }
+}
+
+double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
+    double k = 0;
+    const double* j = &sys_.rows.jacobian[block.jacobian] + r * kDof;
+    for (int n = 0; n < block.type->nodes; ++n, j += block.type->rows * kDof)
+        if (local(block.node[n]) != kNone) k += inverse_mass_along(sys_.inverse_mass[block.node[n]], j);
+    return kLoopCompliance * k;
+}
+
+// The locked rows; the place of every other row is taken by mu = 0.
+void BlockSolve::add_joint(uint32_t j) {
+    const RowBlock& block = row(j);
+    const int rows = block.type->rows, padded = rows > 3 ? 6 : 3;
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t i = local(block.node[n]);
+        if (i == kNone) continue;
+        const double* jacobian = jacobian_of(sys_, block, n).data();
+        for (int begin = 0, end; begin < rows; begin = end + 1) {  // locked rows that follow each other
+            for (end = begin; end < rows && block.locked(end);) ++end;
+            if (end == begin) continue;
+            b_.matrix.add(place(j, kJacobian + static_cast<uint32_t>(n)),
+                          {jacobian + begin * kDof, end - begin, size_of(i), kDof, begin, 0, -1});
+        }
+    }
+    const RowMatrix c = compliance_of(block, sys_.h);
+    double diagonal[kMaxRows * kMaxRows] = {};
+    for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = -1;
+    for (int r = 0; r < rows; ++r) {
+        if (!block.locked(r)) continue;
+        for (int k = 0; k < rows; ++k) diagonal[r * padded + k] = -c(r, k);
+        if (b_.looped) diagonal[r * padded + r] = -std::max(c(r, r), loop_compliance(block, r));
+    }
+    b_.matrix.add(place(j, kDiagonal), {diagonal, padded, padded, padded});
+}
+
+// B^T B / c of the rows that are on; rows on the same nodes follow each other and go into the matrix together.
+void BlockSolve::add_bounded() {
+    const auto rows = set.rows();
+    for (size_t i = 0; i < rows.size();) {
+        const BoundedRow& first = rows[i];
+        double sum[kMaxNodes][kMaxNodes][kDof * kDof] = {};
+        bool any = false;
+        for (; i < rows.size() && std::equal(first.place, first.place + kMaxNodes, rows[i].place); ++i) {
+            const BoundedRow& row = rows[i];
+            if (!row.on || row.at_limit != 0) continue;
+            any = true;
+            for (int n = 0; n < row.nodes; ++n)
+                for (int m = 0; m <= n; ++m)
+                    if (row.place[n] != kNone && row.place[m] != kNone)
+                        add_product(row.jacobian + static_cast<size_t>(n) * row.stride,
+                                    row.jacobian + static_cast<size_t>(m) * row.stride, 1 / row.c, sum[n][m]);
+        }
+        for (int n = 0; any && n < first.nodes; ++n)
+            for (int m = 0; m <= n; ++m)
+                if (first.place[n] != kNone && first.place[m] != kNone)
+                    b_.matrix.add(b_.matrix.place(first.place[n], first.place[m]),
+                                  {sum[n][m], size_of(first.place[n]), size_of(first.place[m]), kDof});
+    }
+}
+
+// All but the bounded rows; K of the last substep's forces if with_old.
+void BlockSolve::assemble(bool with_old) {
+    b_.matrix.clear();
+    std::fill(b_.known.begin(), b_.known.end(), 0.0);
+    for (uint32_t i = 0; i < nodes_; ++i) add_mass(i);
+    for (uint32_t j = 0; j < joints(); ++j) {
+        const bool meant = !row(j).fresh || b_.memory.solved > 0;
+        if (with_old && meant) add_stiffness(j, row(j).force);
+        add_joint(j);
+    }
+}
+
+void BlockSolve::add_new_stiffness() {
+    for (uint32_t j = 0; j < joints(); ++j) add_stiffness(j, joint_force(j));
+}
+
+}  // namespace taut
