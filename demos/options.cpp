@@ -50,8 +50,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--size", size, "picture size, WxH (default: 1280x720)");
     app.add_option("--video", options.video, "film, made by ffmpeg");
     app.add_option("--json", options.json, "also write the figures to this file");
-    app.add_option("--threads", options.threads, "worker threads (this version steps on one)")
-        ->check(CLI::Range(1, 256));
+    app.add_option("--threads", options.threads, "threads of a step")->check(CLI::Range(1, 64));
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_option("--mesh", options.mesh, "OBJ file of the scene mesh_drop");
     CLI::Option* substeps_flag =

@@ -20,10 +20,10 @@ void remember_poses(Nodes& nodes) {
 }
 
 void detect(World& w, Stopwatch& watch) {
-    update_bounds(w.nodes, w.colliders, w.shapes, w.broadphase, w.def.time_step);
+    update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     update_pairs(w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
     w.profile.broadphase_us = watch.lap();
-    find_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+    find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     w.profile.narrowphase_us = watch.lap();
 }
 
@@ -35,7 +35,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
     const double frame = w.def.time_step;
     system.h = frame / group.substeps;
     build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
-    if (solver.wide_contacts) build_lanes(system, group, w.pairs, w.nodes, *settings.kernels);
+    if (solver.wide_contacts) build_lanes(w.team, system, group, w.pairs, w.nodes, *settings.kernels);
     w.profile.predict_us += watch.lap();
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
@@ -43,17 +43,17 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         if (i > 0)
             find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
-        predict(system, group, w.nodes, gravity);
+        predict(w.team, system, group, w.nodes, gravity);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         w.profile.predict_us += watch.lap();
         evaluate_rows(system, 1 - (i + 1.0) / group.substeps, frame);
         w.profile.assemble_us += watch.lap();
-        Substep substep{system,   group,  w.partition.blocks, w.nodes,
-                        settings, report, w.scratch,          i + 1 == group.substeps};
+        Substep substep{w.team,   system, group,     w.partition.blocks,     w.nodes,
+                        settings, report, w.scratch, i + 1 == group.substeps};
         solver.solve(substep);
         if (substep.last) report.residual = std::max(report.residual, row_residual(system));
         w.profile.sweep_us += watch.lap();
-        commit(system, group, w.nodes);
+        commit(w.team, system, group, w.nodes);
         shift_kinematic(system, w.nodes, (i + 1) * system.h);
         if (solver.settle) {
             solver.settle(substep);
@@ -62,11 +62,11 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         w.profile.commit_us += watch.lap();
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();
-        store_velocity(system, group, w.nodes, settings.velocity_filter);
+        store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
         store_contact_rows(system);
         w.profile.commit_us += watch.lap();
     }
-    if (solver.wide_contacts) store_lanes(system, w.pairs);
+    if (solver.wide_contacts) store_lanes(w.team, system, w.pairs);
 }
 
 void solve(World& w, Stopwatch& watch) {
@@ -83,8 +83,8 @@ void solve(World& w, Stopwatch& watch) {
         w.profile.substeps = std::max(w.profile.substeps, group.substeps);
     }
     for (uint32_t i = 0; i < w.partition.group_count; ++i) quarantine(w.nodes, w.partition.groups[i].nodes, w.frozen);
-    if (report.failures > 0)
-        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", report.failures);
+    if (const uint32_t failures = report.failures; failures > 0)
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (!w.frozen.empty()) {
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%zu bodies quarantined: their motion was not finite", w.frozen.size());
         drop_bad_impulses(w.pairs, w.joints);
@@ -104,6 +104,7 @@ void solve(World& w, Stopwatch& watch) {
 
 void step(World& w) {
     Stopwatch whole, watch;
+    const RestAfter rest(w.team);
     const uint64_t calls = w.memory.calls();
     w.profile = {};
     w.profile.struct_size = sizeof(taut_profile);

@@ -5,6 +5,7 @@ namespace taut {
 World::World(const taut_world_def& checked_def, uint32_t world_id)
     : memory(checked_def.hooks),
       def(checked_def),
+      team(checked_def.hooks, checked_def.threads + checked_def.hooks.worker_count),
       id(world_id),
       nodes(memory),
       shapes(memory),

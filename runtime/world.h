@@ -14,6 +14,7 @@
 #include "state/pairs.h"
 #include "state/shapes.h"
 #include "system/system.h"
+#include "threads/team.h"
 
 namespace taut {
 
@@ -22,6 +23,7 @@ struct World {
 
     Memory memory;       // first: everything below allocates from it
     taut_world_def def;  // as checked at creation; gravity may change
+    Team team;           // that works on its steps
     uint32_t id = 0;     // slot and generation of the handle, 20 bits; the table in api/access.cpp holds its lock
 
     // state: lives across frames

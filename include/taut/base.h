@@ -102,18 +102,22 @@ typedef void* (*taut_allocate_fn)(size_t size, size_t alignment, void* user_data
 /** Frees what taut_allocate_fn returned, with the same size and alignment. */
 typedef void (*taut_free_fn)(void* pointer, size_t size, size_t alignment, void* user_data);
 
-/** One unit of a task: runs the half-open index range [begin, end) as worker number worker. */
+/** Helps with a step until it ends; returns at once where there is nothing to do. The range does not matter. */
 typedef void (*taut_task_fn)(uint32_t begin, uint32_t end, uint32_t worker, void* task_data);
-/** Hands task(range) over [0, count) to the host's workers in ranges of at least grain; returns a token for finish. */
+/**
+ * Hands task(range) over [0, count) to the host's workers in ranges of at least grain; returns a token for finish.
+ * Called at most once a step, on the thread that steps, when there is work to share. A worker that starts late or never
+ * delays nothing but itself: the stepping thread does what nobody takes.
+ */
 typedef void* (*taut_enqueue_task_fn)(taut_task_fn task, uint32_t count, uint32_t grain, void* task_data,
                                       void* user_data);
-/** Waits until every range of the token has run. */
+/** Waits until every range of the token has run, at the end of the step. */
 typedef void (*taut_finish_task_fn)(void* token, void* user_data);
 
 /**
- * Host hooks of one world. Any pair may be null: log lines are dropped, memory comes from the C runtime,
- * the step runs on the calling thread. The task hooks are declared for a host's task system; this version
- * steps on the calling thread and never calls them.
+ * Host hooks of one world. Any pair may be null: log lines are dropped, memory comes from the C runtime, the step runs
+ * on the calling thread and on those that the world's def asks for. Memory and log hooks are called on the thread that
+ * calls the API.
  */
 typedef struct taut_hooks {
     taut_log_fn log;
@@ -124,8 +128,8 @@ typedef struct taut_hooks {
     taut_enqueue_task_fn enqueue_task; /**< enqueue_task and finish_task: both or neither */
     taut_finish_task_fn finish_task;
     void* task_user_data;
-    uint32_t worker_count; /**< workers of the host's task system, 0 without one */
-    uint32_t reserved;
+    uint32_t worker_count; /**< workers of the host's task system that may help, [0, 63]; 0 without one */
+    uint32_t reserved;     /**< zero */
 } taut_hooks;
 
 #ifdef __cplusplus

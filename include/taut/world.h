@@ -37,7 +37,9 @@ typedef struct taut_world_def {
     float velocity_filter;        /**< low-pass factor of the velocity that geometric stiffness spares, [0, 1]; 0: plain
                                        implicit Euler damping (Tournier 2015). Default 0.25 */
     uint32_t max_catch_up;        /**< most steps in one taut_world_advance, [1, 1000]. Default 4 */
-    uint32_t reserved;            /**< zero */
+    uint32_t threads;             /**< that work on a step, the calling one included, [1, 64]: above 1 the world starts
+                                       its own, which sleep between steps. With task hooks the host's workers help
+                                       instead, and it stays 1. Results do not depend on it. Default 1 */
     taut_hooks hooks;             /**< default: none */
 } taut_world_def;
 

@@ -12,6 +12,7 @@ namespace {
 // Share of a step by which advance may be early: a host that adds 1.0 / 60 to a step of 1 / 60 in single precision
 // gets a step each frame.
 constexpr double kEarly = 1e-3;
+constexpr uint32_t kMaxThreads = 64;
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
     check.require(!hooks.allocate == !hooks.free,
@@ -19,7 +20,8 @@ Check& check_hooks(Check& check, const taut_hooks& hooks) {
     check.require(!hooks.enqueue_task == !hooks.finish_task,
                   "hooks.enqueue_task and hooks.finish_task: one is null, expected both or neither");
     if (!hooks.enqueue_task) check.zero("hooks.worker_count", hooks.worker_count);
-    return check.zero("hooks.reserved", hooks.reserved);
+    return check.count("hooks.worker_count", hooks.worker_count, 0, kMaxThreads - 1)
+        .zero("hooks.reserved", hooks.reserved);
 }
 
 Check& check_def(Check& check, const taut_world_def& def) {
@@ -33,7 +35,7 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .boolean("geometric_stiffness", def.geometric_stiffness)
         .number("velocity_filter", def.velocity_filter, kUnitInterval)
         .count("max_catch_up", def.max_catch_up, 1, 1000)
-        .zero("reserved", def.reserved);
+        .count("threads", def.threads, 1, def.hooks.enqueue_task ? 1 : kMaxThreads);
     return check_hooks(check, def.hooks);
 }
 
@@ -51,6 +53,7 @@ void taut_world_def_init(taut_world_def* def) {
     def->geometric_stiffness = 1;
     def->velocity_filter = 0.25f;
     def->max_catch_up = 4;
+    def->threads = 1;
 }
 
 taut_result taut_world_create(const taut_world_def* def, taut_world* out) {

@@ -9,6 +9,7 @@ namespace {
 constexpr float kSamePoint = 0.02f;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
+constexpr uint32_t kGrain = 64;  // colliders or pairs that a thread takes at a time
 
 bool filters_agree(const taut_filter& a, const taut_filter& b) {
     if (a.group != 0 && a.group == b.group) return a.group > 0;
@@ -121,19 +122,28 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
     return box;
 }
 
-void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step) {
-    for (uint32_t c = 0; c < colliders.record.size(); ++c) {
-        const Collider& collider = colliders.record[c];
-        if (collider.node == kNone || nodes.info[collider.node].kind == NodeKind::fixed) continue;
-        collision::Box box = contact_box(nodes, shapes, collider);
-        Vec3f reach = (time_step * nodes.motion[collider.node].v).cast<float>();
-        const float length = reach.norm();
-        if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
-        box.lo += reach.cwiseMin(0.0f);
-        box.hi += reach.cwiseMax(0.0f);
-        broadphase.update(c, box, reach);
-    }
+    const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
+    const auto moves = [&](const Collider& collider) {
+        return collider.node != kNone && nodes.info[collider.node].kind != NodeKind::fixed;
+    };
+    pairs.reach.resize(slots);
+    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c) {
+            const Collider& collider = colliders.record[c];
+            if (!moves(collider)) continue;
+            collision::Box box = contact_box(nodes, shapes, collider);
+            Vec3f ahead = (time_step * nodes.motion[collider.node].v).cast<float>();
+            const float length = ahead.norm();
+            if (length > kMaxReach) ahead *= static_cast<float>(kMaxReach) / length;
+            box.lo += ahead.cwiseMin(0.0f);
+            box.hi += ahead.cwiseMax(0.0f);
+            pairs.reach[c] = {box, ahead};
+        }
+    });
+    for (uint32_t c = 0; c < slots; ++c)
+        if (moves(colliders.record[c])) broadphase.update(c, pairs.reach[c].box, pairs.reach[c].ahead);
 }
 
 void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
@@ -175,16 +185,22 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
     }
 }
 
-void find_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    double time_step) {
-    pairs.placement.resize(colliders.record.size());
-    for (uint32_t c = 0; c < colliders.record.size(); ++c)
-        if (colliders.record[c].node != kNone) pairs.placement[c] = placement_of(nodes, colliders.record[c]);
+    const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
+    pairs.placement.resize(slots);
+    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c)
+            if (colliders.record[c].node != kNone) pairs.placement[c] = placement_of(nodes, colliders.record[c]);
+    });
+    team.for_ranges(static_cast<uint32_t>(pairs.list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i)
+            if (!pairs.list[i].filtered) find_points(nodes, colliders, shapes, pairs, pairs.list[i], time_step);
+    });
     pairs.active.clear();
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         Pair& pair = pairs.list[i];
         if (pair.filtered) continue;
-        find_points(nodes, colliders, shapes, pairs, pair, time_step);
         if (pair.manifold.count == 0) {
             if (pair.touching) report_end(pairs, nodes, colliders, pair);
             pair.touching = false;

@@ -8,6 +8,7 @@
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
+#include "threads/team.h"
 
 namespace taut {
 
@@ -17,7 +18,7 @@ collision::Placement placement_of(const Nodes& nodes, const Collider& collider, 
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider);
 
 // Tight boxes reaching as far as the nodes move in a frame, into the broadphase.
-void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step);
 
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
@@ -25,7 +26,7 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
                   collision::Broadphase& broadphase, Pairs& pairs);
 
 // Manifolds of all pairs at the present poses; impulses follow their features.
-void find_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    double time_step);
 
 // The same within a frame, `elapsed` after its start, for some of Pairs::active: those of blocks, whose light links

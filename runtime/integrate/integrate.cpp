@@ -64,6 +64,15 @@ void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const
     set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
 }
 
+constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
+
+template <class Act>
+void for_nodes(Team& team, const Array<uint32_t>& list, Act&& act) {
+    team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) act(list[i]);
+    });
+}
+
 }  // namespace
 
 void begin_frame(System& system, const Nodes& nodes) {
@@ -94,9 +103,9 @@ void begin_frame(System& system, const Nodes& nodes) {
     }
 }
 
-void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
+void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
     const double h = system.h;
-    for (uint32_t node : group.nodes) {
+    for_nodes(team, group.nodes, [&](uint32_t node) {
         const NodeMotion& m = nodes.motion[node];
         const NodeMass& mass = nodes.mass[node];
         const NodeLoad& load = nodes.load[node];
@@ -121,14 +130,14 @@ void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravi
         system.start[node + 1] = {m.v, m.w};
         system.exact[node + 1] = u;
         set_sweep_velocity(system.velocity[node + 1], u.v, u.w);
-    }
+    });
 }
 
-void commit(System& system, const Group& group, Nodes& nodes) {
-    for (uint32_t node : group.nodes) {
+void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
+    for_nodes(team, group.nodes, [&](uint32_t node) {
         const Velocity& u = system.exact[node + 1];
         displace(system, nodes, node, system.h * u.v, system.h * u.w);
-    }
+    });
 }
 
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
@@ -139,8 +148,8 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
     }
 }
 
-void store_velocity(const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
-    for (uint32_t node : group.nodes) {
+void store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+    for_nodes(team, group.nodes, [&](uint32_t node) {
         NodeMotion& m = nodes.motion[node];
         const Velocity& u = system.exact[node + 1];
         m.v = u.v;
@@ -148,7 +157,7 @@ void store_velocity(const System& system, const Group& group, Nodes& nodes, doub
         const double kappa = system.in_block[node + 1] ? velocity_filter : 1.0;
         m.slow_v += kappa * (u.v - m.slow_v);
         m.slow_w += kappa * (u.w - m.slow_w);
-    }
+    });
 }
 
 void shift_kinematic(System& system, const Nodes& nodes, double time) {

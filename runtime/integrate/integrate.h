@@ -3,6 +3,7 @@
 
 #include "partition/partition.h"
 #include "system/system.h"
+#include "threads/team.h"
 
 namespace taut {
 
@@ -10,16 +11,16 @@ namespace taut {
 void begin_frame(System& system, const Nodes& nodes);
 
 // v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
-void predict(System& system, const Group& group, Nodes& nodes, const Vec3& gravity);
+void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity);
 
 // x += h v, q = exp(h w) q; what the contacts' anchors need to follow.
-void commit(System& system, const Group& group, Nodes& nodes);
+void commit(Team& team, System& system, const Group& group, Nodes& nodes);
 
 // x += dx, q = exp(dq) q for nodes of blocks marked corrected.
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes);
 
 // The kept velocity back into the state; s += kappa (v - s) for nodes in blocks.
-void store_velocity(const System& system, const Group& group, Nodes& nodes, double velocity_filter);
+void store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter);
 
 // Kinematic nodes move at their own velocity: where they are after `time` of the frame, as the solvers see them ...
 void shift_kinematic(System& system, const Nodes& nodes, double time);

@@ -149,17 +149,39 @@ Range swept_rows(const Substep& s) {
     return swept;
 }
 
+// run(begin, end) over the lane groups of colour after colour. Those of one colour share no moving node, so that
+// threads may take them side by side; the overflow colour, the last, goes one by one.
+template <class Run>
+void for_colours(Substep& s, Run&& run) {
+    constexpr uint32_t kGrain = 16;  // lane groups, about 3 us
+    const ContactLanes& lanes = s.system.contacts;
+    const uint32_t all = static_cast<uint32_t>(lanes.group.size());
+    if (s.team.size() == 1 || all < 2 * kGrain) {
+        run(0u, all);
+        return;
+    }
+    for (uint32_t c = 0; c + 1 < kMaxColours; ++c) {
+        const uint32_t first = lanes.colour_begin[c], count = lanes.colour_begin[c + 1] - first;
+        s.team.for_ranges(count, kGrain, [&](uint32_t begin, uint32_t end) { run(first + begin, first + end); });
+    }
+    if (lanes.colour_begin[kMaxColours - 1] < all) run(lanes.colour_begin[kMaxColours - 1], all);
+}
+
 // What the sweeps changed becomes part of the solution, except where a direct solve owns it.
 void publish(Substep& s) {
-    for (uint32_t node : s.group.nodes) {
-        if (s.system.in_block[node + 1]) continue;
-        const SweepVelocity& u = s.system.velocity[node + 1];
-        Velocity& exact = s.system.exact[node + 1];
-        for (int k = 0; k < 3; ++k) {
-            exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
-            exact.w[k] += static_cast<double>(u.w[k] - static_cast<float>(exact.w[k]));
+    constexpr uint32_t kGrain = 256;  // nodes
+    s.team.for_ranges(static_cast<uint32_t>(s.group.nodes.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const uint32_t node = s.group.nodes[i];
+            if (s.system.in_block[node + 1]) continue;
+            const SweepVelocity& u = s.system.velocity[node + 1];
+            Velocity& exact = s.system.exact[node + 1];
+            for (int k = 0; k < 3; ++k) {
+                exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
+                exact.w[k] += static_cast<double>(u.w[k] - static_cast<float>(exact.w[k]));
+            }
         }
-    }
+    });
 }
 
 void store_forces(Substep& s, Range range) {
@@ -201,8 +223,10 @@ void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
 
 void warm_start_sweeps(Substep& s) {
     ContactLanes& lanes = s.system.contacts;
-    s.settings.kernels->warm_start(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), s.system.velocity.data(),
-                                   s.system.inverse_mass.data());
+    for_colours(s, [&](uint32_t begin, uint32_t end) {
+        s.settings.kernels->warm_start(lanes.view(), begin, end, s.system.velocity.data(),
+                                       s.system.inverse_mass.data());
+    });
     const Range swept = swept_rows(s);
     warm_start_rows(s, swept.first, swept.count);
 }
@@ -214,9 +238,10 @@ void sweep_biased(Substep& s) {
     const Range swept = swept_rows(s);
     for (uint32_t i = 0; i < sweeps; ++i) {
         sweep_rows(s, swept.first, swept.count, true);
-        s.settings.kernels->sweep_biased(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
-                                         s.system.velocity.data(), s.system.inverse_mass.data(), s.system.shift.data(),
-                                         soft);
+        for_colours(s, [&](uint32_t begin, uint32_t end) {
+            s.settings.kernels->sweep_biased(lanes.view(), begin, end, s.system.velocity.data(),
+                                             s.system.inverse_mass.data(), s.system.shift.data(), soft);
+        });
     }
     publish(s);
 }
@@ -227,12 +252,16 @@ void sweep_relaxed(Substep& s) {
     const Range swept = swept_rows(s);
     for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
         sweep_rows(s, swept.first, swept.count, false);
-        s.settings.kernels->sweep_relaxed(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
-                                          s.system.velocity.data(), s.system.inverse_mass.data(), soft);
+        for_colours(s, [&](uint32_t begin, uint32_t end) {
+            s.settings.kernels->sweep_relaxed(lanes.view(), begin, end, s.system.velocity.data(),
+                                              s.system.inverse_mass.data(), soft);
+        });
     }
     if (s.last && lanes.bounces)
-        s.settings.kernels->restitute(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()),
-                                      s.system.velocity.data(), s.system.inverse_mass.data(), kBounceSpeed);
+        for_colours(s, [&](uint32_t begin, uint32_t end) {
+            s.settings.kernels->restitute(lanes.view(), begin, end, s.system.velocity.data(),
+                                          s.system.inverse_mass.data(), kBounceSpeed);
+        });
     store_forces(s, swept);
     publish(s);
 }

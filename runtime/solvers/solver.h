@@ -2,11 +2,13 @@
 // constraint type. Adding one is its file and one line in list.cpp.
 #pragma once
 
+#include <atomic>
 #include <span>
 
 #include "partition/partition.h"
 #include "solvers/bounded_row.h"
 #include "system/system.h"
+#include "threads/team.h"
 
 namespace taut {
 
@@ -19,7 +21,7 @@ struct SolverSettings {
 };
 
 struct SolverReport {
-    uint32_t solves = 0, resolves = 0, rounds = 0, guard_trips = 0, failures = 0, refusals = 0;
+    std::atomic<uint32_t> solves{0}, resolves{0}, rounds{0}, guard_trips{0}, failures{0}, refusals{0};
     float direct_us = 0;  // spent in direct solves
     double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
 };
@@ -36,6 +38,7 @@ struct SolverScratch {
 
 // One substep of one group.
 struct Substep {
+    Team& team;
     System& system;
     Group& group;
     Array<Block>& blocks;

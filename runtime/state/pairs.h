@@ -51,9 +51,21 @@ struct ActivePair {
     uint32_t points;
 };
 
+// Where a collider may be until the next frame.
+struct Reach {
+    collision::Box box;  // tight, grown by the contact margin and the motion [m]
+    Vec3f ahead;         // the motion [m]
+};
+
 struct Pairs {
     explicit Pairs(Memory& memory)
-        : list(memory), scratch(memory), active(memory), ended(memory), joined(memory), placement(memory) {}
+        : list(memory),
+          scratch(memory),
+          active(memory),
+          ended(memory),
+          joined(memory),
+          reach(memory),
+          placement(memory) {}
 
     Array<Pair> list;                       // sorted by key
     Array<Pair> scratch;                    // for the merge with the broadphase's list
@@ -62,6 +74,7 @@ struct Pairs {
     uint32_t world = 0;                     // id of the world, for the handles in ended
     Array<uint64_t> joined;                 // keys of nodes whose joint forbids contacts, sorted
     uint64_t joined_version = 0;            // of the joints that they were taken from
+    Array<Reach> reach;                     // by collider; update_bounds()
     Array<collision::Placement> placement;  // by collider; find_contacts()
 };
 

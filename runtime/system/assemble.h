@@ -3,6 +3,7 @@
 
 #include "partition/partition.h"
 #include "system/system.h"
+#include "threads/team.h"
 
 namespace taut {
 
@@ -21,8 +22,8 @@ double row_residual(const System& system);
 void store_contact_rows(const System& system);
 
 // Once a frame and group: contacts by colour into lanes, with effective masses.
-void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
+void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels);
-void store_lanes(const System& system, Pairs& pairs);
+void store_lanes(Team& team, const System& system, Pairs& pairs);
 
 }  // namespace taut

@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <cmath>
+#include <span>
 
 #include "system/assemble.h"
 
@@ -27,7 +26,7 @@ void fill_lane(LanePoint& p, int lane, const collision::ContactPoint& point, con
 }
 
 // One pair into one lane of a group; its points into the group's first points.
-void fill_pair(System& system, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
+void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.a[lane] = pair.a + 1;
     g.b[lane] = pair.b + 1;
@@ -36,31 +35,23 @@ void fill_pair(System& system, LaneGroup& g, int lane, const Pair& pair, const N
         g.normal[i][lane] = n[i];
         g.tangent[i][lane] = t1[i];
     }
-    system.contacts.bounces = system.contacts.bounces || pair.restitution > 0;
     const Vec3 origin = nodes.origin(pair.a);  // points are relative to it
     const Vec3f com_a = (nodes.motion[pair.a].x - origin).cast<float>();
     const Vec3f com_b = (nodes.motion[pair.b].x - origin).cast<float>();
     for (int k = 0; k < pair.manifold.count; ++k)
-        fill_lane(system.contacts.point[g.first_point + static_cast<uint32_t>(k)], lane, pair.manifold.points[k], com_a,
-                  com_b, pair.impulse[k], pair.restitution);
+        fill_lane(lanes.point[g.first_point + static_cast<uint32_t>(k)], lane, pair.manifold.points[k], com_a, com_b,
+                  pair.impulse[k], pair.restitution);
 }
 
-// One lane group of at most eight active pairs of a colour; the first has the most points.
-void add_group(System& system, const Pairs& pairs, const Nodes& nodes, const uint32_t* items, uint32_t count) {
-    ContactLanes& lanes = system.contacts;
-    LaneGroup& g = lanes.group.emplace_back();
-    g.first_point = static_cast<uint32_t>(lanes.point.size());
-    g.points = pairs.active[items[0]].points;
-    lanes.point.resize(lanes.point.size() + g.points);
+// The pairs that add_group chose, into their lanes.
+void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nodes& nodes) {
     for (int lane = 0; lane < kLanes; ++lane) {
         uint32_t filled = 0;
-        if (static_cast<uint32_t>(lane) < count) {
-            const ActivePair& active = pairs.active[items[lane]];
-            g.pair[lane] = active.pair;
-            fill_pair(system, g, lane, pairs.list[active.pair], nodes);
-            filled = active.points;
+        if (g.pair[lane] != kNone) {
+            const Pair& pair = pairs.list[g.pair[lane]];
+            fill_pair(lanes, g, lane, pair, nodes);
+            filled = static_cast<uint32_t>(pair.manifold.count);
         } else {
-            g.pair[lane] = kNone;
             g.a[lane] = g.b[lane] = 0;
             g.friction[lane] = 0;
             for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
@@ -69,9 +60,39 @@ void add_group(System& system, const Pairs& pairs, const Nodes& nodes, const uin
     }
 }
 
+// Room for at most eight active pairs of a colour; the first has the most points.
+void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, uint32_t count) {
+    LaneGroup& g = lanes.group.emplace_back();
+    g.first_point = static_cast<uint32_t>(lanes.point.size());
+    g.points = pairs.active[items[0]].points;
+    lanes.point.resize(lanes.point.size() + g.points);
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        g.pair[lane] = lane < count ? pairs.active[items[lane]].pair : kNone;
+        lanes.bounces = lanes.bounces || (lane < count && pairs.list[g.pair[lane]].restitution > 0);
+    }
+}
+
+// Lane groups of one colour. Pairs with as many points come side by side: few empty places.
+void add_colour(ContactLanes& lanes, const Pairs& pairs, std::span<const uint32_t> items, uint32_t width) {
+    uint32_t batch[kLanes], filled = 0;
+    for (uint32_t points = 4; points >= 1; --points) {
+        for (uint32_t item : items) {
+            if (pairs.active[item].points != points) continue;
+            batch[filled++] = item;
+            if (filled < width) continue;
+            add_group(lanes, pairs, batch, filled);
+            filled = 0;
+        }
+    }
+    if (filled > 0) add_group(lanes, pairs, batch, filled);
+    lanes.colour_begin.push_back(static_cast<uint32_t>(lanes.group.size()));
+}
+
+constexpr uint32_t kGrain = 16;  // lane groups that a thread takes at a time
+
 }  // namespace
 
-void build_lanes(System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
+void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
     lanes.group.clear();
@@ -81,35 +102,28 @@ void build_lanes(System& system, const Group& group, const Pairs& pairs, const N
     for (uint32_t c = 0; c < kMaxColours; ++c) {
         const uint32_t begin = group.pair_colour_begin[c], end = group.pair_colour_begin[c + 1];
         const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one pair at a time
-        // Pairs with as many points side by side: few empty places.
-        uint32_t batch[kLanes], filled = 0;
-        for (uint32_t points = 4; points >= 1; --points) {
-            for (uint32_t i = begin; i < end; ++i) {
-                if (pairs.active[group.pairs[i]].points != points) continue;
-                batch[filled++] = group.pairs[i];
-                if (filled < width) continue;
-                add_group(system, pairs, nodes, batch, filled);
-                filled = 0;
-            }
-        }
-        if (filled > 0) add_group(system, pairs, nodes, batch, filled);
-        lanes.colour_begin.push_back(static_cast<uint32_t>(lanes.group.size()));
+        add_colour(lanes, pairs, {group.pairs.data() + begin, end - begin}, width);
     }
-    kernels.prepare(lanes.view(), 0, static_cast<uint32_t>(lanes.group.size()), system.velocity.data(),
-                    system.inverse_mass.data());
+    team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t g = begin; g < end; ++g) fill_group(lanes, lanes.group[g], pairs, nodes);
+        kernels.prepare(lanes.view(), begin, end, system.velocity.data(), system.inverse_mass.data());
+    });
 }
 
-void store_lanes(const System& system, Pairs& pairs) {
-    for (const LaneGroup& g : system.contacts.group) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            if (g.pair[lane] == kNone) continue;
-            Pair& pair = pairs.list[g.pair[lane]];
-            for (int k = 0; k < pair.manifold.count; ++k) {
-                const LanePoint& p = system.contacts.point[g.first_point + static_cast<uint32_t>(k)];
-                pair.impulse[k] = {p.impulse[0][lane], p.impulse[1][lane], p.impulse[2][lane]};
-            }
+void store_lanes(Team& team, const System& system, Pairs& pairs) {
+    const ContactLanes& lanes = system.contacts;
+    const auto store = [&](const LaneGroup& g, int lane) {
+        Pair& pair = pairs.list[g.pair[lane]];
+        for (int k = 0; k < pair.manifold.count; ++k) {
+            const LanePoint& p = lanes.point[g.first_point + static_cast<uint32_t>(k)];
+            pair.impulse[k] = {p.impulse[0][lane], p.impulse[1][lane], p.impulse[2][lane]};
         }
-    }
+    };
+    team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t g = begin; g < end; ++g)
+            for (int lane = 0; lane < kLanes; ++lane)
+                if (lanes.group[g].pair[lane] != kNone) store(lanes.group[g], lane);
+    });
 }
 
 }  // namespace taut

@@ -199,7 +199,7 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         {"sweeps", &Def::sweeps, 0, 1000},
         {"geometric_stiffness", &Def::geometric_stiffness, 0, 1},
         {"max_catch_up", &Def::max_catch_up, 1, 1000},
-        {"reserved", &Def::reserved, 0, 0},
+        {"threads", &Def::threads, 1, 64},
     };
     for (const auto& count : counts) {
         changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });
@@ -219,6 +219,14 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
     changed(TAUT_INVALID_ARGUMENT, "hooks.finish_task", [](Def& d) { d.hooks.finish_task = [](void*, void*) {}; });
     changed(TAUT_INVALID_ARGUMENT, "hooks.worker_count", [](Def& d) { d.hooks.worker_count = 4; });
     changed(TAUT_INVALID_ARGUMENT, "hooks.reserved", [](Def& d) { d.hooks.reserved = 1; });
+    const auto with_tasks = [](Def& d) {
+        d.hooks.enqueue_task = [](taut_task_fn, uint32_t, uint32_t, void*, void*) -> void* { return nullptr; };
+        d.hooks.finish_task = [](void*, void*) {};
+        d.hooks.worker_count = 63;
+    };
+    changed(TAUT_OK, "hooks.worker_count", with_tasks);
+    changed(TAUT_INVALID_ARGUMENT, "hooks.worker_count", [&](Def& d) { with_tasks(d), d.hooks.worker_count = 64; });
+    changed(TAUT_INVALID_ARGUMENT, "threads", [&](Def& d) { with_tasks(d), d.threads = 2; });
     EXPECT_TRUE(ledger.empty());
 }
 

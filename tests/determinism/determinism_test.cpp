@@ -65,6 +65,24 @@ TEST(SameBits, OnThreadsAtOnce) {
         EXPECT_EQ(found[w], hashes(scenes::make_scene(kMixed[w]), kSteps)) << kMixed[w];
 }
 
+// Large enough for every parallel loop: sweeps by colour, blocks side by side, narrowphase.
+class SameBitsOnTeams : public testing::TestWithParam<const char*> {};
+
+TEST_P(SameBitsOnTeams, OfAnySize) {
+    constexpr int kSteps = 40;
+    scenes::Scene scene = scenes::make_scene(GetParam());
+    const auto alone = hashes(scene, kSteps);
+    for (uint32_t threads : {2u, 3u, 5u, 8u}) {
+        scene.world.threads = threads;
+        const auto together = hashes(scene, kSteps);
+        for (size_t step = 0; step < alone.size(); ++step)
+            ASSERT_EQ(together[step], alone[step]) << threads << " threads differ first in step " << step;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams, testing::Values("boxes2000", "pyramid30", "wrecking_ball", "bridge"),
+                         [](const auto& tested) -> std::string { return tested.param; });
+
 // A difference of one part in 2^24 in one velocity must show, at once and after a while.
 TEST(StateHash, SeesTheLeastDifference) {
     scenes::Scene scene = scenes::make_scene("stack10");

@@ -96,12 +96,12 @@ public:
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
-        if (solver.wide_contacts) build_lanes(w.system, group(), w.pairs, w.nodes, *settings.kernels);
+        if (solver.wide_contacts) build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
     }
     // Unconstrained velocities and rows of a substep.
     void predict() {
         shift_kinematic(w.system, w.nodes, 0);
-        taut::predict(w.system, group(), w.nodes, gravity);
+        taut::predict(w.team, w.system, group(), w.nodes, gravity);
         build_block_contacts(w.system, group(), w.partition.blocks, w.pairs, w.nodes);
         evaluate_rows(w.system, 0, h);
     }
@@ -109,18 +109,20 @@ public:
         Substep s = substep();
         solver.solve(s);
     }
-    void move() { commit(w.system, group(), w.nodes); }
+    void move() { commit(w.team, w.system, group(), w.nodes); }
     void relax() {
         Substep s = substep();
         solver.relax(s);
-        store_velocity(w.system, group(), w.nodes, settings.velocity_filter);
+        store_velocity(w.team, w.system, group(), w.nodes, settings.velocity_filter);
     }
     void store_contacts() {
         store_contact_rows(w.system);
-        if (solver.wide_contacts) store_lanes(w.system, w.pairs);
+        if (solver.wide_contacts) store_lanes(w.team, w.system, w.pairs);
     }
     Group& group() { return w.partition.groups[0]; }
-    Substep substep() { return {w.system, group(), w.partition.blocks, w.nodes, settings, report, w.scratch, false}; }
+    Substep substep() {
+        return {w.team, w.system, group(), w.partition.blocks, w.nodes, settings, report, w.scratch, false};
+    }
 
     World w;
     double h;
