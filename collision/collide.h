@@ -18,13 +18,16 @@ namespace taut::collision {
 
 struct Hull;  // vertices, merged faces, edges with their two faces; see hull.h
 
-enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
-constexpr int kShapeKinds = 5;
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule };
+constexpr int kShapeKinds = 8;
 
+// Round shapes lie along y, from -half length to +half length; a capsule's ends are the centres of its balls.
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
-    Vec3f size =
-        Vec3f::Zero();  // box: half extents; sphere: (radius,,); capsule: (radius, half length,); plane: unit normal
+    // [m]. box: half extents; sphere: (radius,,); capsule, cylinder: (radius, half length,); cone: (radius of the base
+    // at -half length, half length,); tapered capsule: (radius at -half length, half length, radius at +half length);
+    // plane: unit normal [1]
+    Vec3f size = Vec3f::Zero();
     std::shared_ptr<const Hull> hull;  // hull only
 };
 
@@ -40,6 +43,9 @@ struct MassProperties {
 // than thickness [m].
 std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> points, int max_vertices, float thickness,
                                        const char** reason);
+// The hull with its points multiplied, axis by axis; negative factors mirror it. Faces and their corners stay the same.
+// Null and a reason if it came out thinner than thickness [m].
+std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason);
 std::span<const Vec3f> hull_vertices(const Hull& hull);
 // Vertex indices, three a triangle, outward counter-clockwise.
 void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices);
