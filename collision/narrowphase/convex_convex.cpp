@@ -11,6 +11,9 @@ namespace {
 
 // Lines within 10 degrees (sine squared 0.03) of parallel touch along a stretch: two points.
 constexpr float kParallel = 0.03f;
+// They do as far as they run no further beside each other than this, in parts of the smaller shape's inner radius r:
+// a round side falls off by kBeside^2 r / 2 there. A shorter stretch is a point.
+constexpr float kBeside = 0.02f, kShort = 0.1f;
 
 // Ids where no flat face bears the contact.
 constexpr uint32_t kAlone = (3u << 30) | 1, kFirstEnd = (3u << 30) | 2, kSecondEnd = (3u << 30) | 3;
@@ -92,6 +95,27 @@ void clip_face(const Solids& solids, const Bearing& bearing, Manifold& out) {
     }
 }
 
+// The part of line a, by its parameters, that runs over line b as seen along n, and no further beside it than width:
+// beside it = n . (a(s) - b.from) x (direction of b), linear in s.
+Segment side_by_side(const Segment& a, const Segment& b, const Vec3f& n, float width) {
+    const float s0 = a.nearest(b.from);
+    const float s1 = a.nearest(b.at(1));
+    float lo = std::min(s0, s1);
+    float hi = std::max(s0, s1);
+    const Vec3f across = b.step.cross(n).normalized();
+    const float beside = across.dot(a.from - b.from);
+    const float slope = across.dot(a.step);
+    if (std::fabs(slope) > 1e-12f) {
+        const float first = (-width - beside) / slope;
+        const float second = (width - beside) / slope;
+        lo = std::max(lo, std::min(first, second));
+        hi = std::min(hi, std::max(first, second));
+    } else if (std::fabs(beside) > width) {
+        hi = lo;
+    }
+    return {a.at(lo), a.step * std::max(hi - lo, 0.0f)};
+}
+
 // Both ends of the stretch where two lines run side by side.
 void add_line(const Solids& solids, Manifold& out) {
     const Segment a = solids.a.line_along(out.normal);
@@ -100,12 +124,11 @@ void add_line(const Solids& solids, Manifold& out) {
     const float aa = a.step.squaredNorm();
     const float bb = b.step.squaredNorm();
     if (!(aa > 0 && bb > 0) || a.step.cross(b.step).squaredNorm() >= kParallel * aa * bb) return;
-    const float s0 = a.nearest(b.from);
-    const float s1 = a.nearest(b.at(1));
-    if (std::fabs(s1 - s0) * std::sqrt(aa) < 0.1f * solids.size) return;
+    const Segment stretch = side_by_side(a, b, out.normal, kBeside * solids.size);
+    if (stretch.step.norm() < kShort * solids.size) return;
     uint32_t feature = kFirstEnd;
-    for (const float s : {std::min(s0, s1), std::max(s0, s1)}) {
-        const Vec3f p = a.at(s);
+    for (const float s : {0.0f, 1.0f}) {
+        const Vec3f p = stretch.at(s);
         const Vec3f q = b.at(b.nearest(p));
         const float separation = out.normal.dot(q - p);
         if (separation <= solids.margin) out.points[out.count++] = {0.5f * (p + q), separation, feature};

@@ -18,9 +18,10 @@ constexpr double kCoarse = 1e-3, kFine = 1e-8;
 // How far out b is moved, in the same parts: far enough for a direction, near enough to see the nearest face.
 constexpr double kLift = 0.25;
 constexpr int kMaxRounds = 6;
-constexpr int kMaxStarts = 3;
-constexpr double kAlike = 0.9;  // cosine between starts that climb to the same place
-constexpr double kGain = 1e-4;  // a round that gains less, in the same parts, was the last
+constexpr int kMaxStarts = 4;
+constexpr double kSame = 0.9999;                        // of a start that was climbed from already
+constexpr double kAlike = 0.9;                          // cosine between starts that climb to the same place
+constexpr double kCoarseGain = 1e-2, kFineGain = 1e-4;  // a round that gains less, in the same parts, was the last
 
 struct Start {
     Vec3 normal = Vec3::Zero();
@@ -82,16 +83,25 @@ void add_lines(const Solid& a, const Solid& b, const Pose& b_in_a, Starts& start
     starts.add_loose(-across);
 }
 
+// For shapes deep in each other: the corners of a cube and the middles of its sides.
+void add_net(Starts& starts) {
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) starts.add_loose(Vec3(x, y, z));
+        }
+    }
+}
+
 // Upwards on s from a start; where the cores are well apart the first round finds the top.
-Push climb(const Difference& difference, const Start& start, double size) {
+Push climb(const Difference& difference, const Start& start, double size, double gap, double gain) {
     Push push = {start.normal, start.separation, Vec3::Zero()};
     for (int round = 0; round < kMaxRounds; ++round) {
         const double lift = std::max(kLift * size - push.separation, 0.0);
-        const Distance distance = gjk(difference, push.normal * lift, push.normal, kFine);
+        const Distance distance = gjk(difference, push.normal * lift, push.normal, gap);
         if (!distance.apart) break;  // rounding
         push.on_a = distance.on_a;
         const double separation = difference.separation(distance.normal);
-        const bool last = lift == 0 || separation < push.separation + kGain * size;
+        const bool last = lift == 0 || separation < push.separation + gain * size;
         if (separation >= push.separation) {
             push.normal = distance.normal;
             push.separation = separation;
@@ -99,6 +109,28 @@ Push climb(const Difference& difference, const Start& start, double size) {
         if (last) break;
     }
     return push;
+}
+
+// The better of best and of what the starts lead to.
+void climb_others(const Difference& difference, double size, const Starts& starts, Push& best) {
+    Start better = {best.normal, best.separation};
+    for (int i = 0; i < starts.count(); ++i) {
+        if (starts[i].normal.dot(best.normal) > kSame) continue;
+        const Push push = climb(difference, starts[i], size, kCoarse, kCoarseGain);
+        if (push.separation > better.separation) better = {push.normal, push.separation};
+    }
+    if (better.separation > best.separation) best = climb(difference, better, size, kFine, kFineGain);
+}
+
+// From all likely directions, for shapes that overlap deeply or for the first time.
+void search(const Solid& a, const Solid& b, const Pair& pair, const Difference& difference, double size, Starts& starts,
+            Push& best) {
+    const Pose a_in_b = {pair.b_in_a.rotation.transpose(), pair.b_in_a.rotation.transpose() * -pair.b_in_a.position};
+    add_faces(a, b, pair.b_in_a, Mat3::Identity(), 1, starts);
+    add_faces(b, a, a_in_b, pair.b_in_a.rotation.cast<double>(), -1, starts);
+    add_lines(a, b, pair.b_in_a, starts);
+    add_net(starts);
+    climb_others(difference, size, starts, best);
 }
 
 }  // namespace
@@ -115,19 +147,11 @@ Push least_push(const Solid& a, const Solid& b, const Pair& pair, const Vec3& hi
     const Difference shrunk(pair, kShrink);
     const Distance inner = gjk(shrunk, Vec3::Zero(), hinted ? hint : Vec3(Vec3::UnitY()), kCoarse);
     starts.add(inner.normal);
+    Push best = climb(difference, starts[0], size, kFine, kFineGain);
     const bool shallow = inner.apart && inner.separation > kClear * size;
-    if (!shallow) {
-        const Pose a_in_b = {pair.b_in_a.rotation.transpose(),
-                             pair.b_in_a.rotation.transpose() * -pair.b_in_a.position};
-        add_faces(a, b, pair.b_in_a, Mat3::Identity(), 1, starts);
-        add_faces(b, a, a_in_b, pair.b_in_a.rotation.cast<double>(), -1, starts);
-        add_lines(a, b, pair.b_in_a, starts);
-    }
-    Push best = climb(difference, starts[0], size);
-    for (int i = 1; i < starts.count() && !shallow; ++i) {
-        const Push push = climb(difference, starts[i], size);
-        if (push.separation > best.separation) best = push;
-    }
+    // Apart there is one top; a shallow overlap stays near last frame's, or goes where the smaller shapes point.
+    if (best.separation < 0 && shallow && hinted) climb_others(difference, size, starts, best);
+    if (best.separation < 0 && !(shallow && hinted)) search(a, b, pair, difference, size, starts, best);
     best.separation -= radii;
     return best;
 }
