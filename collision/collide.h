@@ -122,8 +122,8 @@ struct PairCache {
 void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
              PairCache& cache, Manifold& out);
 
-// General convex pair by libccd's MPR on support functions with face clipping: the path for shapes without a kernel
-// of their own, and an oracle for tests. Same contract as collide(), but for planes, which have no support; the normal
+// General convex pair by libccd's MPR on support functions with face clipping: an oracle for tests, and a yardstick for
+// the kernels. Same contract as collide(), but for planes, which have no support; the normal
 // and depth are MPR's: the depth is not the least, on the mean some 10 % more. Round shapes get one point.
 void collide_support_mapped(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
                             Manifold& out);

@@ -16,7 +16,8 @@ constexpr float kParallel = 0.03f;
 constexpr float kBeside = 0.02f, kShort = 0.1f;
 
 // Ids where no flat face bears the contact.
-constexpr uint32_t kAlone = (3u << 30) | 1, kFirstEnd = (3u << 30) | 2, kSecondEnd = (3u << 30) | 3;
+constexpr uint32_t kAlone = (3u << 30) | 1;
+constexpr uint32_t kFirstEnd = (3u << 30) | 2;  // the other end's is one more
 
 // ---------------------------------------------------------------- cache
 

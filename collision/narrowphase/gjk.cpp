@@ -60,9 +60,7 @@ Distance gjk(const Difference& difference, const Vec3& shift, const Vec3& start,
         length = next;
         n = nearest / length;
     }
-    const Vec3 on_a = simplex.on_a();
-    out = {true, n, length, on_a, on_a + nearest - shift};
-    return out;
+    return {true, n, length, simplex.on_a()};
 }
 
 }  // namespace taut::collision

@@ -21,8 +21,6 @@ public:
     // Of the cores along n [m]; of the shapes, less radii().
     double separation(const Vec3& n) const { return n.dot(lowest(n).at); }
     double radii() const { return radius_a_ + radius_b_; }
-    double radius_a() const { return radius_a_; }
-    double radius_b() const { return radius_b_; }
 
 private:
     const Shape& a_;
@@ -37,8 +35,7 @@ struct Distance {
     bool apart = false;          // else the cores overlap
     Vec3 normal = Vec3::Zero();  // unit, from a to b; of overlapping cores, the best that was tried
     double separation = 0;       // along normal, at least [m]
-    Vec3 on_a = Vec3::Zero();    // nearest points of the cores, where they are apart
-    Vec3 on_b = Vec3::Zero();
+    Vec3 on_a = Vec3::Zero();    // a's nearest point, where the cores are apart
 };
 
 // b is moved by shift. Starts from the unit vector n; ends when the distance found exceeds the separation proven by

@@ -13,8 +13,8 @@ namespace {
 constexpr double kShrink = 0.4;
 // Cores this far apart, in parts of the smaller shape's inner radius, have a direction of their own.
 constexpr double kClear = 1e-3;
-// GJK's gap for a start and for the answer, whose normal is good to 1.4e-4 rad.
-constexpr double kCoarse = 1e-3, kFine = 1e-8;
+// GJK's gap for a start and for the answer, whose normal is good to 4.5e-5 rad.
+constexpr double kCoarse = 1e-3, kFine = 1e-9;
 // How far out b is moved, in the same parts: far enough for a direction, near enough to see the nearest face.
 constexpr double kLift = 0.25;
 constexpr int kMaxRounds = 6;

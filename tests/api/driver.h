@@ -561,7 +561,7 @@ private:
             expect(error >= 0, "an error that is none");
         taut_vec3 torque;
         if (run("taut_joint_get_torque", [&] { return taut_joint_get_torque(joint, &torque); }))
-            expect(!std::isnan(torque.x + torque.y + torque.z), "a torque that is none");
+            expect(!std::isnan(torque.x) && !std::isnan(torque.y) && !std::isnan(torque.z), "a torque that is none");
         taut_frame frame_a, frame_b;
         if (run("taut_joint_get_frames", [&] { return taut_joint_get_frames(joint, &frame_a, &frame_b); }))
             expect(finite(frame_a.position) && finite(frame_b.position), "a frame that is not finite");

@@ -65,7 +65,7 @@ TEST(CollisionMass, RoundShapesMatchQuadrature) {
 
 TEST(CollisionMass, TurnedShapesMatchQuadrature) {
     for (const Shape& shape : {oracle::cylinder(0.3f, 0.4f), oracle::cylinder(0.5f, 0.1f), oracle::cone(0.4f, 0.5f),
-                               oracle::cone(0.5f, 0.1f), oracle::tapered_capsule(0.4f, 0.3f, 0.15f),
+                               oracle::cone(0.5f, 0.3f), oracle::tapered_capsule(0.4f, 0.3f, 0.15f),
                                oracle::tapered_capsule(0.1f, 0.25f, 0.45f)}) {
         const double reach = shape.size.maxCoeff() + shape.size.y() + 0.05;
         const MassProperties want = by_quadrature(shape, 800, reach, 100);
