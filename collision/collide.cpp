@@ -24,14 +24,20 @@ constexpr Entry kOnRound = {polytope_round, false};
 constexpr Entry kRoundOn = {polytope_round, true};
 constexpr Entry kOnPlane = {core_plane, false};
 constexpr Entry kUnder = {core_plane, true};
+constexpr Entry kConvex = {convex_convex, false};
+constexpr Entry kConvexOnPlane = {convex_plane, false};
+constexpr Entry kUnderConvex = {convex_plane, true};
 
-// Rows and columns: plane, box, sphere, capsule, hull.
+// Rows and columns: plane, box, sphere, capsule, hull, cylinder, cone, tapered capsule.
 constexpr std::array<std::array<Entry, kShapeKinds>, kShapeKinds> kKernels = {{
-    {kNone, kUnder, kUnder, kUnder, kUnder},
-    {kOnPlane, kBoxes, kOnRound, kOnRound, kPolytopes},
-    {kOnPlane, kRoundOn, kRounds, kRounds, kRoundOn},
-    {kOnPlane, kRoundOn, kRounds, kRounds, kRoundOn},
-    {kOnPlane, kPolytopes, kOnRound, kOnRound, kPolytopes},
+    {kNone, kUnder, kUnder, kUnder, kUnder, kUnderConvex, kUnderConvex, kUnderConvex},
+    {kOnPlane, kBoxes, kOnRound, kOnRound, kPolytopes, kConvex, kConvex, kConvex},
+    {kOnPlane, kRoundOn, kRounds, kRounds, kRoundOn, kConvex, kConvex, kConvex},
+    {kOnPlane, kRoundOn, kRounds, kRounds, kRoundOn, kConvex, kConvex, kConvex},
+    {kOnPlane, kPolytopes, kOnRound, kOnRound, kPolytopes, kConvex, kConvex, kConvex},
+    {kConvexOnPlane, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex},
+    {kConvexOnPlane, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex},
+    {kConvexOnPlane, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex},
 }};
 
 // Where b lies as a sees it: the difference of positions in double, all else in single precision.

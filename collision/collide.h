@@ -18,13 +18,16 @@ namespace taut::collision {
 
 struct Hull;  // vertices, merged faces, edges with their two faces; see hull.h
 
-enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
-constexpr int kShapeKinds = 5;
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule };
+constexpr int kShapeKinds = 8;
 
+// Round shapes lie along y, from -half length to +half length; a capsule's ends are the centres of its balls.
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
-    Vec3f size =
-        Vec3f::Zero();  // box: half extents; sphere: (radius,,); capsule: (radius, half length,); plane: unit normal
+    // [m]. box: half extents; sphere: (radius,,); capsule, cylinder: (radius, half length,); cone: (radius of the base
+    // at -half length, half length,); tapered capsule: (radius at -half length, half length, radius at +half length);
+    // plane: unit normal [1]
+    Vec3f size = Vec3f::Zero();
     std::shared_ptr<const Hull> hull;  // hull only
 };
 
@@ -40,6 +43,9 @@ struct MassProperties {
 // than thickness [m].
 std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> points, int max_vertices, float thickness,
                                        const char** reason);
+// The hull with its points multiplied, axis by axis; negative factors mirror it. Faces and their corners stay the same.
+// Null and a reason if it came out thinner than thickness [m].
+std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason);
 std::span<const Vec3f> hull_vertices(const Hull& hull);
 // Vertex indices, three a triangle, outward counter-clockwise.
 void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices);
@@ -116,8 +122,8 @@ struct PairCache {
 void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
              PairCache& cache, Manifold& out);
 
-// General convex pair by libccd's MPR on support functions with face clipping: the path for shapes without a kernel
-// of their own, and an oracle for tests. Same contract as collide(), but for planes, which have no support; the normal
+// General convex pair by libccd's MPR on support functions with face clipping: an oracle for tests, and a yardstick for
+// the kernels. Same contract as collide(), but for planes, which have no support; the normal
 // and depth are MPR's: the depth is not the least, on the mean some 10 % more. Round shapes get one point.
 void collide_support_mapped(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
                             Manifold& out);

@@ -191,6 +191,40 @@ std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_ver
     return hull;
 }
 
+std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason) {
+    const auto refuse = [&](const char* why) {
+        if (reason) *reason = why;
+        return nullptr;
+    };
+    // Sorted again: factors below zero turn the order around.
+    std::vector<Vec3f> points;
+    for (const Vec3f& v : hull.vertices) points.push_back(v.cwiseProduct(factors) + Vec3f::Zero());
+    std::vector<int> order(points.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = int(i);
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return before(points[size_t(i)], points[size_t(j)]); });
+    std::vector<int> place(points.size());
+    std::vector<Vec3f> sorted;
+    for (size_t i = 0; i < order.size(); ++i) {
+        place[size_t(order[i])] = int(i);
+        sorted.push_back(points[size_t(order[i])]);
+    }
+    // An odd number of mirrors turns counter-clockwise loops around.
+    const bool mirrored = factors.prod() < 0;
+    Loops loops;
+    for (const Face& face : hull.faces) {
+        std::vector<int> loop;
+        for (const uint8_t corner : hull.view().loop_of(face)) loop.push_back(place[corner]);
+        if (mirrored) std::reverse(loop.begin(), loop.end());
+        std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+        loops.push_back(std::move(loop));
+    }
+    std::sort(loops.begin(), loops.end());
+    auto scaled = hull_of_surface(sorted, loops, -1.0);  // no merging: flat faces stay flat
+    if (!scaled) return refuse("points are too close to one another for their size");
+    if (!(thickness_of(*scaled) >= double(thickness))) return refuse("hull is thinner than allowed");
+    return scaled;
+}
+
 std::span<const Vec3f> hull_vertices(const Hull& hull) { return hull.vertices; }
 
 void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices) {

@@ -59,6 +59,23 @@ const std::array<Face, 6> kFaces = unit_faces();
 
 }  // namespace
 
+int face_against(const Polytope& polytope, const Vec3f& direction) {
+    const int vertex = support(polytope, -direction);
+    int best = 0;
+    float most = 2;
+    for (const Edge& edge : polytope.edges) {
+        if (edge.from != vertex && edge.to != vertex) continue;
+        for (const int face : {int(edge.left), int(edge.right)}) {
+            const float dot = polytope.faces[size_t(face)].normal.dot(direction);
+            if (dot < most) {
+                most = dot;
+                best = face;
+            }
+        }
+    }
+    return best;
+}
+
 BoxPolytope::BoxPolytope(const Vec3f& half) : faces_(kFaces) {
     const float hx = half.x(), hy = half.y(), hz = half.z();
     vertices_ = {Vec3f(-hx, -hy, -hz), Vec3f(hx, -hy, -hz), Vec3f(-hx, hy, -hz), Vec3f(hx, hy, -hz),

@@ -79,6 +79,9 @@ inline int support(const Polytope& polytope, const Vec3f& direction) {
     return index;
 }
 
+// Of the faces around the vertex deepest against the direction, the one that looks most against it.
+int face_against(const Polytope& polytope, const Vec3f& direction);
+
 // A box spelled out as a polytope; face 2 k + s looks along +axis k if s = 1, else -axis k.
 class BoxPolytope {
 public:

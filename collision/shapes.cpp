@@ -5,6 +5,7 @@
 
 #include "collision/collide.h"
 #include "collision/hull.h"
+#include "collision/revolution.h"
 
 namespace taut::collision {
 namespace {
@@ -47,6 +48,31 @@ MassProperties capsule_mass(const Shape& shape, double density) {
     out.mass = cylinder + ball;
     out.inertia = {across, along, across, 0, 0, 0};
     return out;
+}
+
+MassProperties cylinder_mass(const Shape& shape, double density) {
+    const double r = shape.size.x();
+    const double h = shape.size.y();
+    const Slice whole = conical_slice(-h, h, r, r);
+    return mass_of_revolution({&whole, 1}, density);
+}
+
+MassProperties cone_mass(const Shape& shape, double density) {
+    const double h = shape.size.y();
+    const Slice whole = conical_slice(-h, h, shape.size.x(), 0);
+    return mass_of_revolution({&whole, 1}, density);
+}
+
+// Two caps of balls and the frustum between the circles where its side touches them.
+MassProperties tapered_capsule_mass(const Shape& shape, double density) {
+    const double low = shape.size.x();
+    const double h = shape.size.y();
+    const double high = shape.size.z();
+    const TaperedSide side = tapered_side(shape);
+    const std::array<Slice, 3> slices = {ball_slice(-h - low, side.from, -h, low),
+                                         conical_slice(side.from, side.to, side.from_radius, side.to_radius),
+                                         ball_slice(side.to, h + high, h, high)};
+    return mass_of_revolution(slices, density);
 }
 
 // Sum over tetrahedra from a point p to the surface's triangles (a, b, c), relative to p:
@@ -114,6 +140,31 @@ Box capsule_bounds(const Shape& shape, const Placement& at) {
     return rounded(at.position, -reach, reach);
 }
 
+// Reach of a circle of radius 1 across the body's y axis, along each axis of the world: sqrt(1 - y_i^2).
+Vec3 disc_reach(const Placement& at) {
+    const Mat3 r = at.rotation.cast<double>();
+    return (r.col(0).cwiseAbs2() + r.col(2).cwiseAbs2()).cwiseSqrt();
+}
+
+Box cylinder_bounds(const Shape& shape, const Placement& at) {
+    const Vec3 reach =
+        at.rotation.col(1).cwiseAbs().cast<double>() * double(shape.size.y()) + disc_reach(at) * double(shape.size.x());
+    return rounded(at.position, -reach, reach);
+}
+
+Box cone_bounds(const Shape& shape, const Placement& at) {
+    const Vec3 apex = at.rotation.col(1).cast<double>() * double(shape.size.y());
+    const Vec3 rim = disc_reach(at) * double(shape.size.x());
+    return rounded(at.position, apex.cwiseMin(-apex - rim), apex.cwiseMax(rim - apex));
+}
+
+Box tapered_capsule_bounds(const Shape& shape, const Placement& at) {
+    const Vec3 end = at.rotation.col(1).cast<double>() * double(shape.size.y());
+    const Vec3 low = Vec3::Constant(shape.size.x());
+    const Vec3 high = Vec3::Constant(shape.size.z());
+    return rounded(at.position, (end - high).cwiseMin(-end - low), (end + high).cwiseMax(low - end));
+}
+
 Box hull_bounds(const Shape& shape, const Placement& at) {
     const Polytope polytope = shape.hull->view();
     Vec3 lo, hi;
@@ -136,6 +187,9 @@ constexpr std::array<KindFunctions, kShapeKinds> kKinds = {{
     {sphere_mass, sphere_bounds},
     {capsule_mass, capsule_bounds},
     {hull_mass, hull_bounds},
+    {cylinder_mass, cylinder_bounds},
+    {cone_mass, cone_bounds},
+    {tapered_capsule_mass, tapered_capsule_bounds},
 }};
 
 }  // namespace

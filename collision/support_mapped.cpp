@@ -5,7 +5,7 @@
 #include <ccd/ccd.h>
 
 #include "collision/manifold.h"
-#include "collision/narrowphase/core.h"
+#include "collision/narrowphase/convex.h"
 
 namespace taut::collision {
 namespace {
@@ -16,26 +16,6 @@ constexpr unsigned long kMaxSteps = 100;
 
 // A face meets the direction if its normal is within 8 degrees of it.
 constexpr float kMeets = 0.99f;
-
-Vec3 box_support(const Shape& shape, const Vec3& d) {
-    return Vec3(std::copysign(shape.size.x(), d.x()), std::copysign(shape.size.y(), d.y()),
-                std::copysign(shape.size.z(), d.z()));
-}
-
-Vec3 sphere_support(const Shape& shape, const Vec3& d) { return d * double(shape.size.x()); }
-
-Vec3 capsule_support(const Shape& shape, const Vec3& d) {
-    return d * double(shape.size.x()) + Vec3(0, std::copysign(shape.size.y(), d.y()), 0);
-}
-
-Vec3 hull_support(const Shape& shape, const Vec3& d) {
-    const Vec3f direction = d.cast<float>();
-    return shape.hull->vertices[size_t(support(shape.hull->view(), direction))].cast<double>();
-}
-
-// The point furthest along the unit vector d, in the shape's frame; a plane has none.
-constexpr Vec3 (*kSupports[kShapeKinds])(const Shape&, const Vec3&) = {nullptr, box_support, sphere_support,
-                                                                       capsule_support, hull_support};
 
 // A shape placed about a's origin, grown by half the margin so that near shapes overlap.
 struct Placed {
@@ -49,8 +29,7 @@ void support_of(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out
     const Placed& placed = *static_cast<const Placed*>(object);
     const Vec3 d = Vec3(direction->v[0], direction->v[1], direction->v[2]).normalized();
     const Vec3 local = placed.rotation.transpose() * d;
-    const Vec3 p = placed.rotation * kSupports[size_t(placed.shape.kind)](placed.shape, local) + placed.position +
-                   d * placed.grown;
+    const Vec3 p = placed.rotation * furthest_point(placed.shape, local) + placed.position + d * placed.grown;
     ccdVec3Set(out, p.x(), p.y(), p.z());
 }
 

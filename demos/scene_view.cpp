@@ -89,6 +89,32 @@ Instance ball(Vec3 centre, float radius, Colour colour, float gloss) {
     return instance;
 }
 
+constexpr int kSides = 32;
+
+std::vector<render::Vertex> cone_mesh(const scenes::Shape& shape) {
+    const float r = shape.radius, h = shape.half_length, side = std::hypot(2 * h, r);
+    const float out = 2 * h / side, up = r / side;
+    return render::turned_mesh({{0, -h, 0, -1}, {r, -h, 0, -1}, {r, -h, out, up}, {0, h, out, up}}, kSides);
+}
+
+// Arcs of two balls with the line that touches both; its normal's slope is the difference of the radii over the length.
+std::vector<render::Vertex> tapered_capsule_mesh(const scenes::Shape& shape) {
+    constexpr int kArc = 12;
+    const float h = shape.half_length, slope = (shape.radius - shape.top_radius) / (2 * h);
+    const float low = -0.5f * std::numbers::pi_v<float>, middle = std::asin(slope), high = -low;
+    std::vector<render::ProfilePoint> profile;
+    auto arc = [&](float from, float to, float radius, float centre) {
+        for (int i = 0; i <= kArc; ++i) {
+            const float angle = from + (to - from) * static_cast<float>(i) / kArc;
+            const float c = std::cos(angle), s = std::sin(angle);
+            profile.push_back({radius * c, centre + radius * s, c, s});
+        }
+    };
+    arc(low, middle, shape.radius, -h);
+    arc(middle, high, shape.top_radius, h);
+    return render::turned_mesh(profile, kSides);
+}
+
 // 0 for a joint that broke.
 float force_on(taut_joint joint) {
     taut_vec3 force{};
@@ -136,7 +162,11 @@ SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world,
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         uint32_t mesh = render::kMeshBox;
         if (scene.shapes[i].kind == ShapeKind::sphere) mesh = render::kMeshSphere;
-        if (scene.shapes[i].kind == ShapeKind::hull) {
+        if (scene.shapes[i].kind == ShapeKind::cylinder) mesh = render::kMeshCylinder;
+        if (scene.shapes[i].kind == ShapeKind::cone) mesh = renderer.add_mesh(cone_mesh(scene.shapes[i]));
+        if (scene.shapes[i].kind == ShapeKind::tapered_capsule)
+            mesh = renderer.add_mesh(tapered_capsule_mesh(scene.shapes[i]));
+        if (scene.shapes[i].kind == ShapeKind::hull || scene.shapes[i].kind == ShapeKind::scaled_hull) {
             uint32_t count = 0;
             taut_shape_hull_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
             std::vector<taut_vec3> triangles(count);
@@ -186,8 +216,14 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
         case ShapeKind::sphere:
             instance.scale = {r, r, r};
             break;
-        case ShapeKind::hull:
+        case ShapeKind::cylinder:
+            instance.scale = {r, shape.half_length, r};
             break;
+        case ShapeKind::hull:
+        case ShapeKind::scaled_hull:
+        case ShapeKind::cone:
+        case ShapeKind::tapered_capsule:
+            break;  // meshes of their own
         case ShapeKind::capsule: {
             Vec3 half = rotate(instance.rotation, {0, shape.half_length, 0});
             list.instances.push_back(rod(instance.position - half, instance.position + half, r, colour));

@@ -30,7 +30,9 @@ void box_box(const Pair& pair, Manifold& out);
 void polytope_polytope(const Pair& pair, Manifold& out);  // box or hull against box or hull
 void polytope_round(const Pair& pair, Manifold& out);     // box or hull against sphere or capsule
 void round_round(const Pair& pair, Manifold& out);        // sphere or capsule against sphere or capsule
-void core_plane(const Pair& pair, Manifold& out);         // anything but a plane against a plane
+void core_plane(const Pair& pair, Manifold& out);         // box, sphere, capsule or hull against a plane
+void convex_convex(const Pair& pair, Manifold& out);      // any two kinds but a plane
+void convex_plane(const Pair& pair, Manifold& out);       // any kind but a plane against a plane
 
 // Takes a manifold from b's frame, with its normal from b to a, to a's frame.
 inline void move_to_a(const Pose& b_in_a, Manifold& manifold) {

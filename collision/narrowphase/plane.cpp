@@ -1,4 +1,4 @@
-// Anything against a plane: the lowest points of its core, less the radius.
+// Box, sphere, capsule or hull against a plane: the lowest points of its core, less the radius.
 #include <array>
 #include <cmath>
 
@@ -38,8 +38,7 @@ Core capsule_core(const Shape& shape, CoreStore& store) {
 
 Core hull_core(const Shape& shape, CoreStore&) { return {shape.hull->vertices, 0}; }
 
-constexpr Core (*kCores[kShapeKinds])(const Shape&, CoreStore&) = {nullptr, box_core, sphere_core, capsule_core,
-                                                                   hull_core};
+constexpr Core (*kCores[])(const Shape&, CoreStore&) = {nullptr, box_core, sphere_core, capsule_core, hull_core};
 
 }  // namespace
 

@@ -53,6 +53,19 @@ std::vector<Vertex> cylinder_mesh(int sides) {
     return mesh;
 }
 
+std::vector<Vertex> turned_mesh(const std::vector<ProfilePoint>& profile, int sides) {
+    std::vector<Vertex> mesh;
+    auto at = [&](const ProfilePoint& p, int side) {
+        Vec3 out = on_circle(side, sides), up = {0, 1, 0};
+        return Vertex{out * p.radius + up * p.y, out * p.normal_radius + up * p.normal_y};
+    };
+    for (size_t i = 0; i + 1 < profile.size(); ++i)
+        for (int side = 0; side < sides; ++side)
+            add_quad(mesh, at(profile[i], side), at(profile[i], side + 1), at(profile[i + 1], side + 1),
+                     at(profile[i + 1], side));
+    return mesh;
+}
+
 std::vector<Vertex> flat_mesh(const std::vector<Vec3>& points) {
     std::vector<Vertex> mesh;
     for (size_t i = 0; i + 2 < points.size(); i += 3) {

@@ -16,6 +16,13 @@ std::vector<Vertex> box_mesh();
 std::vector<Vertex> sphere_mesh(int rings);
 std::vector<Vertex> cylinder_mesh(int sides);
 
+// A point of a profile that is turned about y, with its normal (across, along y).
+struct ProfilePoint {
+    float radius, y, normal_radius, normal_y;
+};
+// The surface that each pair of neighbouring points sweeps, from the lowest up; two points in one place make an edge.
+std::vector<Vertex> turned_mesh(const std::vector<ProfilePoint>& profile, int sides);
+
 // Flat shaded triangles from points, three a triangle.
 std::vector<Vertex> flat_mesh(const std::vector<Vec3>& points);
 

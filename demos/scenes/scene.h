@@ -14,15 +14,18 @@ namespace scenes {
 
 constexpr int kWorld = -1;  // in place of a body's index
 
-enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule, scaled_hull };
 
 struct Shape {
     ShapeKind kind = ShapeKind::box;
     taut_vec3 half_extents{};       // box [m]
     taut_vec3 normal{0, 1, 0};      // plane
-    float radius = 0;               // sphere, capsule [m]
-    float half_length = 0;          // capsule, along y [m]
+    float radius = 0;               // sphere, capsule, cylinder, base of a cone, bottom of a tapered capsule [m]
+    float top_radius = 0;           // tapered capsule [m]
+    float half_length = 0;          // capsule, cylinder, cone, tapered capsule, along y [m]
     std::vector<taut_vec3> points;  // hull [m]
+    int hull = -1;                  // scaled hull: index of the hull among the scene's shapes
+    taut_vec3 scale{1, 1, 1};       // scaled hull
     std::string source;             // where it came from, for messages ("cow.obj:12: group 'horn'")
 };
 

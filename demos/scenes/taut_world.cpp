@@ -7,7 +7,8 @@ namespace scenes {
 
 namespace {
 
-taut_result add_shape(taut_world world, const Shape& shape, taut_shape* out) {
+// earlier: the world's shapes before this one.
+taut_result add_shape(taut_world world, const Shape& shape, const std::vector<taut_shape>& earlier, taut_shape* out) {
     switch (shape.kind) {
         case ShapeKind::plane: {
             taut_plane_def def;
@@ -33,6 +34,35 @@ taut_result add_shape(taut_world world, const Shape& shape, taut_shape* out) {
             def.radius = shape.radius;
             def.half_length = shape.half_length;
             return taut_world_add_capsule(world, &def, out);
+        }
+        case ShapeKind::cylinder: {
+            taut_cylinder_def def;
+            taut_cylinder_def_init(&def);
+            def.radius = shape.radius;
+            def.half_length = shape.half_length;
+            return taut_world_add_cylinder(world, &def, out);
+        }
+        case ShapeKind::cone: {
+            taut_cone_def def;
+            taut_cone_def_init(&def);
+            def.radius = shape.radius;
+            def.half_length = shape.half_length;
+            return taut_world_add_cone(world, &def, out);
+        }
+        case ShapeKind::tapered_capsule: {
+            taut_tapered_capsule_def def;
+            taut_tapered_capsule_def_init(&def);
+            def.bottom_radius = shape.radius;
+            def.top_radius = shape.top_radius;
+            def.half_length = shape.half_length;
+            return taut_world_add_tapered_capsule(world, &def, out);
+        }
+        case ShapeKind::scaled_hull: {
+            taut_scaled_hull_def def;
+            taut_scaled_hull_def_init(&def);
+            def.hull = earlier.at(static_cast<size_t>(shape.hull));
+            def.scale = shape.scale;
+            return taut_world_add_scaled_hull(world, &def, out);
         }
         case ShapeKind::hull:
             break;
@@ -116,7 +146,7 @@ void TautWorld::build() {
     for (const Shape& shape : scene_.shapes) {
         taut_shape handle{};
         std::string what = shape.source.empty() ? "adding a shape" : shape.source;
-        check(add_shape(world, shape, &handle), what.c_str());
+        check(add_shape(world, shape, shapes, &handle), what.c_str());
         shapes.push_back(handle);
     }
     for (const Body& body : scene_.bodies) {

@@ -56,6 +56,59 @@ typedef struct taut_hull_def {
     const taut_vec3* points; /**< point_count points [m]; copied */
 } taut_hull_def;
 
+/** Cylinder along the body's y axis, centred on its origin. */
+typedef struct taut_cylinder_def {
+    uint32_t struct_size;
+    float radius;      /**< [m]. Default 0.5 */
+    float half_length; /**< half the distance between the two flat ends [m]. Default 0.5 */
+} taut_cylinder_def;
+
+/**
+ * Cone along the body's y axis: base at y = -half_length, apex at y = +half_length, so that the origin is the middle
+ * of its height; the centre of mass lies half_length / 2 below it.
+ */
+typedef struct taut_cone_def {
+    uint32_t struct_size;
+    float radius;      /**< of the base [m]. Default 0.5 */
+    float half_length; /**< half the height [m]. Default 0.5 */
+} taut_cone_def;
+
+/**
+ * Tapered capsule along the body's y axis: the hull of two balls centred at y = -half_length and y = +half_length.
+ * Refused: one ball inside the other, |bottom_radius - top_radius| >= 2 half_length.
+ */
+typedef struct taut_tapered_capsule_def {
+    uint32_t struct_size;
+    float bottom_radius; /**< of the ball at -half_length [m]. Default 0.3 */
+    float top_radius;    /**< of the ball at +half_length [m]. Default 0.2 */
+    float half_length;   /**< half the distance between the balls' centres [m]. Default 0.5 */
+} taut_tapered_capsule_def;
+
+/**
+ * A hull shape whose points are those of another hull shape multiplied axis by axis about the body's origin. It is a
+ * shape of its own: the source may be removed. Refused: a source that is not a hull, points beyond
+ * TAUT_SHAPE_MAX_SIZE, a hull less than TAUT_SHAPE_MIN_SIZE thick.
+ */
+typedef struct taut_scaled_hull_def {
+    uint32_t struct_size;
+    uint32_t reserved; /**< 0 */
+    taut_shape hull;   /**< a hull shape of the same world */
+    taut_vec3 scale;   /**< factors; negative ones mirror. Size of each in [1e-3, 1e3]. Default 1 each */
+} taut_scaled_hull_def;
+
+/** What a shape is. A scaled hull is a hull. Further kinds may be appended. */
+typedef enum taut_shape_kind {
+    TAUT_SHAPE_PLANE = 0,
+    TAUT_SHAPE_BOX = 1,
+    TAUT_SHAPE_SPHERE = 2,
+    TAUT_SHAPE_CAPSULE = 3,
+    TAUT_SHAPE_HULL = 4,
+    TAUT_SHAPE_CYLINDER = 5,
+    TAUT_SHAPE_CONE = 6,
+    TAUT_SHAPE_TAPERED_CAPSULE = 7,
+    TAUT_SHAPE_KIND_MAX = 0x7fffffff
+} taut_shape_kind;
+
 /** Mass properties of a shape at a density, about its centre of mass, axes of the body's frame. */
 typedef struct taut_mass_properties {
     float mass;               /**< [kg] */
@@ -68,22 +121,54 @@ TAUT_API void taut_box_def_init(taut_box_def* def);
 TAUT_API void taut_sphere_def_init(taut_sphere_def* def);
 TAUT_API void taut_capsule_def_init(taut_capsule_def* def);
 TAUT_API void taut_hull_def_init(taut_hull_def* def);
+TAUT_API void taut_cylinder_def_init(taut_cylinder_def* def);
+TAUT_API void taut_cone_def_init(taut_cone_def* def);
+TAUT_API void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def);
+TAUT_API void taut_scaled_hull_def_init(taut_scaled_hull_def* def);
 
 /**
  * Adds a shape to a world.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_STALE_HANDLE, TAUT_LOCKED,
- *         TAUT_INVALID_ARGUMENT (size out of range, zero normal, degenerate points), TAUT_OUT_OF_MEMORY.
+ *         TAUT_INVALID_ARGUMENT (size out of range, zero normal, degenerate points, a ball inside the other, a scaled
+ *         hull's source of another kind or world), TAUT_LIMIT, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_plane(taut_world world, const taut_plane_def* def, taut_shape* out);
 TAUT_API taut_result taut_world_add_box(taut_world world, const taut_box_def* def, taut_shape* out);
 TAUT_API taut_result taut_world_add_sphere(taut_world world, const taut_sphere_def* def, taut_shape* out);
 TAUT_API taut_result taut_world_add_capsule(taut_world world, const taut_capsule_def* def, taut_shape* out);
 TAUT_API taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out);
+TAUT_API taut_result taut_world_add_cylinder(taut_world world, const taut_cylinder_def* def, taut_shape* out);
+TAUT_API taut_result taut_world_add_cone(taut_world world, const taut_cone_def* def, taut_shape* out);
+TAUT_API taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_capsule_def* def,
+                                                    taut_shape* out);
+TAUT_API taut_result taut_world_add_scaled_hull(taut_world world, const taut_scaled_hull_def* def, taut_shape* out);
 
 /** Removes a shape. @return TAUT_OK; TAUT_IN_USE while a body uses it; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_shape_remove(taut_shape shape);
 /** 1 if the handle names a live shape, else 0. */
 TAUT_API int32_t taut_shape_is_valid(taut_shape shape);
+
+/** What a shape is. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE. */
+TAUT_API taut_result taut_shape_get_kind(taut_shape shape, taut_shape_kind* out);
+
+/**
+ * The def that a shape was made from, normals normalised. The out's struct_size is checked: initialise it first.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_STALE_HANDLE, TAUT_INVALID_ARGUMENT if the shape is of
+ *         another kind.
+ */
+TAUT_API taut_result taut_shape_get_plane(taut_shape shape, taut_plane_def* out);
+TAUT_API taut_result taut_shape_get_box(taut_shape shape, taut_box_def* out);
+TAUT_API taut_result taut_shape_get_sphere(taut_shape shape, taut_sphere_def* out);
+TAUT_API taut_result taut_shape_get_capsule(taut_shape shape, taut_capsule_def* out);
+TAUT_API taut_result taut_shape_get_cylinder(taut_shape shape, taut_cylinder_def* out);
+TAUT_API taut_result taut_shape_get_cone(taut_shape shape, taut_cone_def* out);
+TAUT_API taut_result taut_shape_get_tapered_capsule(taut_shape shape, taut_tapered_capsule_def* out);
+
+/**
+ * The least box along the axes of the body's frame that holds the shape [m].
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_INVALID_ARGUMENT for a plane, which has no bounds.
+ */
+TAUT_API taut_result taut_shape_get_bounds(taut_shape shape, taut_vec3* low, taut_vec3* high);
 
 /**
  * Mass properties at a density [kg/m^3] > 0.

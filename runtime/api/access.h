@@ -34,6 +34,7 @@ constexpr Range kBodyMass{1e-6, 1e15};                                        //
 constexpr Range kParticleMass{1e-9, 1e21};                                    // [kg]
 constexpr Range kShapeSize{TAUT_SHAPE_MIN_SIZE, TAUT_SHAPE_MAX_SIZE};         // [m]
 constexpr Range kShapeCoordinate{-TAUT_SHAPE_MAX_SIZE, TAUT_SHAPE_MAX_SIZE};  // [m], in a body's frame
+constexpr Range kShapeScale{1e-3, 1e3};                                       // size of a factor
 constexpr Range kCompliance{0, 1e6};                                          // [m/N]
 constexpr Range kDamping{0, 1e12};                                            // [N s/m]
 constexpr Range kJointLength{1e-4, 1e6};                                      // [m]

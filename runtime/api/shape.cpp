@@ -1,5 +1,7 @@
 #include <taut/shape.h>
 
+#include <cmath>
+
 #include "api/access.h"
 
 using namespace taut;
@@ -15,12 +17,25 @@ bool check_def(Check& check, const Def* def, taut_shape* out) {
     return static_cast<bool>(check.struct_size(def->struct_size, sizeof *def));
 }
 
+taut_result insert(const Check& check, World& world, collision::Shape shape, taut_shape* out) {
+    if (world.shapes.ids.slots() >= kMaxSlots) return refuse(TAUT_LIMIT, "%s: too many shapes", check.call());
+    *out = world.shape_handle(world.shapes.add(std::move(shape)));
+    return TAUT_OK;
+}
+
 taut_result add_shape(const Check& check, taut_world handle, collision::Shape shape, taut_shape* out) {
-    return with_world(check.call(), handle, Use::write, [&](World& world) {
-        if (world.shapes.ids.slots() >= kMaxSlots) return refuse(TAUT_LIMIT, "%s: too many shapes", check.call());
-        *out = world.shape_handle(world.shapes.add(std::move(shape)));
-        return TAUT_OK;
-    });
+    return with_world(check.call(), handle, Use::write,
+                      [&](World& world) { return insert(check, world, std::move(shape), out); });
+}
+
+// Capsule, cylinder and cone: a radius and half a length along y.
+template <class Def>
+taut_result add_round(const char* call, collision::ShapeKind kind, taut_world world, const Def* def, taut_shape* out) {
+    Check check(call);
+    if (!check_def(check, def, out)) return check.result();
+    check.number("radius", def->radius, kShapeSize).number("half_length", def->half_length, kShapeSize);
+    if (!check) return check.result();
+    return add_shape(check, world, {kind, Vec3f(def->radius, def->half_length, 0), nullptr}, out);
 }
 
 template <class Def>
@@ -37,6 +52,10 @@ void taut_box_def_init(taut_box_def* def) { init(def, {0, {0.5f, 0.5f, 0.5f}}); 
 void taut_sphere_def_init(taut_sphere_def* def) { init(def, {0, 0.5f}); }
 void taut_capsule_def_init(taut_capsule_def* def) { init(def, {0, 0.25f, 0.5f}); }
 void taut_hull_def_init(taut_hull_def* def) { init(def, {0, 0, nullptr}); }
+void taut_cylinder_def_init(taut_cylinder_def* def) { init(def, {0, 0.5f, 0.5f}); }
+void taut_cone_def_init(taut_cone_def* def) { init(def, {0, 0.5f, 0.5f}); }
+void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def) { init(def, {0, 0.3f, 0.2f, 0.5f}); }
+void taut_scaled_hull_def_init(taut_scaled_hull_def* def) { init(def, {0, 0, {0}, {1, 1, 1}}); }
 
 taut_result taut_world_add_plane(taut_world world, const taut_plane_def* def, taut_shape* out) {
     Check check(__func__);
@@ -62,12 +81,28 @@ taut_result taut_world_add_sphere(taut_world world, const taut_sphere_def* def, 
 }
 
 taut_result taut_world_add_capsule(taut_world world, const taut_capsule_def* def, taut_shape* out) {
+    return add_round(__func__, collision::ShapeKind::capsule, world, def, out);
+}
+
+taut_result taut_world_add_cylinder(taut_world world, const taut_cylinder_def* def, taut_shape* out) {
+    return add_round(__func__, collision::ShapeKind::cylinder, world, def, out);
+}
+
+taut_result taut_world_add_cone(taut_world world, const taut_cone_def* def, taut_shape* out) {
+    return add_round(__func__, collision::ShapeKind::cone, world, def, out);
+}
+
+taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_capsule_def* def, taut_shape* out) {
     Check check(__func__);
     if (!check_def(check, def, out)) return check.result();
-    check.number("radius", def->radius, kShapeSize).number("half_length", def->half_length, kShapeSize);
+    check.number("bottom_radius", def->bottom_radius, kShapeSize).number("top_radius", def->top_radius, kShapeSize);
+    check.number("half_length", def->half_length, kShapeSize);
+    // A relative 1e-4 leaves the side's normal a cosine above rounding.
+    check.require(std::fabs(def->bottom_radius - def->top_radius) < 2 * def->half_length * (1 - 1e-4f),
+                  "bottom_radius and top_radius differ by 2 half_length or more: one ball is inside the other");
     if (!check) return check.result();
-    const Vec3f size(def->radius, def->half_length, 0);
-    return add_shape(check, world, {collision::ShapeKind::capsule, size, nullptr}, out);
+    const Vec3f size(def->bottom_radius, def->half_length, def->top_radius);
+    return add_shape(check, world, {collision::ShapeKind::tapered_capsule, size, nullptr}, out);
 }
 
 taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {
@@ -86,6 +121,32 @@ taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut
         auto hull = collision::build_hull(points, TAUT_HULL_MAX_VERTICES, TAUT_SHAPE_MIN_SIZE, &reason);
         if (!hull) return refuse(TAUT_INVALID_ARGUMENT, "%s: points make no hull: %s", check.call(), reason);
         return add_shape(check, world, {collision::ShapeKind::hull, Vec3f::Zero(), std::move(hull)}, out);
+    });
+}
+
+taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull_def* def, taut_shape* out) {
+    Check check(__func__);
+    if (!check_def(check, def, out)) return check.result();
+    check.zero("reserved", def->reserved);
+    const taut_vec3 sizes = {std::fabs(def->scale.x), std::fabs(def->scale.y), std::fabs(def->scale.z)};
+    if (!check.vector("scale", sizes, kShapeScale)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        uint32_t index = 0;
+        const taut_result found = find_shape(check.call(), "hull", world, def->hull, index);
+        if (found != TAUT_OK) return found;
+        const collision::Shape& source = world.shapes.record[index].shape;
+        if (!check.require(source.kind == collision::ShapeKind::hull, "hull is a shape of another kind")) {
+            return check.result();
+        }
+        const Vec3f factors = to_vec(def->scale).cast<float>();
+        for (const Vec3f& vertex : collision::hull_vertices(*source.hull)) {
+            const bool fits = (vertex.cwiseProduct(factors).cwiseAbs().array() <= TAUT_SHAPE_MAX_SIZE).all();
+            if (!check.require(fits, "scale takes a point beyond TAUT_SHAPE_MAX_SIZE")) return check.result();
+        }
+        const char* reason = "";
+        auto hull = collision::scale_hull(*source.hull, factors, TAUT_SHAPE_MIN_SIZE, &reason);
+        if (!hull) return refuse(TAUT_INVALID_ARGUMENT, "%s: scale leaves no hull: %s", check.call(), reason);
+        return insert(check, world, {collision::ShapeKind::hull, Vec3f::Zero(), std::move(hull)}, out);
     });
 }
 

@@ -87,6 +87,35 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              taut_shape out;
              return taut_world_add_capsule(w, &def, &out);
          }},
+        {"taut_world_add_cylinder",
+         [](taut_world w) {
+             taut_cylinder_def def;
+             taut_cylinder_def_init(&def);
+             taut_shape out;
+             return taut_world_add_cylinder(w, &def, &out);
+         }},
+        {"taut_world_add_cone",
+         [](taut_world w) {
+             taut_cone_def def;
+             taut_cone_def_init(&def);
+             taut_shape out;
+             return taut_world_add_cone(w, &def, &out);
+         }},
+        {"taut_world_add_tapered_capsule",
+         [](taut_world w) {
+             taut_tapered_capsule_def def;
+             taut_tapered_capsule_def_init(&def);
+             taut_shape out;
+             return taut_world_add_tapered_capsule(w, &def, &out);
+         }},
+        {"taut_world_add_scaled_hull",
+         [&p](taut_world w) {
+             taut_scaled_hull_def def;
+             taut_scaled_hull_def_init(&def);
+             def.hull = p.hull;
+             taut_shape out;
+             return taut_world_add_scaled_hull(w, &def, &out);
+         }},
         {"taut_world_add_hull",
          [](taut_world w) {
              const taut_vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -290,6 +319,16 @@ inline std::vector<Call<taut_shape>> shape_calls() {
              taut_vec3 out[400];
              uint32_t count;
              return taut_shape_hull_triangles(s, out, 400, &count);
+         }},
+        {"taut_shape_get_kind",
+         [](taut_shape s) {
+             taut_shape_kind out;
+             return taut_shape_get_kind(s, &out);
+         }},
+        {"taut_shape_get_bounds",
+         [](taut_shape s) {
+             taut_vec3 low, high;
+             return taut_shape_get_bounds(s, &low, &high);
          }},
         {"taut_shape_remove", [](taut_shape s) { return taut_shape_remove(s); }},
     };

@@ -53,6 +53,62 @@ TEST_F(Refusals, Capsule) {
     check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "half_length");
 }
 
+TEST_F(Refusals, Cylinder) {
+    taut_cylinder_def def;
+    taut_cylinder_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_cylinder", taut_world_add_cylinder);
+    check.run(def, {FIELD(taut_cylinder_def, radius, kSizeLo, kSizeHi),
+                    FIELD(taut_cylinder_def, half_length, kSizeLo, kSizeHi)});
+}
+
+TEST_F(Refusals, Cone) {
+    taut_cone_def def;
+    taut_cone_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_cone", taut_world_add_cone);
+    check.run(def,
+              {FIELD(taut_cone_def, radius, kSizeLo, kSizeHi), FIELD(taut_cone_def, half_length, kSizeLo, kSizeHi)});
+}
+
+TEST_F(Refusals, TaperedCapsule) {
+    using Def = taut_tapered_capsule_def;
+    Def def;
+    taut_tapered_capsule_def_init(&def);
+    DefCheck check(p.world, "taut_world_add_tapered_capsule", taut_world_add_tapered_capsule);
+    // A limit of one size makes one ball swallow the other.
+    check.run(def, {FIELD(Def, bottom_radius, kSizeLo, kSizeHi, Field::unchecked),
+                    FIELD(Def, top_radius, kSizeLo, kSizeHi, Field::unchecked),
+                    FIELD(Def, half_length, kSizeLo, kSizeHi, Field::unchecked)});
+    for (const float half : {0.05f, 0.0499f, 0.002f}) {
+        Def bad = def;
+        bad.bottom_radius = 0.3f;
+        bad.top_radius = 0.2f;
+        bad.half_length = half;
+        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, "one ball is inside the other");
+        std::swap(bad.bottom_radius, bad.top_radius);
+        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, "one ball is inside the other");
+    }
+}
+
+TEST_F(Refusals, ScaledHull) {
+    using Def = taut_scaled_hull_def;
+    Def def;
+    taut_scaled_hull_def_init(&def);
+    def.hull = p.hull;
+    DefCheck check(p.world, "taut_world_add_scaled_hull", taut_world_add_scaled_hull);
+    check.run(def, {FIELD3(Def, scale, 1e-3, 1e3, Field::unchecked)});
+    const auto refuse = [&](taut_result code, const char* word, auto change) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, code, word);
+    };
+    refuse(TAUT_INVALID_ARGUMENT, "reserved", [](Def& d) { d.reserved = 1; });
+    refuse(TAUT_INVALID_ARGUMENT, "scale.y is 0", [](Def& d) { d.scale.y = 0; });
+    refuse(TAUT_INVALID_ARGUMENT, "scale.x", [](Def& d) { d.scale.x = -2e3f; });
+    refuse(TAUT_INVALID_ARGUMENT, "another kind", [&](Def& d) { d.hull = p.box; });
+    refuse(TAUT_INVALID_ARGUMENT, "thinner", [](Def& d) { d.scale.z = 1e-3f; });
+    refuse(TAUT_STALE_HANDLE, "hull", [](Def& d) { d.hull = {0}; });
+}
+
 TEST_F(Refusals, Hull) {
     taut_vec3 points[6] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}};
     taut_hull_def def;
@@ -239,6 +295,10 @@ TEST(Init, TakesNullAndWritesSizes) {
     taut_sphere_def_init(nullptr);
     taut_capsule_def_init(nullptr);
     taut_hull_def_init(nullptr);
+    taut_cylinder_def_init(nullptr);
+    taut_cone_def_init(nullptr);
+    taut_tapered_capsule_def_init(nullptr);
+    taut_scaled_hull_def_init(nullptr);
 
     taut_world_def world;
     std::memset(&world, 0xff, sizeof world);

@@ -204,7 +204,7 @@ private:
         const taut_world world = worlds_[w];
         taut_shape out = {0};
         bool added = false;
-        switch (byte() % 5) {
+        switch (byte() % 9) {
             case 0: {
                 taut_plane_def def;
                 taut_plane_def_init(&def);
@@ -236,6 +236,45 @@ private:
                 def.half_length = real(0.01, 2);
                 spoil(def.struct_size);
                 added = run("taut_world_add_capsule", [&] { return taut_world_add_capsule(world, &def, &out); });
+                break;
+            }
+            case 4: {
+                taut_cylinder_def def;
+                taut_cylinder_def_init(&def);
+                def.radius = real(0.01, 1);
+                def.half_length = real(0.01, 2);
+                spoil(def.struct_size);
+                added = run("taut_world_add_cylinder", [&] { return taut_world_add_cylinder(world, &def, &out); });
+                break;
+            }
+            case 5: {
+                taut_cone_def def;
+                taut_cone_def_init(&def);
+                def.radius = real(0.01, 1);
+                def.half_length = real(0.01, 2);
+                spoil(def.struct_size);
+                added = run("taut_world_add_cone", [&] { return taut_world_add_cone(world, &def, &out); });
+                break;
+            }
+            case 6: {
+                taut_tapered_capsule_def def;
+                taut_tapered_capsule_def_init(&def);
+                def.bottom_radius = real(0.01, 1);
+                def.top_radius = real(0.01, 1);
+                def.half_length = real(0.01, 2);
+                spoil(def.struct_size);
+                added = run("taut_world_add_tapered_capsule",
+                            [&] { return taut_world_add_tapered_capsule(world, &def, &out); });
+                break;
+            }
+            case 7: {
+                taut_scaled_hull_def def;
+                taut_scaled_hull_def_init(&def);
+                def.hull = pick(shapes_, w);
+                def.scale = vec(3);
+                spoil(def.struct_size);
+                added =
+                    run("taut_world_add_scaled_hull", [&] { return taut_world_add_scaled_hull(world, &def, &out); });
                 break;
             }
             default: {
@@ -538,7 +577,7 @@ private:
             expect(error >= 0, "an error that is none");
         taut_vec3 torque;
         if (run("taut_joint_get_torque", [&] { return taut_joint_get_torque(joint, &torque); }))
-            expect(!std::isnan(torque.x + torque.y + torque.z), "a torque that is none");
+            expect(!std::isnan(torque.x) && !std::isnan(torque.y) && !std::isnan(torque.z), "a torque that is none");
         taut_frame frame_a, frame_b;
         if (run("taut_joint_get_frames", [&] { return taut_joint_get_frames(joint, &frame_a, &frame_b); }))
             expect(finite(frame_a.position) && finite(frame_b.position), "a frame that is not finite");
@@ -576,6 +615,14 @@ private:
             return taut_shape_hull_triangles(shape, points.data(), static_cast<uint32_t>(points.size()), &count);
         });
         expect(count % 3 == 0, "triangles that are none");
+        taut_shape_kind kind;
+        if (run("taut_shape_get_kind", [&] { return taut_shape_get_kind(shape, &kind); })) {
+            expect(kind <= TAUT_SHAPE_TAPERED_CAPSULE, "a kind that is none");
+        }
+        taut_vec3 low, high;
+        if (run("taut_shape_get_bounds", [&] { return taut_shape_get_bounds(shape, &low, &high); })) {
+            expect(finite(low) && finite(high) && low.x < high.x && low.y < high.y && low.z < high.z, "no bounds");
+        }
     }
 
     void read_world() {

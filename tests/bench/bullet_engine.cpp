@@ -30,9 +30,14 @@ std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
         case scenes::ShapeKind::capsule:
             return std::make_unique<btCapsuleShape>(shape.radius, 2 * shape.half_length);
         case scenes::ShapeKind::hull:
+        case scenes::ShapeKind::cylinder:
+        case scenes::ShapeKind::cone:
+        case scenes::ShapeKind::tapered_capsule:
+        case scenes::ShapeKind::scaled_hull:
             break;
     }
-    throw scenes::BadScene("--engine bullet does not run scenes with hulls: Bullet's margin would change their size");
+    throw scenes::BadScene(
+        "--engine bullet does not run scenes with hulls, cylinders or cones: Bullet's margin would change their size");
 }
 
 class BulletEngine : public Engine {

@@ -135,6 +135,10 @@ private:
                 return dCreateSphere(space_, real(shape.radius));
             case scenes::ShapeKind::capsule:
             case scenes::ShapeKind::hull:
+            case scenes::ShapeKind::cylinder:
+            case scenes::ShapeKind::cone:
+            case scenes::ShapeKind::tapered_capsule:
+            case scenes::ShapeKind::scaled_hull:
                 break;
         }
         throw scenes::BadScene("--engine ode runs scenes of boxes, spheres and planes only");

@@ -42,9 +42,13 @@ double reach(const Placed& p, Vec direction) {
             return most;
         }
         case ShapeKind::plane:
+        case ShapeKind::cylinder:
+        case ShapeKind::cone:
+        case ShapeKind::tapered_capsule:
+        case ShapeKind::scaled_hull:
             break;
     }
-    throw std::invalid_argument("two planes have no overlap depth");
+    throw std::invalid_argument("no exact overlap for this pair of shapes");
 }
 
 double plane_depth(const Placed& plane, const Placed& other) {
@@ -111,7 +115,13 @@ double bounding_radius(const Shape& shape) {
         case ShapeKind::sphere:
             return shape.radius;
         case ShapeKind::capsule:
+        case ShapeKind::cylinder:
+        case ShapeKind::cone:
             return static_cast<double>(shape.radius) + static_cast<double>(shape.half_length);
+        case ShapeKind::tapered_capsule:
+            return static_cast<double>(std::max(shape.radius, shape.top_radius) + shape.half_length);
+        case ShapeKind::scaled_hull:
+            throw std::invalid_argument("a scaled hull has no radius of its own");
         case ShapeKind::hull:
             break;
     }

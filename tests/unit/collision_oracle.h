@@ -1,5 +1,5 @@
 // Answers from elsewhere for the collision tests: random shapes and poses, and the exact separation of two shapes
-// by libccd's GJK, Bullet's GJK and a search over all axes in double precision.
+// by libccd's GJK, Bullet's GJK and a search over all axes, or over all directions, in double precision.
 #pragma once
 
 #include <random>
@@ -24,19 +24,35 @@ private:
 Shape box(float hx, float hy, float hz);
 Shape sphere(float radius);
 Shape capsule(float radius, float half_length);
+Shape cylinder(float radius, float half_length);
+Shape cone(float radius, float half_length);
+Shape tapered_capsule(float low, float half_length, float high);
 Shape plane(const Vec3f& normal);
 Shape hull(const std::vector<Vec3f>& points);
 Shape random_shape(ShapeKind kind, Random& random);
 
 const char* name(ShapeKind kind);
 
-// A shape as points in the world grown by a radius; triangles and edges where the points span a volume.
+// A shape as the hull of points, discs and balls in the world, grown by a radius; triangles and edges where points
+// alone span a volume.
 struct Core {
+    struct Disc {
+        Vec3 centre, axis;
+        double radius;
+    };
+    struct Ball {
+        Vec3 centre;
+        double radius;
+    };
     std::vector<Vec3> points;
+    std::vector<Disc> discs;
+    std::vector<Ball> balls;
     double radius = 0;
-    std::vector<Vec3> normals;                  // outward
-    std::vector<Vec3> edges;                    // directions
-    double reach(const Vec3& direction) const;  // max direction . p, without the radius
+    std::vector<Vec3> normals;  // outward
+    std::vector<Vec3> edges;    // directions
+    bool curved() const { return !discs.empty() || !balls.empty(); }
+    Vec3 furthest(const Vec3& direction) const;  // point, without the radius
+    double reach(const Vec3& direction) const;   // max direction . p over unit directions, without the radius
 };
 Core core(const Shape& shape, const Placement& at);
 

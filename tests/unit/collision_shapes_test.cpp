@@ -63,6 +63,38 @@ TEST(CollisionMass, RoundShapesMatchQuadrature) {
     }
 }
 
+TEST(CollisionMass, TurnedShapesMatchQuadrature) {
+    for (const Shape& shape : {oracle::cylinder(0.3f, 0.4f), oracle::cylinder(0.5f, 0.1f), oracle::cone(0.4f, 0.5f),
+                               oracle::cone(0.5f, 0.3f), oracle::tapered_capsule(0.4f, 0.3f, 0.15f),
+                               oracle::tapered_capsule(0.1f, 0.25f, 0.45f)}) {
+        const double reach = shape.size.maxCoeff() + shape.size.y() + 0.05;
+        const MassProperties want = by_quadrature(shape, 800, reach, 100);
+        const MassProperties got = mass_properties(shape, 800);
+        EXPECT_NEAR(got.mass, want.mass, 3e-3 * want.mass) << oracle::name(shape.kind);
+        EXPECT_LT((got.centre - want.centre).norm(), 1e-3) << oracle::name(shape.kind);
+        EXPECT_TRUE(got.inertia.matrix().isApprox(want.inertia.matrix(), 6e-3)) << oracle::name(shape.kind);
+    }
+}
+
+// m r^2 / 2 and m (3 r^2 + H^2) / 12 of a cylinder; 3/10 m r^2 and 3/20 m r^2 + 3/80 m H^2 of a cone, whose centre lies
+// H / 4 above its base; a tapered capsule of one radius is a capsule.
+TEST(CollisionMass, TurnedShapesAreExact) {
+    constexpr double kPi = 3.14159265358979323846, kRadius = 0.5, kHeight = 1.5;
+    const MassProperties cylinder = mass_properties(oracle::cylinder(0.5f, 0.75f), 10);
+    EXPECT_NEAR(cylinder.mass, 10 * kPi * kRadius * kRadius * kHeight, 1e-12);
+    EXPECT_NEAR(cylinder.inertia.yy, 0.5 * cylinder.mass * kRadius * kRadius, 1e-12);
+    EXPECT_NEAR(cylinder.inertia.xx, cylinder.mass * (3 * kRadius * kRadius + kHeight * kHeight) / 12, 1e-12);
+    const MassProperties cone = mass_properties(oracle::cone(0.5f, 0.75f), 10);
+    EXPECT_NEAR(cone.mass, cylinder.mass / 3, 1e-12);
+    EXPECT_NEAR(cone.centre.y(), -0.75 + kHeight / 4, 1e-12);
+    EXPECT_NEAR(cone.inertia.yy, 0.3 * cone.mass * kRadius * kRadius, 1e-12);
+    EXPECT_NEAR(cone.inertia.xx, cone.mass * (0.15 * kRadius * kRadius + 0.0375 * kHeight * kHeight), 1e-12);
+    const MassProperties tapered = mass_properties(oracle::tapered_capsule(0.25f, 0.5f, 0.25f), 10);
+    const MassProperties capsule = mass_properties(oracle::capsule(0.25f, 0.5f), 10);
+    EXPECT_NEAR(tapered.mass, capsule.mass, 1e-12);
+    EXPECT_TRUE(tapered.inertia.matrix().isApprox(capsule.inertia.matrix(), 1e-12));
+}
+
 TEST(CollisionMass, BoxIsExact) {
     const MassProperties got = mass_properties(oracle::box(0.5f, 1.0f, 1.5f), 10);
     EXPECT_DOUBLE_EQ(got.mass, 10 * 1 * 2 * 3);
@@ -107,7 +139,8 @@ TEST(CollisionMass, RandomHullMatchesQuadrature) {
 
 TEST(CollisionBounds, TouchTheShapeOnEverySide) {
     Random random(kSeed + 2);
-    for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::hull}) {
+    for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::hull,
+                                 ShapeKind::cylinder, ShapeKind::cone, ShapeKind::tapered_capsule}) {
         for (int run = 0; run < 100; ++run) {
             const Shape shape = oracle::random_shape(kind, random);
             const double far = run % 2 == 0 ? 1 : 10000;
@@ -128,6 +161,36 @@ TEST(CollisionBounds, TouchTheShapeOnEverySide) {
 }
 
 // ---------------------------------------------------------------- hulls
+
+// Scaling keeps the surface: faces, their normals turned by the inverse factors, and the volume's product.
+TEST(CollisionHull, ScaledHullKeepsItsFaces) {
+    Random random(kSeed + 9);
+    for (int run = 0; run < 50; ++run) {
+        const Shape source = oracle::random_shape(ShapeKind::hull, random);
+        Vec3f factors;
+        for (int k = 0; k < 3; ++k) factors[k] = float(random.uniform(0.3, 3)) * (random.uniform(0, 1) < 0.5 ? -1 : 1);
+        const char* reason = "";
+        Shape scaled;
+        scaled.kind = ShapeKind::hull;
+        scaled.hull = scale_hull(*source.hull, factors, 1e-3f, &reason);
+        ASSERT_TRUE(scaled.hull) << reason;
+        EXPECT_EQ(scaled.hull->faces.size(), source.hull->faces.size());
+        EXPECT_EQ(scaled.hull->edges.size(), source.hull->edges.size());
+        EXPECT_GT(scaled.hull->inner_radius, 0);
+        const double volume = mass_properties(source, 1).mass * double(std::fabs(factors.prod()));
+        EXPECT_NEAR(mass_properties(scaled, 1).mass, volume, 1e-4 * volume);
+        for (const Vec3f& v : source.hull->vertices) {
+            const Vec3f there = v.cwiseProduct(factors);
+            float nearest = 1e30f;
+            for (const Vec3f& p : scaled.hull->vertices) nearest = std::min(nearest, (p - there).norm());
+            EXPECT_EQ(nearest, 0);
+        }
+    }
+    const Shape cube = oracle::hull(cube_points(0.5f));
+    const char* reason = "";
+    EXPECT_FALSE(scale_hull(*cube.hull, Vec3f(1, 1e-3f, 1), 2e-3f, &reason));
+    EXPECT_STREQ(reason, "hull is thinner than allowed");
+}
 
 TEST(CollisionHull, CubeWithInnerPointsIsACube) {
     Random random(kSeed + 3);

@@ -1,0 +1,46 @@
+// A heap of all kinds of shapes comes to rest and stays whole.
+#include "scenes/running_scene.h"
+
+namespace {
+
+using namespace lab;
+
+// Mean depth of the contact points that overlap [m].
+double mean_overlap(const RunningScene& run) {
+    uint32_t count = 0;
+    taut_world_get_contacts(run.world.world, nullptr, 0, &count);
+    std::vector<taut_contact> contacts(count);
+    ok(taut_world_get_contacts(run.world.world, contacts.data(), count, &count));
+    double sum = 0;
+    int overlapping = 0;
+    for (const taut_contact& contact : contacts) {
+        if (contact.separation >= 0) continue;
+        sum -= static_cast<double>(contact.separation);
+        ++overlapping;
+    }
+    return overlapping > 0 ? sum / overlapping : 0;
+}
+
+TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
+    RunningScene run("shapes200");
+    double fastest = 0, mean = 0;
+    for (int frame = 0; frame < 900; ++frame) {
+        run.step();
+        ASSERT_TRUE(run.sound()) << "frame " << frame;
+        if (frame < 840) continue;
+        fastest = std::max(fastest, run.pile_speed());
+        double sum = 0;
+        for (int i : run.scene.roles.pile) sum += norm(run.body(static_cast<size_t>(i)).velocity);
+        mean = std::max(mean, sum / static_cast<double>(run.scene.roles.pile.size()));
+    }
+    const double overlap = mean_overlap(run);
+    EXPECT_LE(overlap, 0.002);
+    EXPECT_LE(mean, 0.01);
+    EXPECT_LE(fastest, 0.3);
+    for (int i : run.scene.roles.pile) EXPECT_GT(run.body(static_cast<size_t>(i)).position.y, 0) << i;
+    RecordProperty("mean_overlap_mm", std::to_string(1e3 * overlap));
+    RecordProperty("mean_speed", std::to_string(mean));
+    std::printf("heap: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n", 1e3 * overlap, mean, fastest);
+}
+
+}  // namespace
