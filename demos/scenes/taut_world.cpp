@@ -81,6 +81,8 @@ taut_result add_body(taut_world world, const Body& body, taut_shape shape, uint6
         def.mass = body.mass;
         def.position = body.position;
         def.velocity = body.linear_velocity;
+        def.shape = shape;
+        def.material.friction = body.friction;
         def.user_data = index;
         return taut_world_add_particle(world, &def, out);
     }
