@@ -25,7 +25,7 @@ constexpr Entry kRoundOn = {polytope_round, true};
 constexpr Entry kOnPlane = {core_plane, false};
 constexpr Entry kUnder = {core_plane, true};
 
-// Rows and columns: plane, box, sphere, capsule, hull.
+// Rows and columns: plane, box, sphere, capsule, hull. Surfaces have none, see collide_parts().
 constexpr std::array<std::array<Entry, kShapeKinds>, kShapeKinds> kKernels = {{
     {kNone, kUnder, kUnder, kUnder, kUnder},
     {kOnPlane, kBoxes, kOnRound, kOnRound, kPolytopes},
@@ -51,6 +51,7 @@ void to_world(const Mat3f& rotation, Manifold& manifold) {
 void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
              PairCache& cache, Manifold& out) {
     out.count = 0;
+    if (has_parts(a) || has_parts(b)) return;
     const Entry& entry = kKernels[size_t(a.kind)][size_t(b.kind)];
     if (!entry.swapped) {
         entry.kernel({a, b, at_a, at_b, relative(at_a, at_b), margin, cache}, out);

@@ -64,24 +64,6 @@ bool still(const Kept& kept, const PolytopePair& pair) {
 
 // ---------------------------------------------------------------- contacts
 
-// Of the faces around the vertex deepest below the reference face, the one that looks most against it.
-int incident_face(const Polytope& polytope, const Vec3f& reference_normal) {
-    const int vertex = support(polytope, -reference_normal);
-    int best = 0;
-    float most = 2;
-    for (const Edge& edge : polytope.edges) {
-        if (edge.from != vertex && edge.to != vertex) continue;
-        for (const int face : {int(edge.left), int(edge.right)}) {
-            const float dot = polytope.faces[size_t(face)].normal.dot(reference_normal);
-            if (dot < most) {
-                most = dot;
-                best = face;
-            }
-        }
-    }
-    return best;
-}
-
 // Everything in the reference polytope's frame; normal out of the reference face.
 void clip_faces(const Polytope& reference, int number, const Polytope& other, const Pose& other_in_reference,
                 bool reference_on_b, float margin, Manifold& out) {

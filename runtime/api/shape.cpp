@@ -1,6 +1,4 @@
-#include <taut/shape.h>
-
-#include "api/access.h"
+#include "api/shape_def.h"
 
 using namespace taut;
 
@@ -9,38 +7,17 @@ namespace {
 // A plane's normal shorter than this has no direction worth keeping [1].
 constexpr double kLeastNormal = 1e-6;
 
-template <class Def>
-bool check_def(Check& check, const Def* def, taut_shape* out) {
-    if (!check.pointer("def", def).pointer("out", out)) return false;
-    return static_cast<bool>(check.struct_size(def->struct_size, sizeof *def));
-}
-
-taut_result add_shape(const Check& check, taut_world handle, collision::Shape shape, taut_shape* out) {
-    return with_world(check.call(), handle, Use::write, [&](World& world) {
-        if (world.shapes.ids.slots() >= kMaxSlots) return refuse(TAUT_LIMIT, "%s: too many shapes", check.call());
-        *out = world.shape_handle(world.shapes.add(std::move(shape)));
-        return TAUT_OK;
-    });
-}
-
-template <class Def>
-void init(Def* def, Def defaults) {
-    if (!def) return;
-    *def = defaults;
-    def->struct_size = sizeof *def;
-}
-
 }  // namespace
 
-void taut_plane_def_init(taut_plane_def* def) { init(def, {0, {0, 1, 0}}); }
-void taut_box_def_init(taut_box_def* def) { init(def, {0, {0.5f, 0.5f, 0.5f}}); }
-void taut_sphere_def_init(taut_sphere_def* def) { init(def, {0, 0.5f}); }
-void taut_capsule_def_init(taut_capsule_def* def) { init(def, {0, 0.25f, 0.5f}); }
-void taut_hull_def_init(taut_hull_def* def) { init(def, {0, 0, nullptr}); }
+void taut_plane_def_init(taut_plane_def* def) { init_shape_def(def, {0, {0, 1, 0}}); }
+void taut_box_def_init(taut_box_def* def) { init_shape_def(def, {0, {0.5f, 0.5f, 0.5f}}); }
+void taut_sphere_def_init(taut_sphere_def* def) { init_shape_def(def, {0, 0.5f}); }
+void taut_capsule_def_init(taut_capsule_def* def) { init_shape_def(def, {0, 0.25f, 0.5f}); }
+void taut_hull_def_init(taut_hull_def* def) { init_shape_def(def, {0, 0, nullptr}); }
 
 taut_result taut_world_add_plane(taut_world world, const taut_plane_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.vector("normal", def->normal, kShapeCoordinate)) return check.result();
     const Vec3 normal = to_vec(def->normal);
     if (!check.require(normal.norm() >= kLeastNormal, "normal is 0, expected a direction")) return check.result();
@@ -49,21 +26,21 @@ taut_result taut_world_add_plane(taut_world world, const taut_plane_def* def, ta
 
 taut_result taut_world_add_box(taut_world world, const taut_box_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.vector("half_extents", def->half_extents, kShapeSize)) return check.result();
     return add_shape(check, world, {collision::ShapeKind::box, to_vec(def->half_extents).cast<float>(), nullptr}, out);
 }
 
 taut_result taut_world_add_sphere(taut_world world, const taut_sphere_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.number("radius", def->radius, kShapeSize)) return check.result();
     return add_shape(check, world, {collision::ShapeKind::sphere, Vec3f(def->radius, 0, 0), nullptr}, out);
 }
 
 taut_result taut_world_add_capsule(taut_world world, const taut_capsule_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     check.number("radius", def->radius, kShapeSize).number("half_length", def->half_length, kShapeSize);
     if (!check) return check.result();
     const Vec3f size(def->radius, def->half_length, 0);
@@ -72,7 +49,7 @@ taut_result taut_world_add_capsule(taut_world world, const taut_capsule_def* def
 
 taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.count("point_count", def->point_count, 4, UINT32_MAX).pointer("points", def->points)) {
         return check.result();
     }
@@ -106,34 +83,12 @@ taut_result taut_shape_mass_properties(taut_shape handle, float density, taut_ma
     if (!check.number("density", density, kDensity).pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const collision::Shape& shape = world.shapes.record[index].shape;
-        if (!check.require(shape.kind != collision::ShapeKind::plane, "shape is a plane, which has no volume")) {
-            return check.result();
-        }
+        check.require(shape.kind != collision::ShapeKind::plane, "shape is a plane, which has no volume")
+            .require(shape.kind != collision::ShapeKind::surface,
+                     "shape is a mesh or height field, which has no volume");
+        if (!check) return check.result();
         const collision::MassProperties mass = collision::mass_properties(shape, density);
         *out = {static_cast<float>(mass.mass), to_vec3(mass.centre), to_sym3(mass.inertia)};
-        return TAUT_OK;
-    });
-}
-
-taut_result taut_shape_hull_triangles(taut_shape handle, taut_vec3* positions, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
-    if (!check.pointer("count", count)) return check.result();
-    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes.record[index].shape;
-        if (!check.require(shape.kind == collision::ShapeKind::hull, "shape is not a hull")) return check.result();
-        std::vector<uint32_t> corners;
-        collision::hull_triangles(*shape.hull, corners);
-        const uint32_t needed = static_cast<uint32_t>(corners.size());
-        *count = needed;
-        if (!positions || capacity < needed) {
-            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(),
-                          positions ? capacity : 0, needed);
-        }
-        const std::span<const Vec3f> vertices = collision::hull_vertices(*shape.hull);
-        for (uint32_t corner : corners) {
-            const Vec3f& p = vertices[corner];
-            *positions++ = {p.x(), p.y(), p.z()};
-        }
         return TAUT_OK;
     });
 }

@@ -80,25 +80,111 @@ void move_to_node(const Collider& a, const collision::Placement& at, collision::
     for (int k = 0; k < manifold.count; ++k) manifold.points[k].position += offset;
 }
 
-// Manifold of one pair at the present placements, with the impulses of the last one.
-void find_points(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs, Pair& pair,
-                 double time) {
-    const uint32_t a = pair.collider_a(), b = pair.collider_b();
-    const Collider &collider_a = colliders.record[a], &collider_b = colliders.record[b];
-    const collision::Manifold old = pair.manifold;
-    collision::collide(shapes.record[collider_a.shape].shape, pairs.placement[a], shapes.record[collider_b.shape].shape,
-                       pairs.placement[b], margin_of(nodes.motion[pair.a], nodes.motion[pair.b], time), pair.cache,
-                       pair.manifold);
-    if (pair.manifold.count == 0) return;
-    move_to_node(collider_a, pairs.placement[a], pair.manifold);
-    combine_surfaces(collider_a, collider_b, pair);
+// A pair's new manifold: its place and surface, and the impulses of the old one.
+void adopt(const Colliders& colliders, const Pairs& pairs, const collision::Manifold& old, const Impulse* before,
+           Pair& pair) {
+    const uint32_t a = pair.collider_a();
+    move_to_node(colliders.record[a], pairs.placement[a], pair.manifold);
+    combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
         return;
     }
-    Impulse before[4];
-    std::copy(pair.impulse, pair.impulse + 4, before);
-    carry_impulses(old, before, pair.manifold, pair.impulse);
+    Impulse carried[4];
+    std::copy(before, before + 4, carried);
+    carry_impulses(old, carried, pair.manifold, pair.impulse);
+}
+
+// Two shapes as they stand in a pair.
+struct Shaped {
+    const collision::Shape &a, &b;
+    const collision::Placement &at_a, &at_b;
+    float margin;
+
+    Shaped(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs, const Pair& pair,
+           double time)
+        : a(shapes.record[colliders.record[pair.collider_a()].shape].shape),
+          b(shapes.record[colliders.record[pair.collider_b()].shape].shape),
+          at_a(pairs.placement[pair.collider_a()]),
+          at_b(pairs.placement[pair.collider_b()]),
+          margin(margin_of(nodes.motion[pair.a], nodes.motion[pair.b], time)) {}
+
+    bool has_parts() const { return collision::has_parts(a) || collision::has_parts(b); }
+    void find_parts(collision::Parts& parts) const { collision::collide_parts(a, at_a, b, at_b, margin, parts); }
+};
+
+// Manifold of one pair at the present placements, with the impulses of the last one.
+void find_points(const Shaped& shaped, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+    const collision::Manifold old = pair.manifold;
+    collision::collide(shaped.a, shaped.at_a, shaped.b, shaped.at_b, shaped.margin, pair.cache, pair.manifold);
+    if (pair.manifold.count > 0) adopt(colliders, pairs, old, pair.impulse, pair);
+}
+
+// The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
+// longer touched that looked about the same way. Null if there is none.
+const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, const collision::PartManifold& part) {
+    constexpr float kAlike = 0.95f;  // cosine between the normals
+    const auto now = [&](uint32_t number) {
+        const auto at = std::lower_bound(parts.found.begin(), parts.found.end(), number,
+                                         [](const auto& found, uint32_t p) { return found.part < p; });
+        return at != parts.found.end() && at->part == number;
+    };
+    const Pair* like = nullptr;
+    float most = kAlike;
+    for (const Pair& pair : old) {
+        if (pair.part == part.part) return &pair;
+        const float along = pair.manifold.normal.dot(part.manifold.normal);
+        if (pair.manifold.count == 0 || along <= most || now(pair.part)) continue;
+        most = along;
+        like = &pair;
+    }
+    return like;
+}
+
+// The parts that a pair with a surface touches, into pairs.fresh; old: its records of the last frame.
+void find_parts(const Shaped& shaped, const Colliders& colliders, Pairs& pairs, std::span<Pair> old) {
+    Pair& first = old[0];
+    first.manifold.count = 0;
+    shaped.find_parts(pairs.parts);
+    for (const collision::PartManifold& found : pairs.parts.found) {
+        const Pair* before = find_old(old.subspan(1), pairs.parts, found);
+        Pair& pair = pairs.fresh.emplace_back();
+        pair.key = first.key;
+        pair.a = first.a;
+        pair.b = first.b;
+        pair.part = found.part;
+        pair.manifold = found.manifold;
+        pair.touching = before && before->part == found.part && before->touching;
+        adopt(colliders, pairs, before ? before->manifold : first.manifold, before ? before->impulse : first.impulse,
+              pair);
+    }
+}
+
+// The fresh parts in place of the old ones, and the active pairs anew.
+void replace_parts(Pairs& pairs) {
+    pairs.scratch.clear();
+    auto next = pairs.fresh.begin();
+    for (const Pair& pair : pairs.list) {
+        if (pair.part != 0) continue;
+        pairs.scratch.push_back(pair);
+        while (next != pairs.fresh.end() && next->key == pair.key) pairs.scratch.push_back(*next++);
+    }
+    pairs.list.swap(pairs.scratch);
+    pairs.active.clear();
+    for (uint32_t i = 0; i < pairs.list.size(); ++i) {
+        const Pair& pair = pairs.list[i];
+        if (!pair.filtered && pair.manifold.count > 0)
+            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+    }
+}
+
+// A part of a pair whose parts were just found again: one that is not among them loses its points.
+void refresh_part(const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+    const collision::Manifold old = pair.manifold;
+    pair.manifold.count = 0;
+    for (const collision::PartManifold& found : pairs.parts.found)
+        if (found.part == pair.part) pair.manifold = found.manifold;
+    if (pair.manifold.count > 0) adopt(colliders, pairs, old, pair.impulse, pair);
 }
 
 }  // namespace
@@ -139,17 +225,17 @@ void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes&
 void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs) {
     refresh_joined(joints, pairs);
-    const bool changed = broadphase.refresh_pairs();
-    const auto keys = broadphase.pairs();
-    if (!changed && keys.size() == pairs.list.size()) return;
+    if (broadphase.refresh_pairs()) pairs.complete = false;
+    if (pairs.complete) return;
     pairs.scratch.clear();
     size_t old = 0;
-    for (uint64_t key : keys) {
-        for (; old < pairs.list.size() && pairs.list[old].key < key; ++old) {  // left the broadphase
-            if (pairs.list[old].touching) report_end(pairs, nodes, colliders, pairs.list[old]);
-        }
+    const auto drop = [&](const Pair& pair) {  // it left the broadphase
+        if (pair.touching && pair.part == 0) report_end(pairs, nodes, colliders, pair);
+    };
+    for (uint64_t key : broadphase.pairs()) {
+        while (old < pairs.list.size() && pairs.list[old].key < key) drop(pairs.list[old++]);
         if (old < pairs.list.size() && pairs.list[old].key == key) {
-            pairs.scratch.push_back(pairs.list[old++]);
+            while (old < pairs.list.size() && pairs.list[old].key == key) pairs.scratch.push_back(pairs.list[old++]);
             continue;
         }
         Pair& pair = pairs.scratch.emplace_back();
@@ -158,19 +244,27 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
         pair.b = colliders.record[pair.collider_b()].node;
         pair.filtered = !may_collide(nodes, colliders, pairs, pair);
     }
-    for (; old < pairs.list.size(); ++old)
-        if (pairs.list[old].touching) report_end(pairs, nodes, colliders, pairs.list[old]);
+    while (old < pairs.list.size()) drop(pairs.list[old++]);
     pairs.list.swap(pairs.scratch);
+    pairs.complete = true;
 }
 
 void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                          std::span<const uint32_t> active_pairs, double elapsed, double substep) {
+    uint64_t found = 0;  // the pair whose parts are found; its records follow one another
     for (uint32_t p : active_pairs) {
         ActivePair& active = pairs.active[p];
         Pair& pair = pairs.list[active.pair];
         for (uint32_t c : {pair.collider_a(), pair.collider_b()})
             pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
-        find_points(nodes, colliders, shapes, pairs, pair, substep);
+        const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
+        if (pair.part == 0) {
+            find_points(shaped, colliders, pairs, pair);
+        } else {
+            if (pair.key != found) shaped.find_parts(pairs.parts);
+            found = pair.key;
+            refresh_part(colliders, pairs, pair);
+        }
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }
 }
@@ -181,17 +275,29 @@ void find_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes&
     for (uint32_t c = 0; c < colliders.record.size(); ++c)
         if (colliders.record[c].node != kNone) pairs.placement[c] = placement_of(nodes, colliders.record[c]);
     pairs.active.clear();
+    pairs.fresh.clear();
+    bool parts = false;
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         Pair& pair = pairs.list[i];
-        if (pair.filtered) continue;
-        find_points(nodes, colliders, shapes, pairs, pair, time_step);
-        if (pair.manifold.count == 0) {
-            if (pair.touching) report_end(pairs, nodes, colliders, pair);
-            pair.touching = false;
-            continue;
+        parts = parts || pair.part != 0;
+        if (pair.filtered || pair.part != 0) continue;
+        const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
+        const size_t fresh = pairs.fresh.size();
+        if (shaped.has_parts()) {
+            size_t end = i + 1;
+            while (end < pairs.list.size() && pairs.list[end].part != 0) ++end;
+            find_parts(shaped, colliders, pairs, std::span(pairs.list).subspan(i, end - i));
+        } else {
+            find_points(shaped, colliders, pairs, pair);
         }
-        pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+        if (pair.manifold.count > 0) {
+            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+        } else if (pairs.fresh.size() == fresh && pair.touching) {
+            report_end(pairs, nodes, colliders, pair);
+            pair.touching = false;
+        }
     }
+    if (parts || !pairs.fresh.empty()) replace_parts(pairs);
 }
 
 }  // namespace taut

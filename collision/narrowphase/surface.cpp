@@ -1,0 +1,127 @@
+// Convex bodies on surfaces: the triangles near the body by facets, a kernel for the body's kind, and the choice among
+// the parts that it finds.
+#include "collision/narrowphase/surface.h"
+
+#include <algorithm>
+
+namespace taut::collision {
+namespace {
+
+// A part is in another's shadow only if it is deeper by this much, and an edge lies in a face's plane within it [m].
+constexpr float kClearly = 0.0025f;
+// Faces are wall and floor to one another if they meet at more than 45 degrees: cosine between the normals.
+constexpr float kWall = 0.7f;
+
+constexpr SurfaceKernel kKernels[kShapeKinds] = {nullptr,       polytope_surface, round_surface,
+                                                 round_surface, polytope_surface, nullptr};
+
+// The triangles that the body's box, grown by the margin, meets; by facet.
+void find_near(const SurfaceView& view, const Shape& body, float margin, Parts& parts) {
+    const Box reach = bounds(body, view.body());
+    const Vec3f p = (reach.lo.array() - margin).matrix().cwiseQuotient(view.scale());
+    const Vec3f q = (reach.hi.array() + margin).matrix().cwiseQuotient(view.scale());
+    parts.near.clear();
+    parts.order.clear();
+    view.surface().find({p.cwiseMin(q), p.cwiseMax(q)}, parts.near);
+    for (const uint32_t t : parts.near) parts.order.push_back(uint64_t(view.surface().facet_of[t]) << 32 | t);
+    std::sort(parts.order.begin(), parts.order.end());
+}
+
+// An edge or vertex at a face that is touched as deep: there the face is what the body meets first. This holds for
+// seams of which the surface does not know that they are, as well.
+bool is_at_face(const Touch& touch, const Touch& face) {
+    if (!is_face(face.part) || face.separation > touch.separation) return false;
+    const float height = face.manifold.normal.dot(touch.manifold.points[0].position - face.manifold.points[0].position);
+    return std::fabs(height) < kClearly + std::max(0.0f, -face.separation);
+}
+
+// How far the body is from a face's triangles along another part's normal.
+float apart_along(const SurfaceView& view, const Touch& part, const Touch& face) {
+    const Vec3f out = -part.manifold.normal;
+    float top = -1e30f;
+    for (const uint64_t key : face.triangles) {
+        for (const uint32_t corner : view.surface().corners(uint32_t(key)))
+            top = std::max(top, out.dot(view.vertex(corner)));
+    }
+    return part.lowest - top;
+}
+
+// A deep face whose triangles the body leaves sooner by a shallower part's normal than by their own.
+bool is_left_through(const SurfaceView& view, const Touch& face, const Touch& part) {
+    return face.separation < -kClearly && part.separation > face.separation + kClearly &&
+           apart_along(view, part, face) > face.separation + kClearly;
+}
+
+// A wall that ends at the floor, seen from the floor: the body is past it, or will be once it is out of the floor.
+bool is_below(const SurfaceView& view, const Touch& wall, const Touch& floor) {
+    return &wall != &floor && is_face(floor.part) && wall.manifold.normal.dot(floor.manifold.normal) < kWall &&
+           apart_along(view, floor, wall) > std::min(floor.separation, 0.0f) - kClearly;
+}
+
+}  // namespace
+
+void Touches::add(const Touch& touch) {
+    const auto end = touches_.begin() + count_;
+    if (std::any_of(touches_.begin(), end, [&](const Touch& t) { return t.part == touch.part; })) return;
+    if (count_ < kMostTouches) {
+        touches_[size_t(count_++)] = touch;
+        return;
+    }
+    const auto shallowest = std::max_element(
+        touches_.begin(), end, [](const Touch& a, const Touch& b) { return a.separation < b.separation; });
+    if (touch.separation < shallowest->separation) *shallowest = touch;
+}
+
+void choose_parts(const SurfaceView& view, std::span<Touch> touches, Array<PartManifold>& chosen) {
+    // Shallow ones first: they shadow the deep ones.
+    std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) {
+        return a.separation != b.separation ? a.separation > b.separation : a.part < b.part;
+    });
+    const Touch* kept[kMostTouches];
+    size_t count = 0;
+    for (size_t i = 0; i < touches.size(); ++i) {
+        const Touch& touch = touches[i];
+        const auto any_of = [](auto begin, auto end, auto condition) { return std::any_of(begin, end, condition); };
+        const std::span<Touch> later = touches.subspan(i + 1);
+        const bool covered =
+            is_face(touch.part)
+                ? any_of(
+                      kept, kept + count,
+                      [&](const Touch* t) { return is_left_through(view, touch, *t) || is_below(view, touch, *t); }) ||
+                      any_of(later.begin(), later.end(), [&](const Touch& t) { return is_below(view, touch, t); })
+                : any_of(touches.begin(), touches.end(), [&](const Touch& t) { return is_at_face(touch, t); });
+        if (!covered) kept[count++] = &touch;
+    }
+    const size_t first = count > size_t(kMaxParts) ? count - size_t(kMaxParts) : 0;
+    for (size_t i = first; i < count; ++i) chosen.push_back({kept[i]->part, kept[i]->manifold});
+    std::sort(chosen.begin(), chosen.end(), [](const auto& p, const auto& q) { return p.part < q.part; });
+}
+
+void collide_parts(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+                   Parts& parts) {
+    parts.found.clear();
+    const bool first = has_parts(a);
+    const Shape &shape = first ? a : b, &body = first ? b : a;
+    const Placement &at = first ? at_a : at_b, &at_body = first ? at_b : at_a;
+    const SurfaceKernel kernel = kKernels[size_t(body.kind)];
+    if (!kernel) return;
+    const SurfaceView view(shape, at, at_body);
+    find_near(view, body, margin, parts);
+    if (parts.order.empty()) return;
+    Touches touches;
+    kernel({body, view, parts.order, margin, touches});
+    choose_parts(view, touches.list(), parts.found);
+
+    // To world axes, from a to b, relative to a's origin.
+    const Vec3f from_a = first ? Vec3f((at_b.position - at_a.position).cast<float>()) : Vec3f::Zero();
+    for (PartManifold& part : parts.found) {
+        const Vec3f normal = at_body.rotation * part.manifold.normal;
+        part.manifold.normal = first ? Vec3f(-normal) : normal;
+        for (int i = 0; i < part.manifold.count; ++i) {
+            Vec3f& p = part.manifold.points[i].position;
+            p = from_a + at_body.rotation * p;
+        }
+    }
+}
+
+}  // namespace taut::collision
