@@ -21,6 +21,7 @@ struct Surface;  // triangles with their neighbours, of a mesh or a height field
 
 enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, surface };
 constexpr int kShapeKinds = 6;
+constexpr int kConvexKinds = kShapeKinds - 1;  // that collide() knows; the surface comes last
 
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
@@ -52,7 +53,7 @@ struct SurfaceCounts {
 };
 
 // Builds a mesh of finite vertices [m] and valid indices, three a triangle, outward counter-clockwise. Vertices at the
-// same place become one; triangles thinner than 1e-5 of their longest edge and second copies are left out. Null if
+// same place but for rounding become one; triangles thinner than 1e-5 of their longest edge and second copies are left out. Null if
 // none remains. two_sided: bodies meet triangles from behind as well.
 std::shared_ptr<const Surface> build_mesh(std::span<const Vec3f> vertices, std::span<const uint32_t> indices,
                                           bool two_sided);

@@ -1,6 +1,7 @@
 // Triangle meshes: repaired, joined over their edges and put into a tree of boxes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/surface.h"
 #include "collision/triangle_tree.h"
@@ -10,6 +11,8 @@ namespace {
 
 // Thinner triangles, as a share of their longest edge, have no normal worth keeping.
 constexpr double kThinnest = 1e-5;
+// Coordinates that differ by less are the same, as a share of the largest: a few roundings of single precision.
+constexpr float kRounding = 5e-7f;
 // Triangles at an edge within this angle are in one place [rad].
 constexpr double kBack = 1e-3;
 // Of more triangles at one edge the later ones end there.
@@ -38,17 +41,36 @@ struct Mesh : Surface {
     TriangleTree tree;
 };
 
-// Vertices at the same place become one, so that triangles with corners of their own hang together.
-std::vector<uint32_t> weld(std::span<const Vec3f> given, std::vector<Vec3f>& vertices) {
-    std::vector<uint32_t> order(given.size()), number(given.size());
+// Coordinates along one axis that differ by rounding become equal: each takes the least value within reach below it.
+void snap(std::vector<Vec3f>& points, int axis, float reach) {
+    std::vector<uint32_t> order(points.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = uint32_t(i);
-    const auto at = [&](uint32_t i) { return Vec3f(given[i] + Vec3f::Zero()); };  // -0 becomes 0
     std::sort(order.begin(), order.end(), [&](uint32_t i, uint32_t k) {
-        const Vec3f p = at(i), q = at(k);
-        return p != q ? before(p, q) : i < k;
+        return points[i][axis] != points[k][axis] ? points[i][axis] < points[k][axis] : i < k;
     });
+    float value = -std::numeric_limits<float>::infinity();
     for (const uint32_t i : order) {
-        if (vertices.empty() || vertices.back() != at(i)) vertices.push_back(at(i));
+        float& x = points[i][axis];
+        if (!(x - value <= reach)) value = x;
+        x = value;
+    }
+}
+
+// Vertices at the same place but for rounding become one, so that triangles with corners of their own hang together.
+std::vector<uint32_t> weld(std::span<const Vec3f> given, std::vector<Vec3f>& vertices) {
+    std::vector<Vec3f> at(given.begin(), given.end());
+    float largest = 0;
+    for (Vec3f& p : at) {
+        p += Vec3f::Zero();  // -0 becomes 0
+        largest = std::max(largest, p.cwiseAbs().maxCoeff());
+    }
+    for (int axis = 0; axis < 3; ++axis) snap(at, axis, kRounding * largest);
+    std::vector<uint32_t> order(at.size()), number(at.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = uint32_t(i);
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t i, uint32_t k) { return at[i] != at[k] ? before(at[i], at[k]) : i < k; });
+    for (const uint32_t i : order) {
+        if (vertices.empty() || vertices.back() != at[i]) vertices.push_back(at[i]);
         number[i] = uint32_t(vertices.size() - 1);
     }
     return number;

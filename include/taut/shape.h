@@ -65,9 +65,9 @@ typedef struct taut_hull_def {
  * planes. A triangle looks to the side from which its corners run counter-clockwise, and is met from that side alone: a
  * body whose centre is behind it by more than half of the body's reach passes. Edges at which the surface is
  * flat or hollow catch nothing, whatever the triangulation.
- * Vertices at exactly the same place become one. Left out and counted in taut_mesh_info: triangles
- * thinner than 1e-5 of their longest edge, and second copies of a triangle. Refused: no triangle left,
- * an index out of range, a coordinate that is not finite or beyond TAUT_SHAPE_MAX_SIZE.
+ * Coordinates that differ by less than 5e-7 of the largest become equal, and vertices at the same place one. Left out
+ * and counted in taut_mesh_info: triangles thinner than 1e-5 of their longest edge, and second copies of a triangle.
+ * Refused: no triangle left, an index out of range, a coordinate that is not finite or beyond TAUT_SHAPE_MAX_SIZE.
  */
 typedef struct taut_mesh_def {
     uint32_t struct_size;

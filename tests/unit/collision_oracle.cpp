@@ -75,7 +75,7 @@ Shape random_shape(ShapeKind kind, Random& random) {
 }
 
 const char* name(ShapeKind kind) {
-    constexpr const char* kNames[kShapeKinds] = {"plane", "box", "sphere", "capsule", "hull"};
+    constexpr const char* kNames[kShapeKinds] = {"plane", "box", "sphere", "capsule", "hull", "surface"};
     return kNames[size_t(kind)];
 }
 
