@@ -136,12 +136,13 @@ SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world,
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         uint32_t mesh = render::kMeshBox;
         if (scene.shapes[i].kind == ShapeKind::sphere) mesh = render::kMeshSphere;
-        if (scene.shapes[i].kind == ShapeKind::hull) {
+        const ShapeKind kind = scene.shapes[i].kind;
+        if (kind == ShapeKind::hull || kind == ShapeKind::mesh || kind == ShapeKind::height_field) {
             uint32_t count = 0;
-            taut_shape_hull_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+            taut_shape_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
             std::vector<taut_vec3> triangles(count);
-            scenes::check(taut_shape_hull_triangles(world.shapes[i], triangles.data(), count, &count),
-                          "reading a hull's triangles");
+            scenes::check(taut_shape_triangles(world.shapes[i], triangles.data(), count, &count),
+                          "reading a shape's triangles");
             std::vector<Vec3> points;
             for (const taut_vec3& p : triangles) points.push_back({p.x, p.y, p.z});
             mesh = renderer.add_mesh(render::flat_mesh(points));
@@ -187,6 +188,8 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
             instance.scale = {r, r, r};
             break;
         case ShapeKind::hull:
+        case ShapeKind::mesh:
+        case ShapeKind::height_field:
             break;
         case ShapeKind::capsule: {
             Vec3 half = rotate(instance.rotation, {0, shape.half_length, 0});

@@ -12,6 +12,7 @@ Scene build_pyramid(double n, double r, const Options& options);
 Scene build_stack(double n, double r, const Options& options);
 Scene build_heavy_on_light(double n, double r, const Options& options);
 Scene build_deep_start(double n, double r, const Options& options);
+Scene build_terrain(double n, double r, const Options& options);
 Scene build_mesh_drop(double n, double r, const Options& options);
 
 Scene build_chain(double n, double r, const Options& options);

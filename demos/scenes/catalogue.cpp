@@ -78,6 +78,8 @@ const std::vector<Family>& families() {
          build_ferris_wheel, 40},
         {"tensegrity", "tensegrity", "six struts held apart by 24 tight ropes, dropped", 360, false, build_tensegrity,
          0},
+        {"terrain", "terrain", "a hundred bodies dropped on hills and stairs of triangles", 600, false, build_terrain,
+         0},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

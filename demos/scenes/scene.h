@@ -14,7 +14,7 @@ namespace scenes {
 
 constexpr int kWorld = -1;  // in place of a body's index
 
-enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull };
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, mesh, height_field };
 
 struct Shape {
     ShapeKind kind = ShapeKind::box;
@@ -22,7 +22,11 @@ struct Shape {
     taut_vec3 normal{0, 1, 0};      // plane
     float radius = 0;               // sphere, capsule [m]
     float half_length = 0;          // capsule, along y [m]
-    std::vector<taut_vec3> points;  // hull [m]
+    std::vector<taut_vec3> points;  // hull, mesh [m]
+    std::vector<uint32_t> indices;  // mesh, three a triangle
+    uint32_t rows = 0;              // height field
+    float spacing = 1;              // between its samples, either way [m]
+    std::vector<float> heights;     // row by row [m]
     std::string source;             // where it came from, for messages ("cow.obj:12: group 'horn'")
 };
 

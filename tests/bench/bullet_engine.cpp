@@ -30,9 +30,12 @@ std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
         case scenes::ShapeKind::capsule:
             return std::make_unique<btCapsuleShape>(shape.radius, 2 * shape.half_length);
         case scenes::ShapeKind::hull:
+        case scenes::ShapeKind::mesh:
+        case scenes::ShapeKind::height_field:
             break;
     }
-    throw scenes::BadScene("--engine bullet does not run scenes with hulls: Bullet's margin would change their size");
+    throw scenes::BadScene(
+        "--engine bullet does not run scenes with hulls or surfaces: Bullet's margin would change their size");
 }
 
 class BulletEngine : public Engine {

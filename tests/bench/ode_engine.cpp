@@ -135,6 +135,8 @@ private:
                 return dCreateSphere(space_, real(shape.radius));
             case scenes::ShapeKind::capsule:
             case scenes::ShapeKind::hull:
+            case scenes::ShapeKind::mesh:
+            case scenes::ShapeKind::height_field:
                 break;
         }
         throw scenes::BadScene("--engine ode runs scenes of boxes, spheres and planes only");

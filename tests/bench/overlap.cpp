@@ -42,9 +42,11 @@ double reach(const Placed& p, Vec direction) {
             return most;
         }
         case ShapeKind::plane:
+        case ShapeKind::mesh:
+        case ShapeKind::height_field:
             break;
     }
-    throw std::invalid_argument("two planes have no overlap depth");
+    throw std::invalid_argument("two planes, or surfaces, have no overlap depth");
 }
 
 double plane_depth(const Placed& plane, const Placed& other) {
@@ -105,6 +107,8 @@ double overlap_depth(const Placed& a, const Placed& b) {
 double bounding_radius(const Shape& shape) {
     switch (shape.kind) {
         case ShapeKind::plane:
+        case ShapeKind::mesh:
+        case ShapeKind::height_field:
             return std::numeric_limits<double>::infinity();
         case ShapeKind::box:
             return length(of(shape.half_extents));

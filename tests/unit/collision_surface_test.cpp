@@ -129,7 +129,7 @@ TEST_F(Surfaces, AgreeWithAThinTetrahedron) {
         const Shape body = oracle::random_shape(kinds[i % 4], random);
         const Placement at = {(middle.cast<double>() + random.unit() * random.uniform(0.2, 1.0)).eval(),
                               random.rotation()};
-        const Vec3f centre = body.hull ? at.rotation * body.hull->centre : Vec3f::Zero();
+        const Vec3f centre = at.rotation * (body.hull ? body.hull->centre : Vec3f(0, 0, 0));
         if (normal.dot(at.position.cast<float>() + centre - p[0]) < 0) continue;
         const double exact =
             oracle::separation(oracle::core(body, at), oracle::core(thin, {Vec3::Zero(), Mat3f::Identity()}));
