@@ -42,7 +42,9 @@ private:
     void take(const SurfaceView::Triangle& triangle, const Polygon& points);
     bool try_faces(const Facet& facet, const SurfaceView::Triangle& triangle, Other& best) const;
     bool try_edges(const Facet& facet, const SurfaceView::Triangle& triangle, int edge, Other& best) const;
-    void touch_other(const SurfaceView::Triangle& triangle, const Other& other);
+    bool is_touched_otherwise(const Facet& facet, const SurfaceView::Triangle& triangle, const uint64_t& key,
+                              float found);
+    bool touch_other(const SurfaceView::Triangle& triangle, const uint64_t& key, const Other& other);
     uint32_t part_on_face(const SurfaceView::Triangle& triangle, const float (&height)[3], int lowest) const;
 
     const Meeting& meeting_;
@@ -55,6 +57,7 @@ private:
     ReferencePlane plane_;
     bool mirrored_ = false;  // its triangles run clockwise seen along (u, v)
     int incident_number_ = 0;
+    float slack_ = 0;  // of flush faces [m]; a body deep behind the plane would be pushed from where it is not
     Polygon incident_, points_;
 };
 
@@ -70,6 +73,7 @@ void PolytopeSurface::start(const Facet& facet) {
     plane_.offset = facet.offset;
     mirrored_ = facet.flipped;
     incident_number_ = incident_face(body_, facet.normal);
+    slack_ = facet.height < -preference_.slop ? 0.0f : flush_slack(body_.inner_radius);
     incident_.count = points_.count = 0;
     for (const int corner : body_.loop_of(body_.faces[size_t(incident_number_)])) {
         const Vec3f& p = body_.vertices[size_t(corner)];
@@ -91,7 +95,7 @@ bool PolytopeSurface::found_on(const SurfaceView::Triangle& triangle, Polygon& p
     }
     points.count = incident_.count;
     std::copy(incident_.points, incident_.points + incident_.count, points.points);
-    clip(points, sides, flush_slack(body_.inner_radius));
+    clip(points, sides, slack_);
     const auto end = std::remove_if(points.points, points.points + points.count,
                                     [&](const ClipPoint& p) { return p.z > meeting_.margin; });
     points.count = int(end - points.points);
@@ -178,8 +182,9 @@ bool PolytopeSurface::try_edges(const Facet& facet, const SurfaceView::Triangle&
     return true;
 }
 
-void PolytopeSurface::touch_other(const SurfaceView::Triangle& triangle, const Other& other) {
-    Touch touch{other.part, other.separation, -highest(body_, -other.outward), {}, {}};
+// False if the body's face has nothing of the triangle over it after all.
+bool PolytopeSurface::touch_other(const SurfaceView::Triangle& triangle, const uint64_t& key, const Other& other) {
+    Touch touch{other.part, other.separation, -highest(body_, -other.outward), {&key, 1}, {}};
     Manifold& out = touch.manifold;
     out.normal = -other.outward;
     if (other.face < 0) {
@@ -203,32 +208,42 @@ void PolytopeSurface::touch_other(const SurfaceView::Triangle& triangle, const O
         add_points(polygon, {face.u, face.v, face.normal, face.offset}, face_base(false, other.face, 0),
                    meeting_.margin, out);
     }
-    if (out.count > 0) meeting_.touches.add(touch);
+    if (out.count == 0) return false;
+    meeting_.touches.add(touch);
+    return true;
+}
+
+// True if the triangle is apart from the body, or an edge or vertex of it was added as a part. found: the deepest point
+// of its face.
+bool PolytopeSurface::is_touched_otherwise(const Facet& facet, const SurfaceView::Triangle& triangle,
+                                           const uint64_t& key, float found) {
+    Other face, edges;
+    if (!try_faces(facet, triangle, face)) return true;
+    for (int e = 0; e < 3; ++e) {
+        if ((triangle.sharp >> e & 1) && !try_edges(facet, triangle, e, edges)) return true;
+    }
+    const auto wins = [&](const Other& other) {
+        return preference_.edge_wins(other.separation, facet.height, false) ||
+               preference_.face_misses(found, other.separation, facet.height);
+    };
+    const bool edges_first = edges.separation > face.separation;
+    for (const Other* other : {edges_first ? &edges : &face, edges_first ? &face : &edges}) {
+        if (wins(*other) && touch_other(triangle, key, *other)) return true;
+    }
+    return false;
 }
 
 void PolytopeSurface::touch(const Facet& facet) {
     start(facet);
     Polygon found;
-    for (const uint64_t key : facet.triangles) {
+    for (const uint64_t& key : facet.triangles) {
         const SurfaceView::Triangle triangle = view_.triangle(uint32_t(key));
         const bool over = found_on(triangle, found);
         if (triangle.sharp != 0) {
             float lowest = 1e30f;
             for (int i = 0; i < found.count; ++i) lowest = std::min(lowest, found.points[i].z);
             const bool shallow = facet.height >= -preference_.slop && lowest <= facet.height + preference_.slop;
-            Other other;
-            if (!shallow) {
-                if (!try_faces(facet, triangle, other)) continue;
-                bool apart = false;
-                for (int e = 0; e < 3 && !apart; ++e)
-                    apart = (triangle.sharp >> e & 1) && !try_edges(facet, triangle, e, other);
-                if (apart) continue;
-            }
-            if (preference_.edge_wins(other.separation, facet.height, false) ||
-                preference_.face_misses(lowest, other.separation, facet.height)) {
-                touch_other(triangle, other);
-                continue;
-            }
+            if (!shallow && is_touched_otherwise(facet, triangle, key, lowest)) continue;
         }
         if (over) take(triangle, found);
     }

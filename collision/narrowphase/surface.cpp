@@ -27,29 +27,35 @@ void find_near(const SurfaceView& view, const Shape& body, float margin, Parts& 
     std::sort(parts.order.begin(), parts.order.end());
 }
 
+// The first point, which lies midway, on the surface itself.
+Vec3f on_surface(const Manifold& manifold) {
+    const ContactPoint& point = manifold.points[0];
+    return point.position + manifold.normal * (0.5f * point.separation);
+}
+
 // An edge or vertex at a face that is touched as deep: there the face is what the body meets first. This holds for
 // seams of which the surface does not know that they are, as well.
 bool is_at_face(const Touch& touch, const Touch& face) {
     if (!is_face(face.part) || face.separation > touch.separation) return false;
-    const float height = face.manifold.normal.dot(touch.manifold.points[0].position - face.manifold.points[0].position);
-    return std::fabs(height) < kClearly + std::max(0.0f, -face.separation);
+    const float height = face.manifold.normal.dot(on_surface(touch.manifold) - on_surface(face.manifold));
+    return std::fabs(height) < kClearly;
 }
 
-// How far the body is from a face's triangles along another part's normal.
-float apart_along(const SurfaceView& view, const Touch& part, const Touch& face) {
+// How far the body is from one part's triangles along another part's normal.
+float apart_along(const SurfaceView& view, const Touch& part, const Touch& of) {
     const Vec3f out = -part.manifold.normal;
     float top = -1e30f;
-    for (const uint64_t key : face.triangles) {
+    for (const uint64_t key : of.triangles) {
         for (const uint32_t corner : view.surface().corners(uint32_t(key)))
             top = std::max(top, out.dot(view.vertex(corner)));
     }
     return part.lowest - top;
 }
 
-// A deep face whose triangles the body leaves sooner by a shallower part's normal than by their own.
-bool is_left_through(const SurfaceView& view, const Touch& face, const Touch& part) {
-    return face.separation < -kClearly && part.separation > face.separation + kClearly &&
-           apart_along(view, part, face) > face.separation + kClearly;
+// A deep part whose triangles the body leaves sooner by a shallower part's normal than by their own.
+bool is_left_through(const SurfaceView& view, const Touch& deep, const Touch& part) {
+    return deep.separation < -kClearly && part.separation > deep.separation + kClearly && !deep.triangles.empty() &&
+           apart_along(view, part, deep) > deep.separation + kClearly;
 }
 
 // A wall that ends at the floor, seen from the floor: the body is past it, or will be once it is out of the floor.
@@ -79,18 +85,22 @@ void choose_parts(const SurfaceView& view, std::span<Touch> touches, Array<PartM
     });
     const Touch* kept[kMostTouches];
     size_t count = 0;
-    for (size_t i = 0; i < touches.size(); ++i) {
-        const Touch& touch = touches[i];
-        const auto any_of = [](auto begin, auto end, auto condition) { return std::any_of(begin, end, condition); };
-        const std::span<Touch> later = touches.subspan(i + 1);
-        const bool covered =
-            is_face(touch.part)
-                ? any_of(
-                      kept, kept + count,
-                      [&](const Touch* t) { return is_left_through(view, touch, *t) || is_below(view, touch, *t); }) ||
-                      any_of(later.begin(), later.end(), [&](const Touch& t) { return is_below(view, touch, t); })
-                : any_of(touches.begin(), touches.end(), [&](const Touch& t) { return is_at_face(touch, t); });
-        if (!covered) kept[count++] = &touch;
+    for (const Touch& touch : touches) {
+        const auto left = [&](const Touch* shallower) { return is_left_through(view, touch, *shallower); };
+        if (std::none_of(kept, kept + count, left)) kept[count++] = &touch;
+    }
+    // Walls and seams at the faces that are left; what goes shadows nothing any more.
+    for (size_t i = 0; i < count;) {
+        const Touch& touch = *kept[i];
+        const auto at = [&](const Touch* face) {
+            return is_face(touch.part) ? is_below(view, touch, *face) : is_at_face(touch, *face);
+        };
+        if (std::any_of(kept, kept + count, at)) {
+            std::copy(kept + i + 1, kept + count, kept + i);
+            --count;
+        } else {
+            ++i;
+        }
     }
     const size_t first = count > size_t(kMaxParts) ? count - size_t(kMaxParts) : 0;
     for (size_t i = first; i < count; ++i) chosen.push_back({kept[i]->part, kept[i]->manifold});

@@ -66,7 +66,7 @@ struct Touch {
     uint32_t part;
     float separation;                     // of the deepest point [m]
     float lowest;                         // of the body along the outward normal [m]
-    std::span<const uint64_t> triangles;  // of a face
+    std::span<const uint64_t> triangles;  // that it is on; round bodies: none for edges and vertices
     Manifold manifold;                    // normal from the body to the surface
 };
 

@@ -92,8 +92,9 @@ class Seams : public testing::TestWithParam<Course> {};
 
 TEST_P(Seams, CatchNothing) {
     const Ride ride = slide(GetParam());
-    std::cout << GetParam() << ": lost " << 100 * ride.speed_lost << " %, bump " << 1000 * ride.bump << " mm/s, aside "
-              << 1000 * ride.aside << " mm, spin " << ride.turned << ", points " << ride.points << '\n';
+    RecordProperty("lost", std::to_string(ride.speed_lost));
+    RecordProperty("bump", std::to_string(ride.bump));
+    RecordProperty("points", std::to_string(ride.points));
     EXPECT_LT(std::abs(ride.speed_lost), 1e-4);
     EXPECT_LT(ride.bump, 1e-3);
     EXPECT_LT(ride.aside, 1e-3);

@@ -1,4 +1,6 @@
 // Meshes as games use them: stairs, a moving platform, hills.
+#include <algorithm>
+
 #include "physics/surface_lab.h"
 
 namespace {
@@ -27,6 +29,29 @@ TEST(Stairs, CarryWhatFallsOnThem) {
         EXPECT_LT(norm(velocity(bodies[static_cast<size_t>(i)])), 0.02) << i;
         EXPECT_GT(position(bodies[static_cast<size_t>(i)]).y, 0) << i;
     }
+}
+
+// Thrown onto the edges of steps a box overlaps them for a moment; no face that it only brushes pushes it from afar.
+TEST(Stairs, StopABoxThrownOntoTheirEdges) {
+    std::vector<float> deepest;
+    for (int i = 0; i < 100; ++i) {
+        World world;
+        world.add({.kind = TAUT_BODY_STATIC, .shape = mesh(world, stairs(10, 0.8, 0.3, 8))});
+        world.add({.shape = world.box({0.3, 0.2, 0.25}),
+                   .position = {3.9 + 0.008 * i, 2.9, 4},
+                   .rotation = Quat::turn({1, 0.3 + 0.02 * i, 0.5}, 1.4 * i),
+                   .velocity = {0, -8, 0}});
+        float most = 0;
+        for (int k = 0; k < 90; ++k) {
+            world.step();
+            most = std::max(most, world.profile().penetration);
+        }
+        deepest.push_back(most);
+    }
+    std::sort(deepest.begin(), deepest.end());
+    EXPECT_LT(deepest[50], 0.015f);
+    EXPECT_LT(deepest[90], 0.06f);
+    EXPECT_LT(deepest[99], 0.2f);  // 0.1 on stairs of boxes
 }
 
 TEST(PlatformOfTriangles, CarriesABox) {
