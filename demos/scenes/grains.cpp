@@ -8,7 +8,7 @@ namespace scenes {
 // R is the friction of the grains. They do not turn, so that even round ones heap up.
 Scene build_grains(double n, double r, const Options& options) {
     constexpr double kRadius = 0.05, kMass = 1, kBed = 3.2, kBump = 2.2 * kRadius;  // [m, kg]
-    constexpr int kRow = 8;                                                         // of the column that is poured
+    constexpr int kRow = 4;                                                         // of the column that is poured
     Scene scene = empty_scene();
     add_ground(scene);
     const int ball = sphere_shape(scene, kRadius);
@@ -23,12 +23,13 @@ Scene build_grains(double n, double r, const Options& options) {
         }
     Random random(1);
     for (int i = 0; i < static_cast<int>(n); ++i) {
+        // A loose column, out of line enough to scatter as it lands.
         const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
-        const double middle = 0.5 * (kRow - 1), spacing = 2.1 * kRadius;
-        const taut_vec3 jitter = random.in_cube(0.04 * kRadius);
+        const double middle = 0.5 * (kRow - 1), beside = 3 * kRadius, above = 2.6 * kRadius;
+        const taut_vec3 jitter = random.in_cube(0.45 * kRadius);
         Body grain = crate(ball,
-                           plus({(column - middle) * spacing, 3 * kRadius + layer * spacing, (row - middle) * spacing},
-                                jitter.x, jitter.y, jitter.z),
+                           plus({(column - middle) * beside, 4 * kRadius + layer * above, (row - middle) * beside},
+                                jitter.x, 0.4 * jitter.y, jitter.z),
                            kMass, Look::particle);
         grain.kind = TAUT_BODY_PARTICLE;
         grain.friction = friction;

@@ -59,7 +59,7 @@ int stone_shape(Scene& scene, Random& random) {
 
 Scene build_hulls(double n, double, const Options& options) {
     constexpr int kRow = 10, kShapes = 100;
-    constexpr double kSpacing = 0.8, kBin = 4.0, kWallHeight = 6.0, kWallThickness = 0.5;  // [m]
+    constexpr double kSpacing = 0.8, kBin = 4.0, kWallHeight = 6.0, kWallThickness = 0.5, kMass = 80;  // [m], [kg]
     Scene scene = empty_scene();
     add_ground(scene);
     add_bin(scene, kBin, kWallHeight, kWallThickness);
@@ -71,7 +71,7 @@ Scene build_hulls(double n, double, const Options& options) {
         const double middle = 0.5 * (kRow - 1);
         Body body =
             crate(shapes[static_cast<size_t>(i % kShapes)],
-                  {(column - middle) * kSpacing, 0.6 + layer * kSpacing, (row - middle) * kSpacing}, 0, Look::stone);
+                  {(column - middle) * kSpacing, 0.6 + layer * kSpacing, (row - middle) * kSpacing}, kMass, Look::stone);
         body.rotation = turn(random.direction(), 3 * random.uniform());
         scene.roles.pile.push_back(scene.add_body(body));
     }

@@ -17,9 +17,9 @@ constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 // below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
 constexpr uint32_t kMostGrown = 64;
 
-// Contacts of what carries no more than some ten times its own weight are as well swept, and far cheaper so:
+// Contacts of what carries no more than some thirty times its own weight are as well swept, and far cheaper so:
 // ragdolls in a heap. Beyond, a light body between a heavy one and an edge sinks in.
-constexpr double kLoad = 100;             // force of a joint over the mass of its lighter body [m/s^2]
+constexpr double kLoad = 300;             // force of a joint over the mass of its lighter body [m/s^2]
 constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses always takes them in
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels

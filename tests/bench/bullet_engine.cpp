@@ -1,4 +1,6 @@
-// The same scenes in Bullet's own dynamics with its default settings: one step a frame, ten iterations.
+// The same scenes in Bullet's own dynamics with its default settings: one step a frame, ten iterations. Hulls are
+// btConvexHullShape as games make them, whose margin of 4 cm comes on top of the points. Friction of joints is left
+// out.
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -29,7 +31,12 @@ std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
             return std::make_unique<btSphereShape>(shape.radius);
         case scenes::ShapeKind::capsule:
             return std::make_unique<btCapsuleShape>(shape.radius, 2 * shape.half_length);
-        case scenes::ShapeKind::hull:
+        case scenes::ShapeKind::hull: {
+            auto hull = std::make_unique<btConvexHullShape>();
+            for (const taut_vec3& point : shape.points) hull->addPoint(vec(point), false);
+            hull->recalcLocalAabb();
+            return hull;
+        }
         case scenes::ShapeKind::cylinder:
         case scenes::ShapeKind::cone:
         case scenes::ShapeKind::tapered_capsule:
@@ -39,8 +46,8 @@ std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
             break;
     }
     throw scenes::BadScene(
-        "--engine bullet does not run scenes with hulls, surfaces, cylinders or cones: Bullet's margin would change "
-        "their size");
+        "--engine bullet does not run scenes with surfaces, cylinders or cones: Bullet's margin would change their "
+        "size");
 }
 
 class BulletEngine : public Engine {
@@ -109,18 +116,39 @@ private:
     }
 
     void add(const scenes::Joint& joint) {
-        if (joint.kind != TAUT_JOINT_BALL) throw scenes::BadScene("--engine bullet runs ball joints only");
         btRigidBody& b = *bodies_[static_cast<size_t>(joint.body_b)];
-        std::unique_ptr<btPoint2PointConstraint> made;
-        if (joint.body_a == scenes::kWorld) {
+        std::unique_ptr<btTypedConstraint> made;
+        if (joint.kind == TAUT_JOINT_BALL && joint.body_a == scenes::kWorld) {
             made = std::make_unique<btPoint2PointConstraint>(b, vec(joint.anchor_b));
+        } else if (joint.body_a == scenes::kWorld) {
+            throw scenes::BadScene("--engine bullet ties bodies to the world by ball joints only");
         } else {
-            btRigidBody& a = *bodies_[static_cast<size_t>(joint.body_a)];
-            made = std::make_unique<btPoint2PointConstraint>(a, b, vec(joint.anchor_a), vec(joint.anchor_b));
+            made = between(joint, *bodies_[static_cast<size_t>(joint.body_a)], b);
         }
         world_->addConstraint(made.get(), true);
         joints_.push_back(std::move(made));
     }
+
+    static std::unique_ptr<btTypedConstraint> between(const scenes::Joint& joint, btRigidBody& a, btRigidBody& b) {
+        if (joint.kind == TAUT_JOINT_BALL)
+            return std::make_unique<btPoint2PointConstraint>(a, b, vec(joint.anchor_a), vec(joint.anchor_b));
+        if (joint.kind == TAUT_JOINT_CONE_TWIST) {
+            auto made = std::make_unique<btConeTwistConstraint>(a, b, frame(joint.rotation_a, joint.anchor_a),
+                                                                frame(joint.rotation_b, joint.anchor_b));
+            made->setLimit(joint.axes[0].upper, joint.axes[0].upper, joint.axes[1].upper);
+            return made;
+        }
+        if (joint.kind != TAUT_JOINT_HINGE)
+            throw scenes::BadScene("--engine bullet runs ball, hinge and cone-twist joints only");
+        // A hinge turns about z here, about x there.
+        const btTransform z_to_x(btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI));
+        auto made = std::make_unique<btHingeConstraint>(a, b, frame(joint.rotation_a, joint.anchor_a) * z_to_x,
+                                                        frame(joint.rotation_b, joint.anchor_b) * z_to_x);
+        if (!joint.axes.empty()) made->setLimit(joint.axes[0].lower, joint.axes[0].upper);
+        return made;
+    }
+
+    static btTransform frame(taut_quat q, taut_pos p) { return btTransform(btQuaternion(q.x, q.y, q.z, q.w), vec(p)); }
 
     uint32_t substeps_;
     btScalar step_;

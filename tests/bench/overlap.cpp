@@ -95,6 +95,34 @@ double box_depth(const Placed& a, const Placed& b) {
     return least;
 }
 
+// Any two convex shapes: the least overlap of their shadows over directions all round, then ever closer about the best.
+double searched_depth(const Placed& a, const Placed& b) {
+    constexpr int kAllRound = 400, kNearby = 12, kRefinements = 14;
+    const Vec offset = of(b.position) - of(a.position);
+    const auto depth = [&](Vec n) { return reach(a, n) + reach(b, n * -1) - dot(n, offset); };
+    Vec best = {1, 0, 0};
+    double least = std::numeric_limits<double>::infinity();
+    const auto attempt = [&](Vec n) {
+        const double d = depth(n);
+        if (d < least) least = d, best = n;
+    };
+    for (int i = 0; i < kAllRound; ++i) {  // a spiral from pole to pole, evenly dense
+        const double y = 1 - (2 * i + 1.0) / kAllRound, r = std::sqrt(1 - y * y), angle = 2.399963229728653 * i;
+        attempt({r * std::cos(angle), y, r * std::sin(angle)});
+    }
+    double width = 0.12;  // [rad], of the spiral's gaps
+    for (int k = 0; k < kRefinements; ++k, width *= 0.6) {
+        const Vec from = best, helper = std::fabs(from.x) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
+        const Vec side = cross(from, helper), u = side * (1 / length(side)), v = cross(from, u);
+        for (int i = 0; i < kNearby; ++i) {
+            const double angle = 2 * 3.14159265358979323846 * i / kNearby;
+            const Vec n = from + u * (width * std::cos(angle)) + v * (width * std::sin(angle));
+            attempt(n * (1 / length(n)));
+        }
+    }
+    return least;
+}
+
 }  // namespace
 
 double overlap_depth(const Placed& a, const Placed& b) {
@@ -105,7 +133,7 @@ double overlap_depth(const Placed& a, const Placed& b) {
     if (ka == ShapeKind::sphere && kb == ShapeKind::sphere) return sphere_depth(a, b);
     if (ka == ShapeKind::box && kb == ShapeKind::sphere) return box_sphere_depth(a, b);
     if (ka == ShapeKind::sphere && kb == ShapeKind::box) return box_sphere_depth(b, a);
-    throw std::invalid_argument("no exact overlap for this pair of shapes");
+    return searched_depth(a, b);
 }
 
 double bounding_radius(const Shape& shape) {

@@ -11,8 +11,9 @@ struct Placed {
     taut_quat rotation{0, 0, 0, 1};
 };
 
-// Shortest translation that separates the two [m]: 0 or less when they don't overlap. Planes, boxes and spheres
-// in any pairing, everything against a plane. Throws std::invalid_argument for another pair.
+// Shortest translation that separates the two [m]: 0 or less when they don't overlap. Exact for boxes and spheres in
+// any pairing and for everything against a plane; for other hulls and capsules searched over directions, to some 0.1
+// mm. Throws std::invalid_argument for other kinds.
 double overlap_depth(const Placed& a, const Placed& b);
 
 // Radius of a sphere around the shape's origin; infinite for a plane.

@@ -80,7 +80,9 @@ TEST_P(SameBitsOnTeams, OfAnySize) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams, testing::Values("boxes2000", "pyramid30", "wrecking_ball", "bridge"),
+INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams,
+                         testing::Values("boxes2000", "pyramid30", "wrecking_ball", "bridge", "ragdolls20",
+                                         "grains1000_r1", "terrain"),
                          [](const auto& tested) -> std::string { return tested.param; });
 
 // A difference of one part in 2^24 in one velocity must show, at once and after a while.
