@@ -28,7 +28,8 @@ constexpr Entry kConvex = {convex_convex, false};
 constexpr Entry kConvexOnPlane = {convex_plane, false};
 constexpr Entry kUnderConvex = {convex_plane, true};
 
-// Rows and columns: plane, box, sphere, capsule, hull, cylinder, cone, tapered capsule.
+// Rows and columns: plane, box, sphere, capsule, hull, cylinder, cone, tapered capsule. Surfaces have none, see
+// collide_parts().
 constexpr std::array<std::array<Entry, kShapeKinds>, kShapeKinds> kKernels = {{
     {kNone, kUnder, kUnder, kUnder, kUnder, kUnderConvex, kUnderConvex, kUnderConvex},
     {kOnPlane, kBoxes, kOnRound, kOnRound, kPolytopes, kConvex, kConvex, kConvex},
@@ -57,6 +58,7 @@ void to_world(const Mat3f& rotation, Manifold& manifold) {
 void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
              PairCache& cache, Manifold& out) {
     out.count = 0;
+    if (has_parts(a) || has_parts(b)) return;
     const Entry& entry = kKernels[size_t(a.kind)][size_t(b.kind)];
     if (!entry.swapped) {
         entry.kernel({a, b, at_a, at_b, relative(at_a, at_b), margin, cache}, out);

@@ -16,10 +16,12 @@ namespace taut::collision {
 
 // ---------------------------------------------------------------- shapes
 
-struct Hull;  // vertices, merged faces, edges with their two faces; see hull.h
+struct Hull;     // vertices, merged faces, edges with their two faces; see hull.h
+struct Surface;  // triangles with their neighbours, of a mesh or a height field; see surface.h
 
-enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule };
-constexpr int kShapeKinds = 8;
+enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule, surface };
+constexpr int kShapeKinds = 9;
+constexpr int kConvexKinds = kShapeKinds - 1;  // that collide() knows; the surface comes last
 
 // Round shapes lie along y, from -half length to +half length; a capsule's ends are the centres of its balls.
 struct Shape {
@@ -28,7 +30,9 @@ struct Shape {
     // at -half length, half length,); tapered capsule: (radius at -half length, half length, radius at +half length);
     // plane: unit normal [1]
     Vec3f size = Vec3f::Zero();
-    std::shared_ptr<const Hull> hull;  // hull only
+    std::shared_ptr<const Hull> hull;                   // hull only
+    std::shared_ptr<const Surface> surface = nullptr;   // surface only; size: its scale along x, y, z, none of them 0
+    std::shared_ptr<const Hull> on_surfaces = nullptr;  // see stand_in()
 };
 
 struct MassProperties {
@@ -50,7 +54,35 @@ std::span<const Vec3f> hull_vertices(const Hull& hull);
 // Vertex indices, three a triangle, outward counter-clockwise.
 void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices);
 
-// Exact for each kind, by polyhedral integration for hulls. A plane has no mass.
+struct SurfaceCounts {
+    uint32_t triangles = 0, facets = 0;
+    uint32_t without_area = 0, duplicates = 0;  // triangles left out
+};
+
+// Builds a mesh of finite vertices [m] and valid indices, three a triangle, outward counter-clockwise. Vertices at the
+// same place but for rounding become one; triangles thinner than 1e-5 of their longest edge and second copies are left
+// out. Null if none remains. two_sided: bodies meet triangles from behind as well.
+std::shared_ptr<const Surface> build_mesh(std::span<const Vec3f> vertices, std::span<const uint32_t> indices,
+                                          bool two_sided);
+
+struct HeightGrid {
+    uint32_t rows, columns;          // at least 2 each
+    float spacing_x, spacing_z;      // between columns, between rows [m]
+    std::span<const float> heights;  // row by row [m]; not-a-number: a hole
+};
+
+// Builds a height field, which looks along +y. Null if no cell has three heights.
+std::shared_ptr<const Surface> build_height_field(const HeightGrid& grid);
+
+SurfaceCounts surface_counts(const Shape& shape);
+// Three points a triangle, outward counter-clockwise, in the frame of a shape that is a surface.
+void surface_triangles(const Shape& shape, std::vector<Vec3f>& points);
+
+// What surfaces meet in place of a cylinder, cone or tapered capsule: a polytope of 24 sides (of a ball: 10). Null for
+// other kinds.
+std::shared_ptr<const Hull> stand_in(const Shape& shape);
+
+// Exact for each kind, by polyhedral integration for hulls. A plane and a surface have no mass.
 MassProperties mass_properties(const Shape& shape, double density);
 
 // ---------------------------------------------------------------- bounds and pairs
@@ -146,6 +178,33 @@ struct PairCache {
 // Of out, normal and points beyond count are written only where count > 0.
 void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
              PairCache& cache, Manifold& out);
+
+// Whether a shape touches with parts of its own; collide() finds nothing on it.
+inline bool has_parts(const Shape& shape) { return shape.kind == ShapeKind::surface; }
+
+// A part of a surface in touch: a facet (triangles in one plane that hang together), a convex edge or a vertex.
+struct PartManifold {
+    uint32_t part;  // never 0; the same part keeps its number
+    Manifold manifold;
+};
+
+// At most so many parts touch at a time: the deepest.
+constexpr int kMaxParts = 16;
+
+struct Parts {
+    explicit Parts(Memory& memory) : found(memory), near(memory), order(memory) {}
+
+    Array<PartManifold> found;  // sorted by part
+    Array<uint32_t> near;       // scratch: triangles that the body's box meets
+    Array<uint64_t> order;      // scratch: facet << 32 | triangle, sorted
+};
+
+// Contact points of a convex shape and one that has_parts, in either order, into parts.found; otherwise as collide().
+// Neighbouring facets shadow each other: a seam in a flat surface, and a concave edge, touch nothing.
+// Facets are met from the front: one that lies more than half of the body's depth in front of its centre is passed
+// by, and so is what a shallower part pushes out of sooner.
+void collide_parts(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+                   Parts& parts);
 
 // General convex pair by libccd's MPR on support functions with face clipping: an oracle for tests, and a yardstick for
 // the kernels. Same contract as collide(), but for planes, which have no support; the normal

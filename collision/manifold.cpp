@@ -127,6 +127,14 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
     }
 }
 
+void reduce(Polygon& points) {
+    const Chosen chosen = choose(points.points, points.count);
+    ClipPoint kept[4];
+    for (int i = 0; i < chosen.count; ++i) kept[i] = points.points[chosen.index[i]];
+    std::copy(kept, kept + chosen.count, points.points);
+    points.count = chosen.count;
+}
+
 void add_beside(const Manifold& face, Manifold& edges) {
     constexpr float kSamePlane = 0.9f;   // cosine between the normals
     constexpr float kSamePlace = 0.25f;  // of the way to the farthest point

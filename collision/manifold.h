@@ -42,6 +42,9 @@ inline float flush_slack(float size) { return std::min(1e-3f, 0.01f * size); }
 // lines that meet.
 void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out);
 
+// Keeps the four points that add_points would take of them, in no particular order.
+void reduce(Polygon& points);
+
 // Two edges that cross nearly in a face's plane are one end of that face's contact: the body rolls onto the other end
 // within the step. Adds the face's points that lie away from the crossing to the edges' manifold.
 void add_beside(const Manifold& face, Manifold& edges);

@@ -6,6 +6,7 @@
 #include "collision/collide.h"
 #include "collision/hull.h"
 #include "collision/revolution.h"
+#include "collision/surface.h"
 
 namespace taut::collision {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 // ---------------------------------------------------------------- mass
 
-MassProperties plane_mass(const Shape&, double) { return {}; }
+MassProperties no_mass(const Shape&, double) { return {}; }
 
 // m/3 (b^2 + c^2) for half extents b, c.
 MassProperties box_mass(const Shape& shape, double density) {
@@ -176,13 +177,23 @@ Box hull_bounds(const Shape& shape, const Placement& at) {
     return rounded(at.position, lo, hi);
 }
 
+// The box of the turned and scaled local box.
+Box surface_bounds(const Shape& shape, const Placement& at) {
+    const Box& own = shape.surface->box;
+    const Vec3 p = own.lo.cwiseProduct(shape.size).cast<double>(), q = own.hi.cwiseProduct(shape.size).cast<double>();
+    const Mat3 rotation = at.rotation.cast<double>();
+    const Vec3 middle = rotation * (0.5 * (p + q));
+    const Vec3 reach = rotation.cwiseAbs() * (0.5 * (q - p).cwiseAbs());
+    return rounded(at.position, middle - reach, middle + reach);
+}
+
 struct KindFunctions {
     MassProperties (*mass)(const Shape&, double density);
     Box (*bounds)(const Shape&, const Placement&);
 };
 
 constexpr std::array<KindFunctions, kShapeKinds> kKinds = {{
-    {plane_mass, plane_bounds},
+    {no_mass, plane_bounds},
     {box_mass, box_bounds},
     {sphere_mass, sphere_bounds},
     {capsule_mass, capsule_bounds},
@@ -190,6 +201,7 @@ constexpr std::array<KindFunctions, kShapeKinds> kKinds = {{
     {cylinder_mass, cylinder_bounds},
     {cone_mass, cone_bounds},
     {tapered_capsule_mass, tapered_capsule_bounds},
+    {no_mass, surface_bounds},
 }};
 
 }  // namespace

@@ -161,17 +161,18 @@ SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world,
     : scene_(scene), world_(world), scale_(scene) {
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         uint32_t mesh = render::kMeshBox;
-        if (scene.shapes[i].kind == ShapeKind::sphere) mesh = render::kMeshSphere;
-        if (scene.shapes[i].kind == ShapeKind::cylinder) mesh = render::kMeshCylinder;
-        if (scene.shapes[i].kind == ShapeKind::cone) mesh = renderer.add_mesh(cone_mesh(scene.shapes[i]));
-        if (scene.shapes[i].kind == ShapeKind::tapered_capsule)
-            mesh = renderer.add_mesh(tapered_capsule_mesh(scene.shapes[i]));
-        if (scene.shapes[i].kind == ShapeKind::hull || scene.shapes[i].kind == ShapeKind::scaled_hull) {
+        const ShapeKind kind = scene.shapes[i].kind;
+        if (kind == ShapeKind::sphere) mesh = render::kMeshSphere;
+        if (kind == ShapeKind::cylinder) mesh = render::kMeshCylinder;
+        if (kind == ShapeKind::cone) mesh = renderer.add_mesh(cone_mesh(scene.shapes[i]));
+        if (kind == ShapeKind::tapered_capsule) mesh = renderer.add_mesh(tapered_capsule_mesh(scene.shapes[i]));
+        if (kind == ShapeKind::hull || kind == ShapeKind::scaled_hull || kind == ShapeKind::mesh ||
+            kind == ShapeKind::height_field) {
             uint32_t count = 0;
-            taut_shape_hull_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+            taut_shape_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
             std::vector<taut_vec3> triangles(count);
-            scenes::check(taut_shape_hull_triangles(world.shapes[i], triangles.data(), count, &count),
-                          "reading a hull's triangles");
+            scenes::check(taut_shape_triangles(world.shapes[i], triangles.data(), count, &count),
+                          "reading a shape's triangles");
             std::vector<Vec3> points;
             for (const taut_vec3& p : triangles) points.push_back({p.x, p.y, p.z});
             mesh = renderer.add_mesh(render::flat_mesh(points));
@@ -221,6 +222,8 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
             break;
         case ShapeKind::hull:
         case ShapeKind::scaled_hull:
+        case ShapeKind::mesh:
+        case ShapeKind::height_field:
         case ShapeKind::cone:
         case ShapeKind::tapered_capsule:
             break;  // meshes of their own

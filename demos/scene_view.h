@@ -24,7 +24,7 @@ private:
 
 class SceneView {
 public:
-    // Uploads the hulls of the scene to the renderer and sets its stage.
+    // Uploads the hulls, meshes and height fields of the scene to the renderer and sets its stage.
     SceneView(const scenes::Scene& scene, const scenes::TautWorld& world, render::Renderer& renderer);
 
     render::Camera camera() const;

@@ -148,4 +148,21 @@ Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth
     return best;
 }
 
+int incident_face(const Polytope& polytope, const Vec3f& reference_normal) {
+    const int vertex = support(polytope, -reference_normal);
+    int best = 0;
+    float most = 2;
+    for (const Edge& edge : polytope.edges) {
+        if (edge.from != vertex && edge.to != vertex) continue;
+        for (const int face : {int(edge.left), int(edge.right)}) {
+            const float dot = polytope.faces[size_t(face)].normal.dot(reference_normal);
+            if (dot < most) {
+                most = dot;
+                best = face;
+            }
+        }
+    }
+    return best;
+}
+
 }  // namespace taut::collision

@@ -52,4 +52,7 @@ Separation best_face_b(const PolytopePair& pair, float margin);
 // far sides, as seen along the unit normal (a to b), can not.
 Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float margin);
 
+// Of the faces around the vertex deepest below the reference face, the one that looks most against it.
+int incident_face(const Polytope& polytope, const Vec3f& reference_normal);
+
 }  // namespace taut::collision

@@ -3,6 +3,7 @@
 
 #include "collision/narrowphase/core.h"
 #include "collision/narrowphase/kernel.h"
+#include "collision/narrowphase/rounds.h"
 
 namespace taut::collision {
 namespace {
@@ -11,11 +12,6 @@ namespace {
 constexpr float kParallel = 0.03f;
 // The nearest points are a third contact if they are this much closer than the line's ends [m].
 constexpr float kBetween = 5e-4f;
-
-struct Rounds {
-    Segment a, b;  // b's axis in a's frame
-    float radius_a, radius_b;
-};
 
 // Any unit vector across both axes, where they meet and distance has no direction.
 Vec3f across(const Vec3f& p, const Vec3f& q) {
@@ -54,16 +50,11 @@ void add_ends(const Rounds& rounds, float margin, Manifold& out) {
 
 }  // namespace
 
-void round_round(const Pair& pair, Manifold& out) {
-    const Segment axis = round_axis(pair.b);
-    const Rounds rounds = {round_axis(pair.a),
-                           {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
-                           round_radius(pair.a),
-                           round_radius(pair.b)};
+void touch_rounds(const Rounds& rounds, float margin, Manifold& out) {
     const SegmentPair nearest = nearest_points(rounds.a, rounds.b);
     const Vec3f between = rounds.b.at(nearest.t) - rounds.a.at(nearest.s);
     const float squared = between.squaredNorm();
-    const float reach = rounds.radius_a + rounds.radius_b + pair.margin;
+    const float reach = rounds.radius_a + rounds.radius_b + margin;
     if (squared > reach * reach) return;
 
     const float least = 1e-4f * rounds.radius_a;
@@ -71,10 +62,19 @@ void round_round(const Pair& pair, Manifold& out) {
     const float aa = rounds.a.step.squaredNorm();
     const float bb = rounds.b.step.squaredNorm();
     if (rounds.a.step.cross(rounds.b.step).squaredNorm() < kParallel * aa * bb) {
-        add_ends(rounds, pair.margin, out);
+        add_ends(rounds, margin, out);
         if (deepest(out) <= std::sqrt(squared) - rounds.radius_a - rounds.radius_b + kBetween) return;
     }
-    add_point(rounds, nearest.s, nearest.t, pair.margin, 1, out);
+    add_point(rounds, nearest.s, nearest.t, margin, 1, out);
+}
+
+void round_round(const Pair& pair, Manifold& out) {
+    const Segment axis = round_axis(pair.b);
+    touch_rounds({round_axis(pair.a),
+                  {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
+                  round_radius(pair.a),
+                  round_radius(pair.b)},
+                 pair.margin, out);
 }
 
 }  // namespace taut::collision

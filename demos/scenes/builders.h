@@ -12,7 +12,10 @@ Scene build_pyramid(double n, double r, const Options& options);
 Scene build_stack(double n, double r, const Options& options);
 Scene build_heavy_on_light(double n, double r, const Options& options);
 Scene build_deep_start(double n, double r, const Options& options);
+Scene build_hulls(double n, double r, const Options& options);
+Scene build_grains(double n, double r, const Options& options);
 Scene build_shapes(double n, double r, const Options& options);
+Scene build_terrain(double n, double r, const Options& options);
 Scene build_mesh_drop(double n, double r, const Options& options);
 
 Scene build_chain(double n, double r, const Options& options);
@@ -27,6 +30,7 @@ Scene build_crane(double n, double r, const Options& options);
 Scene build_bridge(double n, double r, const Options& options);
 Scene build_bridge_breaking(double n, double r, const Options& options);
 Scene build_hinges(double n, double r, const Options& options);
+Scene build_ragdolls(double n, double r, const Options& options);
 Scene build_ragdoll_liana(double n, double r, const Options& options);
 Scene build_ferris_wheel(double n, double r, const Options& options);
 Scene build_tensegrity(double n, double r, const Options& options);

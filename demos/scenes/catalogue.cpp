@@ -79,6 +79,12 @@ const std::vector<Family>& families() {
         {"tensegrity", "tensegrity", "six struts held apart by 24 tight ropes, dropped", 360, false, build_tensegrity,
          0},
         {"shapesN", "shapes200", "N bodies of all kinds of shapes poured into a bin", 600, false, build_shapes, 2000},
+        {"hullsN", "hulls300", "N hulls of 12 to 16 vertices poured into a bin", 600, false, build_hulls, 5000},
+        {"ragdollsN", "ragdolls20", "N ragdolls of 12 bodies dropped into a bin", 600, false, build_ragdolls, 1000},
+        {"grainsN_rR", "grains1000_r1", "N grains of friction R poured onto a rough bed", 600, false, build_grains,
+         20000},
+        {"terrain", "terrain", "a hundred bodies dropped on hills and stairs of triangles", 600, false, build_terrain,
+         0},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

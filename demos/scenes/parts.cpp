@@ -146,6 +146,14 @@ void add_static_box(Scene& scene, taut_pos centre, double half_x, double half_y,
     scene.add_body(body);
 }
 
+void add_bin(Scene& scene, double half, double height, double thickness) {
+    for (double sign : {-1.0, 1.0}) {
+        const double at = sign * (half + thickness / 2), along = half + thickness;
+        add_static_box(scene, {at, height / 2, 0}, thickness / 2, height / 2, along, Look::wall);
+        add_static_box(scene, {0, height / 2, at}, along, height / 2, thickness / 2, Look::wall);
+    }
+}
+
 Body crate(int shape, taut_pos position, double mass, Look look) {
     Body body;
     body.shape = shape;

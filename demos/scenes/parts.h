@@ -17,6 +17,8 @@ int capsule_shape(Scene& scene, double radius, double half_length);
 
 void add_ground(Scene& scene);
 void add_static_box(Scene& scene, taut_pos centre, double half_x, double half_y, double half_z, Look look);
+// Four walls about a square floor of half width `half` [m].
+void add_bin(Scene& scene, double half, double height, double thickness);
 Body crate(int shape, taut_pos position, double mass, Look look = Look::crate);
 
 // A chain of equal links joined end to end by ball joints and held at its anchor, with a weight at its end.

@@ -24,11 +24,7 @@ Scene build_boxes2000(double, double, const Options& options) {
     constexpr double kBin = 5.0, kWallHeight = 6.0, kWallThickness = 0.5;  // half width, ... [m]
     Scene scene = empty_scene();
     add_ground(scene);
-    for (double sign : {-1.0, 1.0}) {
-        double at = sign * (kBin + kWallThickness / 2), half = kBin + kWallThickness;
-        add_static_box(scene, {at, kWallHeight / 2, 0}, kWallThickness / 2, kWallHeight / 2, half, Look::wall);
-        add_static_box(scene, {0, kWallHeight / 2, at}, half, kWallHeight / 2, kWallThickness / 2, Look::wall);
-    }
+    add_bin(scene, kBin, kWallHeight, kWallThickness);
     int cube = cube_shape(scene, kSide);
     Random random(1);
     for (int i = 0; i < kCount; ++i) {
@@ -44,6 +40,45 @@ Scene build_boxes2000(double, double, const Options& options) {
     perturb(scene, options.seed);
     scene.camera = {{10.5, 12.5, 14.0}, {0, 2.3, 0}, 40};
     scene.stage = {{-6, 0, -6}, {6, 10, 6}};
+    return scene;
+}
+
+// A convex stone: points on a ball that is stretched along its axes.
+int stone_shape(Scene& scene, Random& random) {
+    const auto scaled = [&](float radius) { return radius * static_cast<float>(0.75 + 0.5 * random.uniform()); };
+    const taut_vec3 axes = {scaled(0.3f), scaled(0.3f), scaled(0.3f)};
+    Shape shape;
+    shape.kind = ShapeKind::hull;
+    const int points = 12 + static_cast<int>(5 * random.uniform());
+    for (int i = 0; i < points; ++i) {
+        const taut_vec3 d = random.direction();
+        shape.points.push_back({axes.x * d.x, axes.y * d.y, axes.z * d.z});
+    }
+    return scene.add_shape(std::move(shape));
+}
+
+Scene build_hulls(double n, double, const Options& options) {
+    constexpr int kRow = 10, kShapes = 100;
+    constexpr double kSpacing = 0.8, kBin = 4.0, kWallHeight = 6.0, kWallThickness = 0.5;  // [m]
+    Scene scene = empty_scene();
+    add_ground(scene);
+    add_bin(scene, kBin, kWallHeight, kWallThickness);
+    Random random(1);
+    std::vector<int> shapes;
+    for (int i = 0; i < kShapes; ++i) shapes.push_back(stone_shape(scene, random));
+    for (int i = 0; i < static_cast<int>(n); ++i) {
+        const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
+        const double middle = 0.5 * (kRow - 1);
+        Body body =
+            crate(shapes[static_cast<size_t>(i % kShapes)],
+                  {(column - middle) * kSpacing, 0.6 + layer * kSpacing, (row - middle) * kSpacing}, 0, Look::stone);
+        body.rotation = turn(random.direction(), 3 * random.uniform());
+        scene.roles.pile.push_back(scene.add_body(body));
+    }
+    scene.roles.bin = Bounds{{-kBin, 0, -kBin}, {kBin, 1e3, kBin}};
+    perturb(scene, options.seed);
+    scene.camera = {{8.5, 9.0, 11.0}, {0, 1.6, 0}, 40};
+    scene.stage = {{-5, 0, -5}, {5, 9, 5}};
     return scene;
 }
 

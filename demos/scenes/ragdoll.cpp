@@ -1,4 +1,4 @@
-// A ragdoll of twelve bodies and 75 kg that holds on to a liana with both hands.
+// Ragdolls of twelve bodies and 75 kg: a heap of them, and one that holds on to a liana with both hands.
 #include "builders.h"
 #include "parts.h"
 #include "pose.h"
@@ -39,6 +39,19 @@ struct Doll {
         cone(pelvis, thigh, top, {0.15 * side, -0.85, 0.5}, minus(knee, top), degrees(60), degrees(30));
         hinge(thigh, shin, knee, {1, 0, 0}, degrees(140));
     }
+    struct Trunk {
+        int pelvis, chest;
+    };
+    Trunk trunk() const {
+        const int pelvis = limb(at(-0.16, 0), at(0.16, 0), 0.095, 11, Look::cloth);
+        const int belly = limb(at(0, 0.05), at(0, 0.27), 0.1, 10, Look::cloth);
+        const int chest = limb(at(-0.17, 0.38), at(0.17, 0.38), 0.115, 16, Look::cloth);
+        const int head = limb(at(0, 0.52, 0.03), at(0, 0.76, 0.06), 0.095, 5, Look::skin);
+        cone(pelvis, belly, at(0, 0.08), {0, 1, 0}, {0, 1, 0}, degrees(25), degrees(20));
+        cone(belly, chest, at(0, 0.27), {0, 1, 0}, {0, 1, 0}, degrees(25), degrees(20));
+        cone(chest, head, at(0, 0.52, 0.02), {0, 1, 0}, {0, 1, 0}, degrees(35), degrees(50));
+        return {pelvis, chest};
+    }
     // Returns the forearm; the hand is at the grip.
     int arm(int chest, double side, taut_pos grip) const {
         const taut_pos shoulder = at(0.2 * side, 0.47);
@@ -55,6 +68,35 @@ struct Doll {
 };
 
 }  // namespace
+
+Scene build_ragdolls(double n, double, const Options& options) {
+    constexpr int kRow = 4;
+    constexpr double kSpacing = 1.1, kLayer = 1.9, kBin = 2.6, kWallHeight = 5.0, kWallThickness = 0.5;  // [m]
+    Scene scene = empty_scene();
+    add_ground(scene);
+    add_bin(scene, kBin, kWallHeight, kWallThickness);
+    Random random(1);
+    for (int i = 0; i < static_cast<int>(n); ++i) {
+        const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
+        const double middle = 0.5 * (kRow - 1);
+        const taut_vec3 shift = random.in_cube(0.1);
+        const Doll doll{scene, plus({(column - middle) * kSpacing, 1.2 + layer * kLayer, (row - middle) * kSpacing},
+                                    shift.x, shift.y, shift.z)};
+        const size_t first = scene.bodies.size();
+        const auto [pelvis, chest] = doll.trunk();
+        for (double side : {-1.0, 1.0}) {
+            doll.leg(pelvis, side);
+            doll.arm(chest, side, doll.at(0.55 * side, 0.05, 0.1));
+        }
+        for (size_t body = first; body < scene.bodies.size(); ++body)
+            scene.roles.pile.push_back(static_cast<int>(body));
+    }
+    scene.roles.bin = Bounds{{-kBin, 0, -kBin}, {kBin, 1e3, kBin}};
+    perturb(scene, options.seed);
+    scene.camera = {{5.5, 5.0, 7.5}, {0, 1.2, 0}, 42};
+    scene.stage = {{-4, 0, -4}, {4, 12, 4}};
+    return scene;
+}
 
 Scene build_ragdoll_liana(double, double, const Options& options) {
     constexpr double kTop = 7.5, kLink = 0.5, kShake = 0.35;
@@ -74,13 +116,7 @@ Scene build_ragdoll_liana(double, double, const Options& options) {
     }
 
     const Doll doll{scene, {0, kTop - kLinks * kLink - 0.98, 0}};
-    const int pelvis = doll.limb(doll.at(-0.16, 0), doll.at(0.16, 0), 0.095, 11, Look::cloth);
-    const int belly = doll.limb(doll.at(0, 0.05), doll.at(0, 0.27), 0.1, 10, Look::cloth);
-    const int chest = doll.limb(doll.at(-0.17, 0.38), doll.at(0.17, 0.38), 0.115, 16, Look::cloth);
-    const int head = doll.limb(doll.at(0, 0.52, 0.03), doll.at(0, 0.76, 0.06), 0.095, 5, Look::skin);
-    doll.cone(pelvis, belly, doll.at(0, 0.08), {0, 1, 0}, {0, 1, 0}, degrees(25), degrees(20));
-    doll.cone(belly, chest, doll.at(0, 0.27), {0, 1, 0}, {0, 1, 0}, degrees(25), degrees(20));
-    doll.cone(chest, head, doll.at(0, 0.52, 0.02), {0, 1, 0}, {0, 1, 0}, degrees(35), degrees(50));
+    const auto [pelvis, chest] = doll.trunk();
     for (double side : {-1.0, 1.0}) {
         doll.leg(pelvis, side);
         const taut_pos grip = doll.at(0.07 * side, 0.98);

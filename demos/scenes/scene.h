@@ -14,7 +14,19 @@ namespace scenes {
 
 constexpr int kWorld = -1;  // in place of a body's index
 
-enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule, scaled_hull };
+enum class ShapeKind : uint8_t {
+    plane,
+    box,
+    sphere,
+    capsule,
+    hull,
+    cylinder,
+    cone,
+    tapered_capsule,
+    scaled_hull,
+    mesh,
+    height_field
+};
 
 struct Shape {
     ShapeKind kind = ShapeKind::box;
@@ -23,9 +35,13 @@ struct Shape {
     float radius = 0;               // sphere, capsule, cylinder, base of a cone, bottom of a tapered capsule [m]
     float top_radius = 0;           // tapered capsule [m]
     float half_length = 0;          // capsule, cylinder, cone, tapered capsule, along y [m]
-    std::vector<taut_vec3> points;  // hull [m]
+    std::vector<taut_vec3> points;  // hull, mesh [m]
     int hull = -1;                  // scaled hull: index of the hull among the scene's shapes
     taut_vec3 scale{1, 1, 1};       // scaled hull
+    std::vector<uint32_t> indices;  // mesh, three a triangle
+    uint32_t rows = 0;              // height field
+    float spacing = 1;              // between its samples, either way [m]
+    std::vector<float> heights;     // row by row [m]
     std::string source;             // where it came from, for messages ("cow.obj:12: group 'horn'")
 };
 

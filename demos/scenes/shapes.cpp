@@ -40,15 +40,6 @@ int scaled_shape(Scene& scene, int hull, taut_vec3 scale) {
     return scene.add_shape(std::move(shape));
 }
 
-void add_bin(Scene& scene, double half, double height) {
-    constexpr double kThickness = 0.3;
-    for (double sign : {-1.0, 1.0}) {
-        const double at = sign * (half + kThickness / 2), along = half + kThickness;
-        add_static_box(scene, {at, height / 2, 0}, kThickness / 2, height / 2, along, Look::wall);
-        add_static_box(scene, {0, height / 2, at}, along, height / 2, kThickness / 2, Look::wall);
-    }
-}
-
 }  // namespace
 
 Scene build_shapes(double n, double, const Options& options) {
@@ -56,7 +47,7 @@ Scene build_shapes(double n, double, const Options& options) {
     constexpr double kSpacing = 0.72, kHalfBin = 2.1, kWall = 2.2;  // [m]
     Scene scene = empty_scene();
     add_ground(scene);
-    add_bin(scene, kHalfBin, kWall);
+    add_bin(scene, kHalfBin, kWall, 0.3);
     const int gem = gem_shape(scene);
     const std::array<int, 10> shapes = {round_shape(scene, ShapeKind::cylinder, 0.22f, 0.18f),
                                         round_shape(scene, ShapeKind::cone, 0.25f, 0.22f),

@@ -64,6 +64,24 @@ taut_result add_shape(taut_world world, const Shape& shape, const std::vector<ta
             def.scale = shape.scale;
             return taut_world_add_scaled_hull(world, &def, out);
         }
+        case ShapeKind::mesh: {
+            taut_mesh_def def;
+            taut_mesh_def_init(&def);
+            def.vertex_count = static_cast<uint32_t>(shape.points.size());
+            def.vertices = shape.points.data();
+            def.triangle_count = static_cast<uint32_t>(shape.indices.size() / 3);
+            def.indices = shape.indices.data();
+            return taut_world_add_mesh(world, &def, out);
+        }
+        case ShapeKind::height_field: {
+            taut_height_field_def def;
+            taut_height_field_def_init(&def);
+            def.rows = shape.rows;
+            def.columns = static_cast<uint32_t>(shape.heights.size()) / shape.rows;
+            def.row_spacing = def.column_spacing = shape.spacing;
+            def.heights = shape.heights.data();
+            return taut_world_add_height_field(world, &def, out);
+        }
         case ShapeKind::hull:
             break;
     }
@@ -81,6 +99,8 @@ taut_result add_body(taut_world world, const Body& body, taut_shape shape, uint6
         def.mass = body.mass;
         def.position = body.position;
         def.velocity = body.linear_velocity;
+        def.shape = shape;
+        def.material.friction = body.friction;
         def.user_data = index;
         return taut_world_add_particle(world, &def, out);
     }

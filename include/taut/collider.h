@@ -47,7 +47,8 @@ TAUT_API void taut_collider_def_init(taut_collider_def* def);
 
 /**
  * Adds a collider to a body. The body's mass stays as it is; see taut_body_set_mass_from_colliders.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names field and value; a plane on a dynamic body; a particle, whose
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names field and value; a plane, mesh or height field on a dynamic
+ *         body; a particle, whose
  *         collider comes with its def), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE,
  *         TAUT_IN_USE (a body of a cable), TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */

@@ -106,8 +106,53 @@ typedef enum taut_shape_kind {
     TAUT_SHAPE_CYLINDER = 5,
     TAUT_SHAPE_CONE = 6,
     TAUT_SHAPE_TAPERED_CAPSULE = 7,
+    TAUT_SHAPE_SURFACE = 8, /**< a mesh or height field */
     TAUT_SHAPE_KIND_MAX = 0x7fffffff
 } taut_shape_kind;
+/** Largest number of triangles of a mesh, and of samples along a side of a height field. */
+#define TAUT_MESH_MAX_TRIANGLES 16777216
+#define TAUT_HEIGHT_FIELD_MAX_SIDE 4097
+
+/**
+ * Surface of triangles, in the body's frame. Static and kinematic bodies only; it collides with all convex shapes but
+ * planes; cylinders, cones and tapered capsules meet it as polytopes of 24 sides. A triangle looks to the side from
+ * which its corners run counter-clockwise, and is met from that side alone: a body whose centre is behind it by more
+ * than half of the body's reach passes. Edges at which the surface is flat or hollow catch nothing, whatever the
+ * triangulation. Coordinates that differ by less than 5e-7 of the largest become equal, and vertices at the same place
+ * one. Left out and counted in taut_mesh_info: triangles thinner than 1e-5 of their longest edge, and second copies of
+ * a triangle. Refused: no triangle left, an index out of range, a coordinate that is not finite or beyond
+ * TAUT_SHAPE_MAX_SIZE.
+ */
+typedef struct taut_mesh_def {
+    uint32_t struct_size;
+    uint32_t vertex_count;     /**< at least 3 */
+    const taut_vec3* vertices; /**< [m]; copied */
+    const uint32_t* indices;   /**< 3 * triangle_count of them, each below vertex_count; copied */
+    uint32_t triangle_count;   /**< [1, TAUT_MESH_MAX_TRIANGLES] */
+    uint32_t two_sided;        /**< 1: triangles look to the side on which a body's centre is. Default 0 */
+} taut_mesh_def;
+
+/**
+ * Grid of heights along the body's y axis, looking up. Sample (row, column) lies at (column * column_spacing, height,
+ * row * row_spacing). Each cell is two triangles that share the diagonal from (row + 1, column) to
+ * (row, column + 1). Static and kinematic bodies only; met from above, as a mesh is from its front.
+ */
+typedef struct taut_height_field_def {
+    uint32_t struct_size;
+    uint32_t rows, columns; /**< [2, TAUT_HEIGHT_FIELD_MAX_SIDE] samples */
+    float row_spacing;      /**< along z [m], in the range of shapes' sizes. Default 1 */
+    float column_spacing;   /**< along x [m]. Default 1 */
+    uint32_t reserved;      /**< zero */
+    const float* heights;   /**< rows * columns of them [m], row by row; NaN: a hole up to the next samples; copied */
+} taut_height_field_def;
+
+/** What became of the triangles of a mesh or height field. */
+typedef struct taut_mesh_info {
+    uint32_t triangles;    /**< that are there */
+    uint32_t facets;       /**< of neighbouring triangles in one plane, which touch as one */
+    uint32_t without_area; /**< left out: too thin */
+    uint32_t duplicates;   /**< left out: second copies */
+} taut_mesh_info;
 
 /** Mass properties of a shape at a density, about its centre of mass, axes of the body's frame. */
 typedef struct taut_mass_properties {
@@ -125,6 +170,8 @@ TAUT_API void taut_cylinder_def_init(taut_cylinder_def* def);
 TAUT_API void taut_cone_def_init(taut_cone_def* def);
 TAUT_API void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def);
 TAUT_API void taut_scaled_hull_def_init(taut_scaled_hull_def* def);
+TAUT_API void taut_mesh_def_init(taut_mesh_def* def);
+TAUT_API void taut_height_field_def_init(taut_height_field_def* def);
 
 /**
  * Adds a shape to a world.
@@ -142,6 +189,16 @@ TAUT_API taut_result taut_world_add_cone(taut_world world, const taut_cone_def* 
 TAUT_API taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_capsule_def* def,
                                                     taut_shape* out);
 TAUT_API taut_result taut_world_add_scaled_hull(taut_world world, const taut_scaled_hull_def* def, taut_shape* out);
+TAUT_API taut_result taut_world_add_mesh(taut_world world, const taut_mesh_def* def, taut_shape* out);
+TAUT_API taut_result taut_world_add_height_field(taut_world world, const taut_height_field_def* def, taut_shape* out);
+
+/**
+ * Adds a shape that is a mesh or height field scaled along its axes, on top of the scale that it has; the data are
+ * shared. Negative factors mirror it: it looks to the same side as before, mirrored.
+ * @param scale [-1000, 1000] each, at least 1e-3 in size; the result's coordinates within TAUT_SHAPE_MAX_SIZE.
+ * @return as taut_world_add_mesh; TAUT_INVALID_ARGUMENT if the shape is neither mesh nor height field.
+ */
+TAUT_API taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* out);
 
 /** Removes a shape. @return TAUT_OK; TAUT_IN_USE while a body uses it; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_shape_remove(taut_shape shape);
@@ -172,7 +229,8 @@ TAUT_API taut_result taut_shape_get_bounds(taut_shape shape, taut_vec3* low, tau
 
 /**
  * Mass properties at a density [kg/m^3] > 0.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT for a density out of range or a plane (no volume); TAUT_STALE_HANDLE.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT for a density out of range or a plane, mesh or height field (no volume);
+ *         TAUT_STALE_HANDLE.
  */
 TAUT_API taut_result taut_shape_mass_properties(taut_shape shape, float density, taut_mass_properties* out);
 
@@ -184,6 +242,13 @@ TAUT_API taut_result taut_shape_mass_properties(taut_shape shape, float density,
  */
 TAUT_API taut_result taut_shape_hull_triangles(taut_shape shape, taut_vec3* positions, uint32_t capacity,
                                                uint32_t* count);
+/**
+ * As taut_shape_hull_triangles, of a hull, mesh or height field.
+ * @return TAUT_OK; TAUT_TOO_SMALL; TAUT_INVALID_ARGUMENT for other shapes; TAUT_NULL_POINTER, TAUT_STALE_HANDLE.
+ */
+TAUT_API taut_result taut_shape_triangles(taut_shape shape, taut_vec3* positions, uint32_t capacity, uint32_t* count);
+/** @return TAUT_OK; TAUT_INVALID_ARGUMENT if the shape is neither mesh nor height field; TAUT_STALE_HANDLE. */
+TAUT_API taut_result taut_shape_get_mesh_info(taut_shape shape, taut_mesh_info* out);
 
 #ifdef __cplusplus
 }

@@ -33,6 +33,8 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
     const collision::ShapeKind shape = world.shapes.record[out.shape].shape.kind;
     check.require(!moves_by_forces(kind) || shape != collision::ShapeKind::plane,
                   "shape is a plane, which only static and kinematic bodies may have");
+    check.require(!moves_by_forces(kind) || shape != collision::ShapeKind::surface,
+                  "shape is a mesh or height field, which only static and kinematic bodies may have");
     check.require(kind != NodeKind::particle || shape == collision::ShapeKind::sphere,
                   "shape is not a sphere, the only one that a particle may have");
     out.position = to_vec(def.position);

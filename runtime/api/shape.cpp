@@ -1,8 +1,6 @@
-#include <taut/shape.h>
+#include "api/shape_def.h"
 
 #include <cmath>
-
-#include "api/access.h"
 
 using namespace taut;
 
@@ -11,55 +9,39 @@ namespace {
 // A plane's normal shorter than this has no direction worth keeping [1].
 constexpr double kLeastNormal = 1e-6;
 
-template <class Def>
-bool check_def(Check& check, const Def* def, taut_shape* out) {
-    if (!check.pointer("def", def).pointer("out", out)) return false;
-    return static_cast<bool>(check.struct_size(def->struct_size, sizeof *def));
-}
-
-taut_result insert(const Check& check, World& world, collision::Shape shape, taut_shape* out) {
-    if (world.shapes.ids.slots() >= kMaxSlots) return refuse(TAUT_LIMIT, "%s: too many shapes", check.call());
-    *out = world.shape_handle(world.shapes.add(std::move(shape)));
-    return TAUT_OK;
-}
-
-taut_result add_shape(const Check& check, taut_world handle, collision::Shape shape, taut_shape* out) {
-    return with_world(check.call(), handle, Use::write,
-                      [&](World& world) { return insert(check, world, std::move(shape), out); });
+// A shape with what surfaces meet in its place.
+taut_result add_standing_in(const Check& check, taut_world world, collision::Shape shape, taut_shape* out) {
+    return contain(check.call(), [&] {
+        shape.on_surfaces = collision::stand_in(shape);
+        return add_shape(check, world, std::move(shape), out);
+    });
 }
 
 // Capsule, cylinder and cone: a radius and half a length along y.
 template <class Def>
 taut_result add_round(const char* call, collision::ShapeKind kind, taut_world world, const Def* def, taut_shape* out) {
     Check check(call);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     check.number("radius", def->radius, kShapeSize).number("half_length", def->half_length, kShapeSize);
     if (!check) return check.result();
-    return add_shape(check, world, {kind, Vec3f(def->radius, def->half_length, 0), nullptr}, out);
-}
-
-template <class Def>
-void init(Def* def, Def defaults) {
-    if (!def) return;
-    *def = defaults;
-    def->struct_size = sizeof *def;
+    return add_standing_in(check, world, {kind, Vec3f(def->radius, def->half_length, 0), nullptr}, out);
 }
 
 }  // namespace
 
-void taut_plane_def_init(taut_plane_def* def) { init(def, {0, {0, 1, 0}}); }
-void taut_box_def_init(taut_box_def* def) { init(def, {0, {0.5f, 0.5f, 0.5f}}); }
-void taut_sphere_def_init(taut_sphere_def* def) { init(def, {0, 0.5f}); }
-void taut_capsule_def_init(taut_capsule_def* def) { init(def, {0, 0.25f, 0.5f}); }
-void taut_hull_def_init(taut_hull_def* def) { init(def, {0, 0, nullptr}); }
-void taut_cylinder_def_init(taut_cylinder_def* def) { init(def, {0, 0.5f, 0.5f}); }
-void taut_cone_def_init(taut_cone_def* def) { init(def, {0, 0.5f, 0.5f}); }
-void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def) { init(def, {0, 0.3f, 0.2f, 0.5f}); }
-void taut_scaled_hull_def_init(taut_scaled_hull_def* def) { init(def, {0, 0, {0}, {1, 1, 1}}); }
+void taut_plane_def_init(taut_plane_def* def) { init_shape_def(def, {0, {0, 1, 0}}); }
+void taut_box_def_init(taut_box_def* def) { init_shape_def(def, {0, {0.5f, 0.5f, 0.5f}}); }
+void taut_sphere_def_init(taut_sphere_def* def) { init_shape_def(def, {0, 0.5f}); }
+void taut_capsule_def_init(taut_capsule_def* def) { init_shape_def(def, {0, 0.25f, 0.5f}); }
+void taut_hull_def_init(taut_hull_def* def) { init_shape_def(def, {0, 0, nullptr}); }
+void taut_cylinder_def_init(taut_cylinder_def* def) { init_shape_def(def, {0, 0.5f, 0.5f}); }
+void taut_cone_def_init(taut_cone_def* def) { init_shape_def(def, {0, 0.5f, 0.5f}); }
+void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def) { init_shape_def(def, {0, 0.3f, 0.2f, 0.5f}); }
+void taut_scaled_hull_def_init(taut_scaled_hull_def* def) { init_shape_def(def, {0, 0, {0}, {1, 1, 1}}); }
 
 taut_result taut_world_add_plane(taut_world world, const taut_plane_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.vector("normal", def->normal, kShapeCoordinate)) return check.result();
     const Vec3 normal = to_vec(def->normal);
     if (!check.require(normal.norm() >= kLeastNormal, "normal is 0, expected a direction")) return check.result();
@@ -68,14 +50,14 @@ taut_result taut_world_add_plane(taut_world world, const taut_plane_def* def, ta
 
 taut_result taut_world_add_box(taut_world world, const taut_box_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.vector("half_extents", def->half_extents, kShapeSize)) return check.result();
     return add_shape(check, world, {collision::ShapeKind::box, to_vec(def->half_extents).cast<float>(), nullptr}, out);
 }
 
 taut_result taut_world_add_sphere(taut_world world, const taut_sphere_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.number("radius", def->radius, kShapeSize)) return check.result();
     return add_shape(check, world, {collision::ShapeKind::sphere, Vec3f(def->radius, 0, 0), nullptr}, out);
 }
@@ -94,7 +76,7 @@ taut_result taut_world_add_cone(taut_world world, const taut_cone_def* def, taut
 
 taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_capsule_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     check.number("bottom_radius", def->bottom_radius, kShapeSize).number("top_radius", def->top_radius, kShapeSize);
     check.number("half_length", def->half_length, kShapeSize);
     // A relative 1e-4 leaves the side's normal a cosine above rounding.
@@ -102,12 +84,12 @@ taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_
                   "bottom_radius and top_radius differ by 2 half_length or more: one ball is inside the other");
     if (!check) return check.result();
     const Vec3f size(def->bottom_radius, def->half_length, def->top_radius);
-    return add_shape(check, world, {collision::ShapeKind::tapered_capsule, size, nullptr}, out);
+    return add_standing_in(check, world, {collision::ShapeKind::tapered_capsule, size, nullptr}, out);
 }
 
 taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     if (!check.count("point_count", def->point_count, 4, UINT32_MAX).pointer("points", def->points)) {
         return check.result();
     }
@@ -126,7 +108,7 @@ taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut
 
 taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull_def* def, taut_shape* out) {
     Check check(__func__);
-    if (!check_def(check, def, out)) return check.result();
+    if (!check_shape_def(check, def, out)) return check.result();
     check.zero("reserved", def->reserved);
     const taut_vec3 sizes = {std::fabs(def->scale.x), std::fabs(def->scale.y), std::fabs(def->scale.z)};
     if (!check.vector("scale", sizes, kShapeScale)) return check.result();
@@ -146,7 +128,7 @@ taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull
         const char* reason = "";
         auto hull = collision::scale_hull(*source.hull, factors, TAUT_SHAPE_MIN_SIZE, &reason);
         if (!hull) return refuse(TAUT_INVALID_ARGUMENT, "%s: scale leaves no hull: %s", check.call(), reason);
-        return insert(check, world, {collision::ShapeKind::hull, Vec3f::Zero(), std::move(hull)}, out);
+        return insert_shape(check, world, {collision::ShapeKind::hull, Vec3f::Zero(), std::move(hull)}, out);
     });
 }
 
@@ -167,34 +149,12 @@ taut_result taut_shape_mass_properties(taut_shape handle, float density, taut_ma
     if (!check.number("density", density, kDensity).pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const collision::Shape& shape = world.shapes.record[index].shape;
-        if (!check.require(shape.kind != collision::ShapeKind::plane, "shape is a plane, which has no volume")) {
-            return check.result();
-        }
+        check.require(shape.kind != collision::ShapeKind::plane, "shape is a plane, which has no volume")
+            .require(shape.kind != collision::ShapeKind::surface,
+                     "shape is a mesh or height field, which has no volume");
+        if (!check) return check.result();
         const collision::MassProperties mass = collision::mass_properties(shape, density);
         *out = {static_cast<float>(mass.mass), to_vec3(mass.centre), to_sym3(mass.inertia)};
-        return TAUT_OK;
-    });
-}
-
-taut_result taut_shape_hull_triangles(taut_shape handle, taut_vec3* positions, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
-    if (!check.pointer("count", count)) return check.result();
-    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes.record[index].shape;
-        if (!check.require(shape.kind == collision::ShapeKind::hull, "shape is not a hull")) return check.result();
-        std::vector<uint32_t> corners;
-        collision::hull_triangles(*shape.hull, corners);
-        const uint32_t needed = static_cast<uint32_t>(corners.size());
-        *count = needed;
-        if (!positions || capacity < needed) {
-            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(),
-                          positions ? capacity : 0, needed);
-        }
-        const std::span<const Vec3f> vertices = collision::hull_vertices(*shape.hull);
-        for (uint32_t corner : corners) {
-            const Vec3f& p = vertices[corner];
-            *positions++ = {p.x(), p.y(), p.z()};
-        }
         return TAUT_OK;
     });
 }

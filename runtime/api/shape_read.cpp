@@ -34,7 +34,7 @@ static_assert(int(ShapeKind::plane) == TAUT_SHAPE_PLANE && int(ShapeKind::box) =
               int(ShapeKind::hull) == TAUT_SHAPE_HULL && int(ShapeKind::cylinder) == TAUT_SHAPE_CYLINDER &&
               int(ShapeKind::cone) == TAUT_SHAPE_CONE &&
               int(ShapeKind::tapered_capsule) == TAUT_SHAPE_TAPERED_CAPSULE &&
-              collision::kShapeKinds == TAUT_SHAPE_TAPERED_CAPSULE + 1);
+              int(ShapeKind::surface) == TAUT_SHAPE_SURFACE && collision::kShapeKinds == TAUT_SHAPE_SURFACE + 1);
 
 taut_result taut_shape_get_kind(taut_shape handle, taut_shape_kind* out) {
     Check check(__func__);

@@ -13,6 +13,12 @@ bool touches(const Pair& pair) {
     return false;
 }
 
+// The record of part 0, which stands before those of the others.
+Pair& first_of(Pairs& pairs, uint32_t index) {
+    while (pairs.list[index].part != 0) --index;
+    return pairs.list[index];
+}
+
 taut_pose public_pose(const Vec3& position, const Quat& q) {
     taut_pose pose{};
     pose.position = {position.x(), position.y(), position.z()};
@@ -27,11 +33,18 @@ void publish_contacts(World& world) {
     world.contact_begin.clear();
     world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
     world.pairs.ended.clear();
-    for (const ActivePair& active : world.pairs.active) {
-        Pair& pair = world.pairs.list[active.pair];
+    const Array<ActivePair>& active = world.pairs.active;
+    for (size_t i = 0, next = 0; i < active.size(); i = next) {
+        Pair& pair = first_of(world.pairs, active[i].pair);
         const bool before = pair.touching;
-        pair.touching = touches(pair);
-        if (pair.touching == before) continue;
+        bool now = false;  // by any of the pair's parts
+        for (; next < active.size() && world.pairs.list[active[next].pair].key == pair.key; ++next) {
+            Pair& part = world.pairs.list[active[next].pair];
+            part.touching = touches(part);
+            now = now || part.touching;
+        }
+        pair.touching = now;
+        if (now == before) continue;
         const taut_contact_event event{world.body_handle(pair.a), world.body_handle(pair.b),
                                        world.collider_handle(pair.collider_a()),
                                        world.collider_handle(pair.collider_b())};
@@ -56,7 +69,7 @@ void publish_motion(World& world, const Array<uint32_t>& frozen) {
 
 void publish_profile(World& world) {
     taut_profile& p = world.profile;
-    p.pairs = static_cast<uint32_t>(world.pairs.list.size());
+    p.pairs = static_cast<uint32_t>(world.broadphase.pairs().size());
     p.touching = static_cast<uint32_t>(world.pairs.active.size());
     for (const ActivePair& active : world.pairs.active) {
         p.points += active.points;

@@ -97,6 +97,7 @@ void add_pairs(Hash& hash, const Pairs& pairs) {
     for (const Pair& pair : pairs.list) {
         if (pair.manifold.count == 0) continue;
         hash.add(pair.key);
+        if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
         for (uint32_t word : pair.cache.words) hash.add(static_cast<uint64_t>(word));
         for (int k = 0; k < pair.manifold.count; ++k) {
             hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));

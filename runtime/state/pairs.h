@@ -1,4 +1,5 @@
-// Contact pairs: one record for each pair of colliders whose fat boxes overlap, sorted by key, carried over frames.
+// Contact pairs of colliders whose fat boxes overlap, carried over frames. Each has one record, part 0; where one shape
+// is a surface, this has no points, and one more record follows for each part of the surface that is touched.
 #pragma once
 
 #include <taut/event.h>
@@ -12,6 +13,8 @@ namespace taut {
 
 // How far apart two surfaces get contact points [m]; tight boxes are grown by it before they enter the broadphase.
 constexpr float kContactMargin = 0.02f;
+// A frame's motion counts towards the contact margin up to this [m].
+constexpr double kMaxReach = 0.5;
 
 struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1, tangent2) of its manifold
     float normal = 0, tangent1 = 0, tangent2 = 0;
@@ -21,13 +24,15 @@ struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1,
 struct Pair {
     uint64_t key = 0;       // of the two colliders, see pair_key
     uint32_t a = 0, b = 0;  // their nodes, in the order of the key
+    uint32_t part = 0;      // of a surface, see collision::PartManifold; else 0
     collision::PairCache cache;
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
     Impulse impulse[4];            // by point: carried in, updated by the solver
     float friction = 0;            // of the two surfaces together
     float restitution = 0;
-    bool filtered = false;  // never collides (filter, joint); kept to remember the answer
-    bool touching = false;  // had a point at the end of the last step
+    bool on_surface = false;  // a shape has parts; of records with part 0
+    bool filtered = false;    // never collides (filter, joint); kept to remember the answer
+    bool touching = false;    // had a point at the end of the last step; part 0: or another part had
 
     uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
@@ -61,14 +66,18 @@ struct Pairs {
     explicit Pairs(Memory& memory)
         : list(memory),
           scratch(memory),
+          fresh(memory),
           active(memory),
           ended(memory),
           joined(memory),
           reach(memory),
-          placement(memory) {}
+          placement(memory),
+          parts(memory) {}
 
-    Array<Pair> list;                       // sorted by key
-    Array<Pair> scratch;                    // for the merge with the broadphase's list
+    Array<Pair> list;                       // sorted by key and part
+    bool complete = false;                  // all pairs of the broadphase are listed
+    Array<Pair> scratch;                    // for merges into the list
+    Array<Pair> fresh;                      // parts touched in this frame, sorted; find_contacts()
     Array<ActivePair> active;               // sorted as list is; find_contacts()
     Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;                     // id of the world, for the handles in ended
@@ -76,6 +85,7 @@ struct Pairs {
     uint64_t joined_version = 0;            // of the joints that they were taken from
     Array<Reach> reach;                     // by collider; update_bounds()
     Array<collision::Placement> placement;  // by collider; find_contacts()
+    collision::Parts parts;                 // of the pair looked at last
 };
 
 // Notes that a touching pair ended.
@@ -96,9 +106,10 @@ template <class Condition>
 void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, Condition&& condition) {
     reserve_ended(pairs, condition);
     for (const Pair& pair : pairs.list) {
-        if (pair.touching && condition(pair)) report_end(pairs, nodes, colliders, pair);
+        if (pair.touching && pair.part == 0 && condition(pair)) report_end(pairs, nodes, colliders, pair);
     }
     std::erase_if(pairs.list, condition);
+    pairs.complete = false;
 }
 
 // Conditions: pairs of one node, pairs of one collider, pairs of two nodes.

@@ -127,6 +127,16 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              taut_shape out;
              return taut_world_add_hull(w, &def, &out);
          }},
+        {"taut_world_add_mesh",
+         [](taut_world w) {
+             taut_shape out;
+             return make_mesh(w, &out);
+         }},
+        {"taut_world_add_height_field",
+         [](taut_world w) {
+             taut_shape out;
+             return make_height_field(w, &out);
+         }},
         {"taut_world_add_body",
          [&p](taut_world w) {
              const taut_body_def def = body_def(TAUT_BODY_DYNAMIC, p.box, 0, 50, 0);
@@ -393,6 +403,22 @@ inline std::vector<Call<taut_shape>> shape_calls() {
          [](taut_shape s) {
              taut_vec3 low, high;
              return taut_shape_get_bounds(s, &low, &high);
+         }},
+        {"taut_shape_triangles",
+         [](taut_shape s) {
+             taut_vec3 out[400];
+             uint32_t count;
+             return taut_shape_triangles(s, out, 400, &count);
+         }},
+        {"taut_shape_add_scaled",
+         [](taut_shape s) {
+             taut_shape out;
+             return taut_shape_add_scaled(s, {2, 1, 1}, &out);
+         }},
+        {"taut_shape_get_mesh_info",
+         [](taut_shape s) {
+             taut_mesh_info out;
+             return taut_shape_get_mesh_info(s, &out);
          }},
         {"taut_shape_remove", [](taut_shape s) { return taut_shape_remove(s); }},
     };

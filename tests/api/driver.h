@@ -204,7 +204,7 @@ private:
         const taut_world world = worlds_[w];
         taut_shape out = {0};
         bool added = false;
-        switch (byte() % 9) {
+        switch (byte() % 11) {
             case 0: {
                 taut_plane_def def;
                 taut_plane_def_init(&def);
@@ -275,6 +275,37 @@ private:
                 spoil(def.struct_size);
                 added =
                     run("taut_world_add_scaled_hull", [&] { return taut_world_add_scaled_hull(world, &def, &out); });
+                break;
+            }
+            case 8: {
+                std::vector<taut_vec3> vertices(byte() % 20);
+                for (taut_vec3& vertex : vertices) vertex = vec(2);
+                std::vector<uint32_t> indices(byte() % 30 * 3u);
+                for (uint32_t& index : indices) index = one_in(64) ? word() : byte() % 20;
+                taut_mesh_def def;
+                taut_mesh_def_init(&def);
+                def.vertices = vertices.data();
+                def.vertex_count = static_cast<uint32_t>(vertices.size());
+                def.indices = indices.data();
+                def.triangle_count = static_cast<uint32_t>(indices.size() / 3);
+                def.two_sided = byte() % 2;
+                spoil(def.struct_size);
+                added = run("taut_world_add_mesh", [&] { return taut_world_add_mesh(world, &def, &out); });
+                break;
+            }
+            case 9: {
+                float heights[36];
+                for (float& height : heights) height = real(-1, 1);
+                taut_height_field_def def;
+                taut_height_field_def_init(&def);
+                def.heights = heights;
+                def.rows = byte() % 7;
+                def.columns = byte() % 7;
+                def.row_spacing = real(0.1, 2);
+                def.column_spacing = real(0.1, 2);
+                spoil(def.struct_size);
+                added =
+                    run("taut_world_add_height_field", [&] { return taut_world_add_height_field(world, &def, &out); });
                 break;
             }
             default: {
@@ -617,12 +648,17 @@ private:
         expect(count % 3 == 0, "triangles that are none");
         taut_shape_kind kind;
         if (run("taut_shape_get_kind", [&] { return taut_shape_get_kind(shape, &kind); })) {
-            expect(kind <= TAUT_SHAPE_TAPERED_CAPSULE, "a kind that is none");
+            expect(kind <= TAUT_SHAPE_SURFACE, "a kind that is none");
         }
         taut_vec3 low, high;
         if (run("taut_shape_get_bounds", [&] { return taut_shape_get_bounds(shape, &low, &high); })) {
             expect(finite(low) && finite(high) && low.x < high.x && low.y < high.y && low.z < high.z, "no bounds");
         }
+        run("taut_shape_triangles",
+            [&] { return taut_shape_triangles(shape, points.data(), static_cast<uint32_t>(points.size()), &count); });
+        taut_mesh_info info;
+        if (run("taut_shape_get_mesh_info", [&] { return taut_shape_get_mesh_info(shape, &info); }))
+            expect(info.facets > 0 && info.facets <= info.triangles, "facets that are none");
     }
 
     void read_world() {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
@@ -164,6 +165,29 @@ inline taut_shape add_hull(taut_world world, float length = 1) {
     taut_shape shape = {0};
     EXPECT_EQ(taut_world_add_hull(world, &def, &shape), TAUT_OK) << taut_last_error();
     return shape;
+}
+
+// Two triangles, one unit square.
+inline taut_result make_mesh(taut_world world, taut_shape* out) {
+    static const taut_vec3 vertices[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}};
+    static const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    taut_mesh_def def;
+    taut_mesh_def_init(&def);
+    def.vertices = vertices;
+    def.vertex_count = 4;
+    def.indices = indices;
+    def.triangle_count = 2;
+    return taut_world_add_mesh(world, &def, out);
+}
+
+// The same square with a hole in one corner.
+inline taut_result make_height_field(taut_world world, taut_shape* out) {
+    static const float heights[] = {0, 0, 0, NAN};
+    taut_height_field_def def;
+    taut_height_field_def_init(&def);
+    def.heights = heights;
+    def.rows = def.columns = 2;
+    return taut_world_add_height_field(world, &def, out);
 }
 
 inline taut_joint add_ball(taut_world world, taut_body a, taut_body b, taut_pos anchor_a = {}, taut_pos anchor_b = {}) {

@@ -34,10 +34,13 @@ std::unique_ptr<btCollisionShape> make_shape(const scenes::Shape& shape) {
         case scenes::ShapeKind::cone:
         case scenes::ShapeKind::tapered_capsule:
         case scenes::ShapeKind::scaled_hull:
+        case scenes::ShapeKind::mesh:
+        case scenes::ShapeKind::height_field:
             break;
     }
     throw scenes::BadScene(
-        "--engine bullet does not run scenes with hulls, cylinders or cones: Bullet's margin would change their size");
+        "--engine bullet does not run scenes with hulls, surfaces, cylinders or cones: Bullet's margin would change "
+        "their size");
 }
 
 class BulletEngine : public Engine {

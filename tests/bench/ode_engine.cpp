@@ -139,6 +139,8 @@ private:
             case scenes::ShapeKind::cone:
             case scenes::ShapeKind::tapered_capsule:
             case scenes::ShapeKind::scaled_hull:
+            case scenes::ShapeKind::mesh:
+            case scenes::ShapeKind::height_field:
                 break;
         }
         throw scenes::BadScene("--engine ode runs scenes of boxes, spheres and planes only");

@@ -46,6 +46,8 @@ double reach(const Placed& p, Vec direction) {
         case ShapeKind::cone:
         case ShapeKind::tapered_capsule:
         case ShapeKind::scaled_hull:
+        case ShapeKind::mesh:
+        case ShapeKind::height_field:
             break;
     }
     throw std::invalid_argument("no exact overlap for this pair of shapes");
@@ -109,6 +111,8 @@ double overlap_depth(const Placed& a, const Placed& b) {
 double bounding_radius(const Shape& shape) {
     switch (shape.kind) {
         case ShapeKind::plane:
+        case ShapeKind::mesh:
+        case ShapeKind::height_field:
             return std::numeric_limits<double>::infinity();
         case ShapeKind::box:
             return length(of(shape.half_extents));

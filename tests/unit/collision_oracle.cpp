@@ -100,8 +100,8 @@ Shape random_shape(ShapeKind kind, Random& random) {
 }
 
 const char* name(ShapeKind kind) {
-    constexpr const char* kNames[kShapeKinds] = {"plane", "box",      "sphere", "capsule",
-                                                 "hull",  "cylinder", "cone",   "tapered_capsule"};
+    constexpr const char* kNames[kShapeKinds] = {"plane",    "box",  "sphere",          "capsule", "hull",
+                                                 "cylinder", "cone", "tapered_capsule", "surface"};
     return kNames[size_t(kind)];
 }
 

@@ -27,8 +27,8 @@ void PrintTo(const Kinds& kinds, std::ostream* out) { *out << oracle::name(kinds
 
 std::vector<Kinds> all_kinds() {
     std::vector<Kinds> out;
-    for (int a = 0; a < kShapeKinds; ++a) {
-        for (int b = a; b < kShapeKinds; ++b) {
+    for (int a = 0; a < kConvexKinds; ++a) {
+        for (int b = a; b < kConvexKinds; ++b) {
             if (b > 0) out.push_back({ShapeKind(a), ShapeKind(b)});
         }
     }

@@ -1,0 +1,228 @@
+// Manifolds of pairs, the parts of surfaces among them, and the impulses that their points carry over.
+#include <algorithm>
+
+#include "detect/detect.h"
+
+namespace taut {
+namespace {
+
+// Points further apart than this are not the same point of two frames [m].
+constexpr float kSamePoint = 0.02f;
+constexpr uint32_t kGrain = 64;  // colliders or pairs that a thread takes at a time
+
+// How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
+float margin_of(const NodeMotion& a, const NodeMotion& b, double time_step) {
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, (a.v - b.v).norm() * time_step));
+}
+
+// Impulses of the old points onto the new ones: by feature, else by place; friction turned into the new tangents.
+void carry_impulses(const collision::Manifold& old, const Impulse* from, const collision::Manifold& now, Impulse* to) {
+    const Vec3f t1 = tangent_of(now.normal), t2 = now.normal.cross(t1);
+    const Vec3f o1 = tangent_of(old.normal), o2 = old.normal.cross(o1);
+    bool used[4] = {}, found[4] = {};
+    auto take = [&](int i, int k) {
+        const Vec3f friction = from[k].tangent1 * o1 + from[k].tangent2 * o2;
+        to[i] = {from[k].normal, friction.dot(t1), friction.dot(t2), from[k].slip};
+        used[k] = found[i] = true;
+    };
+    for (int i = 0; i < now.count; ++i)
+        for (int k = 0; k < old.count && !found[i]; ++k)
+            if (!used[k] && old.points[k].feature == now.points[i].feature) take(i, k);
+    for (int i = 0; i < now.count; ++i) {
+        if (found[i]) continue;
+        to[i] = {};
+        float nearest = kSamePoint * kSamePoint;
+        int best = -1;
+        for (int k = 0; k < old.count; ++k) {
+            const float d = (old.points[k].position - now.points[i].position).squaredNorm();
+            if (!used[k] && d < nearest) nearest = d, best = k;
+        }
+        if (best >= 0) take(i, best);
+    }
+}
+
+// Two surfaces in touch: the geometric mean of their friction, the livelier restitution.
+void combine_surfaces(const Collider& a, const Collider& b, Pair& pair) {
+    pair.friction = std::sqrt(a.material.friction * b.material.friction);
+    pair.restitution = std::max(a.material.restitution, b.material.restitution);
+}
+
+// From the origin of a collider's shape, which the narrowphase knows, to that of its node.
+void move_to_node(const Collider& a, const collision::Placement& at, collision::Manifold& manifold) {
+    if (a.position == Vec3::Zero()) return;
+    const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
+    const Vec3f offset = body_rotation * a.position.cast<float>();
+    for (int k = 0; k < manifold.count; ++k) manifold.points[k].position += offset;
+}
+
+// A pair's new manifold: its place and surface, and the impulses of the old one.
+void adopt(const Colliders& colliders, const Pairs& pairs, const collision::Manifold& old, const Impulse* before,
+           Pair& pair) {
+    const uint32_t a = pair.collider_a();
+    move_to_node(colliders.record[a], pairs.placement[a], pair.manifold);
+    combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
+    if (old.count == 0) {
+        std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+        return;
+    }
+    Impulse carried[4];
+    std::copy(before, before + 4, carried);
+    carry_impulses(old, carried, pair.manifold, pair.impulse);
+}
+
+// Two shapes as they stand in a pair.
+struct Shaped {
+    const collision::Shape &a, &b;
+    const collision::Placement &at_a, &at_b;
+    float margin;
+
+    Shaped(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs, const Pair& pair,
+           double time)
+        : a(shapes.record[colliders.record[pair.collider_a()].shape].shape),
+          b(shapes.record[colliders.record[pair.collider_b()].shape].shape),
+          at_a(pairs.placement[pair.collider_a()]),
+          at_b(pairs.placement[pair.collider_b()]),
+          margin(margin_of(nodes.motion[pair.a], nodes.motion[pair.b], time)) {}
+
+    bool has_parts() const { return collision::has_parts(a) || collision::has_parts(b); }
+    void find_parts(collision::Parts& parts) const { collision::collide_parts(a, at_a, b, at_b, margin, parts); }
+};
+
+// Manifold of one pair at the present placements, with the impulses of the last one.
+void find_points(const Shaped& shaped, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+    const collision::Manifold old = pair.manifold;
+    collision::collide(shaped.a, shaped.at_a, shaped.b, shaped.at_b, shaped.margin, pair.cache, pair.manifold);
+    if (pair.manifold.count > 0) adopt(colliders, pairs, old, pair.impulse, pair);
+}
+
+// The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
+// longer touched that looked about the same way. Null if there is none.
+const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, const collision::PartManifold& part) {
+    constexpr float kAlike = 0.95f;  // cosine between the normals
+    const auto now = [&](uint32_t number) {
+        const auto at = std::lower_bound(parts.found.begin(), parts.found.end(), number,
+                                         [](const auto& found, uint32_t p) { return found.part < p; });
+        return at != parts.found.end() && at->part == number;
+    };
+    const Pair* like = nullptr;
+    float most = kAlike;
+    for (const Pair& pair : old) {
+        if (pair.part == part.part) return &pair;
+        const float along = pair.manifold.normal.dot(part.manifold.normal);
+        if (pair.manifold.count == 0 || along <= most || now(pair.part)) continue;
+        most = along;
+        like = &pair;
+    }
+    return like;
+}
+
+// The parts that a pair with a surface touches, into pairs.fresh; old: its records of the last frame.
+void find_parts(const Shaped& shaped, const Colliders& colliders, Pairs& pairs, std::span<Pair> old) {
+    Pair& first = old[0];
+    first.manifold.count = 0;
+    shaped.find_parts(pairs.parts);
+    for (const collision::PartManifold& found : pairs.parts.found) {
+        const Pair* before = find_old(old.subspan(1), pairs.parts, found);
+        Pair& pair = pairs.fresh.emplace_back();
+        pair.key = first.key;
+        pair.a = first.a;
+        pair.b = first.b;
+        pair.part = found.part;
+        pair.manifold = found.manifold;
+        pair.touching = before && before->part == found.part && before->touching;
+        adopt(colliders, pairs, before ? before->manifold : first.manifold, before ? before->impulse : first.impulse,
+              pair);
+    }
+}
+
+// The fresh parts in place of the old ones, and the active pairs anew.
+void replace_parts(Pairs& pairs) {
+    pairs.scratch.clear();
+    auto next = pairs.fresh.begin();
+    for (const Pair& pair : pairs.list) {
+        if (pair.part != 0) continue;
+        pairs.scratch.push_back(pair);
+        while (next != pairs.fresh.end() && next->key == pair.key) pairs.scratch.push_back(*next++);
+    }
+    pairs.list.swap(pairs.scratch);
+    pairs.active.clear();
+    for (uint32_t i = 0; i < pairs.list.size(); ++i) {
+        const Pair& pair = pairs.list[i];
+        if (!pair.filtered && pair.manifold.count > 0)
+            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+    }
+}
+
+// A part of a pair whose parts were just found again: one that is not among them loses its points.
+void refresh_part(const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+    const collision::Manifold old = pair.manifold;
+    pair.manifold.count = 0;
+    for (const collision::PartManifold& found : pairs.parts.found)
+        if (found.part == pair.part) pair.manifold = found.manifold;
+    if (pair.manifold.count > 0) adopt(colliders, pairs, old, pair.impulse, pair);
+}
+
+}  // namespace
+
+void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                         std::span<const uint32_t> active_pairs, double elapsed, double substep) {
+    uint64_t found = 0;  // the pair whose parts are found; its records follow one another
+    for (uint32_t p : active_pairs) {
+        ActivePair& active = pairs.active[p];
+        Pair& pair = pairs.list[active.pair];
+        for (uint32_t c : {pair.collider_a(), pair.collider_b()})
+            pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
+        const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
+        if (pair.part == 0) {
+            find_points(shaped, colliders, pairs, pair);
+        } else {
+            if (pair.key != found) shaped.find_parts(pairs.parts);
+            found = pair.key;
+            refresh_part(colliders, pairs, pair);
+        }
+        active.points = static_cast<uint32_t>(pair.manifold.count);
+    }
+}
+
+void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                   double time_step) {
+    const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
+    pairs.placement.resize(slots);
+    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c)
+            if (colliders.record[c].node != kNone) pairs.placement[c] = placement_of(nodes, colliders.record[c]);
+    });
+    team.for_ranges(static_cast<uint32_t>(pairs.list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            Pair& pair = pairs.list[i];
+            if (pair.filtered || pair.part != 0) continue;
+            const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
+            pair.on_surface = shaped.has_parts();
+            if (!pair.on_surface) find_points(shaped, colliders, pairs, pair);
+        }
+    });
+    pairs.active.clear();
+    pairs.fresh.clear();
+    bool parts = false;
+    for (uint32_t i = 0; i < pairs.list.size(); ++i) {
+        Pair& pair = pairs.list[i];
+        parts = parts || pair.part != 0;
+        if (pair.filtered || pair.part != 0) continue;
+        const size_t fresh = pairs.fresh.size();
+        if (pair.on_surface) {
+            size_t end = i + 1;
+            while (end < pairs.list.size() && pairs.list[end].part != 0) ++end;
+            find_parts(Shaped(nodes, colliders, shapes, pairs, pair, time_step), colliders, pairs,
+                       std::span(pairs.list).subspan(i, end - i));
+        }
+        if (pair.manifold.count > 0) {
+            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+        } else if (pairs.fresh.size() == fresh && pair.touching) {
+            report_end(pairs, nodes, colliders, pair);
+            pair.touching = false;
+        }
+    }
+    if (parts || !pairs.fresh.empty()) replace_parts(pairs);
+}
+
+}  // namespace taut
