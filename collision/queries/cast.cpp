@@ -4,6 +4,7 @@
 #include <array>
 
 #include "collision/queries/couple.h"
+#include "collision/queries/surface.h"
 
 namespace taut::collision {
 namespace {
@@ -19,6 +20,8 @@ Hit inside(const Couple& couple, const Distance& cores) {
     if (!cores.apart) push = couple.push();
     return {0, couple.surface_of_a(push.on_a, push.normal), couple.to_world(push.normal).normalized(), true, 0};
 }
+
+}  // namespace
 
 bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
                     const Placement& at, double limit, Hit& out) {
@@ -48,6 +51,8 @@ bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& alon
     return true;
 }
 
+namespace {
+
 bool cast_at_plane(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
                    const Placement& at, double limit, Hit& out) {
     const Clearance clear = clearance(still, at, moving, from);
@@ -68,7 +73,7 @@ using CastFunction = bool (*)(const Shape& moving, const Placement& from, const 
 // By the kind of the still shape.
 constexpr std::array<CastFunction, kShapeKinds> kCasts = {cast_at_plane,  cast_at_convex, cast_at_convex,
                                                           cast_at_convex, cast_at_convex, cast_at_convex,
-                                                          cast_at_convex, cast_at_convex};
+                                                          cast_at_convex, cast_at_convex, cast_at_surface};
 
 }  // namespace
 

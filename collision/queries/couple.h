@@ -59,6 +59,12 @@ private:
     double radius_a_, radius_b_;
 };
 
+// Between two convex shapes; b, or what stays, may be a triangle.
+bool convex_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+Gap convex_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
+                    const Placement& at, double limit, Hit& out);
+
 // A convex shape above a plane: by how much [m], and its lowest point in the world.
 struct Clearance {
     double height;

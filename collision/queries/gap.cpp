@@ -2,9 +2,9 @@
 #include <array>
 
 #include "collision/queries/couple.h"
+#include "collision/queries/surface.h"
 
 namespace taut::collision {
-namespace {
 
 bool convex_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
     const Couple couple(a, at_a, b, at_b);
@@ -25,6 +25,8 @@ Gap convex_gap(const Shape& a, const Placement& at_a, const Shape& b, const Plac
     return gap;
 }
 
+namespace {
+
 // b is the plane.
 bool plane_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
     return clearance(b, at_b, a, at_a).height <= 0;
@@ -43,17 +45,21 @@ struct GapFunctions {
 
 constexpr GapFunctions kPlane = {plane_overlap, plane_gap};
 constexpr GapFunctions kConvex = {convex_overlap, convex_gap};
+constexpr GapFunctions kSurface = {surface_overlap, surface_gap};
 
-constexpr std::array<GapFunctions, kShapeKinds> kGaps = {kPlane,  kConvex, kConvex, kConvex,
-                                                         kConvex, kConvex, kConvex, kConvex};
+constexpr std::array<GapFunctions, kShapeKinds> kGaps = {kPlane,  kConvex, kConvex, kConvex, kConvex,
+                                                         kConvex, kConvex, kConvex, kSurface};
 
 const GapFunctions& functions_of(const Shape& shape) { return kGaps[size_t(shape.kind)]; }
+
+// With a reach, and in one piece.
+bool is_convex(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::surface; }
 
 // A ball for a point, which has no inside that a search for the least push could go by: its core is the point.
 Shape ball_for_point(const Shape& other) {
     Shape ball;
     ball.kind = ShapeKind::sphere;
-    ball.size = Vec3f(other.kind == ShapeKind::plane ? 1.0f : inner_radius(other), 0, 0);
+    ball.size = Vec3f(is_convex(other) ? inner_radius(other) : 1e-3f, 0, 0);
     return ball;
 }
 
@@ -64,7 +70,7 @@ bool overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placem
 }
 
 Gap find_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
-    if (a.kind != ShapeKind::plane) return functions_of(b).gap(a, at_a, b, at_b);
+    if (is_convex(a)) return functions_of(b).gap(a, at_a, b, at_b);
     const Gap turned = functions_of(a).gap(b, at_b, a, at_a);
     return {turned.distance, -turned.normal, turned.on_b, turned.on_a};
 }

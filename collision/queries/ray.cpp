@@ -5,6 +5,7 @@
 #include "collision/collide.h"
 #include "collision/hull.h"
 #include "collision/queries/interval.h"
+#include "collision/queries/surface.h"
 #include "collision/revolution.h"
 
 namespace taut::collision {
@@ -14,13 +15,22 @@ Interval plane_interval(const Shape& shape, const Line& line) {
     return of_half_space(line, shape.size.cast<double>().normalized(), 0);
 }
 
+// Slab by slab; the normal is of the side that is crossed last on the way in.
 Interval box_interval(const Shape& shape, const Line& line) {
     Interval out;
+    int axis = 0;
     for (int i = 0; i < 3; ++i) {
-        const Vec3 side = Vec3::Unit(i);
-        const double half = shape.size[i];
-        out = intersection(out, intersection(of_half_space(line, side, half), of_half_space(line, -side, half)));
+        const double half = shape.size[i], from = line.from[i], along = line.along[i];
+        if (along == 0) {
+            if (std::fabs(from) > half) return nowhere();
+            continue;
+        }
+        const double middle = -from / along, reach = half / std::fabs(along);
+        if (middle - reach > out.enter) axis = i;
+        out.enter = std::max(out.enter, middle - reach);
+        out.exit = std::min(out.exit, middle + reach);
     }
+    out.normal[axis] = line.along[axis] > 0 ? -1 : 1;
     return out;
 }
 
@@ -70,48 +80,45 @@ Interval hull_interval(const Shape& shape, const Line& line) {
     return out;
 }
 
-// What part of a ray a kind cares for: parameters of its line [m].
-struct Stretch {
-    double from, to;
-};
-
-// A solid is met where its interval begins, or at once by what starts inside.
+// A solid is met where its interval begins, or at once by what starts inside. The line starts at its point nearest to
+// the shape, so that a far ray loses no digits.
 template <Interval (*interval)(const Shape&, const Line&)>
-bool solid_ray(const Shape& shape, const Line& line, const Stretch& stretch, double& met, Hit& out) {
-    const Interval inside = interval(shape, line);
-    if (inside.empty() || inside.exit < stretch.from || inside.enter > stretch.to) return false;
-    out.inside = inside.enter < stretch.from;
-    met = out.inside ? stretch.from : inside.enter;
-    out.normal = out.inside ? Vec3(-line.along) : inside.normal;
-    out.feature = 0;
-    return true;
-}
-
-// Fills normal (in the shape's frame), inside and feature; met is where on the line.
-using RayFunction = bool (*)(const Shape&, const Line&, const Stretch&, double& met, Hit& out);
-
-constexpr std::array<RayFunction, kShapeKinds> kRays = {
-    solid_ray<plane_interval>,  solid_ray<box_interval>,
-    solid_ray<sphere_interval>, solid_ray<capsule_interval>,
-    solid_ray<hull_interval>,   solid_ray<cylinder_interval>,
-    solid_ray<cone_interval>,   solid_ray<tapered_capsule_interval>};
-
-}  // namespace
-
-// The line starts at its point nearest to the shape, so that a far ray loses no digits.
-bool cast_ray(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit, Hit& out) {
+bool cast_at_solid(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit,
+                   Hit& out) {
     const double length = along.norm();
     const Vec3 direction = along / length;
     const Vec3 apart = from - at.position;
     const double start = apart.dot(direction);  // of the ray, as a parameter of the line
-    const Mat3 to_shape = at.rotation.cast<double>().transpose();
-    const Line line = {to_shape * (apart - start * direction), (to_shape * direction).normalized()};
-    double met = 0;
-    if (!kRays[size_t(shape.kind)](shape, line, {start, start + limit * length}, met, out)) return false;
-    out.fraction = std::min((met - start) / length, 1.0);
+    const Mat3 rotation = at.rotation.cast<double>();
+    const Line line = {rotation.transpose() * (apart - start * direction),
+                       (rotation.transpose() * direction).normalized()};
+    const Interval met = interval(shape, line);
+    if (met.empty() || met.exit < start || met.enter > start + limit * length) return false;
+    out.inside = met.enter < start;
+    out.fraction = out.inside ? 0 : std::min((met.enter - start) / length, 1.0);
     out.point = from + out.fraction * along;
-    out.normal = out.inside ? Vec3(-direction) : (at.rotation.cast<double>() * out.normal).normalized();
+    out.normal = out.inside ? Vec3(-direction) : (rotation * met.normal).normalized();
+    out.feature = 0;
     return true;
+}
+
+using RayFunction = bool (*)(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit,
+                             Hit& out);
+
+constexpr std::array<RayFunction, kShapeKinds> kRays = {cast_at_solid<plane_interval>,
+                                                        cast_at_solid<box_interval>,
+                                                        cast_at_solid<sphere_interval>,
+                                                        cast_at_solid<capsule_interval>,
+                                                        cast_at_solid<hull_interval>,
+                                                        cast_at_solid<cylinder_interval>,
+                                                        cast_at_solid<cone_interval>,
+                                                        cast_at_solid<tapered_capsule_interval>,
+                                                        cast_ray_at_surface};
+
+}  // namespace
+
+bool cast_ray(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit, Hit& out) {
+    return kRays[size_t(shape.kind)](shape, at, from, along, limit, out);
 }
 
 }  // namespace taut::collision

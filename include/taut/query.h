@@ -2,6 +2,8 @@
  * @file query.h
  * Questions about where colliders are now: rays, shapes on their way, overlaps, distances.
  *
+ * Meshes and height fields are met triangle by triangle, from the front alone unless they have two sides; nothing is
+ * inside them, and what overlaps one of their triangles overlaps them.
  * All answers are of the poses at the time of the call. They depend on the scene alone: hits are sorted by fraction,
  * colliders where they tie or where there is no fraction by their slots, which are those of the order of creation as
  * long as none is removed.
@@ -64,7 +66,7 @@ typedef struct taut_ray {
 
 /** A shape that goes from a pose to another without turning. */
 typedef struct taut_shape_cast {
-    taut_shape shape;      /**< any but a plane; it need not be on a body */
+    taut_shape shape;      /**< not a plane, mesh or height field; it need not be on a body */
     taut_pose pose;        /**< of the shape's origin at the start */
     taut_vec3 translation; /**< direction times length [m], its length in [1e-6, 1e7] */
     uint32_t reserved;     /**< zero */
@@ -77,7 +79,7 @@ typedef struct taut_query_hit {
     taut_pos point;   /**< on the collider [m] */
     taut_vec3 normal; /**< unit, out of the collider */
     float fraction;   /**< of the translation, [0, 1] */
-    uint32_t feature; /**< triangle of a mesh; 0 of other shapes */
+    uint32_t feature; /**< triangle of a mesh or height field, as it counts them; 0 of other shapes */
     /** 1 if it overlaps the collider at the start. fraction is 0 then; of a ray, point is its origin and normal points
      * against it; of a shape, they are those of the least push out of the collider. Else 0. */
     uint32_t inside;
@@ -124,7 +126,8 @@ TAUT_API taut_result taut_world_cast_shape_all(taut_world world, const taut_shap
 TAUT_API taut_result taut_world_cast_shapes(taut_world world, const taut_shape_cast* casts, uint32_t count,
                                             const taut_query_filter* filter, taut_query_hit* hits);
 
-/** The colliders that overlap or touch a shape (any but a plane) at a pose. @return also TAUT_TOO_SMALL as above. */
+/** The colliders that overlap or touch a shape (no plane, mesh or height field) at a pose. @return also TAUT_TOO_SMALL
+ * as above. */
 TAUT_API taut_result taut_world_overlap_shape(taut_world world, taut_shape shape, const taut_pose* pose,
                                               const taut_query_filter* filter, taut_collider* colliders,
                                               uint32_t capacity, uint32_t* count);
@@ -141,9 +144,9 @@ TAUT_API taut_result taut_world_overlap_box(taut_world world, taut_pos low, taut
 
 /** The point of a collider's surface nearest to a point [m], which is a; the distance is negative inside. */
 TAUT_API taut_result taut_collider_closest_point(taut_collider collider, taut_pos point, taut_distance* out);
-/** Two colliders of a world, not both planes, where they are nearest. */
+/** Two colliders of a world, not both planes, meshes or height fields, where they are nearest. */
 TAUT_API taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distance* out);
-/** The collider nearest to a shape (any but a plane, a) at a pose, no further than max_distance [m], [0, 1e7]. */
+/** The collider nearest to a shape (as above, a) at a pose, no further than max_distance [m], [0, 1e7]. */
 TAUT_API taut_result taut_world_nearest_collider(taut_world world, taut_shape shape, const taut_pose* pose,
                                                  float max_distance, const taut_query_filter* filter,
                                                  taut_distance* out);

@@ -68,7 +68,9 @@ taut_result find_convex(Check& check, const World& world, taut_shape handle, con
     const taut_result found = find_shape(check.call(), "shape", world, handle, index);
     if (found != TAUT_OK) return found;
     out = &world.shapes.record[index].shape;
-    return check.require(out->kind != collision::ShapeKind::plane, "shape is a plane").result();
+    return check.require(out->kind != collision::ShapeKind::plane, "shape is a plane")
+        .require(out->kind != collision::ShapeKind::surface, "shape is a mesh or height field")
+        .result();
 }
 
 collision::Placement to_placement(const taut_pose& pose) {
@@ -306,10 +308,12 @@ taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distan
         uint32_t other = 0;
         const taut_result found = find_collider(check.call(), "b", world, b, other);
         if (found != TAUT_OK) return found;
-        const auto is_plane = [&](uint32_t c) {
-            return world.shapes.record[world.colliders.record[c].shape].shape.kind == collision::ShapeKind::plane;
+        const auto is_convex = [&](uint32_t c) {
+            const collision::ShapeKind kind = world.shapes.record[world.colliders.record[c].shape].shape.kind;
+            return kind != collision::ShapeKind::plane && kind != collision::ShapeKind::surface;
         };
-        if (!check.require(!is_plane(index) || !is_plane(other), "both are planes")) return check.result();
+        check.require(is_convex(index) || is_convex(other), "both are planes, meshes or height fields");
+        if (!check) return check.result();
         *out = distance_between(world, index, other);
         return TAUT_OK;
     });

