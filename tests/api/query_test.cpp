@@ -32,7 +32,7 @@ taut_query_filter filter() {
 
 // Kinds of all sorts around a point, above a plane.
 struct Field {
-    explicit Field(int bodies, const taut_pos& place = {0, 0, 0}, uint32_t seed = 1) : engine(seed), middle(place) {
+    explicit Field(int count, const taut_pos& place = {0, 0, 0}, uint32_t seed = 1) : engine(seed), middle(place) {
         taut_sphere_def sphere;
         taut_sphere_def_init(&sphere);
         taut_capsule_def capsule;
@@ -46,7 +46,7 @@ struct Field {
         EXPECT_OK(taut_world_add_capsule(world, &capsule, &shapes[3]));
         EXPECT_OK(taut_world_add_cone(world, &cone, &shapes[4]));
         ground = add_body(world, body_def(TAUT_BODY_STATIC, add_plane(world), middle.x, middle.y - 8, middle.z));
-        for (int i = 0; i < bodies; ++i) add(i);
+        for (int i = 0; i < count; ++i) add(i);
     }
     ~Field() { taut_world_destroy(world); }
 
@@ -378,9 +378,13 @@ TEST(Queries, TakeNoMemory) {
     Ledger ledger;
     Populated p(ledger.hooks());
     const uint64_t before = ledger.calls;
-    for (const auto& call : world_calls(p))
-        if (contains(call.name, "cast") || contains(call.name, "overlap") || contains(call.name, "nearest"))
+    for (const auto& call : world_calls(p)) {
+        const bool query =
+            contains(call.name, "cast") || contains(call.name, "overlap") || contains(call.name, "nearest");
+        if (query) {
             EXPECT_OK(call.run(p.world));
+        }
+    }
     EXPECT_EQ(ledger.calls, before);
 }
 

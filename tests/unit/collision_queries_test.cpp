@@ -16,7 +16,7 @@ constexpr ShapeKind kAll[] = {ShapeKind::plane, ShapeKind::box,      ShapeKind::
 constexpr ShapeKind kSolids[] = {ShapeKind::box,      ShapeKind::sphere, ShapeKind::capsule,        ShapeKind::hull,
                                  ShapeKind::cylinder, ShapeKind::cone,   ShapeKind::tapered_capsule};
 
-struct OfKind : testing::TestWithParam<ShapeKind> {};
+struct QueryOfKind : testing::TestWithParam<ShapeKind> {};
 
 std::string kind_name(const testing::TestParamInfo<ShapeKind>& info) { return name(info.param); }
 
@@ -82,11 +82,11 @@ void expect_as_marched(ShapeKind kind, uint32_t seed, const Vec3& origin, double
     EXPECT_LT(unclear, 40);
 }
 
-TEST_P(OfKind, RayMeetsWhatAMarchMeets) { expect_as_marched(GetParam(), 1, Vec3::Zero(), 2e-5); }
+TEST_P(QueryOfKind, RayMeetsWhatAMarchMeets) { expect_as_marched(GetParam(), 1, Vec3::Zero(), 2e-5); }
 
-TEST_P(OfKind, RayMeetsTheSameTenKilometresAway) { expect_as_marched(GetParam(), 2, Vec3(10000, -7000, 8000), 2e-5); }
+TEST_P(QueryOfKind, RayMeetsTheSameTenKilometresAway) { expect_as_marched(GetParam(), 2, Vec3(10000, -7000, 8000), 2e-5); }
 
-TEST_P(OfKind, RayFromInsideIsToldSo) {
+TEST_P(QueryOfKind, RayFromInsideIsToldSo) {
     Random random(3);
     for (int i = 0; i < 1000; ++i) {
         const Shape shape = random_shape(GetParam(), random);
@@ -104,7 +104,7 @@ TEST_P(OfKind, RayFromInsideIsToldSo) {
     }
 }
 
-TEST_P(OfKind, RayFromFarAwayLosesNoDigits) {
+TEST_P(QueryOfKind, RayFromFarAwayLosesNoDigits) {
     Random random(4);
     for (int i = 0; i < 300; ++i) {
         const Shape shape = random_shape(GetParam(), random);
@@ -122,7 +122,7 @@ TEST_P(OfKind, RayFromFarAwayLosesNoDigits) {
     }
 }
 
-TEST_P(OfKind, PointsNearestAreOnTheSurfaceAndAlongTheNormal) {
+TEST_P(QueryOfKind, PointsNearestAreOnTheSurfaceAndAlongTheNormal) {
     Random random(5);
     for (int i = 0; i < 2000; ++i) {
         const Shape shape = random_shape(GetParam(), random);
@@ -141,9 +141,9 @@ TEST_P(OfKind, PointsNearestAreOnTheSurfaceAndAlongTheNormal) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Queries, OfKind, testing::ValuesIn(kAll), kind_name);
+INSTANTIATE_TEST_SUITE_P(Queries, QueryOfKind, testing::ValuesIn(kAll), kind_name);
 
-struct OfSolid : testing::TestWithParam<ShapeKind> {};
+struct QueryOfSolid : testing::TestWithParam<ShapeKind> {};
 
 // How far a plane across the normal keeps a and b apart: less than or equal to their distance.
 double apart_along(const Vec3& normal, const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
@@ -152,7 +152,7 @@ double apart_along(const Vec3& normal, const Shape& a, const Placement& at_a, co
 }
 
 // Two points bound the distance from above, the plane between them from below.
-TEST_P(OfSolid, GapLiesBetweenItsPointsAndItsPlane) {
+TEST_P(QueryOfSolid, GapLiesBetweenItsPointsAndItsPlane) {
     Random random(6);
     for (const ShapeKind other : kSolids) {
         for (int i = 0; i < 300; ++i) {
@@ -174,7 +174,7 @@ TEST_P(OfSolid, GapLiesBetweenItsPointsAndItsPlane) {
 }
 
 // Deep overlaps: no search finds a push that is much less.
-TEST_P(OfSolid, OverlapIsTheLeastPushThatASearchFinds) {
+TEST_P(QueryOfSolid, OverlapIsTheLeastPushThatASearchFinds) {
     Random random(11);
     for (const ShapeKind other : kSolids) {
         for (int i = 0; i < 30; ++i) {
@@ -192,7 +192,7 @@ TEST_P(OfSolid, OverlapIsTheLeastPushThatASearchFinds) {
 
 // At the end a plane across the normal still parts them, which it did better all the way there, and the point met is
 // on both.
-TEST_P(OfSolid, CastEndsInTouch) {
+TEST_P(QueryOfSolid, CastEndsInTouch) {
     Random random(7);
     int hits = 0, starts_inside = 0;
     for (const ShapeKind other : kSolids) {
@@ -225,7 +225,7 @@ TEST_P(OfSolid, CastEndsInTouch) {
 }
 
 // A small ball is nearly a ray: both agree, near the origin and far from it.
-TEST_P(OfSolid, SmallBallMeetsWhatARayMeets) {
+TEST_P(QueryOfSolid, SmallBallMeetsWhatARayMeets) {
     Random random(8);
     const Shape ball = sphere(1e-3f);
     for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(-10000, 10000, 500)}) {
@@ -243,7 +243,7 @@ TEST_P(OfSolid, SmallBallMeetsWhatARayMeets) {
     }
 }
 
-TEST_P(OfSolid, CastAtAPlaneStopsAtTheLowestPoint) {
+TEST_P(QueryOfSolid, CastAtAPlaneStopsAtTheLowestPoint) {
     Random random(9);
     for (int i = 0; i < 1000; ++i) {
         const Shape shape = random_shape(GetParam(), random);
@@ -264,7 +264,7 @@ TEST_P(OfSolid, CastAtAPlaneStopsAtTheLowestPoint) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Queries, OfSolid, testing::ValuesIn(kSolids), kind_name);
+INSTANTIATE_TEST_SUITE_P(Queries, QueryOfSolid, testing::ValuesIn(kSolids), kind_name);
 
 // |p + t v| = r_a + r_b, the smaller root.
 TEST(Cast, BallMeetsBallWhereTheQuadraticSays) {
