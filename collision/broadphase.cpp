@@ -1,6 +1,7 @@
 // Bullet's dynamic tree of boxes under a pair list of our own: only leaves that left their fat box are moved and
 // asked again, and pairs are sorted, so that nothing depends on the tree's shape. The tree's nodes are Bullet's memory.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
@@ -33,12 +34,54 @@ struct Leaf {
     btDbvtNode* node = nullptr;  // null: no such id
     bool moves = false;
     bool stale = false;  // its pairs must be found again; listed in State::stale
+    bool stray = false;  // may be outside its fat box; listed in State::strays
+};
+
+// ---------------------------------------------------------------- probes
+
+Vec3 vector(const btVector3& v) { return Vec3(v.x(), v.y(), v.z()); }
+
+// Asks boxes by the slabs between their sides: the probe is between two of them from fraction (lo - from) / along on.
+class Slabs {
+public:
+    explicit Slabs(const Probe& probe) : stays_(probe.along == Vec3::Zero()) {
+        constexpr double kParallel = 1e-200;  // such a way crosses no side, and 0 / along is 0
+        for (int i = 0; i < 3; ++i)
+            inverse_[i] = 1 / (std::fabs(probe.along[i]) > kParallel ? probe.along[i] : kParallel);
+    }
+
+    bool meets(const Probe& probe, const btDbvtVolume& volume) const {
+        double enter = 0, exit = probe.limit;
+        for (int i = 0; i < 3; ++i) {
+            const double lo = double(volume.Mins()[i]) - probe.from[i] - probe.hi[i] - probe.reach;
+            const double hi = double(volume.Maxs()[i]) - probe.from[i] - probe.lo[i] + probe.reach;
+            const double one = lo * inverse_[i], other = hi * inverse_[i];
+            enter = std::max(enter, std::min(one, other));
+            exit = std::min(exit, std::max(one, other));
+        }
+        return enter <= exit;
+    }
+
+    // Which child to visit first: the one that the way comes by first, or that is nearer.
+    int first(const Probe& probe, const btDbvtNode* node) const {
+        return order(probe, node->childs[0]) <= order(probe, node->childs[1]) ? 0 : 1;
+    }
+
+private:
+    double order(const Probe& probe, const btDbvtNode* node) const {
+        const Vec3 middle = 0.5 * (vector(node->volume.Mins()) + vector(node->volume.Maxs())) - probe.from;
+        return stays_ ? middle.squaredNorm() : probe.along.dot(middle);
+    }
+
+    bool stays_;
+    Vec3 inverse_;
 };
 
 }  // namespace
 
 struct Broadphase::State {
-    explicit State(Memory& memory) : leaves(memory), stale(memory), pairs(memory), fresh(memory), merged(memory) {}
+    explicit State(Memory& memory)
+        : leaves(memory), stale(memory), strays(memory), pairs(memory), fresh(memory), merged(memory) {}
 
     void mark(uint32_t id) {
         if (leaves[id].stale) return;
@@ -52,6 +95,7 @@ struct Broadphase::State {
     btNodeStack stack;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
+    Array<uint32_t> strays;  // those that are not any more are listed until the next step
     Array<uint64_t> pairs;   // sorted
     Array<uint64_t> fresh;   // found by this refresh, then sorted
     Array<uint64_t> merged;  // the next pairs
@@ -106,6 +150,7 @@ Broadphase::~Broadphase() {
 void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     State& s = *state_;
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
+    s.strays.reserve(s.leaves.capacity());  // a step takes no memory for it
     s.mark(id);
     s.leaves[id].node = s.tree.insert(fat_volume(tight, Vec3f::Zero()), nullptr);
     s.leaves[id].node->dataAsInt = int(id);
@@ -117,13 +162,18 @@ void Broadphase::remove(uint32_t id) {
     s.mark(id);
     s.tree.remove(s.leaves[id].node);
     s.leaves[id].node = nullptr;
+    s.leaves[id].stray = false;
 }
 
 void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
     State& s = *state_;
     btDbvtNode* node = s.leaves[id].node;
-    if (node->volume.Contain(tight_volume(tight))) return;
+    if (node->volume.Contain(tight_volume(tight))) {
+        s.leaves[id].stray = false;
+        return;
+    }
     s.mark(id);
+    s.leaves[id].stray = false;
     btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(id));
     s.tree.update(node, volume);
 }
@@ -148,5 +198,42 @@ bool Broadphase::refresh_pairs() {
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }
+
+// ---------------------------------------------------------------- probes
+
+void Broadphase::clear_strays() {
+    for (const uint32_t id : state_->strays) state_->leaves[id].stray = false;
+    state_->strays.clear();
+}
+
+void Broadphase::note_stray(uint32_t id, const Box& tight) {
+    Leaf& leaf = state_->leaves[id];
+    if (leaf.node->volume.Contain(tight_volume(tight))) return;
+    leaf.stray = true;
+    state_->strays.push_back(id);
+}
+
+// Down the tree and up again by the parents: it may be of any depth, and a query has no memory of its own.
+void Broadphase::visit(Probe probe, Visitor& visitor) const {
+    const State& s = *state_;
+    for (const uint32_t id : s.strays)
+        if (s.leaves[id].stray) visitor.visit(id, probe);
+    const Slabs slabs(probe);
+    const btDbvtNode* root = s.tree.m_root;
+    const btDbvtNode* node = root;
+    while (node) {
+        if (slabs.meets(probe, node->volume)) {
+            if (node->isinternal()) {
+                node = node->childs[slabs.first(probe, node)];
+                continue;
+            }
+            const uint32_t id = uint32_t(node->dataAsInt);
+            if (!s.leaves[id].stray) visitor.visit(id, probe);
+        }
+        const auto second = [&](const btDbvtNode* parent) { return parent->childs[1 - slabs.first(probe, parent)]; };
+        while (node != root && node == second(node->parent)) node = node->parent;
+        node = node == root ? nullptr : second(node->parent);
+    }
+}
 
 }  // namespace taut::collision

@@ -99,6 +99,23 @@ struct Box {
 // Tight axis-aligned box (exact support of the shape), not grown. A plane's box is +-1e9 on every side.
 Box bounds(const Shape& shape, const Placement& placement);
 
+// A box that goes along a line, looking for others: a ray, a shape's sweep, or one that stays where it is.
+struct Probe {
+    Vec3 from, along;                           // [m]: the way of its middle, of length 0 where it stays
+    Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();  // its box about the middle [m]
+    double limit = 1;                           // what lies further along, in parts of the way, does not matter
+    double reach = 0;                           // how far around the box to look as well [m]
+};
+
+// What a probe comes by. It may lower the probe's limit, below 0 to end the search, and reach.
+class Visitor {
+public:
+    virtual void visit(uint32_t id, Probe& probe) = 0;
+
+protected:
+    ~Visitor() = default;
+};
+
 // Dynamic tree of fat boxes with sorted pairs. Ids are the caller's node numbers.
 class Broadphase {
 public:
@@ -119,6 +136,14 @@ public:
     bool refresh_pairs();
     // Sorted keys (smaller id << 32 | larger id) of overlapping fat boxes; independent of the tree's history.
     std::span<const uint64_t> pairs() const;
+
+    // Where bodies are after a step may be outside the fat boxes that foresaw it: such strays keep their leaves, on
+    // which the pairs depend, but every probe visits them. Noted anew after each step, all that move.
+    void clear_strays();
+    void note_stray(uint32_t id, const Box& tight);
+    // Visits each id whose box the probe may meet, roughly the nearest first; in an order that depends on the tree's
+    // history. Any number of threads at once.
+    void visit(Probe probe, Visitor& visitor) const;
 
 private:
     struct State;
@@ -186,6 +211,38 @@ void collide_parts(const Shape& a, const Placement& at_a, const Shape& b, const 
 // and depth are MPR's: the depth is not the least, on the mean some 10 % more. Round shapes get one point.
 void collide_support_mapped(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
                             Manifold& out);
+
+// ---------------------------------------------------------------- queries
+
+// Where a ray or a shape on its way meets a surface. All in the world.
+struct Hit {
+    double fraction = 0;  // of the way
+    Vec3 point = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();  // unit, out of the surface; of a ray that starts inside, against the ray
+    bool inside = false;         // it overlaps at the start: fraction 0
+    uint32_t feature = 0;        // triangle of a mesh; 0
+};
+
+// A ray from a point as far as along [m]; hits beyond the fraction limit do not matter.
+bool cast_ray(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit, Hit& out);
+
+// A convex shape (any but a plane) goes from its placement as far as along [m], without turning, until it is within
+// 1e-5 of the smaller shape's inner radius of the other.
+bool cast_shape(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still, const Placement& at,
+                double limit, Hit& out);
+
+// The least distance of two shapes, in the world.
+struct Gap {
+    double distance = 0;         // [m]; negative: the least push that parts them
+    Vec3 normal = Vec3::Zero();  // unit, from a to b
+    Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+};
+// a is not a plane.
+bool overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+Gap find_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+// a is a point.
+bool contains(const Shape& b, const Placement& at_b, const Vec3& point);
+Gap find_gap(const Vec3& point, const Shape& b, const Placement& at_b);
 
 // Asserts that the Bullet library linked has single precision, as this room was compiled. False: refuse to run.
 bool precision_matches();

@@ -28,7 +28,7 @@ struct HeightField : Surface {
     }
     uint32_t neighbour(uint32_t triangle, int edge) const override;
     std::span<const uint32_t> ring(uint32_t vertex, RingRoom& room) const override;
-    void find(const Box& where, Array<uint32_t>& found) const override;
+    void find(const Box& where, TriangleSink& found) const override;
 
     uint32_t rows = 0, columns = 0;
     float spacing_x = 1, spacing_z = 1;  // [m]
@@ -73,7 +73,7 @@ bool cells(float lo, float hi, float spacing, uint32_t lines, uint32_t& from, ui
     return true;
 }
 
-void HeightField::find(const Box& where, Array<uint32_t>& found) const {
+void HeightField::find(const Box& where, TriangleSink& found) const {
     uint32_t row = 0, last_row = 0, first = 0, last = 0;
     if (!cells(where.lo.z(), where.hi.z(), spacing_z, rows, row, last_row)) return;
     if (!cells(where.lo.x(), where.hi.x(), spacing_x, columns, first, last)) return;
@@ -85,7 +85,7 @@ void HeightField::find(const Box& where, Array<uint32_t>& found) const {
                 const Corners c = corners(triangle);
                 const float lo = std::min({heights[c[0]], heights[c[1]], heights[c[2]]});
                 const float hi = std::max({heights[c[0]], heights[c[1]], heights[c[2]]});
-                if (lo <= where.hi.y() && where.lo.y() <= hi) found.push_back(triangle);
+                if (lo <= where.hi.y() && where.lo.y() <= hi) found.take(triangle);
             }
         }
     }

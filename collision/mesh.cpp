@@ -31,7 +31,7 @@ struct Mesh : Surface {
     std::span<const uint32_t> ring(uint32_t i, RingRoom&) const override {
         return std::span(rings).subspan(ring_begin[i], ring_begin[i + 1] - ring_begin[i]);
     }
-    void find(const Box& where, Array<uint32_t>& found) const override { tree.find(where, found); }
+    void find(const Box& where, TriangleSink& found) const override { tree.find(where, found); }
 
     std::vector<Vec3f> vertices;
     std::vector<Corners> triangles;

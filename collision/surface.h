@@ -14,6 +14,14 @@ constexpr uint32_t kNoTriangle = UINT32_MAX;
 using Corners = std::array<uint32_t, 3>;
 using RingRoom = std::array<uint32_t, 8>;
 
+class TriangleSink {
+public:
+    virtual void take(uint32_t triangle) = 0;
+
+protected:
+    ~TriangleSink() = default;
+};
+
 struct Surface {
     virtual ~Surface() = default;
 
@@ -25,8 +33,8 @@ struct Surface {
     virtual uint32_t neighbour(uint32_t triangle, int edge) const = 0;
     // The vertices joined to this one by an edge; room is for surfaces that do not store them.
     virtual std::span<const uint32_t> ring(uint32_t vertex, RingRoom& room) const = 0;
-    // Appends the triangles whose boxes meet this one, in no particular order.
-    virtual void find(const Box& box, Array<uint32_t>& triangles) const = 0;
+    // Hands over the triangles whose boxes meet this one, in no particular order.
+    virtual void find(const Box& box, TriangleSink& triangles) const = 0;
 
     SurfaceCounts counts;
     Box box;                 // of all triangles

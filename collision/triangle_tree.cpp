@@ -42,14 +42,14 @@ void TriangleTree::split(std::vector<Leaf>& leaves, size_t begin, size_t end) {
     nodes_[place].after = uint32_t(nodes_.size());
 }
 
-void TriangleTree::find(const Box& box, Array<uint32_t>& triangles) const {
+void TriangleTree::find(const Box& box, TriangleSink& triangles) const {
     for (uint32_t i = 0; i < nodes_.size();) {
         const Node& node = nodes_[i];
         if (!meet(node.lo, node.hi, box)) {
             i = node.after;
             continue;
         }
-        if (node.triangle != kNoTriangle) triangles.push_back(node.triangle);
+        if (node.triangle != kNoTriangle) triangles.take(node.triangle);
         ++i;
     }
 }

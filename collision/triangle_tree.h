@@ -11,8 +11,8 @@ namespace taut::collision {
 class TriangleTree {
 public:
     void build(const Surface& surface);
-    // Appends the triangles whose boxes meet this one.
-    void find(const Box& box, Array<uint32_t>& triangles) const;
+    // Hands over the triangles whose boxes meet this one.
+    void find(const Box& box, TriangleSink& triangles) const;
 
 private:
     struct Node {

@@ -117,6 +117,7 @@ void step(World& w) {
     w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
+    note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});
     publish_contacts(w);
     publish_motion(w, w.frozen);

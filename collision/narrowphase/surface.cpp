@@ -27,7 +27,13 @@ void find_near(const SurfaceView& view, const Shape& body, float margin, Parts& 
     const Vec3f q = (reach.hi.array() + margin).matrix().cwiseQuotient(view.scale());
     parts.near.clear();
     parts.order.clear();
-    view.surface().find({p.cwiseMin(q), p.cwiseMax(q)}, parts.near);
+    struct Append final : TriangleSink {
+        explicit Append(Array<uint32_t>& list) : triangles(list) {}
+        void take(uint32_t triangle) override { triangles.push_back(triangle); }
+        Array<uint32_t>& triangles;
+    };
+    Append near(parts.near);
+    view.surface().find({p.cwiseMin(q), p.cwiseMax(q)}, near);
     for (const uint32_t t : parts.near) parts.order.push_back(uint64_t(view.surface().facet_of[t]) << 32 | t);
     std::sort(parts.order.begin(), parts.order.end());
 }

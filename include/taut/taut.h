@@ -14,6 +14,7 @@
 #include <taut/lint.h>
 #include <taut/math.h>
 #include <taut/profile.h>
+#include <taut/query.h>
 #include <taut/shape.h>
 #include <taut/world.h>
 

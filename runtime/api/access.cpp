@@ -114,6 +114,13 @@ Check& Check::rotation(const char* field, const taut_quat& value) {
     return *this;
 }
 
+Check& Check::pose(const char* position, const char* rotation_field, const taut_pose& value) {
+    return bounded(position, value.position, kPosition)
+        .rotation(rotation_field, value.rotation)
+        .zero("reserved[0]", value.reserved[0])
+        .zero("reserved[1]", value.reserved[1]);
+}
+
 Check& Check::require(bool condition, const char* text, taut_result code) {
     if (*this && !condition) result_ = refuse(code, "%s: %s%s", call_, scope_, text);
     return *this;
@@ -271,6 +278,11 @@ taut_result find_body(const char* call, const char* field, const World& world, t
 
 taut_result find_shape(const char* call, const char* field, const World& world, taut_shape handle, uint32_t& shape) {
     return find(call, field, world, handle, shape);
+}
+
+taut_result find_collider(const char* call, const char* field, const World& world, taut_collider handle,
+                          uint32_t& collider) {
+    return find(call, field, world, handle, collider);
 }
 
 }  // namespace taut

@@ -46,6 +46,7 @@ constexpr Range kFrequency{1e-3, 1e3};                                        //
 constexpr Range kDampingRatio{0, 1000};
 constexpr Range kDirection{-1e30, 1e30};  // of which the length does not matter
 constexpr Range kAdvance{0, 1e3};         // [s]
+constexpr Range kQueryDistance{0, 1e7};   // [m]
 // No header states these: above anything that double cannot carry through a step, far above any scene.
 constexpr Range kInertia{-1e30, 1e30};   // [kg m^2]
 constexpr Range kForce{-1e24, 1e24};     // [N, N m, N s, N m s]
@@ -89,6 +90,7 @@ public:
     Check& bounded(const char* field, const taut_pos& value, Range range);
     Check& zero(const char* field, const taut_vec3& value, const char* why);
     Check& rotation(const char* field, const taut_quat& value);
+    Check& pose(const char* position, const char* rotation_field, const taut_pose& value);
     // Any other condition: "<call>: <text>".
     Check& require(bool condition, const char* text, taut_result code = TAUT_INVALID_ARGUMENT);
 
@@ -149,6 +151,8 @@ taut_result refuse_stale(const char* call, const char* what, uint64_t bits);
 // The live slot that a handle inside a call on this world names. field: the argument's name in texts.
 taut_result find_body(const char* call, const char* field, const World& world, taut_body handle, uint32_t& node);
 taut_result find_shape(const char* call, const char* field, const World& world, taut_shape handle, uint32_t& shape);
+taut_result find_collider(const char* call, const char* field, const World& world, taut_collider handle,
+                          uint32_t& collider);
 
 inline const IdPool& pool_of(const World& world, taut_body) { return world.nodes.ids; }
 inline const IdPool& pool_of(const World& world, taut_shape) { return world.shapes.ids; }

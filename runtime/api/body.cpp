@@ -55,13 +55,6 @@ Check& check_def(Check& check, const taut_body_def& def) {
     return check.within("");
 }
 
-Check& check_pose(Check& check, const taut_pose& pose, const char* position, const char* rotation) {
-    return check.bounded(position, pose.position, kPosition)
-        .rotation(rotation, pose.rotation)
-        .zero("reserved[0]", pose.reserved[0])
-        .zero("reserved[1]", pose.reserved[1]);
-}
-
 // A node that forces and impulses move; angular: whether there is any moment, which a particle cannot take.
 Check& check_pushable(Check& check, NodeKind kind, bool angular) {
     check.require(moves_by_forces(kind), "body is not dynamic: forces do not move it");
@@ -320,7 +313,7 @@ taut_result taut_body_get_pose(taut_body handle, taut_pose* out) {
 taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
     Check check(__func__);
     if (!check.pointer("pose", pose)) return check.result();
-    if (!check_pose(check, *pose, "position", "rotation")) return check.result();
+    if (!check.pose("position", "rotation", *pose)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         NodeMotion& motion = world.nodes.motion[node];
         const NodeInfo& info = world.nodes.info[node];
@@ -415,7 +408,7 @@ taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3
 taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) {
     Check check(__func__);
     if (!check.pointer("target", target)) return check.result();
-    if (!check_pose(check, *target, "target.position", "target.rotation")) return check.result();
+    if (!check.pose("target.position", "target.rotation", *target)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         if (!check.require(world.nodes.info[node].kind == NodeKind::kinematic, "body is not kinematic")) {
             return check.result();

@@ -20,6 +20,10 @@ bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pa
            !std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(pair.a, pair.b));
 }
 
+bool moves(const Nodes& nodes, const Collider& collider) {
+    return collider.node != kNone && nodes.info[collider.node].kind != NodeKind::fixed;
+}
+
 // Keys of nodes that a joint forbids to collide, sorted.
 void refresh_joined(const Joints& joints, Pairs& pairs) {
     if (pairs.joined_version == joints.version) return;
@@ -55,14 +59,11 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step) {
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
-    const auto moves = [&](const Collider& collider) {
-        return collider.node != kNone && nodes.info[collider.node].kind != NodeKind::fixed;
-    };
     pairs.reach.resize(slots);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
-            if (!moves(collider)) continue;
+            if (!moves(nodes, collider)) continue;
             collision::Box box = contact_box(nodes, shapes, collider);
             Vec3f ahead = (time_step * nodes.motion[collider.node].v).cast<float>();
             const float length = ahead.norm();
@@ -73,7 +74,27 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, c
         }
     });
     for (uint32_t c = 0; c < slots; ++c)
-        if (moves(colliders.record[c])) broadphase.update(c, pairs.reach[c].box, pairs.reach[c].ahead);
+        if (moves(nodes, colliders.record[c])) broadphase.update(c, pairs.reach[c].box, pairs.reach[c].ahead);
+}
+
+void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+                 std::span<const uint32_t> frozen, Pairs& pairs, collision::Broadphase& broadphase) {
+    const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
+    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c) {
+            const Collider& collider = colliders.record[c];
+            if (!moves(nodes, collider)) continue;
+            const collision::Placement at = placement_of(nodes, collider);
+            pairs.reach[c] = {collision::bounds(shapes.record[collider.shape].shape, at), Vec3f::Zero()};
+        }
+    });
+    broadphase.clear_strays();
+    for (uint32_t c = 0; c < slots; ++c)
+        if (moves(nodes, colliders.record[c])) broadphase.note_stray(c, pairs.reach[c].box);
+    for (const uint32_t node : frozen)
+        for_colliders(nodes, colliders, node, [&](uint32_t c) {
+            broadphase.update(c, contact_box(nodes, shapes, colliders.record[c]), Vec3f::Zero());
+        });
 }
 
 void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,

@@ -21,6 +21,11 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step);
 
+// After a step: which colliders' leaves do not hold them, for the queries. Those of nodes that the step froze get new
+// leaves, for no later step will ask.
+void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+                 std::span<const uint32_t> frozen, Pairs& pairs, collision::Broadphase& broadphase);
+
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
 void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs);

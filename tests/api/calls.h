@@ -16,6 +16,7 @@ struct Call {
 };
 
 inline const taut_pose kIdentity = {{0, 0, 0}, {0, 0, 0, 1}, {0, 0}};
+inline const taut_ray kDown = {{0, 5, 0}, {0, -10, 0}, 0};
 
 // What a def needs is in the populated world, which the calls need not be made on.
 inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
@@ -220,6 +221,69 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              taut_pose out;
              return taut_world_get_body_states(w, &p.crate, 1, &out, 0, nullptr, 0, nullptr, 0);
          }},
+        {"taut_world_cast_ray",
+         [](taut_world w) {
+             taut_query_hit out;
+             return taut_world_cast_ray(w, &kDown, nullptr, &out);
+         }},
+        {"taut_world_cast_ray_all",
+         [](taut_world w) {
+             taut_query_hit out[8];
+             uint32_t count;
+             return taut_world_cast_ray_all(w, &kDown, nullptr, out, 8, &count);
+         }},
+        {"taut_world_cast_ray_any",
+         [](taut_world w) {
+             int32_t out;
+             return taut_world_cast_ray_any(w, &kDown, nullptr, &out);
+         }},
+        {"taut_world_cast_rays",
+         [](taut_world w) {
+             taut_query_hit out;
+             return taut_world_cast_rays(w, &kDown, 1, nullptr, &out);
+         }},
+        {"taut_world_cast_shape",
+         [&p](taut_world w) {
+             const taut_shape_cast cast = {p.box, kIdentity, {0, -1, 0}, 0};
+             taut_query_hit out;
+             return taut_world_cast_shape(w, &cast, nullptr, &out);
+         }},
+        {"taut_world_cast_shape_all",
+         [&p](taut_world w) {
+             const taut_shape_cast cast = {p.box, kIdentity, {0, -1, 0}, 0};
+             taut_query_hit out[8];
+             uint32_t count;
+             return taut_world_cast_shape_all(w, &cast, nullptr, out, 8, &count);
+         }},
+        {"taut_world_cast_shapes",
+         [&p](taut_world w) {
+             const taut_shape_cast cast = {p.box, kIdentity, {0, -1, 0}, 0};
+             taut_query_hit out;
+             return taut_world_cast_shapes(w, &cast, 1, nullptr, &out);
+         }},
+        {"taut_world_overlap_shape",
+         [&p](taut_world w) {
+             taut_collider out[8];
+             uint32_t count;
+             return taut_world_overlap_shape(w, p.box, &kIdentity, nullptr, out, 8, &count);
+         }},
+        {"taut_world_overlap_point",
+         [](taut_world w) {
+             taut_collider out[8];
+             uint32_t count;
+             return taut_world_overlap_point(w, {0, 0.5, 0}, nullptr, out, 8, &count);
+         }},
+        {"taut_world_overlap_box",
+         [](taut_world w) {
+             taut_collider out[8];
+             uint32_t count;
+             return taut_world_overlap_box(w, {-1, -1, -1}, {1, 1, 1}, nullptr, out, 8, &count);
+         }},
+        {"taut_world_nearest_collider",
+         [&p](taut_world w) {
+             taut_distance out;
+             return taut_world_nearest_collider(w, p.box, &kIdentity, 1, nullptr, &out);
+         }},
         {"taut_world_get_def",
          [](taut_world w) {
              taut_world_def out;
@@ -376,6 +440,16 @@ inline std::vector<Call<taut_collider>> collider_calls(const Populated& p) {
          [](taut_collider c) {
              uint64_t out;
              return taut_collider_get_user_data(c, &out);
+         }},
+        {"taut_collider_closest_point",
+         [](taut_collider c) {
+             taut_distance out;
+             return taut_collider_closest_point(c, {0, 3, 0}, &out);
+         }},
+        {"taut_collider_distance",
+         [](taut_collider c) {
+             taut_distance out;
+             return taut_collider_distance(c, c, &out);
          }},
         {"taut_collider_set_user_data", [](taut_collider c) { return taut_collider_set_user_data(c, 7); }},
         {"taut_collider_set_shape",

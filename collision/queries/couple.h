@@ -1,0 +1,80 @@
+// Two convex shapes as queries see them: however far they are from each other, in double precision.
+#pragma once
+
+#include <cmath>
+
+#include "collision/narrowphase/least_push.h"
+
+namespace taut::collision {
+
+// Of GJK in queries: distances are good to 1e-9 of themselves.
+constexpr double kQueryGap = 1e-9;
+
+class Couple {
+public:
+    Couple(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b)
+        : at_a_(at_a),
+          at_b_(at_b),
+          rotation_(at_a.rotation.cast<double>()),
+          pair_{a, b, at_a, at_b, {at_a.rotation.transpose() * at_b.rotation, Vec3f::Zero()}, 0, cache_},
+          difference_(pair_),
+          radius_a_(core_radius(a)),
+          radius_b_(core_radius(b)) {}
+    Couple(const Couple&) = delete;
+    Couple& operator=(const Couple&) = delete;
+
+    // Of the cores, b moved by moved [m], in a's frame. Starts from the unit vector hint.
+    Distance distance(const Vec3& moved, const Vec3& hint) const {
+        return gjk(difference_, to_a(at_b_.position + moved - at_a_.position), hint, kQueryGap);
+    }
+    // In a's frame, from one's middle to the other's: where to start.
+    Vec3 hint() const {
+        const Vec3 apart = to_a(at_b_.position - at_a_.position);
+        const double length = apart.norm();
+        return length > 1e-6 ? Vec3(apart / length) : Vec3(Vec3::UnitY());
+    }
+    // Of the cores that overlap.
+    Push push() const {
+        PairCache cache;
+        const Vec3f apart = to_a(at_b_.position - at_a_.position).cast<float>();
+        const Pair near = {pair_.a, pair_.b, at_a_, at_b_, {pair_.b_in_a.rotation, apart}, 0, cache};
+        return least_push(Solid(pair_.a), Solid(pair_.b), near, Vec3::Zero(), 0);
+    }
+
+    Vec3 to_a(const Vec3& vector) const { return rotation_.transpose() * vector; }
+    Vec3 to_world(const Vec3& vector) const { return rotation_ * vector; }
+    // a's surface over a point of its core.
+    Vec3 surface_of_a(const Vec3& on_core, const Vec3& normal) const {
+        return at_a_.position + to_world(on_core + radius_a_ * normal);
+    }
+    double radii() const { return radius_a_ + radius_b_; }
+    double size() const { return double(std::min(inner_radius(pair_.a), inner_radius(pair_.b))); }
+
+private:
+    const Placement &at_a_, &at_b_;
+    Mat3 rotation_;
+    PairCache cache_;
+    Pair pair_;
+    Difference difference_;
+    double radius_a_, radius_b_;
+};
+
+// Between two convex shapes; b, or what stays, may be a triangle.
+bool convex_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+Gap convex_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
+                    const Placement& at, double limit, Hit& out);
+
+// A convex shape above a plane: by how much [m], and its lowest point in the world.
+struct Clearance {
+    double height;
+    Vec3 normal, lowest;  // out of the plane
+};
+inline Clearance clearance(const Shape& plane, const Placement& at_plane, const Shape& convex, const Placement& at) {
+    const Vec3 normal = (at_plane.rotation.cast<double>() * plane.size.cast<double>()).normalized();
+    const Mat3 rotation = at.rotation.cast<double>();
+    const Vec3 lowest = at.position + rotation * furthest_point(convex, rotation.transpose() * -normal);
+    return {normal.dot(lowest - at_plane.position), normal, lowest};
+}
+
+}  // namespace taut::collision

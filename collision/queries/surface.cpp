@@ -1,0 +1,231 @@
+#include "collision/queries/surface.h"
+
+#include <array>
+#include <cmath>
+
+#include "collision/hull.h"
+#include "collision/queries/couple.h"
+#include "collision/surface.h"
+
+namespace taut::collision {
+namespace {
+
+// A box in the frame of a surface as scaled [m].
+struct Room {
+    Vec3 lo, hi;
+
+    Room grown(double by) const { return {lo.array() - by, hi.array() + by}; }
+};
+
+// A surface as its own frame sees it, scaled.
+class Triangles {
+public:
+    Triangles(const Shape& shape, const Placement& at)
+        : surface_(*shape.surface), scale_(shape.size.cast<double>()), rotation_(at.rotation.cast<double>()), at_(at) {}
+
+    Vec3 to_own(const Vec3& vector) const { return rotation_.transpose() * vector; }
+    Vec3 to_world(const Vec3& vector) const { return rotation_ * vector; }
+    Vec3 place(const Vec3& point) const { return to_own(point - at_.position); }
+    bool two_sided() const { return surface_.two_sided; }
+
+    Room room() const {
+        const Vec3 p = surface_.box.lo.cast<double>().cwiseProduct(scale_);
+        const Vec3 q = surface_.box.hi.cast<double>().cwiseProduct(scale_);
+        return {p.cwiseMin(q), p.cwiseMax(q)};
+    }
+
+    // The corners, counter-clockwise from the front.
+    std::array<Vec3, 3> corners(uint32_t number) const {
+        const Corners c = surface_.corners(number);
+        std::array<Vec3, 3> out;
+        for (size_t i = 0; i < 3; ++i) out[i] = surface_.vertex(c[i]).cast<double>().cwiseProduct(scale_);
+        if (scale_.prod() < 0) std::swap(out[1], out[2]);
+        return out;
+    }
+
+    // act(number) for each triangle whose box meets the room.
+    template <class Act>
+    void find(const Room& where, Act&& act) const {
+        struct Call final : TriangleSink {
+            explicit Call(Act& a) : act(a) {}
+            void take(uint32_t number) override { act(number); }
+            Act& act;
+        };
+        const Vec3 p = where.lo.cwiseQuotient(scale_), q = where.hi.cwiseQuotient(scale_);
+        constexpr float kRounding = 1e-6f;  // of coordinates, so that the box holds what the room does
+        Box box = {p.cwiseMin(q).cast<float>(), p.cwiseMax(q).cast<float>()};
+        box.lo -= kRounding * box.lo.cwiseAbs();
+        box.hi += kRounding * box.hi.cwiseAbs();
+        Call call(act);
+        surface_.find(box, call);
+    }
+
+private:
+    const Surface& surface_;
+    Vec3 scale_;
+    Mat3 rotation_;
+    const Placement& at_;
+};
+
+// ---------------------------------------------------------------- ways
+
+// A way through a surface is searched in so many pieces, of which the first with a hit is the last.
+constexpr int kPieces = 16;
+
+// act(number, limit) may lower the limit. from, along: in the surface's frame; reach: of what moves, about from.
+template <class Act>
+void along_way(const Triangles& triangles, const Vec3& from, const Vec3& along, const Room& reach, double limit,
+               Act&& act) {
+    const Room all = triangles.room();
+    double enter = 0, exit = limit;
+    for (int i = 0; i < 3; ++i) {
+        const double lo = all.lo[i] - reach.hi[i] - from[i], hi = all.hi[i] - reach.lo[i] - from[i];
+        if (std::fabs(along[i]) < 1e-12) {
+            if (lo > 1e-6 || hi < -1e-6) return;
+            continue;
+        }
+        const double one = lo / along[i], other = hi / along[i];
+        enter = std::max(enter, std::min(one, other) - 1e-6);
+        exit = std::min(exit, std::max(one, other) + 1e-6);
+    }
+    const double step = (exit - enter) / kPieces;
+    for (int piece = 0; piece < kPieces && step >= 0; ++piece) {
+        const double begin = enter + piece * step;
+        if (begin > limit) return;
+        const Vec3 p = from + begin * along, q = from + (begin + step) * along;
+        triangles.find({p.cwiseMin(q) + reach.lo, p.cwiseMax(q) + reach.hi},
+                       [&](uint32_t number) { act(number, limit); });
+    }
+}
+
+// Whether a hit comes before the best: sooner, or as soon on a triangle of smaller number.
+bool improves(bool any, double fraction, uint32_t number, const Hit& best) {
+    return !any || fraction < best.fraction || (fraction == best.fraction && number < best.feature);
+}
+
+// Where a line from o along d crosses a triangle's plane, in parts of d; a nan or infinity where it does not inside
+// the triangle. Edges count by the signs of d . (p x q) for their ends p and q seen from o, which two triangles at an
+// edge compute alike: no line slips between them.
+double crossing(const std::array<Vec3, 3>& corner, const Vec3& o, const Vec3& d, const Vec3& normal) {
+    const Vec3 a = corner[0] - o, b = corner[1] - o, c = corner[2] - o;
+    const double u = d.dot(c.cross(b)), v = d.dot(a.cross(c)), w = d.dot(b.cross(a));
+    const bool outside = (u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0);
+    return outside ? std::nan("") : normal.dot(a) / normal.dot(d);
+}
+
+// ---------------------------------------------------------------- triangles as shapes
+
+// A triangle as a hull without faces about its middle, whose inner radius is that of the shape it is held against. One
+// a thread, so that a query takes memory once in a thread's life.
+class TriangleShape {
+public:
+    TriangleShape(const Triangles& triangles, const Placement& at, uint32_t number, float inner) {
+        thread_local Hull hull;
+        const std::array<Vec3, 3> corner = triangles.corners(number);
+        const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3;
+        hull.vertices.resize(3);
+        hull.packs.resize(1);
+        for (int i = 0; i < 4; ++i) {
+            const Vec3f p = (corner[size_t(i % 3)] - middle).cast<float>();
+            if (i < 3) hull.vertices[size_t(i)] = p;
+            hull.packs[0].x[i] = p.x();
+            hull.packs[0].y[i] = p.y();
+            hull.packs[0].z[i] = p.z();
+        }
+        hull.inner_radius = inner;
+        shape_.kind = ShapeKind::hull;
+        shape_.hull = std::shared_ptr<const Hull>(std::shared_ptr<const Hull>(), &hull);  // not owned
+        at_ = {at.position + triangles.to_world(middle), at.rotation};
+    }
+    const Shape& shape() const { return shape_; }
+    const Placement& at() const { return at_; }
+
+private:
+    Shape shape_;
+    Placement at_;
+};
+
+// The box of a shape in the surface's frame.
+Room room_of(const Triangles& triangles, const Shape& a, const Placement& at_a, const Placement& at_b) {
+    const Box box = bounds(a, {Vec3::Zero(), at_b.rotation.transpose() * at_a.rotation});
+    const Vec3 place = triangles.place(at_a.position);
+    return {place + box.lo.cast<double>(), place + box.hi.cast<double>()};
+}
+
+}  // namespace
+
+bool cast_ray_at_surface(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit,
+                         Hit& out) {
+    const Triangles triangles(shape, at);
+    const Vec3 o = triangles.place(from), d = triangles.to_own(along);
+    bool any = false;
+    along_way(triangles, o, d, {Vec3::Zero(), Vec3::Zero()}, limit, [&](uint32_t number, double& end) {
+        const std::array<Vec3, 3> corner = triangles.corners(number);
+        const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+        const double towards = normal.dot(d);
+        if (towards == 0 || (towards > 0 && !triangles.two_sided())) return;
+        const double t = crossing(corner, o, d, normal);
+        if (!(t >= 0 && t <= end) || !improves(any, t, number, out)) return;
+        any = true;
+        end = t;
+        const Vec3 outward = triangles.to_world(towards < 0 ? normal : Vec3(-normal)).normalized();
+        out = {t, from + t * along, outward, false, number};
+    });
+    return any;
+}
+
+bool cast_at_surface(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
+                     const Placement& at, double limit, Hit& out) {
+    const Triangles triangles(still, at);
+    const Vec3 o = triangles.place(from.position), d = triangles.to_own(along);
+    const Room own = room_of(triangles, moving, from, at);
+    bool any = false;
+    along_way(triangles, o, d, {own.lo - o, own.hi - o}, limit, [&](uint32_t number, double& end) {
+        const std::array<Vec3, 3> corner = triangles.corners(number);
+        const double towards = (corner[1] - corner[0]).cross(corner[2] - corner[0]).dot(d);
+        if (towards >= 0 && !triangles.two_sided()) return;
+        const TriangleShape triangle(triangles, at, number, inner_radius(moving));
+        Hit hit;
+        if (!cast_at_convex(moving, from, along, triangle.shape(), triangle.at(), end, hit)) return;
+        if (!improves(any, hit.fraction, number, out)) return;
+        any = true;
+        end = hit.fraction;
+        out = hit;
+        out.feature = number;
+    });
+    return any;
+}
+
+bool surface_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
+    const Triangles triangles(b, at_b);
+    bool found = false;
+    triangles.find(room_of(triangles, a, at_a, at_b), [&](uint32_t number) {
+        if (found) return;
+        const TriangleShape triangle(triangles, at_b, number, inner_radius(a));
+        found = convex_overlap(a, at_a, triangle.shape(), triangle.at());
+    });
+    return found;
+}
+
+// In rooms that double until the nearest triangle lies within, or all do.
+Gap surface_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
+    const Triangles triangles(b, at_b);
+    const Room own = room_of(triangles, a, at_a, at_b), all = triangles.room();
+    const double furthest =
+        ((all.hi - own.lo).cwiseAbs()).cwiseMax((own.hi - all.lo).cwiseAbs()).maxCoeff();  // on one axis
+    Gap least;
+    uint32_t nearest = kNoTriangle;
+    for (double reach = (own.hi - own.lo).maxCoeff();; reach *= 2) {
+        triangles.find(own.grown(reach), [&](uint32_t number) {
+            const TriangleShape triangle(triangles, at_b, number, inner_radius(a));
+            const Gap gap = convex_gap(a, at_a, triangle.shape(), triangle.at());
+            const bool tie = gap.distance == least.distance && number > nearest;
+            if (nearest != kNoTriangle && (gap.distance > least.distance || tie)) return;
+            least = gap;
+            nearest = number;
+        });
+        if (reach > furthest || (nearest != kNoTriangle && least.distance <= reach)) return least;
+    }
+}
+
+}  // namespace taut::collision
