@@ -27,6 +27,10 @@ public:
     Distance distance(const Vec3& moved, const Vec3& hint) const {
         return gjk(difference_, to_a(at_b_.position + moved - at_a_.position), hint, kQueryGap);
     }
+    // How far a plane across the normal keeps the cores apart: no more than their distance, however far GJK came.
+    double proven(const Vec3& moved, const Vec3& normal) const {
+        return difference_.separation(normal) + normal.dot(to_a(at_b_.position + moved - at_a_.position));
+    }
     // In a's frame, from one's middle to the other's: where to start.
     Vec3 hint() const {
         const Vec3 apart = to_a(at_b_.position - at_a_.position);
