@@ -15,12 +15,22 @@ bool filters_agree(const taut_filter& a, const taut_filter& b) {
     return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
+// Calls act(node of a, node of b) for all nodes of the two sides of a pair.
+template <class Act>
+void for_sides(const Pair& pair, Act&& act) {
+    for (uint32_t a : {pair.a, pair.a2})
+        for (uint32_t b : {pair.b, pair.b2})
+            if (a != kNone && b != kNone) act(a, b);
+}
+
 bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const Pair& pair) {
-    if (pair.a == pair.b) return false;
-    if (!moves_by_forces(nodes.info[pair.a].kind) && !moves_by_forces(nodes.info[pair.b].kind)) return false;
+    bool moves = false, tied = false;
+    for_sides(pair, [&](uint32_t a, uint32_t b) {
+        moves = moves || moves_by_forces(nodes.info[a].kind) || moves_by_forces(nodes.info[b].kind);
+        tied = tied || a == b || std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(a, b));
+    });
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    return filters_agree(a.filter, b.filter) &&
-           !std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(pair.a, pair.b));
+    return moves && !tied && filters_agree(a.filter, b.filter);
 }
 
 // Keys of nodes that a joint forbids to collide, sorted.
@@ -28,16 +38,23 @@ void refresh_joined(const Joints& joints, Pairs& pairs) {
     if (pairs.joined_version == joints.version) return;
     pairs.joined.clear();
     for (const Joint& joint : joints.record) {
-        if (!joint.type || joint.collide_connected || joint.node[0] == kNone || joint.node[1] == kNone) continue;
-        pairs.joined.push_back(pair_key(joint.node[0], joint.node[1]));
+        if (joint.collide_connected) continue;
+        const auto nodes = joint.nodes();
+        for (size_t b = 0; b < nodes.size(); ++b)
+            for (size_t a = 0; a < b; ++a)
+                if (nodes[a] != kNone && nodes[b] != kNone) pairs.joined.push_back(pair_key(nodes[a], nodes[b]));
     }
     std::sort(pairs.joined.begin(), pairs.joined.end());
     pairs.joined_version = joints.version;
 }
 
 // How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
-float margin_of(const NodeMotion& a, const NodeMotion& b, double time_step) {
-    return kContactMargin + static_cast<float>(std::min(kMaxReach, (a.v - b.v).norm() * time_step));
+float margin_of(const Nodes& nodes, const Pair& pair, double time_step) {
+    double fastest = 0;
+    for_sides(pair, [&](uint32_t a, uint32_t b) {
+        fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).norm());
+    });
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, fastest * time_step));
 }
 
 // Impulses of the old points onto the new ones: by feature, else by place; friction turned into the new tangents.
@@ -73,10 +90,12 @@ void combine_surfaces(const Collider& a, const Collider& b, Pair& pair) {
 }
 
 // From the origin of a collider's shape, which the narrowphase knows, to that of its node.
-void move_to_node(const Collider& a, const collision::Placement& at, collision::Manifold& manifold) {
-    if (a.position == Vec3::Zero()) return;
+void move_to_node(const Nodes& nodes, const Collider& a, const collision::Placement& at,
+                  collision::Manifold& manifold) {
+    if (a.node_b == kNone && a.position == Vec3::Zero()) return;
     const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
-    const Vec3f offset = body_rotation * a.position.cast<float>();
+    const Vec3f offset = a.node_b == kNone ? Vec3f(body_rotation * a.position.cast<float>())
+                                           : Vec3f((at.position - nodes.motion[a.node].x).cast<float>());
     for (int k = 0; k < manifold.count; ++k) manifold.points[k].position += offset;
 }
 
@@ -87,10 +106,9 @@ void find_points(const Nodes& nodes, const Colliders& colliders, const Shapes& s
     const Collider &collider_a = colliders.record[a], &collider_b = colliders.record[b];
     const collision::Manifold old = pair.manifold;
     collision::collide(shapes.record[collider_a.shape].shape, pairs.placement[a], shapes.record[collider_b.shape].shape,
-                       pairs.placement[b], margin_of(nodes.motion[pair.a], nodes.motion[pair.b], time), pair.cache,
-                       pair.manifold);
+                       pairs.placement[b], margin_of(nodes, pair, time), pair.cache, pair.manifold);
     if (pair.manifold.count == 0) return;
-    move_to_node(collider_a, pairs.placement[a], pair.manifold);
+    move_to_node(nodes, collider_a, pairs.placement[a], pair.manifold);
     combine_surfaces(collider_a, collider_b, pair);
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
@@ -101,9 +119,29 @@ void find_points(const Nodes& nodes, const Colliders& colliders, const Shapes& s
     carry_impulses(old, before, pair.manifold, pair.impulse);
 }
 
+// A capsule's y axis from one of its nodes to the other.
+collision::Placement place_between(const Nodes& nodes, const Collider& collider) {
+    const Vec3 &a = nodes.motion[collider.node].x, &b = nodes.motion[collider.node_b].x;
+    const Vec3 along = b - a;
+    const double length = along.norm();
+    const Quat q = length > 0 ? turn_between(Vec3::UnitY(), along / length) : Quat::Identity();
+    return {0.5 * (a + b), q.toRotationMatrix().cast<float>()};
+}
+
+bool moves(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.info[node].kind != NodeKind::fixed; }
+
+// How far a node moves in a frame, for the broadphase.
+Vec3f reach_of(const Nodes& nodes, uint32_t node, double time_step) {
+    Vec3f reach = (time_step * nodes.motion[node].v).cast<float>();
+    const float length = reach.norm();
+    if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
+    return reach;
+}
+
 }  // namespace
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
+    if (collider.node_b != kNone) return place_between(nodes, collider);
     const NodeMotion& m = nodes.motion[collider.node];
     const bool ahead = nodes.info[collider.node].kind == NodeKind::kinematic && elapsed > 0;
     const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
@@ -121,17 +159,23 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
     return box;
 }
 
-void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
-                   collision::Broadphase& broadphase, double time_step) {
+void update_bounds(const Nodes& nodes, const Colliders& colliders, Shapes& shapes, collision::Broadphase& broadphase,
+                   double time_step) {
     for (uint32_t c = 0; c < colliders.record.size(); ++c) {
         const Collider& collider = colliders.record[c];
-        if (collider.node == kNone || nodes.info[collider.node].kind == NodeKind::fixed) continue;
+        if (collider.node == kNone || !(moves(nodes, collider.node) || moves(nodes, collider.node_b))) continue;
+        Vec3f reach = reach_of(nodes, collider.node, time_step);
+        Vec3f least = reach.cwiseMin(0.0f), most = reach.cwiseMax(0.0f);
+        if (collider.node_b != kNone) {
+            const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
+            shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
+            reach = reach_of(nodes, collider.node_b, time_step);
+            least = least.cwiseMin(reach);
+            most = most.cwiseMax(reach);
+        }
         collision::Box box = contact_box(nodes, shapes, collider);
-        Vec3f reach = (time_step * nodes.motion[collider.node].v).cast<float>();
-        const float length = reach.norm();
-        if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
-        box.lo += reach.cwiseMin(0.0f);
-        box.hi += reach.cwiseMax(0.0f);
+        box.lo += least;
+        box.hi += most;
         broadphase.update(c, box, reach);
     }
 }
@@ -156,6 +200,8 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
         pair.key = key;
         pair.a = colliders.record[pair.collider_a()].node;
         pair.b = colliders.record[pair.collider_b()].node;
+        pair.a2 = colliders.record[pair.collider_a()].node_b;
+        pair.b2 = colliders.record[pair.collider_b()].node_b;
         pair.filtered = !may_collide(nodes, colliders, pairs, pair);
     }
     for (; old < pairs.list.size(); ++old)
@@ -190,7 +236,7 @@ void find_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes&
             pair.touching = false;
             continue;
         }
-        pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+        pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
     }
 }
 

@@ -16,9 +16,10 @@ collision::Placement placement_of(const Nodes& nodes, const Collider& collider, 
 // The shape's box at the node's pose, grown by the contact margin.
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider);
 
-// Tight boxes reaching as far as the nodes move in a frame, into the broadphase.
-void update_bounds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
-                   collision::Broadphase& broadphase, double time_step);
+// Tight boxes reaching as far as the nodes move in a frame, into the broadphase. Capsules between two nodes take their
+// length.
+void update_bounds(const Nodes& nodes, const Colliders& colliders, Shapes& shapes, collision::Broadphase& broadphase,
+                   double time_step);
 
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
 void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,

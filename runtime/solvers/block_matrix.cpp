@@ -37,7 +37,7 @@ void BlockSolve::analyse() {
     for (uint32_t i = 0; i < nodes_; ++i) matrix.set_unknown(i, size_of(i), false);
     for (uint32_t j = 0; j < joints(); ++j) {
         const ConstraintType& type = *row(j).type;
-        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, locked_rows(row(j)));
+        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
@@ -58,7 +58,16 @@ void BlockSolve::analyse() {
     b_.looped = looped();
 }
 
-// More joints than a tree on the nodes (and the ground, where something is held) can have.
+// Whether each row of a joint gives way so far that the matrix needs no freedom of a node for it.
+bool BlockSolve::gives(const RowBlock& block) const {
+    const RowMatrix c = compliance_of(block, sys_.h);
+    for (int r = 0; r < block.type->rows; ++r)
+        if (block.locked(r) && !(c(r, r) > loop_compliance(block, r))) return false;
+    return true;
+}
+
+// More joints than a tree on the nodes (and the ground, where something is held) can have. Some of them may be soft, but
+// then nodes are no longer eliminated from leaf to root, and two rods in line may come right after the node between.
 bool BlockSolve::looped() const {
     bool held = false;
     for (uint32_t j = 0; j < joints(); ++j)

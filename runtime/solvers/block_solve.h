@@ -36,6 +36,7 @@ private:
     uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
     int size_of(uint32_t i) const { return s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6; }
     bool looped() const;
+    bool gives(const RowBlock& block) const;
 
     // block_matrix.cpp
     void find_places();

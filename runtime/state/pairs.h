@@ -4,6 +4,7 @@
 #include <taut/event.h>
 
 #include <algorithm>
+#include <array>
 
 #include "collision/collide.h"
 #include "state/colliders.h"
@@ -19,8 +20,9 @@ struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1,
 };
 
 struct Pair {
-    uint64_t key = 0;       // of the two colliders, see pair_key
-    uint32_t a = 0, b = 0;  // their nodes, in the order of the key
+    uint64_t key = 0;                 // of the two colliders, see pair_key
+    uint32_t a = 0, b = 0;            // their nodes, in the order of the key
+    uint32_t a2 = kNone, b2 = kNone;  // second nodes of colliders that span two
     collision::PairCache cache;
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
     Impulse impulse[4];            // by point: carried in, updated by the solver
@@ -49,6 +51,11 @@ struct ActivePair {
     uint32_t a, b;  // nodes
     uint32_t pair;  // index into Pairs::list
     uint32_t points;
+    uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
+
+    bool spans() const { return a2 != kNone || b2 != kNone; }
+    std::array<uint32_t, 2> sides() const { return {a, b}; }
+    std::array<uint32_t, 4> nodes() const { return {a, b, a2, b2}; }
 };
 
 struct Pairs {
@@ -90,13 +97,16 @@ void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, 
 
 // Conditions: pairs of one node, pairs of one collider, pairs of two nodes.
 inline auto ends_on(uint32_t node) {
-    return [node](const Pair& pair) { return pair.a == node || pair.b == node; };
+    return [node](const Pair& pair) { return pair.a == node || pair.b == node || pair.a2 == node || pair.b2 == node; };
 }
 inline auto ends_on_collider(uint32_t collider) {
     return [collider](const Pair& pair) { return pair.collider_a() == collider || pair.collider_b() == collider; };
 }
 inline auto between_nodes(uint32_t a, uint32_t b) {
-    return [key = pair_key(a, b)](const Pair& pair) { return pair_key(pair.a, pair.b) == key; };
+    return [a, b](const Pair& pair) {
+        auto on = [](uint32_t node, uint32_t one, uint32_t two) { return node == one || node == two; };
+        return (on(a, pair.a, pair.a2) && on(b, pair.b, pair.b2)) || (on(b, pair.a, pair.a2) && on(a, pair.b, pair.b2));
+    };
 }
 
 }  // namespace taut
