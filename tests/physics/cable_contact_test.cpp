@@ -80,7 +80,7 @@ TEST_P(LoadedOver, HoldsTogetherAndOut) {
     const auto t = tensions_of(cable);
     RecordProperty("gap_um", std::to_string(1e6 * gap));
     RecordProperty("depth_um", std::to_string(1e6 * late_depth));
-    EXPECT_LT(gap, kind == TAUT_CABLE_LINKS ? 5e-5 : 2e-4);  // of particles as the first jerk passes the corner
+    EXPECT_LT(gap, kind == TAUT_CABLE_LINKS ? 5e-5 : 4e-4);  // of particles as the first jerk passes the corner
     EXPECT_LT(late_depth, 5e-4);
     EXPECT_LT(norm(velocity(load)), 0.1);  // it swings a little
     EXPECT_NEAR(t.back(), s.load * kG, 0.02 * s.load * kG);
@@ -163,6 +163,12 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) {
         return name_of(std::get<0>(tested.param)) + std::string(std::get<1>(tested.param).name);
     });
+
+// Segments between particles do not roll, and creep less.
+INSTANTIATE_TEST_SUITE_P(OfParticles, OverADrum,
+                         testing::Combine(testing::Values(TAUT_CABLE_PARTICLES),
+                                          testing::Values(Capstan{"holds_twice_of_three", 0.4, 2, true})),
+                         [](const auto& tested) { return std::string(std::get<1>(tested.param).name); });
 
 class TouchedCable : public testing::TestWithParam<taut_cable_kind> {};
 
