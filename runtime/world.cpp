@@ -32,6 +32,7 @@ taut_body World::body_handle(uint32_t node) const {
 }
 
 taut_joint World::joint_handle(uint32_t joint) const {
+    if (joint == kNone || joints.record[joint].inner) return {0};
     return {pack_handle({joint, joints.ids.generation(joint), id})};
 }
 

@@ -20,9 +20,9 @@ extern "C" {
 
 /** What a cable is made of. */
 typedef enum taut_cable_kind {
-    TAUT_CABLE_PARTICLES = 0, /**< n + 1 points at the distances of n segments: the cheaper one. No contacts, no
-                                   bending stiffness. A segment holds against pull and push */
-    TAUT_CABLE_LINKS = 1,     /**< n capsules tied end to end, which collide with bodies */
+    TAUT_CABLE_PARTICLES = 0, /**< n + 1 points at the distances of n segments, which collide as capsules between their
+                                   points: the cheaper one. No twist. A segment holds against pull and push */
+    TAUT_CABLE_LINKS = 1,     /**< n capsules tied end to end: bodies that turn, and roll on what they touch */
     TAUT_CABLE_KIND_MAX = 0x7fffffff
 } taut_cable_kind;
 
@@ -30,7 +30,7 @@ typedef enum taut_cable_kind {
 typedef struct taut_cable_end_def {
     uint32_t attached; /**< 0: free. Default 0 */
     uint32_t clamped;  /**< 1: the direction that the cable has there is held too, with the cable's bending stiffness;
-                            attached ends of links with bending_stiffness only. Default 0 */
+                            attached ends of cables with bending_stiffness only. Default 0 */
     taut_body body;    /**< null: the world */
     taut_pos anchor;   /**< in the body's frame, within 1e4; world position if null [m]; a particle takes only 0 */
 } taut_cable_end_def;
@@ -38,10 +38,10 @@ typedef struct taut_cable_end_def {
 /**
  * A cable. Segments are numbered from end 0 to end 1; so are points, of which there is one more.
  *
- * Bending: the moment is bending_stiffness * curvature + bending_damping * d(curvature)/dt, about both axes across
- * and about the cable (twist has the same stiffness). The cable at rest is straight and not twisted. As good as a beam
- * up to some 30 degrees a segment; beyond 90 the moment falls again. Without bending stiffness links turn and twist
- * freely.
+ * Bending: the moment is bending_stiffness * curvature + bending_damping * d(curvature)/dt, about both axes across;
+ * of links about the cable as well (twist has the same stiffness), which particles do not know. The cable at rest is
+ * straight and not twisted. As good as a beam up to some 30 degrees a segment; beyond 90 the moment falls again.
+ * Without bending stiffness links turn and twist freely.
  */
 typedef struct taut_cable_def {
     uint32_t struct_size;
@@ -59,23 +59,24 @@ typedef struct taut_cable_def {
     float mass_per_metre;     /**< [kg/m], [1e-3, 1e9]. Default 1 */
     float stretch_compliance; /**< strain per force [1/N], [0, 1000]. Default 0: does not stretch */
     float stretch_damping;    /**< force per rate of strain [N s], [0, 1e9]; of a compliant cable. Default 0 */
-    float bending_stiffness;  /**< [N m^2], 0 or [1e-9, 1e12]; links only. Default 0: limp */
+    float bending_stiffness;  /**< [N m^2], 0 or [1e-9, 1e12]. Default 0: limp */
     float bending_damping;    /**< [N m^2 s], [0, 1e9]. Default 0 */
-    taut_material material;   /**< of links */
-    taut_filter filter;       /**< of links */
-    uint32_t self_collision;  /**< 1: links collide with all others but the next. 0: they do not; the cable's links then
-                                   share a negative group of their own (below -1e9) where filter.group is 0, and it may
-                                   not be positive. 1 asks for filter.group >= 0. Default 0 */
-    float gravity_scale;      /**< [-1000, 1000]. Default 1 */
-    uint64_t user_data;       /**< of the cable and of each of its bodies */
+    taut_material material;
+    taut_filter filter;      /**< mask 0: no contacts */
+    uint32_t self_collision; /**< 1: segments collide with all others of the cable but the next; of particles but the
+                                  next two. 0: they do not; they then share a negative group of their own (below -1e9)
+                                  where filter.group is 0, and it may not be positive. 1 asks for filter.group >= 0.
+                                  Default 0 */
+    float gravity_scale;     /**< [-1000, 1000]. Default 1 */
+    uint64_t user_data;      /**< of the cable and of each of its bodies */
 } taut_cable_def;
 
 TAUT_API void taut_cable_def_init(taut_cable_def* def);
 
 /**
  * Adds a cable at rest. Its segments are chords of the path, so it is a little shorter than a path with bends.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; points or anchors closer than a segment may be short, 0.01 m; bending
- *         stiffness of particles), TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE, TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; points or anchors closer than a segment may be short, 0.01 m),
+ *         TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE, TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
  *         TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_cable(taut_world world, const taut_cable_def* def, taut_cable* out);
@@ -105,7 +106,7 @@ TAUT_API taut_result taut_cable_get_points(taut_cable cable, taut_pos* points, u
 TAUT_API taut_result taut_cable_get_tensions(taut_cable cable, float* tensions, uint32_t capacity, uint32_t* count);
 /**
  * Bodies of the cable in order: the points of particles, or the links, which lie along their y axis. Reeling makes and
- * removes bodies at its end. Results as above.
+ * removes bodies at its end. The collider of a segment of particles is that of its first point. Results as above.
  */
 TAUT_API taut_result taut_cable_get_bodies(taut_cable cable, taut_body* bodies, uint32_t capacity, uint32_t* count);
 /** The joint that holds end 0 or 1; it stays the same while the cable is reeled. Null: the end is free. */

@@ -263,9 +263,7 @@ taut_result find(const char* call, const char* field, const World& world, Handle
         return refuse(TAUT_FOREIGN_HANDLE, "%s: %s is %#llx, a %s of another world", call, field,
                       static_cast<unsigned long long>(handle.bits), name_of(handle));
     }
-    if (bits.world != world.id || !pool_of(world, handle).live(bits.index, bits.generation)) {
-        return refuse_stale(call, field, handle.bits);
-    }
+    if (bits.world != world.id || !names(world, handle, bits)) return refuse_stale(call, field, handle.bits);
     index = bits.index;
     return TAUT_OK;
 }

@@ -159,6 +159,14 @@ inline const IdPool& pool_of(const World& world, taut_shape) { return world.shap
 inline const IdPool& pool_of(const World& world, taut_collider) { return world.colliders.ids; }
 inline const IdPool& pool_of(const World& world, taut_joint) { return world.joints.ids; }
 inline const IdPool& pool_of(const World& world, taut_cable) { return world.cables.ids; }
+// Whether the bits name something that lives; an inner joint has no handle.
+template <class Handle>
+bool names(const World& world, Handle handle, const HandleBits& bits) {
+    return pool_of(world, handle).live(bits.index, bits.generation);
+}
+inline bool names(const World& world, taut_joint handle, const HandleBits& bits) {
+    return pool_of(world, handle).live(bits.index, bits.generation) && !world.joints.record[bits.index].inner;
+}
 constexpr const char* name_of(taut_body) { return "body"; }
 constexpr const char* name_of(taut_shape) { return "shape"; }
 constexpr const char* name_of(taut_collider) { return "collider"; }
@@ -201,9 +209,7 @@ taut_result with(const char* call, Handle handle, Use use, Act&& act) noexcept {
         if (!unpack_handle(handle.bits, bits)) return refuse_stale(call, name_of(handle), handle.bits);
         const Hold hold(bits.world, use);
         if (!hold.world()) return refuse_hold(call, name_of(handle), hold.refusal());
-        if (!pool_of(*hold.world(), handle).live(bits.index, bits.generation)) {
-            return refuse_stale(call, name_of(handle), handle.bits);
-        }
+        if (!names(*hold.world(), handle, bits)) return refuse_stale(call, name_of(handle), handle.bits);
         return act(*hold.world(), bits.index);
     });
 }
@@ -214,7 +220,7 @@ int32_t is_valid(Handle handle) noexcept {
     HandleBits bits;
     if (!unpack_handle(handle.bits, bits)) return 0;
     const Hold hold(bits.world, Use::read);
-    return hold.world() && pool_of(*hold.world(), handle).live(bits.index, bits.generation) ? 1 : 0;
+    return hold.world() && names(*hold.world(), handle, bits) ? 1 : 0;
 }
 
 // ---------------------------------------------------------------- values

@@ -76,9 +76,6 @@ bool check_def(Check& check, const taut_cable_def& def) {
         .zero("filter.reserved", def.filter.reserved)
         .boolean("self_collision", def.self_collision)
         .number("gravity_scale", def.gravity_scale, kGravityScale);
-    if (check && def.kind == TAUT_CABLE_PARTICLES) {
-        check.require(def.bending_stiffness == 0, "bending_stiffness is not 0, which particles cannot have; use links");
-    }
     check.require(def.self_collision || def.filter.group <= 0,
                   "filter.group is positive, which makes the links collide with each other; see self_collision");
     check.require(!def.self_collision || def.filter.group >= 0,
@@ -209,7 +206,7 @@ taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* def, t
         if (tie[1].attached) path.back() = at[1];
         lay(check, world, *def, path, points);
         if (!check) return check.result();
-        const size_t slots = points.size() + std::max(world.nodes.slots(), world.joints.ids.slots());
+        const size_t slots = 2 * points.size() + std::max(world.nodes.slots(), world.joints.ids.slots());
         if (!check.require(slots < kMaxSlots, "too many bodies or joints", TAUT_LIMIT)) return check.result();
 
         Cable plan = plan_of(world, *def);

@@ -61,4 +61,15 @@ Quat rotation_from_vector(const Vec3& theta) {
     return q * q;
 }
 
+Quat turn_between(const Vec3& from, const Vec3& to) {
+    const double c = from.dot(to);
+    if (c < -1 + 1e-9) {  // about any axis across
+        const Vec3 axis = std::abs(from.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitZ();
+        const Vec3 across = from.cross(axis).normalized();
+        return Quat(0, across.x(), across.y(), across.z());
+    }
+    const Vec3 v = from.cross(to);
+    return Quat(1 + c, v.x(), v.y(), v.z()).normalized();
+}
+
 }  // namespace taut

@@ -29,6 +29,8 @@ double angle_of(double y, double x);
 
 // Rotation by the vector theta [rad]; exact for any size (large angles are halved first).
 Quat rotation_from_vector(const Vec3& theta);
+// The turn from one unit vector to another by the shortest way.
+Quat turn_between(const Vec3& from, const Vec3& to);
 
 // Symmetric 3x3 in packed order xx, yy, zz, xy, xz, yz.
 struct Sym3 {

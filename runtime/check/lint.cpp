@@ -60,13 +60,20 @@ private:
     void for_joints(Act act) {
         for (uint32_t j = 0; j < joints_.record.size(); ++j) {
             const Joint& joint = joints_.record[j];
-            if (joint.type && (moves(joint.node[0]) || moves(joint.node[1]))) act(j, joint);
+            if (lightest_of(joint) != kNone) act(j, joint);
         }
     }
 
+    // The lightest of a joint's nodes that move, the first of such; kNone: none moves.
+    uint32_t lightest_of(const Joint& joint) const {
+        uint32_t light = kNone;
+        for (uint32_t node : joint.nodes())
+            if (moves(node) && (light == kNone || mass(node) < mass(light))) light = node;
+        return light;
+    }
+
     void add(taut_lint_kind kind, uint32_t node, uint32_t joint, double value, double limit) {
-        found_.push_back({kind, 0, world_.body_handle(node),
-                          joint == kNone ? taut_joint{0} : world_.joint_handle(joint), static_cast<float>(value),
+        found_.push_back({kind, 0, world_.body_handle(node), world_.joint_handle(joint), static_cast<float>(value),
                           static_cast<float>(limit)});
     }
     void add_above(taut_lint_kind kind, uint32_t node, uint32_t joint, double value, double limit) {
@@ -79,14 +86,21 @@ private:
         while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
         return node;
     }
+    void unite(const Joint& joint) {
+        uint32_t first = kNone;
+        for (uint32_t node : joint.nodes()) {
+            if (!moves(node)) continue;
+            if (first == kNone) first = node;
+            const uint32_t a = find(first), b = find(node);
+            if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+        }
+    }
     // Bodies that directly solved joints connect; roots are the smallest slot.
     void connect() {
         parent_.resize(nodes_.slots());
         std::iota(parent_.begin(), parent_.end(), 0u);
         for_joints([&](uint32_t, const Joint& joint) {
-            if (!direct(joint) || !moves(joint.node[0]) || !moves(joint.node[1])) return;
-            const uint32_t a = find(joint.node[0]), b = find(joint.node[1]);
-            if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+            if (direct(joint)) unite(joint);
         });
     }
 
@@ -122,10 +136,12 @@ private:
     }
 
     void mass_ratio_of(uint32_t j, const Joint& joint) {
-        uint32_t light = joint.node[0], heavy = joint.node[1];
-        if (direct(joint) || !moves(light) || !moves(heavy)) return;
-        if (mass(light) > mass(heavy)) std::swap(light, heavy);
-        add_above(TAUT_LINT_JOINT_MASS_RATIO, light, j, mass(heavy) / mass(light), kSweptMassRatio);
+        if (direct(joint)) return;
+        const uint32_t light = lightest_of(joint);
+        double heaviest = 0;
+        for (uint32_t node : joint.nodes())
+            if (moves(node)) heaviest = std::max(heaviest, mass(node));
+        add_above(TAUT_LINT_JOINT_MASS_RATIO, light, j, heaviest / mass(light), kSweptMassRatio);
     }
 
     // A body on a lighter one, against gravity; without gravity nothing rests.
@@ -156,7 +172,11 @@ private:
                 n.swept = n.swept || swept;
             }
         };
-        for_joints([&](uint32_t, const Joint& joint) { meet(joint.node[0], joint.node[1], !direct(joint)); });
+        for_joints([&](uint32_t, const Joint& joint) {
+            const auto ends = joint.nodes();
+            for (size_t b = 0; b < ends.size(); ++b)
+                for (size_t a = 0; a < b; ++a) meet(ends[a], ends[b], !direct(joint));
+        });
         for (const Pair& pair : world_.pairs.list)
             if (pair.touching) meet(pair.a, pair.b, !direct(pair));
         for (uint32_t node = 0; node < nodes_.slots(); ++node) {
@@ -171,7 +191,7 @@ private:
     void thin_bodies() {
         Array<uint8_t> jointed(nodes_.slots(), uint8_t{0}, world_.memory);
         for_joints([&](uint32_t, const Joint& joint) {
-            for (uint32_t node : joint.node)
+            for (uint32_t node : joint.nodes())
                 if (node != kNone) jointed[node] = 1;
         });
         for (uint32_t node = 0; node < nodes_.slots(); ++node) {
@@ -203,8 +223,7 @@ private:
     void softness_of(uint32_t j, const Joint& joint) {
         if (direct(joint)) return;
         const JointReading reading = read_joint(nodes_, joint);
-        uint32_t light = moves(joint.node[0]) ? joint.node[0] : joint.node[1];
-        if (moves(joint.node[1]) && mass(joint.node[1]) < mass(light)) light = joint.node[1];
+        const uint32_t light = lightest_of(joint);
         const double weight = mass(light) * gravity().norm();
         if (weight > 0)
             add_above(TAUT_LINT_SOFT_LOAD, light, j, wrench_of(joint, reading).force.norm() / weight, kSoftLoad);
@@ -244,13 +263,9 @@ private:
     uint32_t component_of(const Joint& joint) {
         if (!all_connected_) {
             all_connected_ = true;
-            for_joints([&](uint32_t, const Joint& one) {
-                if (!moves(one.node[0]) || !moves(one.node[1])) return;
-                const uint32_t a = find(one.node[0]), b = find(one.node[1]);
-                if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-            });
+            for_joints([&](uint32_t, const Joint& one) { unite(one); });
         }
-        return find(moves(joint.node[0]) ? joint.node[0] : joint.node[1]);
+        return find(lightest_of(joint));
     }
 
     void look_for_loops(std::span<const uint32_t> joints) {
@@ -260,7 +275,7 @@ private:
         bool grounded = false;
         for (uint32_t j : joints) {
             const Joint& joint = joints_.record[j];
-            for (uint32_t node : joint.node)
+            for (uint32_t node : joint.nodes())
                 if (moves(node))
                     nodes.push_back(node);
                 else
@@ -283,7 +298,7 @@ private:
             for (int row = 0; row < joint.type->rows; ++row) {
                 if (!rigid(joint, row)) continue;
                 std::fill(left.begin(), left.end(), 0.0);
-                for (int end = 0; end < 2; ++end) {
+                for (int end = 0; end < joint.type->nodes; ++end) {
                     if (!moves(joint.node[end])) continue;
                     const auto at = std::lower_bound(nodes.begin(), nodes.end(), joint.node[end]);
                     const double* from = reading.jacobian + (end * joint.type->rows + row) * kDof;

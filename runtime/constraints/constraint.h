@@ -72,7 +72,9 @@ std::span<const ConstraintType* const> constraint_types();
 
 extern const ConstraintType kBall;
 extern const ConstraintType kDistance;
+extern const ConstraintType kBend;
 extern const ConstraintType kContact;
+extern const ConstraintType kSpanContact;
 // Between joint frames (joint_frames.h); their coordinates are stated in their files.
 extern const ConstraintType kFixed;
 extern const ConstraintType kHinge;

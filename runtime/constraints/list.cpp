@@ -5,7 +5,8 @@ namespace taut {
 
 std::span<const ConstraintType* const> constraint_types() {
     static const ConstraintType* const types[] = {
-        &kBall, &kDistance, &kContact, &kFixed, &kHinge, &kSlider, &kCylindrical, &kUniversal, &kConeTwist, &kSixDof,
+        &kBall,  &kDistance, &kBend,        &kContact,   &kSpanContact, &kFixed,
+        &kHinge, &kSlider,   &kCylindrical, &kUniversal, &kConeTwist,   &kSixDof,
     };
     return types;
 }

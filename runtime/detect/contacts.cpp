@@ -11,8 +11,12 @@ constexpr float kSamePoint = 0.02f;
 constexpr uint32_t kGrain = 64;  // colliders or pairs that a thread takes at a time
 
 // How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
-float margin_of(const NodeMotion& a, const NodeMotion& b, double time_step) {
-    return kContactMargin + static_cast<float>(std::min(kMaxReach, (a.v - b.v).norm() * time_step));
+float margin_of(const Nodes& nodes, const Pair& pair, double time_step) {
+    double fastest = 0;
+    for_sides(pair, [&](uint32_t a, uint32_t b) {
+        fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).norm());
+    });
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, fastest * time_step));
 }
 
 // Impulses of the old points onto the new ones: by feature, else by place; friction turned into the new tangents.
@@ -48,18 +52,20 @@ void combine_surfaces(const Collider& a, const Collider& b, Pair& pair) {
 }
 
 // From the origin of a collider's shape, which the narrowphase knows, to that of its node.
-void move_to_node(const Collider& a, const collision::Placement& at, collision::Manifold& manifold) {
-    if (a.position == Vec3::Zero()) return;
+void move_to_node(const Nodes& nodes, const Collider& a, const collision::Placement& at,
+                  collision::Manifold& manifold) {
+    if (a.node_b == kNone && a.position == Vec3::Zero()) return;
     const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
-    const Vec3f offset = body_rotation * a.position.cast<float>();
+    const Vec3f offset = a.node_b == kNone ? Vec3f(body_rotation * a.position.cast<float>())
+                                           : Vec3f((at.position - nodes.motion[a.node].x).cast<float>());
     for (int k = 0; k < manifold.count; ++k) manifold.points[k].position += offset;
 }
 
 // A pair's new manifold: its place and surface, and the impulses of the old one.
-void adopt(const Colliders& colliders, const Pairs& pairs, const collision::Manifold& old, const Impulse* before,
-           Pair& pair) {
+void adopt(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const collision::Manifold& old,
+           const Impulse* before, Pair& pair) {
     const uint32_t a = pair.collider_a();
-    move_to_node(colliders.record[a], pairs.placement[a], pair.manifold);
+    move_to_node(nodes, colliders.record[a], pairs.placement[a], pair.manifold);
     combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
@@ -82,17 +88,17 @@ struct Shaped {
           b(shapes.record[colliders.record[pair.collider_b()].shape].shape),
           at_a(pairs.placement[pair.collider_a()]),
           at_b(pairs.placement[pair.collider_b()]),
-          margin(margin_of(nodes.motion[pair.a], nodes.motion[pair.b], time)) {}
+          margin(margin_of(nodes, pair, time)) {}
 
     bool has_parts() const { return collision::has_parts(a) || collision::has_parts(b); }
     void find_parts(collision::Parts& parts) const { collision::collide_parts(a, at_a, b, at_b, margin, parts); }
 };
 
 // Manifold of one pair at the present placements, with the impulses of the last one.
-void find_points(const Shaped& shaped, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     collision::collide(shaped.a, shaped.at_a, shaped.b, shaped.at_b, shaped.margin, pair.cache, pair.manifold);
-    if (pair.manifold.count > 0) adopt(colliders, pairs, old, pair.impulse, pair);
+    if (pair.manifold.count > 0) adopt(nodes, colliders, pairs, old, pair.impulse, pair);
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -117,7 +123,8 @@ const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, c
 }
 
 // The parts that a pair with a surface touches, into pairs.fresh; old: its records of the last frame.
-void find_parts(const Shaped& shaped, const Colliders& colliders, Pairs& pairs, std::span<Pair> old) {
+void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pairs& pairs,
+                std::span<Pair> old) {
     Pair& first = old[0];
     first.manifold.count = 0;
     shaped.find_parts(pairs.parts);
@@ -127,11 +134,13 @@ void find_parts(const Shaped& shaped, const Colliders& colliders, Pairs& pairs, 
         pair.key = first.key;
         pair.a = first.a;
         pair.b = first.b;
+        pair.a2 = first.a2;
+        pair.b2 = first.b2;
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        adopt(colliders, pairs, before ? before->manifold : first.manifold, before ? before->impulse : first.impulse,
-              pair);
+        adopt(nodes, colliders, pairs, before ? before->manifold : first.manifold,
+              before ? before->impulse : first.impulse, pair);
     }
 }
 
@@ -149,17 +158,17 @@ void replace_parts(Pairs& pairs) {
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         const Pair& pair = pairs.list[i];
         if (!pair.filtered && pair.manifold.count > 0)
-            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
     }
 }
 
 // A part of a pair whose parts were just found again: one that is not among them loses its points.
-void refresh_part(const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+void refresh_part(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    if (pair.manifold.count > 0) adopt(colliders, pairs, old, pair.impulse, pair);
+    if (pair.manifold.count > 0) adopt(nodes, colliders, pairs, old, pair.impulse, pair);
 }
 
 }  // namespace
@@ -174,11 +183,11 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
         const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
         if (pair.part == 0) {
-            find_points(shaped, colliders, pairs, pair);
+            find_points(shaped, nodes, colliders, pairs, pair);
         } else {
             if (pair.key != found) shaped.find_parts(pairs.parts);
             found = pair.key;
-            refresh_part(colliders, pairs, pair);
+            refresh_part(nodes, colliders, pairs, pair);
         }
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }
@@ -198,7 +207,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
             if (pair.filtered || pair.part != 0) continue;
             const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
             pair.on_surface = shaped.has_parts();
-            if (!pair.on_surface) find_points(shaped, colliders, pairs, pair);
+            if (!pair.on_surface) find_points(shaped, nodes, colliders, pairs, pair);
         }
     });
     pairs.active.clear();
@@ -212,11 +221,11 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
         if (pair.on_surface) {
             size_t end = i + 1;
             while (end < pairs.list.size() && pairs.list[end].part != 0) ++end;
-            find_parts(Shaped(nodes, colliders, shapes, pairs, pair, time_step), colliders, pairs,
+            find_parts(Shaped(nodes, colliders, shapes, pairs, pair, time_step), nodes, colliders, pairs,
                        std::span(pairs.list).subspan(i, end - i));
         }
         if (pair.manifold.count > 0) {
-            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count)});
+            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
         } else if (pairs.fresh.size() == fresh && pair.touching) {
             report_end(pairs, nodes, colliders, pair);
             pair.touching = false;

@@ -13,15 +13,13 @@ bool filters_agree(const taut_filter& a, const taut_filter& b) {
 }
 
 bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const Pair& pair) {
-    if (pair.a == pair.b) return false;
-    if (!moves_by_forces(nodes.info[pair.a].kind) && !moves_by_forces(nodes.info[pair.b].kind)) return false;
+    bool moves = false, tied = false;
+    for_sides(pair, [&](uint32_t a, uint32_t b) {
+        moves = moves || moves_by_forces(nodes.info[a].kind) || moves_by_forces(nodes.info[b].kind);
+        tied = tied || a == b || std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(a, b));
+    });
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    return filters_agree(a.filter, b.filter) &&
-           !std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(pair.a, pair.b));
-}
-
-bool moves(const Nodes& nodes, const Collider& collider) {
-    return collider.node != kNone && nodes.info[collider.node].kind != NodeKind::fixed;
+    return moves && !tied && filters_agree(a.filter, b.filter);
 }
 
 // Keys of nodes that a joint forbids to collide, sorted.
@@ -29,16 +27,42 @@ void refresh_joined(const Joints& joints, Pairs& pairs) {
     if (pairs.joined_version == joints.version) return;
     pairs.joined.clear();
     for (const Joint& joint : joints.record) {
-        if (!joint.type || joint.collide_connected || joint.node[0] == kNone || joint.node[1] == kNone) continue;
-        pairs.joined.push_back(pair_key(joint.node[0], joint.node[1]));
+        if (joint.collide_connected) continue;
+        const auto nodes = joint.nodes();
+        for (size_t b = 0; b < nodes.size(); ++b)
+            for (size_t a = 0; a < b; ++a)
+                if (nodes[a] != kNone && nodes[b] != kNone) pairs.joined.push_back(pair_key(nodes[a], nodes[b]));
     }
     std::sort(pairs.joined.begin(), pairs.joined.end());
     pairs.joined_version = joints.version;
 }
 
+// A capsule's y axis from one of its nodes to the other.
+collision::Placement place_between(const Nodes& nodes, const Collider& collider) {
+    const Vec3 &a = nodes.motion[collider.node].x, &b = nodes.motion[collider.node_b].x;
+    const Vec3 along = b - a;
+    const double length = along.norm();
+    const Quat q = length > 0 ? turn_between(Vec3::UnitY(), along / length) : Quat::Identity();
+    return {0.5 * (a + b), q.toRotationMatrix().cast<float>()};
+}
+
+bool moves(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.info[node].kind != NodeKind::fixed; }
+bool moves(const Nodes& nodes, const Collider& collider) {
+    return collider.node != kNone && (moves(nodes, collider.node) || moves(nodes, collider.node_b));
+}
+
+// How far a node moves in a frame, for the broadphase.
+Vec3f reach_of(const Nodes& nodes, uint32_t node, double time_step) {
+    Vec3f reach = (time_step * nodes.motion[node].v).cast<float>();
+    const float length = reach.norm();
+    if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
+    return reach;
+}
+
 }  // namespace
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
+    if (collider.node_b != kNone) return place_between(nodes, collider);
     const NodeMotion& m = nodes.motion[collider.node];
     const bool ahead = nodes.info[collider.node].kind == NodeKind::kinematic && elapsed > 0;
     const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
@@ -56,7 +80,7 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
     return box;
 }
 
-void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step) {
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
     pairs.reach.resize(slots);
@@ -64,12 +88,18 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, c
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             if (!moves(nodes, collider)) continue;
+            Vec3f ahead = reach_of(nodes, collider.node, time_step);
+            Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
+            if (collider.node_b != kNone) {
+                const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
+                shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
+                ahead = reach_of(nodes, collider.node_b, time_step);
+                least = least.cwiseMin(ahead);
+                most = most.cwiseMax(ahead);
+            }
             collision::Box box = contact_box(nodes, shapes, collider);
-            Vec3f ahead = (time_step * nodes.motion[collider.node].v).cast<float>();
-            const float length = ahead.norm();
-            if (length > kMaxReach) ahead *= static_cast<float>(kMaxReach) / length;
-            box.lo += ahead.cwiseMin(0.0f);
-            box.hi += ahead.cwiseMax(0.0f);
+            box.lo += least;
+            box.hi += most;
             pairs.reach[c] = {box, ahead};
         }
     });
@@ -117,6 +147,8 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
         pair.key = key;
         pair.a = colliders.record[pair.collider_a()].node;
         pair.b = colliders.record[pair.collider_b()].node;
+        pair.a2 = colliders.record[pair.collider_a()].node_b;
+        pair.b2 = colliders.record[pair.collider_b()].node_b;
         pair.filtered = !may_collide(nodes, colliders, pairs, pair);
     }
     while (old < pairs.list.size()) drop(pairs.list[old++]);

@@ -17,8 +17,9 @@ collision::Placement placement_of(const Nodes& nodes, const Collider& collider, 
 // The shape's box at the node's pose, grown by the contact margin.
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider);
 
-// Tight boxes reaching as far as the nodes move in a frame, into the broadphase.
-void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+// Tight boxes reaching as far as the nodes move in a frame, into the broadphase. Capsules between two nodes take their
+// length.
+void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step);
 
 // After a step: which colliders' leaves do not hold them, for the queries. Those of nodes that the step froze get new

@@ -115,6 +115,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
         if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
             u = {};
             system.inverse_mass[node + 1] = {};
+            system.inertia[node + 1].setZero();  // its block cannot be factored, and moves freely
         }
         if (nodes.info[node].kind == NodeKind::dynamic) {
             pose.R = m.q.toRotationMatrix();

@@ -34,8 +34,10 @@ public:
 
     // --- symbolic, when the graph changes
     void begin(uint32_t unknowns);
-    // size 3 or 6; rows of a multiplier that are not padding.
+    // size 3 or 6; rows of a multiplier that are not padding, 0 where its diagonal block is negative definite by
+    // itself.
     void set_unknown(uint32_t i, int size, bool multiplier, int rows = 6);
+    int size(uint32_t i) const { return unknown_[i].size; }
     void link(uint32_t i, uint32_t j);
     void analyse();
     bool analysed() const { return analysed_; }

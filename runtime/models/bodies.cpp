@@ -49,8 +49,7 @@ void remove_node(World& world, uint32_t node) {
     remove_colliders(world, node);
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
-        const Joint& record = world.joints.record[joint];
-        if (record.node[0] == node || record.node[1] == node) world.joints.remove(joint);
+        if (ends_on(world.joints.record[joint], node)) world.joints.remove(joint);
     }
     world.nodes.remove(node);
 }
@@ -94,8 +93,7 @@ void shift_centre(World& world, uint32_t node, const Vec3& offset) {
     m.slow_v += m.slow_w.cross(offset);
     const Vec3 local = m.q.conjugate() * offset;
     for (Joint& joint : world.joints.record) {
-        if (!joint.type) continue;
-        for (int side = 0; side < 2; ++side) {
+        for (int side = 0; side < static_cast<int>(joint.nodes().size()); ++side) {
             if (joint.node[side] == node) set_anchor(joint, side, anchor_of(joint, side) - local);
         }
     }

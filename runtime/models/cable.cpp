@@ -6,15 +6,17 @@
 #include <cstring>
 
 #include "constraints/ball.h"
+#include "constraints/bend.h"
 #include "constraints/distance.h"
 #include "constraints/joint_frames.h"
 #include "models/bodies.h"
+#include "state/joint_reading.h"
 
 namespace taut {
 namespace {
 
 static_assert(offsetof(BallData, anchor_b) == sizeof(Vec3) && offsetof(DistanceData, anchor_b) == sizeof(Vec3) &&
-                  offsetof(JointFrames, anchor_b) == sizeof(Vec3),
+                  offsetof(JointFrames, anchor_b) == sizeof(Vec3) && offsetof(BendData, anchor_c) == 2 * sizeof(Vec3),
               "set_anchor relies on it");
 
 template <class Data>
@@ -70,7 +72,7 @@ Joint make_end_joint(const World& world, const Cable& cable, int e, const CableT
     joint.user_data = cable.user_data;
     anchor[outside] = tie.anchor;
     anchor[inside] = links(cable) ? along((e == 0 ? -0.5 : 0.5) * cable.length[i]) : Vec3::Zero();
-    if (tie.clamped) {
+    if (tie.clamped && links(cable)) {
         const Quat body = tie.node == kNone ? Quat::Identity() : world.nodes.motion[tie.node].q;
         frame[outside] = body.conjugate() * world.nodes.motion[node].q;
         joint.type = &kFixed;
@@ -81,6 +83,30 @@ Joint make_end_joint(const World& world, const Cable& cable, int e, const CableT
     }
     if (links(cable)) set_softness(cable, joint, 0.5 * cable.length[i]);
     return joint;
+}
+
+// The bend at a clamped end of particles: the body that holds the end has a point a segment behind it.
+Joint make_clamp(const World& world, const Cable& cable, int e, const CableTie& tie) {
+    const uint32_t end = e == 0 ? 0 : cable.segments(), next = e == 0 ? 1 : end - 1;
+    const Vec3 behind = world.nodes.motion[cable.node[end]].x - world.nodes.motion[cable.node[next]].x;
+    Joint joint = make_bend(cable, end);
+    const int outside = e == 0 ? 0 : 2;
+    joint.node[outside] = tie.node;
+    const Quat body = tie.node == kNone ? Quat::Identity() : world.nodes.motion[tie.node].q;
+    set_anchor(joint, outside, tie.anchor + body.conjugate() * behind);
+    return joint;
+}
+
+JointRef add_joint(World& world, const Joint& joint) {
+    const uint32_t slot = world.joints.add(joint);
+    return {slot, world.joints.record[slot].serial};
+}
+
+// With its shape, which is its own.
+void drop_collider(World& world, uint32_t collider) {
+    const uint32_t shape = world.colliders.record[collider].shape;
+    remove_collider(world, collider);
+    world.shapes.remove(shape);
 }
 
 void add_parts(World& world, uint32_t index, std::span<const Vec3> points, const CableTie (&tie)[2]) {
@@ -106,29 +132,19 @@ void add_parts(World& world, uint32_t index, std::span<const Vec3> points, const
         }
         cable.node.push_back(add_cable_node(world, index, motion, share_of(cable, i)));
     }
-    for (uint32_t i = 0; i + 1 < count; ++i) {
-        const uint32_t slot = world.joints.add(make_inner_joint(cable, i));
-        cable.joint.push_back({slot, world.joints.record[slot].serial});
-    }
-    for (int e = 0; e < 2; ++e) {
-        if (!tie[e].attached) continue;
-        const uint32_t slot = world.joints.add(make_end_joint(world, cable, e, tie[e]));
-        cable.end[e].joint = {slot, world.joints.record[slot].serial};
-    }
+    for (uint32_t i = 0; i < segments && !links(cable); ++i)
+        add_segment(world, cable, cable.node[i], cable.node[i + 1], cable.length[i]);
+    for (uint32_t i = 0; i + 1 < count; ++i) cable.joint.push_back(add_joint(world, make_inner_joint(cable, i)));
+    for (int e = 0; e < 2; ++e)
+        if (tie[e].attached) cable.end[e].joint = add_joint(world, make_end_joint(world, cable, e, tie[e]));
+    if (links(cable) || cable.bending_stiffness == 0) return;
+    cable.bend.reserve(segments - 1);
+    for (uint32_t point = 1; point < segments; ++point) cable.bend.push_back(add_joint(world, make_bend(cable, point)));
+    for (int e = 0; e < 2; ++e)
+        if (tie[e].clamped) cable.end[e].clamp = add_joint(world, make_clamp(world, cable, e, tie[e]));
 }
 
 }  // namespace
-
-Quat turn_between(const Vec3& from, const Vec3& to) {
-    const double c = from.dot(to);
-    if (c < -1 + 1e-9) {  // about any axis across
-        const Vec3 axis = std::abs(from.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitZ();
-        const Vec3 across = from.cross(axis).normalized();
-        return Quat(0, across.x(), across.y(), across.z());
-    }
-    const Vec3 v = from.cross(to);
-    return Quat(1 + c, v.x(), v.y(), v.z()).normalized();
-}
 
 double span_before(const Cable& cable, uint32_t i) {
     return 0.5 * (cable.length[i] + (i == 0 ? 0 : cable.length[i - 1]));
@@ -141,9 +157,45 @@ double span_after(const Cable& cable, uint32_t i) {
 void set_softness(const Cable& cable, Joint& joint, double span) {
     joint.compliance = cable.stretch_compliance * span;
     joint.damping = cable.stretch_damping / span;
-    if (joint.type != &kFixed) return;
+    if (joint.type->angular == 0) return;
     joint.angular_compliance = span / cable.bending_stiffness;
     joint.angular_damping = cable.bending_damping / span;
+}
+
+void set_segment(const Cable& cable, Joint& joint, double length) {
+    std::memcpy(joint.data + offsetof(DistanceData, length), &length, sizeof length);
+    set_softness(cable, joint, length);
+}
+
+Joint make_bend(const Cable& cable, uint32_t point) {
+    Joint joint;
+    joint.type = &kBend;
+    joint.inner = true;
+    joint.collide_connected = true;  // segments are what keeps neighbours from colliding
+    joint.user_data = cable.user_data;
+    write_data(joint, BendData{});
+    for (int n = 0; n < 3; ++n) {
+        const uint32_t at = point + static_cast<uint32_t>(n) - 1;
+        if (at < cable.node.size()) joint.node[n] = cable.node[at];
+    }
+    set_softness(cable, joint, share_of(cable, point));
+    return joint;
+}
+
+void tie_segment(World& world, const Cable& cable, uint32_t segment) {
+    const uint32_t index = world.nodes.info[cable.node[segment]].collider, next = cable.node[segment + 1];
+    if (index == kNone || world.colliders.record[index].node_b == next) return;
+    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(index));
+    world.colliders.record[index].node_b = next;
+}
+
+void tie_bend(World& world, const Cable& cable, uint32_t point) {
+    Joint* joint = find(world.joints, bend_at(cable, point));
+    if (!joint) return;
+    const Joint now = make_bend(cable, point);
+    for (int n = 0; n < 3; ++n)
+        if (now.node[n] != kNone) joint->node[n] = now.node[n];
+    set_softness(cable, *joint, share_of(cable, point));
 }
 
 Joint make_inner_joint(const Cable& cable, uint32_t i) {
@@ -167,6 +219,21 @@ Joint make_inner_joint(const Cable& cable, uint32_t i) {
     }
     set_softness(cable, joint, span_after(cable, i));
     return joint;
+}
+
+void add_segment(World& world, const Cable& cable, uint32_t node, uint32_t next, double length) {
+    Collider collider;
+    collider.node = node;
+    collider.node_b = next;
+    collider.shape = world.shapes.add(shape_of(cable, length));
+    collider.material = cable.material;
+    collider.filter = cable.filter;
+    try {
+        add_collider(world, collider);
+    } catch (...) {
+        world.shapes.remove(collider.shape);
+        throw;
+    }
 }
 
 uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, double length) {
@@ -194,6 +261,7 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
     const NodeInfo& info = world.nodes.info[node];
     const double length = share_of(cable, i);
     if (moves_by_forces(info.kind)) world.nodes.mass[node] = mass_of(cable, length, info.kind);
+    if (!links(cable)) return;
     for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
         world.shapes.record[world.colliders.record[c].shape].shape = shape_of(cable, length);
     });
@@ -202,9 +270,7 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
 void drop_cable_node(World& world, uint32_t node) {
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     while (world.nodes.info[node].collider != kNone) {
-        const uint32_t collider = world.nodes.info[node].collider, shape = world.colliders.record[collider].shape;
-        remove_collider(world, collider);
-        world.shapes.remove(shape);
+        drop_collider(world, world.nodes.info[node].collider);
     }
     world.nodes.remove(node);
 }
@@ -213,8 +279,7 @@ uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points
     world.cables.reserve_one();
     const uint32_t index = world.cables.add(Cable(plan));
     taut_filter& filter = world.cables.record[index].filter;
-    if (links(plan) && !plan.self_collision && filter.group == 0)
-        filter.group = kFirstGroup - static_cast<int32_t>(index);
+    if (!plan.self_collision && filter.group == 0) filter.group = kFirstGroup - static_cast<int32_t>(index);
     try {
         add_parts(world, index, points, tie);
     } catch (...) {
@@ -230,11 +295,32 @@ void remove_cable(World& world, uint32_t index) {
     reserve_ended(world.pairs, [&](const Pair& pair) { return own(pair.a) || own(pair.b); });
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
-        const Joint& record = world.joints.record[joint];
-        if (own(record.node[0]) || own(record.node[1])) world.joints.remove(joint);
+        const auto nodes = world.joints.record[joint].nodes();
+        if (std::any_of(nodes.begin(), nodes.end(), own)) world.joints.remove(joint);
     }
     for (uint32_t node : world.cables.record[index].node) drop_cable_node(world, node);
     world.cables.remove(index);
+}
+
+void drop_loose_parts(World& world) {
+    auto drop = [&](JointRef& ref, bool loose) {
+        if (ref.slot == kNone || !loose) return;
+        if (find(world.joints, ref)) world.joints.remove(ref.slot);
+        ref = {};
+    };
+    for (Cable& cable : world.cables.record) {
+        if (links(cable) || cable.segments() == 0) continue;
+        auto cut = [&](uint32_t segment) { return !find(world.joints, cable.joint[segment]); };
+        for (uint32_t i = 0; i < cable.bend.size(); ++i) drop(cable.bend[i], cut(i) || cut(i + 1));
+        for (uint32_t i = 0; i < cable.segments(); ++i) {
+            const uint32_t collider = world.nodes.info[cable.node[i]].collider;
+            if (cut(i) && collider != kNone) drop_collider(world, collider);
+        }
+        for (int e = 0; e < 2; ++e) {
+            CableEnd& end = cable.end[e];
+            drop(end.clamp, !find(world.joints, end.joint) || cut(e == 0 ? 0 : cable.segments() - 1));
+        }
+    }
 }
 
 Vec3 cable_point(const World& world, const Cable& cable, uint32_t point) {

@@ -1,11 +1,13 @@
 // Cables: a user's description -> nodes and joints, and the changes of both while the cable is reeled.
 //
 // Segment i lies between points i and i + 1. Particles: node i is point i with the mass of half of the segments beside
-// it; joint i holds the distance of segment i. Links: node i is segment i, a capsule along its y axis; joint i holds
-// link i + 1 to link i, as a ball or, with bending stiffness EI, as a fixed joint whose angular compliance is that of
-// the cable between the two middles:
+// it; joint i holds the distance of segment i, and with bending stiffness bend i resists at point i + 1. Links: node i
+// is segment i, a capsule along its y axis; joint i holds link i + 1 to link i, as a ball or, with bending stiffness
+// EI, as a fixed joint whose angular compliance is that of the cable between the two middles:
 //   angle = moment * span / EI,   gap = force * span * stretch_compliance
-// So a row of joints bends and stretches as the beam does, lumped where the links meet.
+// So a row of joints bends and stretches as the beam does, lumped where the links meet. A bend of particles has the
+// same softness, its span being half of the segments beside it. At a clamped end of particles it is between the end
+// segment and a point of the body that holds the end, a segment behind it.
 #pragma once
 
 #include <span>
@@ -15,6 +17,7 @@
 namespace taut {
 
 constexpr double kLeastSegment = 0.01;  // [m], when a cable is made
+constexpr double kLeastReeled = 0.2;    // of the nominal segment, when it is hauled in
 
 // What an end is attached to.
 struct CableTie {
@@ -48,18 +51,32 @@ inline const JointRef& joint_after(const Cable& c, uint32_t i) {
 double span_before(const Cable& cable, uint32_t i);
 double span_after(const Cable& cable, uint32_t i);
 
-// Anchor of end 0 (a) or 1 (b) of a joint.
 void set_softness(const Cable& cable, Joint& joint, double span);
+// Length and softness of a segment of particles.
+void set_segment(const Cable& cable, Joint& joint, double length);
 // Joint i with its data, between nodes whose segments have their lengths.
 Joint make_inner_joint(const Cable& cable, uint32_t i);
+
+// Of particles: what bends at a point. An end's is there where it is clamped.
+inline JointRef bend_at(const Cable& c, uint32_t point) {
+    if (point == 0) return c.end[0].clamp;
+    if (point == c.segments()) return c.end[1].clamp;
+    return c.bend.empty() ? JointRef{} : c.bend[point - 1];
+}
+Joint make_bend(const Cable& cable, uint32_t point);
+// The capsule of a segment, which is its first point's; and leading it to the present end of the segment, with room
+// reserved for the end events of its pairs.
+void add_segment(World& world, const Cable& cable, uint32_t node, uint32_t next, double length);
+void tie_segment(World& world, const Cable& cable, uint32_t segment);
+// Nodes and softness of the bend at a point, if there is one, after changes beside it.
+void tie_bend(World& world, const Cable& cable, uint32_t point);
+// Removes what has no hold any more where a joint of a cable of particles is gone: bends and capsules.
+void drop_loose_parts(World& world);
 
 uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, double length);
 // Mass, inertia and shape of node i after a change of length.
 void set_cable_mass(World& world, const Cable& cable, uint32_t i);
 // Removes a node on which no joint ends any more. reserve_ended for it has gone before.
 void drop_cable_node(World& world, uint32_t node);
-
-// The turn from one unit vector to another by the shortest way.
-Quat turn_between(const Vec3& from, const Vec3& to);
 
 }  // namespace taut

@@ -26,6 +26,13 @@ constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a hea
 
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
 
+// The first of some nodes that moves, or kNone.
+uint32_t mover(const Nodes& nodes, std::span<const uint32_t> of) {
+    for (uint32_t node : of)
+        if (moving(nodes, node)) return node;
+    return kNone;
+}
+
 }  // namespace
 
 void note_loads(Joints& joints, const Nodes& nodes) {
@@ -34,7 +41,7 @@ void note_loads(Joints& joints, const Nodes& nodes) {
         double squared = 0, lighter = 1e300;
         for (int r = 0; r < joint.type->rows; ++r)
             if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];
-        for (uint32_t node : joint.node)
+        for (uint32_t node : joint.nodes())
             if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
         if (squared > kLoad * kLoad * lighter * lighter)
             joint.loaded = joint.loaded + 1 < kLoadedAfter ? joint.loaded + 1 : kLoadedAfter + kLoadedFor;
@@ -73,6 +80,12 @@ void Partition::unite(uint32_t a, uint32_t b) {
     if (a != b) parent_[std::max(a, b)] = std::min(a, b);
 }
 
+void Partition::unite(const Nodes& nodes, std::span<const uint32_t> all) {
+    const uint32_t first = mover(nodes, all);
+    for (uint32_t node : all)
+        if (moving(nodes, node)) unite(first, node);
+}
+
 void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules) {
     connect(nodes, joints, pairs);
     measure_towers(nodes, pairs);
@@ -93,9 +106,7 @@ void Partition::connect_joints(const Nodes& nodes, const Joints& joints, bool di
     parent_.resize(nodes.slots());
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
-        if (joint.type && (joint.direct || !direct_only) && moving(nodes, joint.node[0]) &&
-            moving(nodes, joint.node[1]))
-            unite(joint.node[0], joint.node[1]);
+        if (joint.direct || !direct_only) unite(nodes, joint.nodes());
 }
 
 // Islands without joints in which weight rests on what sweeps cannot hold.
@@ -138,16 +149,17 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
     }
     choose_direct(nodes, joints);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
-        const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
-        const bool moves_a = moving(nodes, a), moves_b = moving(nodes, b);
-        if (!moves_a && !moves_b) continue;  // a quarantined body at rest on a fixed one
-        const bool tower = island_[island_of_[moves_a ? a : b]].tower;
+        const auto ends = pairs.active[p].nodes();
+        const uint32_t first = mover(nodes, ends);
+        if (first == kNone) continue;  // a quarantined body at rest on a fixed one
+        const bool tower = island_[island_of_[first]].tower;
         auto takes_in = [&](uint32_t node) {
             return moving(nodes, node) && core_[node] && component_[find(node)].loaded;
         };
-        if (!tower && !takes_in(a) && !takes_in(b)) continue;
-        pair_in_block_[p] = moves_a && moves_b ? join_contact(a, b) : 1;
-        if (tower && pair_in_block_[p]) core_[moves_a ? a : b] = 1;  // in a block, with or without a joint
+        if (!tower && std::none_of(ends.begin(), ends.end(), takes_in)) continue;
+        pair_in_block_[p] = std::all_of(
+            ends.begin(), ends.end(), [&](uint32_t node) { return !moving(nodes, node) || join_contact(first, node); });
+        if (tower && pair_in_block_[p]) core_[first] = 1;  // in a block, with or without a joint
     }
     fill_blocks(nodes, joints, pairs);
     recall_blocks(nodes, joints);
@@ -155,8 +167,8 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
 
 // Joints that blocks own: those that ask for it, but for nets with too many loops.
 void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
-    auto end = [&](const Joint& joint) { return moving(nodes, joint.node[0]) ? joint.node[0] : joint.node[1]; };
-    auto may = [&](const Joint& joint) { return joint.type && joint.direct && moving(nodes, end(joint)); };
+    auto end = [&](const Joint& joint) { return mover(nodes, joint.nodes()); };
+    auto may = [&](const Joint& joint) { return joint.direct && end(joint) != kNone; };
     auto too_many = [](const Component& c) { return c.joints > c.nodes + kMostLoops; };
     joint_in_block_.assign(joints.record.size(), 0);
     for (const Joint& joint : joints.record)
@@ -168,7 +180,7 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
         Component& component = component_[find(end(joint))];
         component.loaded =
             component.loaded || joint.loaded >= kLoadedAfter || component.most >= kLoadedMassRatio * component.least;
-        for (uint32_t node : joint.node)
+        for (uint32_t node : joint.nodes())
             if (moving(nodes, node)) core_[node] = 1;
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
@@ -197,20 +209,21 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
         }
         return spare_[block];
     };
-    auto mover = [&](uint32_t a, uint32_t b) { return moving(nodes, a) ? a : b; };
     for (uint32_t j = 0; j < joints.record.size(); ++j) {
         const Joint& joint = joints.record[j];
         if (!joint_in_block_[j]) continue;
-        Block& block = block_at(mover(joint.node[0], joint.node[1]));
+        Block& block = block_at(mover(nodes, joint.nodes()));
         block.joints.push_back(j);
         block.identity.push_back(joint.serial << 1 | joint.plain);
     }
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         if (!pair_in_block_[p]) continue;
-        const uint32_t a = pairs.active[p].a, b = pairs.active[p].b;
-        Block& block = block_at(mover(a, b));
+        const auto ends = pairs.active[p].nodes();
+        Block& block = block_at(mover(nodes, ends));
         block.pairs.push_back(p);
-        if (moving(nodes, a) && moving(nodes, b)) block.links.push_back(pair_key(a, b));
+        for (size_t b = 0; b < ends.size(); ++b)
+            for (size_t a = 0; a < b; ++a)
+                if (moving(nodes, ends[a]) && moving(nodes, ends[b])) block.links.push_back(pair_key(ends[a], ends[b]));
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);
@@ -263,8 +276,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
 void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
     connect_joints(nodes, joints, false);
-    for (const ActivePair& pair : pairs.active)
-        if (moving(nodes, pair.a) && moving(nodes, pair.b)) unite(pair.a, pair.b);
+    for (const ActivePair& pair : pairs.active) unite(nodes, pair.nodes());
 
     island_of_.assign(slots, kNone);
     island_.clear();
@@ -280,9 +292,8 @@ void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& p
     }
     islands = static_cast<uint32_t>(island_.size());
     for (const Joint& joint : joints.record) {
-        if (!joint.type) continue;
-        for (uint32_t node : joint.node)
-            if (moving(nodes, node)) island_[island_of_[node]].jointed = true;
+        const uint32_t node = mover(nodes, joint.nodes());
+        if (node != kNone) island_[island_of_[node]].jointed = true;
     }
 }
 
@@ -375,26 +386,25 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
     Array<uint32_t>& items = queue_;
     for (uint32_t g = 0; g < group_count; ++g) {
         Group& group = groups[g];
-        auto here = [&](uint32_t a, uint32_t b) {
-            const uint32_t node = moving(nodes, a) ? a : b;
-            return moving(nodes, node) && group_of(node) == g;
+        auto here = [&](std::span<const uint32_t> of) {
+            const uint32_t node = mover(nodes, of);
+            return node != kNone && group_of(node) == g;
         };
         items.clear();
         for (uint32_t j = 0; j < joints.record.size(); ++j) {
-            const Joint& joint = joints.record[j];
-            if (!joint.type || joint_in_block_[j]) continue;
-            if (here(joint.node[0], joint.node[1])) items.push_back(j);
+            if (!joint_in_block_[j] && here(joints.record[j].nodes())) items.push_back(j);
         }
         for (uint32_t node : group.nodes) used_[node] = 0;
-        const uint32_t of_joints = colour(items, group.joints, group.joint_colour_begin, [&](uint32_t j) {
-            return std::pair(joints.record[j].node[0], joints.record[j].node[1]);
-        });
+        const uint32_t of_joints =
+            colour(items, group.joints, group.joint_colour_begin, [&](uint32_t j) { return joints.record[j].nodes(); });
         items.clear();
-        for (uint32_t p = 0; p < pairs.active.size(); ++p)
-            if (!pair_in_block_[p] && here(pairs.active[p].a, pairs.active[p].b)) items.push_back(p);
+        for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+            if (pair_in_block_[p] || !here(pairs.active[p].nodes())) continue;
+            (pairs.active[p].spans() ? group.span_pairs : items).push_back(p);
+        }
         for (uint32_t node : group.nodes) used_[node] = 0;
-        const uint32_t of_pairs = colour(items, group.pairs, group.pair_colour_begin,
-                                         [&](uint32_t p) { return std::pair(pairs.active[p].a, pairs.active[p].b); });
+        const uint32_t of_pairs =
+            colour(items, group.pairs, group.pair_colour_begin, [&](uint32_t p) { return pairs.active[p].sides(); });
         colours = std::max({colours, of_joints, of_pairs});
     }
 }
@@ -413,6 +423,7 @@ void Partition::make_groups() {
         groups[g].nodes.clear();
         groups[g].blocks.clear();
         groups[g].direct_pairs.clear();
+        groups[g].span_pairs.clear();
     }
     for (Island& island : island_) {
         island.group = static_cast<uint32_t>(std::lower_bound(scratch_.begin(), scratch_.end(), island.effort()) -
@@ -422,21 +433,21 @@ void Partition::make_groups() {
     }
 }
 
-// Greedy: each item takes the first colour that neither of its nodes has; what finds none goes to the last colour.
+// Greedy: each item takes the first colour that none of its nodes has; what finds none goes to the last colour.
 template <class Ends>
 uint32_t Partition::colour(const Array<uint32_t>& items, Array<uint32_t>& sorted, Array<uint32_t>& begin, Ends ends) {
     colour_of_.resize(items.size());
     begin.assign(kMaxColours + 1, 0);
     uint32_t most = 0;
     for (size_t i = 0; i < items.size(); ++i) {
-        const auto [a, b] = ends(items[i]);
+        const auto nodes = ends(items[i]);
         uint64_t taken = uint64_t{1} << (kMaxColours - 1);
-        for (uint32_t node : {a, b})
+        for (uint32_t node : nodes)
             if (node != kNone && island_of_[node] != kNone) taken |= used_[node];
         uint32_t c = kMaxColours - 1;
         if (~taken != 0) {
             c = static_cast<uint32_t>(std::countr_zero(~taken));
-            for (uint32_t node : {a, b})
+            for (uint32_t node : nodes)
                 if (node != kNone && island_of_[node] != kNone) used_[node] |= uint64_t{1} << c;
         }
         colour_of_[i] = static_cast<uint8_t>(c);

@@ -7,6 +7,8 @@
 //   colour  constraints of a group of which no two share a moving node
 #pragma once
 
+#include <span>
+
 #include "linear/sparse_block_ldlt.h"
 #include "state/joints.h"
 #include "state/nodes.h"
@@ -59,7 +61,8 @@ struct Group {
           joints(memory),
           joint_colour_begin(memory),
           blocks(memory),
-          direct_pairs(memory) {}
+          direct_pairs(memory),
+          span_pairs(memory) {}
 
     uint32_t substeps = 0;
     uint32_t sweeps = 1;    // least biased sweeps a substep
@@ -69,6 +72,7 @@ struct Group {
     Array<uint32_t> joints, joint_colour_begin;
     Array<uint32_t> blocks;        // index into Partition::blocks
     Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
+    Array<uint32_t> span_pairs;    // swept ones with a side of two nodes, which lanes do not take
 };
 
 // Once a frame: which joints carry more than contacts on their bodies could stand in sweeps. A block takes its contacts
@@ -131,6 +135,7 @@ private:
 
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
+    void unite(const Nodes& nodes, std::span<const uint32_t> all);  // those that move
 
     Array<uint32_t> parent_;     // union-find over slots; roots are the smallest slot
     Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces

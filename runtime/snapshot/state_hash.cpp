@@ -25,7 +25,7 @@ void add_colliders(Hash& hash, const Colliders& colliders) {
         const Collider& collider = colliders.record[i];
         if (collider.node == kNone) continue;
         hash.add(static_cast<uint64_t>(i) << 32 | collider.node);
-        hash.add(static_cast<uint64_t>(collider.shape));
+        hash.add(static_cast<uint64_t>(collider.node_b) << 32 | collider.shape);
         hash.add(collider.position);
         hash.add(collider.rotation);
         hash.add(collider.material.friction);
@@ -81,9 +81,11 @@ void add_cables(Hash& hash, const Cables& cables) {
         hash.add(static_cast<uint64_t>(i) << 8 | static_cast<uint64_t>(cable.kind));
         for (uint32_t node : cable.node) hash.add(static_cast<uint64_t>(node));
         for (const JointRef& joint : cable.joint) hash.add(static_cast<uint64_t>(joint.slot));
+        for (const JointRef& joint : cable.bend) hash.add(static_cast<uint64_t>(joint.slot));
         for (double length : cable.length) hash.add(length);
         for (const CableEnd& end : cable.end) {
             hash.add(static_cast<uint64_t>(end.joint.slot));
+            hash.add(static_cast<uint64_t>(end.clamp.slot));
             for (double x : {end.reel_speed, end.wanted_speed, end.acceleration, end.paid, end.owed, end.lost})
                 hash.add(x);
         }

@@ -51,7 +51,9 @@ void move_freely(Substep& s, const Block& block) {
     for (uint32_t node : block.nodes) s.system.exact[node + 1] = s.system.free[node + 1];
 }
 
-bool has_sweeps(const Substep& s) { return !s.system.contacts.group.empty() || !s.group.joints.empty(); }
+bool has_sweeps(const Substep& s) {
+    return !s.system.contacts.group.empty() || !s.group.joints.empty() || !s.group.span_pairs.empty();
+}
 
 // A tower that does not stand as one: its contacts are swept in this substep.
 void sweep_tower(Substep& s, Block& block) {

@@ -34,10 +34,11 @@ void BlockSolve::analyse() {
     SparseBlockLdlt& matrix = b_.matrix;
     if (matrix.analysed()) return;
     matrix.begin(nodes_ + joints());
-    for (uint32_t i = 0; i < nodes_; ++i) matrix.set_unknown(i, size_of(i), false);
+    for (uint32_t i = 0; i < nodes_; ++i)
+        matrix.set_unknown(i, s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6, false);
     for (uint32_t j = 0; j < joints(); ++j) {
         const ConstraintType& type = *row(j).type;
-        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, locked_rows(row(j)));
+        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
@@ -58,8 +59,20 @@ void BlockSolve::analyse() {
     b_.looped = looped();
 }
 
-// More joints than a tree on the nodes (and the ground, where something is held) can have.
+// Whether each row of a joint gives way so far that the matrix needs no freedom of a node for it.
+bool BlockSolve::gives(const RowBlock& block) const {
+    const RowMatrix c = compliance_of(block, sys_.h);
+    for (int r = 0; r < block.type->rows; ++r)
+        if (block.locked(r) && !(c(r, r) > loop_compliance(block, r))) return false;
+    return true;
+}
+
+// More joints than a tree on the nodes (and the ground, where something is held) can have, soft ones included; or a
+// loop by contacts. Then nodes are not eliminated from leaf to root, and two rods in line may come right after the
+// particle between them, which cannot part them.
 bool BlockSolve::looped() const {
+    for (uint32_t i = 0; i < nodes_ && !b_.links.empty(); ++i)
+        if (size_of(i) == 3) return true;
     bool held = false;
     for (uint32_t j = 0; j < joints(); ++j)
         for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;
@@ -125,7 +138,7 @@ void BlockSolve::add_stiffness(uint32_t j, const double* force) {
                 for (int c = 0; c < columns; ++c) sum += part[r * width + c] * slow[kDof * m + first + c];
                 node_known(to)[first + r] += hh * sum;
             }
-            if (m <= n)
+            if (m <= n && rows > 0 && columns > 0)  // particles do not turn
                 b_.matrix.add(m == n ? b_.places[to] : place(j, coupling(n, m)),
                               {part, rows, columns, width, first, first, hh});
         }

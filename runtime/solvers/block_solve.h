@@ -34,8 +34,9 @@ private:
     const RowBlock& row(uint32_t j) const { return sys_.rows.block[b_.first_row_block + j]; }
     uint32_t joints() const { return static_cast<uint32_t>(b_.joints.size()); }
     uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
-    int size_of(uint32_t i) const { return s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6; }
+    int size_of(uint32_t i) const { return b_.matrix.size(i); }                   // 3: a particle
     bool looped() const;
+    bool gives(const RowBlock& block) const;
 
     // block_matrix.cpp
     void find_places();

@@ -144,8 +144,7 @@ struct Range {
 Range swept_rows(const Substep& s) {
     Range swept;
     for (uint32_t b : s.group.blocks) swept.first += static_cast<uint32_t>(s.blocks[b].joints.size());
-    const Rows& rows = s.system.rows;
-    swept.count = (s.group.blocks.empty() ? static_cast<uint32_t>(rows.block.size()) : rows.joints) - swept.first;
+    swept.count = s.system.rows.lasting - swept.first;
     return swept;
 }
 

@@ -15,6 +15,7 @@ struct JointRef {
 
 struct CableEnd {
     JointRef joint;           // to what the end is attached to; node[end == 0] of it is the cable's
+    JointRef clamp;           // of particles: the bend between the direction held there and the end segment
     double reel_speed = 0;    // of the last step, positive pays out [m/s]
     double wanted_speed = 0;  // [m/s]
     double acceleration = 0;  // towards it; 0: at once [m/s^2]
@@ -24,11 +25,12 @@ struct CableEnd {
 };
 
 struct Cable {
-    explicit Cable(Memory& memory) : node(memory), joint(memory), length(memory) {}
+    explicit Cable(Memory& memory) : node(memory), joint(memory), bend(memory), length(memory) {}
 
     CableKind kind = CableKind::particles;
     Array<uint32_t> node;   // points, or links
     Array<JointRef> joint;  // between node i and node i + 1
+    Array<JointRef> bend;   // of particles with bending stiffness: at point i + 1
     Array<double> length;   // of each segment, unstretched [m]
     CableEnd end[2];
     double nominal = 0;             // length of a segment that is cut off when paying out [m]

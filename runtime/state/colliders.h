@@ -1,5 +1,6 @@
 // Colliders: the shapes that a node collides with, each at its place in the node's frame with a surface and a filter
-// of its own. Their slots are the broadphase's ids, and pairs are pairs of them.
+// of its own; or a capsule that spans two particles and is stored with the first. Their slots are the broadphase's ids,
+// and pairs are pairs of them.
 #pragma once
 
 #include <taut/body.h>
@@ -12,6 +13,7 @@ namespace taut {
 
 struct Collider {
     uint32_t node = kNone;             // kNone: a dead slot
+    uint32_t node_b = kNone;           // of a capsule between two particles, which it follows: its other end
     uint32_t shape = kNone;            // index into Shapes
     uint32_t next = kNone;             // of the same node, in the order in which they were added
     float density = 0;                 // its share in the node's mass [kg/m^3]

@@ -19,7 +19,7 @@ Vec3 angular_part(const double* row) { return {row[3], row[4], row[5]}; }
 // J_i W J_k^T of two rows.
 double coupling(const Nodes& nodes, const Joint& joint, const JointReading& reading, int i, int k) {
     double sum = 0;
-    for (int end = 0; end < 2; ++end) {
+    for (int end = 0; end < joint.type->nodes; ++end) {
         const uint32_t node = joint.node[end];
         if (node == kNone || !moves_by_forces(nodes.info[node].kind)) continue;
         const double *ji = row_of(joint, reading, end, i), *jk = row_of(joint, reading, end, k);
@@ -57,14 +57,14 @@ Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end) {
 
 JointReading read_joint(const Nodes& nodes, const Joint& joint) {
     JointReading reading;
-    for (int end = 0; end < 2; ++end) reading.pose[end] = pose_of(nodes, joint.node[end]);
+    for (int end = 0; end < joint.type->nodes; ++end) reading.pose[end] = pose_of(nodes, joint.node[end]);
     joint.type->evaluate(joint.data, reading.pose, reading.value, reading.jacobian);
     return reading;
 }
 
 double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
     double rate = 0;
-    for (int end = 0; end < 2; ++end) {
+    for (int end = 0; end < joint.type->nodes; ++end) {
         if (joint.node[end] == kNone) continue;
         const double* j = row_of(joint, reading, end, row);
         const NodeMotion& motion = nodes.motion[joint.node[end]];

@@ -5,7 +5,8 @@
 
 namespace taut {
 
-// What every joint's data begins with: relative to the centre of mass, body axes; world position of a null end [m].
+// What the data of joints begins with, an anchor for each of its nodes: relative to the centre of mass, body axes;
+// world position of a null end [m]. A type that takes particles alone may have none.
 struct JointAnchors {
     Vec3 a, b;
 };
@@ -17,9 +18,9 @@ Pose pose_of(const Nodes& nodes, uint32_t node);
 Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end);
 
 struct JointReading {
-    Pose pose[2];
-    double value[kMaxRows] = {};                // coordinates [m or rad]
-    double jacobian[2 * kMaxRows * kDof] = {};  // [end][row][6]
+    Pose pose[kMaxNodes];
+    double value[kMaxRows] = {};                        // coordinates [m or rad]
+    double jacobian[kMaxNodes * kMaxRows * kDof] = {};  // [end][row][6]
 };
 
 JointReading read_joint(const Nodes& nodes, const Joint& joint);
@@ -29,7 +30,7 @@ inline bool is_locked(const Joint& joint, int row) { return joint.axis[row].mode
 
 // d(coordinate)/dt [m/s or rad/s].
 double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
-// J W J^T of one row: inverse of the mass that the two ends alone set against it [1/kg or 1/(kg m^2)].
+// J W J^T of one row: inverse of the mass that its nodes alone set against it [1/kg or 1/(kg m^2)].
 double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
 // The same while the joint's locked rows hold: what is left of J W J^T when they are eliminated. Of a hinge's angle:
 // the inertia about the hinge, not that about the centre of mass.
@@ -43,7 +44,7 @@ struct JointError {
 };
 JointError error_of(const Joint& joint, const JointReading& reading);
 
-// On end b about its anchor, world axes; zero of a joint that was not solved yet.
+// On end b about its anchor, world axes, of a joint of two nodes; zero of one that was not solved yet.
 struct Wrench {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]
 };

@@ -1,7 +1,9 @@
 // Joints: constraints that a user made. Their forces are carried over frames.
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <span>
 
 #include "base/id_pool.h"
 #include "constraints/axis.h"
@@ -13,9 +15,9 @@ namespace taut {
 struct Joint {
     static constexpr size_t kDataSize = 128;
 
-    const ConstraintType* type = nullptr;  // null: dead slot
-    uint32_t node[2] = {kNone, kNone};     // kNone: the world
-    double lambda[kMaxRows] = {};          // force of the last substep, stops and drives included [N, N m]
+    const ConstraintType* type = nullptr;                     // null: dead slot
+    uint32_t node[kMaxNodes] = {kNone, kNone, kNone, kNone};  // as many as the type has; kNone: the world
+    double lambda[kMaxRows] = {};   // force of the last substep, stops and drives included [N, N m]
     double drift[kMaxRows] = {};    // of C since the last step, by a change of length or anchors: it comes bit by
                                     // bit over the substeps of the next one, and so without a kick
     double compliance = 0;          // of each locked row [m/N]
@@ -27,6 +29,7 @@ struct Joint {
     bool plain = true;                                              // every row is locked: axis is not read
     bool direct = true;                                             // false: swept, not part of a block
     bool collide_connected = false;
+    bool inner = false;             // of something that the host knows as a whole: no handle leads to it
     uint8_t loaded = 0;             // frames under or since a load beyond what sweeps hold; partition/partition.h
     bool fresh = true;              // not solved yet: lambda means nothing
     Vec3 slow_turn = Vec3::Zero();  // low-passed angular velocity of its line [rad/s]; see ConstraintType::line
@@ -35,7 +38,14 @@ struct Joint {
     Axis axis[kMaxRows];
     AxisMemory memory[kMaxRows];
     alignas(16) unsigned char data[kDataSize] = {};  // the type's own
+
+    std::span<const uint32_t> nodes() const { return {node, static_cast<size_t>(type ? type->nodes : 0)}; }
 };
+
+inline bool ends_on(const Joint& joint, uint32_t node) {
+    const auto nodes = joint.nodes();
+    return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+}
 
 struct Joints {
     explicit Joints(Memory& memory) : ids(memory), record(memory) {}

@@ -5,6 +5,7 @@
 #include <taut/event.h>
 
 #include <algorithm>
+#include <array>
 
 #include "collision/collide.h"
 #include "state/colliders.h"
@@ -22,9 +23,10 @@ struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1,
 };
 
 struct Pair {
-    uint64_t key = 0;       // of the two colliders, see pair_key
-    uint32_t a = 0, b = 0;  // their nodes, in the order of the key
-    uint32_t part = 0;      // of a surface, see collision::PartManifold; else 0
+    uint64_t key = 0;                 // of the two colliders, see pair_key
+    uint32_t a = 0, b = 0;            // their nodes, in the order of the key
+    uint32_t a2 = kNone, b2 = kNone;  // second nodes of colliders that span two
+    uint32_t part = 0;                // of a surface, see collision::PartManifold; else 0
     collision::PairCache cache;
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
     Impulse impulse[4];            // by point: carried in, updated by the solver
@@ -43,6 +45,14 @@ constexpr uint64_t pair_key(uint32_t one, uint32_t other) {
     return one < other ? static_cast<uint64_t>(one) << 32 | other : static_cast<uint64_t>(other) << 32 | one;
 }
 
+// Calls act(node of a, node of b) for all nodes of the two sides of a pair.
+template <class Act>
+void for_sides(const Pair& pair, Act&& act) {
+    for (uint32_t a : {pair.a, pair.a2})
+        for (uint32_t b : {pair.b, pair.b2})
+            if (a != kNone && b != kNone) act(a, b);
+}
+
 // Tangents of a contact normal: the same for the same normal, continuous but for the switch of the helper axis.
 inline Vec3f tangent_of(const Vec3f& n) {
     const Vec3f axis = std::abs(n.x()) < 0.6f ? Vec3f::UnitX() : Vec3f::UnitY();
@@ -54,6 +64,11 @@ struct ActivePair {
     uint32_t a, b;  // nodes
     uint32_t pair;  // index into Pairs::list
     uint32_t points;
+    uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
+
+    bool spans() const { return a2 != kNone || b2 != kNone; }
+    std::array<uint32_t, 2> sides() const { return {a, b}; }
+    std::array<uint32_t, 4> nodes() const { return {a, b, a2, b2}; }
 };
 
 // Where a collider may be until the next frame.
@@ -114,13 +129,16 @@ void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, 
 
 // Conditions: pairs of one node, pairs of one collider, pairs of two nodes.
 inline auto ends_on(uint32_t node) {
-    return [node](const Pair& pair) { return pair.a == node || pair.b == node; };
+    return [node](const Pair& pair) { return pair.a == node || pair.b == node || pair.a2 == node || pair.b2 == node; };
 }
 inline auto ends_on_collider(uint32_t collider) {
     return [collider](const Pair& pair) { return pair.collider_a() == collider || pair.collider_b() == collider; };
 }
 inline auto between_nodes(uint32_t a, uint32_t b) {
-    return [key = pair_key(a, b)](const Pair& pair) { return pair_key(pair.a, pair.b) == key; };
+    return [a, b](const Pair& pair) {
+        auto on = [](uint32_t node, uint32_t one, uint32_t two) { return node == one || node == two; };
+        return (on(a, pair.a, pair.a2) && on(b, pair.b, pair.b2)) || (on(b, pair.a, pair.a2) && on(a, pair.b, pair.b2));
+    };
 }
 
 }  // namespace taut

@@ -27,7 +27,7 @@ void add_joint(System& system, Joint& joint) {
     block.force = joint.lambda;
     block.drift = joint.drift;
     block.slow_turn = &joint.slow_turn;
-    for (int i = 0; i < 2; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
+    for (int i = 0; i < joint.type->nodes; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
     block.compliance_block = joint.type->compliance ? joint.type->compliance(joint.data) : nullptr;
@@ -39,30 +39,97 @@ void add_joint(System& system, Joint& joint) {
     joint.fresh = false;
 }
 
+// Of a contact point, world axes.
+Vec3 position_of(const System& system, const Nodes& nodes, const Pair& pair, int k) {
+    const Pose& a = system.pose[pair.a + 1];
+    return a.x - a.R * nodes.mass[pair.a].centre + pair.manifold.points[k].position.cast<double>();
+}
+
+Mat3 basis_of(const Pair& pair) {
+    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+    Mat3 basis;
+    basis << n.cast<double>().transpose(), t1.cast<double>().transpose(), t2.cast<double>().transpose();
+    return basis;
+}
+
 // Effective anchors and offset of a contact point, so that C is the gap and zero slip at the present poses.
 ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
-    const collision::ContactPoint& point = pair.manifold.points[k];
     const Pose& a = system.pose[pair.a + 1];
     const Pose& b = system.pose[pair.b + 1];
-    const Vec3 at = a.x - a.R * nodes.mass[pair.a].centre + point.position.cast<double>();
-    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+    const Vec3 at = position_of(system, nodes, pair, k);
     ContactData data;
     data.anchor_a = a.R.transpose() * (at - a.x);
     data.anchor_b = b.R.transpose() * (at - b.x);
-    data.basis << n.cast<double>().transpose(), t1.cast<double>().transpose(), t2.cast<double>().transpose();
-    data.offset = Vec3(point.separation, 0, 0);
+    data.basis = basis_of(pair);
+    data.offset = Vec3(pair.manifold.points[k].separation, 0, 0);
     return data;
 }
 
+// Where between two nodes a point is: 0 at the first, 1 at the second.
+double share_along(const Vec3& from, const Vec3& to, const Vec3& point) {
+    const Vec3 d = to - from;
+    return std::clamp((point - from).dot(d) / std::max(d.squaredNorm(), 1e-24), 0.0, 1.0);
+}
+
+// The same where a side spans two nodes: particles, whose points are on the line between them.
+SpanContactData span_contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
+    const Vec3 at = position_of(system, nodes, pair, k);
+    const uint32_t side[2][2] = {{pair.a, pair.a2}, {pair.b, pair.b2}};
+    SpanContactData data;
+    Vec3 apart = Vec3::Zero();
+    for (int s = 0; s < 2; ++s) {
+        const double sign = s == 0 ? -1 : 1;
+        const Pose& one = system.pose[side[s][0] + 1];
+        if (side[s][1] == kNone) {
+            data.weight[s] = sign;
+            data.anchor[s] = one.R.transpose() * (at - one.x);
+            apart += sign * at;
+        } else {
+            const Pose& other = system.pose[side[s][1] + 1];
+            const double t = share_along(one.x, other.x, at);
+            data.weight[s] = sign * (1 - t);
+            data.weight[s + 2] = sign * t;
+            apart += sign * (one.x + t * (other.x - one.x));
+        }
+    }
+    data.basis = basis_of(pair);
+    data.offset = Vec3(pair.manifold.points[k].separation, 0, 0) - data.basis * apart;
+    return data;
+}
+
+Vec3 velocity_at(const System& system, uint32_t node, const Vec3& anchor) {
+    const Velocity& u = system.exact[node];
+    return u.v + u.w.cross(system.pose[node].R * anchor);
+}
+
 // Restitution times the speed of approach before the frame's forces, where that is fast enough to bounce.
-double bounce_speed(const System& system, const Pair& pair, const ContactData& point, double restitution) {
-    auto velocity_at = [&](uint32_t node, const Vec3& anchor) {
-        const Velocity& u = system.exact[node + 1];
-        return Vec3(u.v + u.w.cross(system.pose[node + 1].R * anchor));
-    };
-    const Vec3 apart = velocity_at(pair.b, point.anchor_b) - velocity_at(pair.a, point.anchor_a);
-    const double approach = -apart.dot(point.basis.row(0));
+double bounce_speed(const Vec3& apart, const Vec3& normal, double restitution) {
+    const double approach = -apart.dot(normal);
     return approach > kBounceSpeed ? restitution * approach : 0.0;
+}
+
+RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
+    RowBlock& block = add_block(system, kContact);
+    block.data = &data;
+    block.node[0] = pair.a + 1;
+    block.node[1] = pair.b + 1;
+    const Vec3 apart =
+        velocity_at(system, block.node[1], data.anchor_b) - velocity_at(system, block.node[0], data.anchor_a);
+    block.bounce = bounce_speed(apart, data.basis.row(0), pair.restitution);
+    return block;
+}
+
+RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& data) {
+    RowBlock& block = add_block(system, kSpanContact);
+    block.data = &data;
+    const uint32_t nodes[kMaxNodes] = {pair.a, pair.b, pair.a2, pair.b2};
+    Vec3 apart = Vec3::Zero();
+    for (int n = 0; n < kMaxNodes; ++n) {
+        block.node[n] = nodes[n] + 1;  // kNone becomes the world, 0
+        apart += data.weight[n] * velocity_at(system, block.node[n], data.anchor[n]);
+    }
+    block.bounce = bounce_speed(apart, data.basis.row(0), pair.restitution);
+    return block;
 }
 
 // Rows of the points of some active pairs; room for their data is reserved.
@@ -71,13 +138,11 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
     for (uint32_t p : active_pairs) {
         Pair& pair = pairs.list[pairs.active[p].pair];
         for (int k = 0; k < pair.manifold.count; ++k) {
-            rows.data.push_back(contact_data(system, nodes, pair, k));
-            RowBlock& block = add_block(system, kContact);
-            block.data = &rows.data.back();
-            block.node[0] = pair.a + 1;
-            block.node[1] = pair.b + 1;
+            RowBlock& block =
+                pairs.active[p].spans()
+                    ? add_point(system, pair, rows.span_data.emplace_back(span_contact_data(system, nodes, pair, k)))
+                    : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pair, k)));
             block.friction = pair.friction;
-            block.bounce = bounce_speed(system, pair, rows.data.back(), pair.restitution);
             block.contact = &pair.impulse[k];
             rows.impulse[block.row] = block.contact->normal;
             rows.impulse[block.row + 1] = block.contact->tangent1;
@@ -87,10 +152,11 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
 }
 
 // Addresses of contact data must not move while rows are added.
-void reserve_contacts(System& system, std::span<const uint32_t> active_pairs) {
+template <class Data>
+void reserve_points(Array<Data>& data, size_t pairs) {
     constexpr size_t kPoints = 4;
-    system.rows.data.clear();
-    system.rows.data.reserve(kPoints * active_pairs.size());
+    data.clear();
+    data.reserve(kPoints * pairs);
 }
 
 }  // namespace
@@ -112,21 +178,24 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
-    rows.joints = static_cast<uint32_t>(rows.block.size());
-    if (!contacts_as_rows) return;
-    reserve_contacts(system, group.pairs);
-    add_contacts(system, group.pairs, pairs, nodes);
+    reserve_points(rows.data, (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size());
+    reserve_points(rows.span_data, group.span_pairs.size() + group.direct_pairs.size());
+    if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
+    add_contacts(system, group.span_pairs, pairs, nodes);
+    rows.lasting = static_cast<uint32_t>(rows.block.size());
+    rows.lasting_spans = static_cast<uint32_t>(rows.span_data.size());
 }
 
 void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes) {
     if (group.direct_pairs.empty()) return;
     Rows& rows = system.rows;
-    const bool none = rows.block.size() == rows.joints;
-    rows.error.resize(none ? rows.error.size() : rows.block[rows.joints].row);
+    const bool none = rows.block.size() == rows.lasting;
+    rows.error.resize(none ? rows.error.size() : rows.block[rows.lasting].row);
     rows.impulse.resize(rows.error.size());
-    rows.jacobian.resize(none ? rows.jacobian.size() : rows.block[rows.joints].jacobian);
-    rows.block.resize(rows.joints);
-    reserve_contacts(system, group.direct_pairs);
+    rows.jacobian.resize(none ? rows.jacobian.size() : rows.block[rows.lasting].jacobian);
+    rows.block.resize(rows.lasting);
+    rows.data.clear();  // a solver that takes all contacts as rows has no blocks
+    rows.span_data.resize(rows.lasting_spans);
     for (uint32_t b : group.blocks) {
         blocks[b].first_contact = static_cast<uint32_t>(rows.block.size());
         add_contacts(system, blocks[b].pairs, pairs, nodes);

@@ -16,6 +16,7 @@
 #include "constraints/constraint.h"
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
+#include "constraints/span_contact.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 
@@ -52,14 +53,19 @@ struct RowBlock {
 };
 
 struct Rows {
-    explicit Rows(Memory& memory) : block(memory), error(memory), jacobian(memory), impulse(memory), data(memory) {}
+    explicit Rows(Memory& memory)
+        : block(memory), error(memory), jacobian(memory), impulse(memory), data(memory), span_data(memory) {}
 
-    uint32_t joints = 0;  // rows of joints come first, those of contacts after them
+    // First the rows that stay for the frame: those of joints, then those of swept contacts that come as rows. After
+    // them the contacts of blocks, new in each substep.
+    uint32_t lasting = 0;        // in block
+    uint32_t lasting_spans = 0;  // in span_data
     Array<RowBlock> block;
-    Array<double> error;      // C(x) [m or rad]           rows; assemble()
-    Array<double> jacobian;   // dC/dx                     assemble()
-    Array<double> impulse;    // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
-    Array<ContactData> data;  // of contact rows: where a solver takes all as rows, and those of blocks
+    Array<double> error;               // C(x) [m or rad]           rows; assemble()
+    Array<double> jacobian;            // dC/dx                     assemble()
+    Array<double> impulse;             // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
+    Array<ContactData> data;           // of contact rows: where a solver takes all as rows, and those of blocks
+    Array<SpanContactData> span_data;  // of contacts with a side of two nodes
 };
 
 struct System {

@@ -100,7 +100,9 @@ TEST_P(EveryConstraint, CouplesNodesOnlyIfItSaysSo) {
             i.lambda.setConstant(-1);
             return i;
         }();
-        EXPECT_GT(largest(pulled.stiffness(Curvature::positive).topRightCorner(kDof, kDof)), 0);
+        Matrix k = pulled.stiffness(Curvature::positive);
+        for (int n = 0; n < GetParam()->nodes; ++n) k.block<kDof, kDof>(kDof * n, kDof * n).setZero();
+        EXPECT_GT(largest(k), 0);
         return;
     }
     for_samples([](const Instance& at) {

@@ -104,11 +104,11 @@ TEST_P(EitherCable, StretchesByItsCompliance) {
 }
 
 // A clamped cable sags as a beam: w L^4 / (8 EI) under its own weight and F L^3 / (3 EI) under a load at its end.
-TEST(BendingCable, SagsAsABeam) {
+TEST_P(EitherCable, SagsAsABeam) {
     constexpr double kLength = 2, kPerMetre = 1, kStiffness = 400;
     for (const double load : {0.0, 2.0}) {
         CableLab lab(calm);
-        taut_cable_def d = CableLab::plan(TAUT_CABLE_LINKS);
+        taut_cable_def d = CableLab::plan(GetParam());
         const taut_pos path[2] = {{0, 0, 0}, {kLength, 0, 0}};
         d.points = path;
         d.point_count = 2;
@@ -124,6 +124,71 @@ TEST(BendingCable, SagsAsABeam) {
         const double wanted =
             kG * (kPerMetre * std::pow(kLength, 4) / 8 + load * std::pow(kLength, 3) / 3) / kStiffness;
         EXPECT_NEAR(-points_of(cable).back().y, wanted, 0.02 * wanted) << load;
+    }
+}
+
+// First frequency of a beam that is clamped at one end: 3.516 / (2 pi) sqrt(EI / (w L^4)).
+TEST_P(EitherCable, SwingsAsABeam) {
+    constexpr double kLength = 2, kPerMetre = 1, kStiffness = 50;
+    CableLab lab([](taut_world_def& def) { def.gravity = {}; });
+    taut_cable_def d = CableLab::plan(GetParam());
+    const taut_pos path[2] = {{0, 0, 0}, {kLength, 0, 0}};
+    d.points = path;
+    d.point_count = 2;
+    d.end[0] = to_world({0, 0, 0});
+    d.end[0].clamped = 1;
+    d.segment_count = 20;
+    d.mass_per_metre = kPerMetre;
+    d.bending_stiffness = kStiffness;
+    const taut_cable cable = lab.cable(d);
+    const auto bodies = bodies_of(cable);
+    for (size_t i = 1; i < bodies.size(); ++i) {  // the first mode's shape, nearly
+        const double at = points_of(cable)[i].x / kLength;
+        ok(taut_body_set_velocity(bodies[i], Vec(0, 0.2 * at * at, 0).narrow(), {}));
+    }
+    double first = 0, last = 0, before = 0;
+    int crossings = 0;
+    for (int i = 1; i < 600; ++i) {
+        lab.step();
+        const double y = points_of(cable).back().y;
+        if (before * y < 0) {
+            last = (i - y / (y - before)) / 60;
+            if (crossings++ == 0) first = last;
+        }
+        before = y;
+    }
+    ASSERT_GT(crossings, 5);
+    const double wanted = 3.516 / (2 * kPi) * std::sqrt(kStiffness / (kPerMetre * std::pow(kLength, 4)));
+    EXPECT_NEAR(0.5 * (crossings - 1) / (last - first), wanted, 0.02 * wanted);
+}
+
+// A column with a clamped foot bears pi^2 EI / (4 L^2) at its head, and no more.
+TEST_P(EitherCable, BucklesAsEulersColumn) {
+    constexpr double kLength = 2, kStiffness = 40;
+    const double critical = kPi * kPi * kStiffness / (4 * kLength * kLength);
+    for (const double share : {0.9, 1.1}) {
+        CableLab lab(calm);
+        taut_cable_def d = CableLab::plan(GetParam());
+        const taut_pos path[2] = {{0, 0, 0}, {0, kLength, 0}};
+        d.points = path;
+        d.point_count = 2;
+        d.end[0] = to_world({0, 0, 0});
+        d.end[0].clamped = 1;
+        d.segment_count = 20;
+        d.mass_per_metre = 0.01f;
+        d.gravity_scale = 0;
+        d.bending_stiffness = kStiffness;
+        d.bending_damping = 1;
+        const taut_body load = lab.particle(share * critical / kG, {0, kLength, 0});
+        d.end[1] = to_body(load);
+        lab.cable(d);
+        ok(taut_body_set_velocity(load, {0.02f, 0, 0}, {}));
+        lab.step(1800);
+        const double aside = std::abs(position(load).x);
+        if (share < 1)
+            EXPECT_LT(aside, 0.01) << share;
+        else
+            EXPECT_GT(aside, 0.3) << share;
     }
 }
 
@@ -183,7 +248,9 @@ TEST_P(Reeling, MovesTheLoadWithoutKicks) {
     }
     RecordProperty("pull_ppm", std::to_string(1e6 * worst_pull));
     EXPECT_GE(std::abs(static_cast<double>(tensions_of(cable).size()) - static_cast<double>(segments)), 11);
-    EXPECT_LT(worst_pull, w.compliance > 0 ? 5e-4 : 1e-6);
+    // Bends of particles make loops, whose rods give way a little.
+    const bool looped = w.kind == TAUT_CABLE_PARTICLES && w.bending > 0;
+    EXPECT_LT(worst_pull, w.compliance > 0 ? 5e-4 : looped ? 2e-5 : 1e-6);
     EXPECT_LT(worst_place, 1e-4);
     EXPECT_LT(worst_gap, 1e-6);
     EXPECT_LT(worst_side, 1e-3);
@@ -197,7 +264,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Winch{TAUT_CABLE_LINKS, 3, 10}, Winch{TAUT_CABLE_LINKS, -3, 10},
                     Winch{TAUT_CABLE_PARTICLES, 1, 1000, 1e-6}, Winch{TAUT_CABLE_PARTICLES, -1, 1000, 1e-6},
                     Winch{TAUT_CABLE_LINKS, 1, 1000, 1e-6}, Winch{TAUT_CABLE_LINKS, -1, 1000, 1e-6},
-                    Winch{TAUT_CABLE_LINKS, 1, 1000, 0, 10}, Winch{TAUT_CABLE_LINKS, -1, 1000, 0, 10}));
+                    Winch{TAUT_CABLE_LINKS, 1, 1000, 0, 10}, Winch{TAUT_CABLE_LINKS, -1, 1000, 0, 10},
+                    Winch{TAUT_CABLE_PARTICLES, 1, 1000, 0, 10}, Winch{TAUT_CABLE_PARTICLES, -1, 1000, 0, 10}));
 
 // A crane hauls in a load that swings, and pays it out again: bent ends are joined and cut, both ends at work.
 TEST_P(EitherCable, IsReeledWhileItSwings) {

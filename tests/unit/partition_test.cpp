@@ -444,13 +444,13 @@ TEST_F(PartitionTest, OnlyLoadedBlocksTakeTheirContactsIn) {
         build();
         return partition.blocks[0].pairs.size();
     };
-    for (int frame = 0; frame < 10; ++frame) EXPECT_EQ(taken_in(199), 0u);
-    EXPECT_EQ(taken_in(-201), 0u);
-    EXPECT_EQ(taken_in(201), 0u);
+    for (int frame = 0; frame < 10; ++frame) EXPECT_EQ(taken_in(599), 0u);
+    EXPECT_EQ(taken_in(-601), 0u);
+    EXPECT_EQ(taken_in(601), 0u);
     EXPECT_EQ(taken_in(0), 0u) << "starts again";
-    EXPECT_EQ(taken_in(201), 0u);
-    EXPECT_EQ(taken_in(201), 0u);
-    EXPECT_EQ(taken_in(201), 1u);
+    EXPECT_EQ(taken_in(601), 0u);
+    EXPECT_EQ(taken_in(601), 0u);
+    EXPECT_EQ(taken_in(601), 1u);
     for (int frame = 0; frame < 60; ++frame) EXPECT_EQ(taken_in(0), 1u) << frame;
     EXPECT_EQ(taken_in(0), 0u);
 
