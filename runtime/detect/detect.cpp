@@ -59,6 +59,18 @@ Vec3f reach_of(const Nodes& nodes, uint32_t node, double time_step) {
     return reach;
 }
 
+// A collider that moved by no more than the contact margin in this step cannot have left the box that was made before
+// it: |dx| + angle x distance of the furthest corner, the angle at most pi |sin(angle / 2)|.
+bool stays_within(const Nodes& nodes, const Collider& collider, const collision::Box& box) {
+    if (collider.node_b != kNone) return false;
+    const NodePose& before = nodes.before[collider.node];
+    const double moved = (nodes.origin(collider.node) - before.position).norm();
+    const double sine = (nodes.motion[collider.node].q * before.rotation.conjugate()).vec().norm();
+    const Vec3 middle = (0.5f * (box.lo + box.hi)).cast<double>();
+    const double furthest = (middle - before.position).norm() + 0.5 * static_cast<double>((box.hi - box.lo).norm());
+    return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin);
+}
+
 }  // namespace
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
@@ -113,7 +125,7 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
-            if (!moves(nodes, collider)) continue;
+            if (!moves(nodes, collider) || stays_within(nodes, collider, pairs.reach[c].box)) continue;
             const collision::Placement at = placement_of(nodes, collider);
             pairs.reach[c] = {collision::bounds(shapes.record[collider.shape].shape, at), Vec3f::Zero()};
         }
