@@ -215,6 +215,7 @@ void SparseBlockLdlt::find_entries() {
         numbers += static_cast<uint32_t>(rows * columns);
     }
     number_.assign(numbers, 0);
+    kept_.assign(numbers, 0);  // here, so that solving allocates nothing
 }
 
 BlockPlace SparseBlockLdlt::place(uint32_t i, uint32_t j) const {

@@ -48,7 +48,7 @@ public:
     // --- numeric: entries stay as they are while the matrix is factored
     void clear() { std::fill(number_.begin(), number_.end(), 0.0); }
     void add(BlockPlace at, const BlockPiece& piece);  // give each pair of unknowns once
-    void keep() { kept_.assign(number_.begin(), number_.end()); }
+    void keep() { std::copy(number_.begin(), number_.end(), kept_.begin()); }
     void restore() { std::copy(kept_.begin(), kept_.end(), number_.begin()); }  // the entries last kept
     // False if a pivot is not of the sign that its kind demands or not finite.
     bool factor(const PanelKernels& kernels = panel_kernels());
