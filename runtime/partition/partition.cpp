@@ -214,7 +214,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
         if (!joint_in_block_[j]) continue;
         Block& block = block_at(mover(nodes, joint.nodes()));
         block.joints.push_back(j);
-        block.identity.push_back(joint.serial << 1 | joint.plain);
+        block.identity.push_back(joint.mark());
     }
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         if (!pair_in_block_[p]) continue;
@@ -247,7 +247,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
     auto remembers = [&](const Block& old, const Block& block) {
         const uint64_t mark = block.tower
                                   ? static_cast<uint64_t>(block.nodes[0]) << 32 | nodes.ids.generation(block.nodes[0])
-                                  : joints.record[block.joints[0]].serial << 1 | joints.record[block.joints[0]].plain;
+                                  : joints.record[block.joints[0]].mark();
         return old.tower == block.tower &&
                std::find(old.identity.begin(), old.identity.end(), mark) != old.identity.end();
     };

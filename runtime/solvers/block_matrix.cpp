@@ -38,7 +38,7 @@ void BlockSolve::analyse() {
         matrix.set_unknown(i, s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6, false);
     for (uint32_t j = 0; j < joints(); ++j) {
         const ConstraintType& type = *row(j).type;
-        matrix.set_unknown(nodes_ + j, type.rows > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
+        matrix.set_unknown(nodes_ + j, row(j).held() > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
@@ -91,7 +91,7 @@ void BlockSolve::find_places() {
             const uint32_t i = local(block.node[n]);
             if (i == kNone) continue;
             place(j, kJacobian + static_cast<uint32_t>(n)) = b_.matrix.place(nodes_ + j, i);
-            for (int m = 0; m < n && block.type->couples_nodes; ++m) {
+            for (int m = 0; m < n && (block.type->couples_nodes || block.axis); ++m) {
                 const uint32_t k = local(block.node[m]);
                 if (k != kNone) place(j, coupling(n, m)) = b_.matrix.place(i, k);
             }
@@ -153,10 +153,10 @@ double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
     return kLoopCompliance * k;
 }
 
-// The locked rows; the place of every other row is taken by mu = 0.
+// The locked rows; the place of a row that is not, but comes before one that is, is taken by mu = 0.
 void BlockSolve::add_joint(uint32_t j) {
     const RowBlock& block = row(j);
-    const int rows = block.type->rows, padded = rows > 3 ? 6 : 3;
+    const int rows = block.held(), padded = size_of(nodes_ + j);
     for (int n = 0; n < block.type->nodes; ++n) {
         const uint32_t i = local(block.node[n]);
         if (i == kNone) continue;
@@ -179,6 +179,13 @@ void BlockSolve::add_joint(uint32_t j) {
     b_.matrix.add(place(j, kDiagonal), {diagonal, padded, padded, padded});
 }
 
+// Of two nodes of a bounded row. Contacts come and go, places of joints are known.
+BlockPlace BlockSolve::place(const BoundedRow& row, int n, int m) {
+    if (n == m) return b_.places[row.place[n]];
+    const uint32_t j = row.block - b_.first_row_block;
+    return j < joints() ? place(j, coupling(n, m)) : b_.matrix.place(row.place[n], row.place[m]);
+}
+
 // B^T B / c of the rows that are on; rows on the same nodes follow each other and go into the matrix together.
 void BlockSolve::add_bounded() {
     const auto rows = set.rows();
@@ -199,7 +206,7 @@ void BlockSolve::add_bounded() {
         for (int n = 0; any && n < first.nodes; ++n)
             for (int m = 0; m <= n; ++m)
                 if (first.place[n] != kNone && first.place[m] != kNone)
-                    b_.matrix.add(b_.matrix.place(first.place[n], first.place[m]),
+                    b_.matrix.add(place(first, n, m),
                                   {sum[n][m], size_of(first.place[n]), size_of(first.place[m]), kDof});
     }
 }

@@ -41,6 +41,7 @@ private:
     // block_matrix.cpp
     void find_places();
     BlockPlace& place(uint32_t j, uint32_t which);
+    BlockPlace place(const BoundedRow& row, int n, int m);
     void assemble(bool with_old);
     void add_new_stiffness();
     void add_mass(uint32_t i);

@@ -39,6 +39,15 @@ struct Joint {
     AxisMemory memory[kMaxRows];
     alignas(16) unsigned char data[kDataSize] = {};  // the type's own
 
+    // Rows up to the last locked one: as many multipliers as a direct solve needs.
+    int held() const {
+        int rows = type->rows;
+        while (!plain && rows > 0 && axis[rows - 1].mode != AxisMode::locked) --rows;
+        return rows;
+    }
+    // Tells what a direct solve's matrix is made for: who, and which rows are multipliers.
+    uint64_t mark() const { return serial << 4 | static_cast<uint64_t>(held()) << 1 | (plain ? 1 : 0); }
+
     std::span<const uint32_t> nodes() const { return {node, static_cast<size_t>(type ? type->nodes : 0)}; }
 };
 

@@ -49,6 +49,11 @@ struct RowBlock {
 
     bool angular(int r) const { return (type->angular >> r & 1) != 0; }
     bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }
+    int held() const {  // rows up to the last locked one
+        int rows = type->rows;
+        while (rows > 0 && !locked(rows - 1)) --rows;
+        return rows;
+    }
     bool locked(int r) const { return !axis || axis[r].mode == AxisMode::locked; }
 };
 
