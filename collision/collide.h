@@ -231,6 +231,28 @@ bool cast_ray(const Shape& shape, const Placement& at, const Vec3& from, const V
 bool cast_shape(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still, const Placement& at,
                 double limit, Hit& out);
 
+// A shape under way with its body: at constant velocities from its placement.
+struct Motion {
+    Placement at;
+    Vec3 centre;          // that it turns about [m]
+    Vec3 velocity, spin;  // of that centre, world axes [m/s, rad/s]
+
+    Placement after(double time) const;
+};
+
+// How far a point of the shape's core (which a ball grows to the shape) can be from a point that is as far as lever [m]
+// from the shape's origin [m].
+double spin_radius(const Shape& shape, double lever);
+
+// Radius of a ball inside the shape [m]; 0 of planes and surfaces, which a body that touches them from behind is past.
+double thickness(const Shape& shape);
+
+// When two moving shapes come as near as reach [m], if by horizon [s], and if their ways then lead deeper into each
+// other than depth [m], for what grazes does not meet: the moment [s], 0 if they are as near at the start; infinite if
+// they do not. Not two planes or surfaces.
+double find_impact(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                   double depth, double horizon);
+
 // The least distance of two shapes, in the world.
 struct Gap {
     double distance = 0;         // [m]; negative: the least push that parts them

@@ -69,6 +69,10 @@ Gap convex_gap(const Shape& a, const Placement& at_a, const Shape& b, const Plac
 bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
                     const Placement& at, double limit, Hit& out);
 
+// When two convex shapes under way come as near as reach [m]: 0 at the start; limit [s] if they do not before.
+double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                      double limit);
+
 // A convex shape above a plane: by how much [m], and its lowest point in the world.
 struct Clearance {
     double height;

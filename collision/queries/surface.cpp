@@ -196,6 +196,26 @@ bool cast_at_surface(const Shape& moving, const Placement& from, const Vec3& alo
     return any;
 }
 
+double surface_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                       double limit) {
+    const Triangles triangles(b, motion_b.at);
+    const Vec3 start = triangles.place(motion_a.centre);
+    const Vec3 end = triangles.place(motion_a.centre + limit * (motion_a.velocity - motion_b.velocity));
+    const double radius = spin_radius(a, (motion_a.at.position - motion_a.centre).norm()) + core_radius(a) + reach;
+    // A surface that turns carries its triangles round.
+    const double lever = (motion_b.centre - motion_a.centre).norm() + (end - start).norm() + radius;
+    const double turned = limit * motion_b.spin.norm() * lever;
+    const Room way = {start.cwiseMin(end), start.cwiseMax(end)};
+    double first = limit;
+    triangles.find(way.grown(radius + turned), [&](uint32_t number) {
+        const TriangleShape triangle(triangles, motion_b.at, number, inner_radius(a));
+        Motion motion = motion_b;
+        motion.at = triangle.at();
+        first = std::min(first, convex_meeting(a, motion_a, triangle.shape(), motion, reach, first));
+    });
+    return first;
+}
+
 bool surface_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
     const Triangles triangles(b, at_b);
     bool found = false;

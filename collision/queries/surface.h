@@ -11,6 +11,9 @@ bool cast_ray_at_surface(const Shape& shape, const Placement& at, const Vec3& fr
 bool cast_at_surface(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
                      const Placement& at, double limit, Hit& out);
 // b is the surface.
+// The earliest moment at which a triangle of b is as near as reach, by impact.cpp's convex_meeting; or limit.
+double surface_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                       double limit);
 bool surface_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
 Gap surface_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
 

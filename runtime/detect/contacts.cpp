@@ -1,7 +1,10 @@
 // Manifolds of pairs, the parts of surfaces among them, and the impulses that their points carry over.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "detect/detect.h"
+#include "detect/impact.h"
 
 namespace taut {
 namespace {
@@ -51,6 +54,58 @@ void combine_surfaces(const Collider& a, const Collider& b, Pair& pair) {
     pair.restitution = std::max(a.material.restitution, b.material.restitution);
 }
 
+// Two shapes as they stand in a pair, or as they will where they meet later in the time ahead [s].
+class Shaped {
+public:
+    Shaped(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs, const Pair& pair,
+           double time)
+        : a_(shapes.record[colliders.record[pair.collider_a()].shape].shape),
+          b_(shapes.record[colliders.record[pair.collider_b()].shape].shape),
+          at_a_(&pairs.placement[pair.collider_a()]),
+          at_b_(&pairs.placement[pair.collider_b()]),
+          margin_(margin_of(nodes, pair, time)) {
+        if (!fast(nodes, pairs, pair, time)) return;
+        encounter_.emplace(nodes, colliders, shapes, pairs, pair);
+        look_ahead(time);
+    }
+    Shaped(const Shaped&) = delete;
+    Shaped& operator=(const Shaped&) = delete;
+
+    const collision::Placement& at_a() const { return *at_a_; }
+    bool has_parts() const { return collision::has_parts(a_) || collision::has_parts(b_); }
+
+    void find_points(collision::PairCache& cache, collision::Manifold& manifold) const {
+        manifold.count = 0;
+        if (std::isfinite(then_)) collision::collide(a_, *at_a_, b_, *at_b_, margin_, cache, manifold);
+    }
+    void find_parts(collision::Parts& parts) const {
+        parts.found.clear();
+        if (std::isfinite(then_)) collision::collide_parts(a_, *at_a_, b_, *at_b_, margin_, parts);
+    }
+
+    void bring_to_present(Pair& pair) const {
+        if (then_ > 0) encounter_->bring_to_present(then_, pair);
+    }
+
+private:
+    void look_ahead(double time) {
+        then_ = encounter_->meeting(time);
+        if (then_ == 0 || !std::isfinite(then_)) return;
+        met_[0] = encounter_->a_after(then_);
+        met_[1] = encounter_->b_after(then_);
+        at_a_ = &met_[0];
+        at_b_ = &met_[1];
+        margin_ = kContactMargin;
+    }
+
+    const collision::Shape &a_, &b_;
+    const collision::Placement *at_a_, *at_b_;
+    float margin_;
+    double then_ = 0;                     // 0: as they stand; infinite: they do not meet
+    std::optional<Encounter> encounter_;  // of fast ones
+    collision::Placement met_[2];         // where they meet
+};
+
 // From the origin of a collider's shape, which the narrowphase knows, to that of its node.
 void move_to_node(const Nodes& nodes, const Collider& a, const collision::Placement& at,
                   collision::Manifold& manifold) {
@@ -62,10 +117,12 @@ void move_to_node(const Nodes& nodes, const Collider& a, const collision::Placem
 }
 
 // A pair's new manifold: its place and surface, and the impulses of the old one.
-void adopt(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const collision::Manifold& old,
+void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const collision::Manifold& old,
            const Impulse* before, Pair& pair) {
     const uint32_t a = pair.collider_a();
-    move_to_node(nodes, colliders.record[a], pairs.placement[a], pair.manifold);
+    move_to_node(nodes, colliders.record[a], shaped.at_a(), pair.manifold);
+    pair.apart.setZero();
+    shaped.bring_to_present(pair);
     combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
@@ -76,29 +133,11 @@ void adopt(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, c
     carry_impulses(old, carried, pair.manifold, pair.impulse);
 }
 
-// Two shapes as they stand in a pair.
-struct Shaped {
-    const collision::Shape &a, &b;
-    const collision::Placement &at_a, &at_b;
-    float margin;
-
-    Shaped(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs, const Pair& pair,
-           double time)
-        : a(shapes.record[colliders.record[pair.collider_a()].shape].shape),
-          b(shapes.record[colliders.record[pair.collider_b()].shape].shape),
-          at_a(pairs.placement[pair.collider_a()]),
-          at_b(pairs.placement[pair.collider_b()]),
-          margin(margin_of(nodes, pair, time)) {}
-
-    bool has_parts() const { return collision::has_parts(a) || collision::has_parts(b); }
-    void find_parts(collision::Parts& parts) const { collision::collide_parts(a, at_a, b, at_b, margin, parts); }
-};
-
-// Manifold of one pair at the present placements, with the impulses of the last one.
-void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+// Manifold of one pair, with the impulses of the last one.
+void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pair& pair) {
     const collision::Manifold old = pair.manifold;
-    collision::collide(shaped.a, shaped.at_a, shaped.b, shaped.at_b, shaped.margin, pair.cache, pair.manifold);
-    if (pair.manifold.count > 0) adopt(nodes, colliders, pairs, old, pair.impulse, pair);
+    shaped.find_points(pair.cache, pair.manifold);
+    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair.impulse, pair);
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -139,7 +178,7 @@ void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colli
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        adopt(nodes, colliders, pairs, before ? before->manifold : first.manifold,
+        adopt(shaped, nodes, colliders, before ? before->manifold : first.manifold,
               before ? before->impulse : first.impulse, pair);
     }
 }
@@ -163,12 +202,13 @@ void replace_parts(Pairs& pairs) {
 }
 
 // A part of a pair whose parts were just found again: one that is not among them loses its points.
-void refresh_part(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+void refresh_part(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs,
+                  Pair& pair) {
     const collision::Manifold old = pair.manifold;
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    if (pair.manifold.count > 0) adopt(nodes, colliders, pairs, old, pair.impulse, pair);
+    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair.impulse, pair);
 }
 
 }  // namespace
@@ -183,11 +223,11 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
         const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
         if (pair.part == 0) {
-            find_points(shaped, nodes, colliders, pairs, pair);
+            find_points(shaped, nodes, colliders, pair);
         } else {
             if (pair.key != found) shaped.find_parts(pairs.parts);
             found = pair.key;
-            refresh_part(nodes, colliders, pairs, pair);
+            refresh_part(shaped, nodes, colliders, pairs, pair);
         }
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }
@@ -207,7 +247,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
             if (pair.filtered || pair.part != 0) continue;
             const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
             pair.on_surface = shaped.has_parts();
-            if (!pair.on_surface) find_points(shaped, nodes, colliders, pairs, pair);
+            if (!pair.on_surface) find_points(shaped, nodes, colliders, pair);
         }
     });
     pairs.active.clear();

@@ -1,5 +1,7 @@
 #include "detect/detect.h"
 
+#include "detect/impact.h"
+
 #include <algorithm>
 
 namespace taut {
@@ -51,12 +53,20 @@ bool moves(const Nodes& nodes, const Collider& collider) {
     return collider.node != kNone && (moves(nodes, collider.node) || moves(nodes, collider.node_b));
 }
 
-// How far a node moves in a frame, for the broadphase.
-Vec3f reach_of(const Nodes& nodes, uint32_t node, double time_step) {
+// How far a node moves in a frame, for the broadphase; ahead of that where it is looked for along its way.
+Vec3f reach_of(const Nodes& nodes, uint32_t node, double time_step, bool along_way) {
     Vec3f reach = (time_step * nodes.motion[node].v).cast<float>();
     const float length = reach.norm();
-    if (length > kMaxReach) reach *= static_cast<float>(kMaxReach) / length;
+    if (length > kMaxReach) reach *= along_way ? static_cast<float>(kAhead) : static_cast<float>(kMaxReach) / length;
     return reach;
+}
+
+// Grown on all sides by the way of its furthest point, where it turns past its own thickness.
+void grow_turning(const Pace& pace, collision::Box& box) {
+    if (!(pace.turning > pace.thickness)) return;
+    const float way = static_cast<float>(pace.turning);
+    box.lo.array() -= way;
+    box.hi.array() += way;
 }
 
 // A collider that moved by no more than the contact margin in this step cannot have left the box that was made before
@@ -96,22 +106,27 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
                    collision::Broadphase& broadphase, double time_step) {
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
     pairs.reach.resize(slots);
+    pairs.pace.resize(slots);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
+            if (collider.node == kNone) continue;
+            pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape].shape, time_step);
             if (!moves(nodes, collider)) continue;
-            Vec3f ahead = reach_of(nodes, collider.node, time_step);
+            const bool along_way = std::isfinite(pairs.pace[c].thickness);
+            Vec3f ahead = reach_of(nodes, collider.node, time_step, along_way);
             Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
             if (collider.node_b != kNone) {
                 const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
                 shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
-                ahead = reach_of(nodes, collider.node_b, time_step);
+                ahead = reach_of(nodes, collider.node_b, time_step, along_way);
                 least = least.cwiseMin(ahead);
                 most = most.cwiseMax(ahead);
             }
             collision::Box box = contact_box(nodes, shapes, collider);
             box.lo += least;
             box.hi += most;
+            grow_turning(pairs.pace[c], box);
             pairs.reach[c] = {box, ahead};
         }
     });

@@ -29,6 +29,7 @@ struct Pair {
     uint32_t part = 0;                // of a surface, see collision::PartManifold; else 0
     collision::PairCache cache;
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
+    Vec3f apart = Vec3f::Zero();   // of two that meet later in the frame: points on b against those on a [m]; impact.h
     Impulse impulse[4];            // by point: carried in, updated by the solver
     float friction = 0;            // of the two surfaces together
     float restitution = 0;
@@ -77,6 +78,12 @@ struct Reach {
     Vec3f ahead;         // the motion [m]
 };
 
+// How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
+struct Pace {
+    double thickness = 0;  // [m]; infinite: not to be looked for
+    double turning = 0;    // way of its furthest point about the centre of mass [m]
+};
+
 struct Pairs {
     explicit Pairs(Memory& memory)
         : list(memory),
@@ -86,6 +93,7 @@ struct Pairs {
           ended(memory),
           joined(memory),
           reach(memory),
+          pace(memory),
           placement(memory),
           parts(memory) {}
 
@@ -99,6 +107,7 @@ struct Pairs {
     Array<uint64_t> joined;                 // keys of nodes whose joint forbids contacts, sorted
     uint64_t joined_version = 0;            // of the joints that they were taken from
     Array<Reach> reach;                     // by collider; update_bounds()
+    Array<Pace> pace;                       // by collider; update_bounds()
     Array<collision::Placement> placement;  // by collider; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };

@@ -37,7 +37,7 @@ void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, co
     }
     const Vec3 origin = nodes.origin(pair.a);  // points are relative to it
     const Vec3f com_a = (nodes.motion[pair.a].x - origin).cast<float>();
-    const Vec3f com_b = (nodes.motion[pair.b].x - origin).cast<float>();
+    const Vec3f com_b = (nodes.motion[pair.b].x - origin).cast<float>() - pair.apart;
     for (int k = 0; k < pair.manifold.count; ++k)
         fill_lane(lanes.point[g.first_point + static_cast<uint32_t>(k)], lane, pair.manifold.points[k], com_a, com_b,
                   pair.impulse[k], pair.restitution);

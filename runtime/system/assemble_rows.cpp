@@ -56,12 +56,12 @@ Mat3 basis_of(const Pair& pair) {
 ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
     const Pose& a = system.pose[pair.a + 1];
     const Pose& b = system.pose[pair.b + 1];
-    const Vec3 at = position_of(system, nodes, pair, k);
+    const Vec3 at = position_of(system, nodes, pair, k), apart = pair.apart.cast<double>();
     ContactData data;
     data.anchor_a = a.R.transpose() * (at - a.x);
-    data.anchor_b = b.R.transpose() * (at - b.x);
+    data.anchor_b = b.R.transpose() * (at + apart - b.x);
     data.basis = basis_of(pair);
-    data.offset = Vec3(pair.manifold.points[k].separation, 0, 0);
+    data.offset = Vec3(pair.manifold.points[k].separation, 0, 0) - data.basis * apart;
     return data;
 }
 

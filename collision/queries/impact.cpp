@@ -1,0 +1,122 @@
+// Bodies under way that turn as well: two shapes apart by s along n need at least s / (n . (v_a - v_b) + w_a r_a + w_b
+// r_b) to meet, r the reach of a core about the centre that it turns about (conservative advancement; Mirtich 1996).
+#include <array>
+#include <limits>
+
+#include "collision/queries/couple.h"
+#include "collision/queries/surface.h"
+
+namespace taut::collision {
+namespace {
+
+bool is_convex(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::surface; }
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+// A few as a rule. What needs more grazes; the moment reached is before the meeting.
+constexpr int kMaxSteps = 64;
+// Whether a meeting goes deep is looked at no more often.
+constexpr int kMaxLooks = 64;
+
+double spin_radius(const Shape& shape, const Motion& motion) {
+    return collision::spin_radius(shape, (motion.at.position - motion.centre).norm());
+}
+
+// How fast two shapes can come nearer across a plane with the normal, from a to b [m/s].
+class Approach {
+public:
+    Approach(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b)
+        : velocity_(motion_a.velocity - motion_b.velocity),
+          turning_(motion_a.spin.norm() * spin_radius(a, motion_a) + motion_b.spin.norm() * spin_radius(b, motion_b)) {}
+    double along(const Vec3& normal) const { return normal.dot(velocity_) + turning_; }
+    double fastest() const { return velocity_.norm() + turning_; }
+
+private:
+    Vec3 velocity_;
+    double turning_;
+};
+
+// b is the plane, which may move but, being endless, not turn much: its turning is left out.
+double plane_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                     double limit) {
+    Motion still = motion_b;
+    still.spin.setZero();
+    double t = 0;
+    for (int step = 0; step < kMaxSteps; ++step) {
+        const Clearance clear = clearance(b, still.after(t), a, motion_a.after(t));
+        if (clear.height <= reach) return t;
+        const double approach =
+            -clear.normal.dot(motion_a.velocity - motion_b.velocity) + motion_a.spin.norm() * spin_radius(a, motion_a);
+        if (!(approach > 0)) return limit;
+        t += (clear.height - 0.5 * reach) / approach;
+        if (!(t < limit)) return limit;
+    }
+    return t;
+}
+
+using Meeting = double (*)(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                           double limit);
+
+// By the kind of b; a is convex and bounded.
+constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_meeting, convex_meeting,
+                                                        convex_meeting, convex_meeting, convex_meeting,
+                                                        convex_meeting, convex_meeting, surface_meeting};
+
+// Whether the ways lead deeper than depth from the moment met on, where they are apart by reach. In doubt they do.
+bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
+                 double reach, double depth, double until) {
+    const double fastest = Approach(a, motion_a, b, motion_b).fastest();
+    double t = met, gap = reach;
+    for (int look = 0; look < kMaxLooks && t <= until; ++look) {
+        t += std::max(gap + depth, 0.5 * depth) / fastest;
+        gap = find_gap(a, motion_a.after(t), b, motion_b.after(t)).distance;
+        if (gap < -depth) return true;
+    }
+    return t <= until;
+}
+
+}  // namespace
+
+Placement Motion::after(double time) const {
+    const Mat3 turn = rotation_from_vector(time * spin).toRotationMatrix();
+    const Vec3 lever = turn * (at.position - centre);
+    return {centre + time * velocity + lever, (turn * at.rotation.cast<double>()).cast<float>()};
+}
+
+double thickness(const Shape& shape) { return is_convex(shape) ? double(inner_radius(shape)) : 0.0; }
+
+double spin_radius(const Shape& shape, double lever) {
+    const Box box = bounds(shape, {Vec3::Zero(), Mat3f::Identity()});
+    Vec3 corner = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).cast<double>();
+    if (is_convex(shape)) corner.array() -= core_radius(shape);
+    return lever + corner.norm();
+}
+
+double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                      double limit) {
+    const Approach approach(a, motion_a, b, motion_b);
+    double t = 0;
+    for (int step = 0; step < kMaxSteps; ++step) {
+        const Placement at_a = motion_a.after(t), at_b = motion_b.after(t);
+        const Couple couple(a, at_a, b, at_b);
+        const Distance cores = couple.distance(Vec3::Zero(), couple.hint());
+        if (!cores.apart) return t;
+        const double separation = couple.proven(Vec3::Zero(), cores.normal) - couple.radii();
+        if (separation <= reach) return t;
+        const double speed = approach.along(couple.to_world(cores.normal));
+        if (!(speed > 0)) return limit;
+        t += (separation - 0.5 * reach) / speed;
+        if (!(t < limit)) return limit;
+    }
+    return t;
+}
+
+double find_impact(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
+                   double depth, double horizon) {
+    if (!is_convex(a)) return find_impact(b, motion_b, a, motion_a, reach, depth, horizon);
+    const double met = kMeetings[size_t(b.kind)](a, motion_a, b, motion_b, reach, horizon);
+    if (met == 0) return 0;
+    if (!(met < horizon)) return kNever;
+    return passes_deep(a, motion_a, b, motion_b, met, reach, depth, 2 * horizon) ? met : kNever;
+}
+
+}  // namespace taut::collision

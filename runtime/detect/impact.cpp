@@ -1,0 +1,80 @@
+#include "detect/impact.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace taut {
+namespace {
+
+constexpr double kReach = 0.25 * static_cast<double>(kContactMargin);  // as near as this have met [m], and
+constexpr double kReachOfThickness = 0.25;                             // so much of the thicker one at most
+constexpr double kDepth = 0.25;  // of the thinner one: what stays above grazes, and is left to the next frame
+
+// World from body, as placed.
+Mat3 rotation_of(const Collider& collider, const collision::Placement& at) {
+    return at.rotation.cast<double>() * collider.rotation.conjugate().toRotationMatrix();
+}
+
+// The node's motion from where its collider is placed now.
+collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const collision::Placement& at) {
+    const NodeMotion& m = nodes.motion[collider.node];
+    const Vec3 lever = nodes.mass[collider.node].centre - collider.position;
+    return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w};
+}
+
+// Displacement of a centre, and the turning of levers about it, from now to then.
+struct Way {
+    Way(const collision::Motion& motion, double then)
+        : dx(then * motion.velocity), turn(rotation_from_vector(then * motion.spin)) {}
+    // Of a point at the lever now.
+    Vec3 moved(const Vec3& lever) const { return dx + turn * lever - lever; }
+
+    Vec3 dx;
+    Quat turn;
+};
+
+}  // namespace
+
+Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time) {
+    if (collider.node_b != kNone) return {std::numeric_limits<double>::infinity(), 0};
+    const double lever = (collider.position - nodes.mass[collider.node].centre).norm();
+    const double spin = nodes.motion[collider.node].w.norm();
+    return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0};
+}
+
+bool fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {
+    const Pace &a = pairs.pace[pair.collider_a()], &b = pairs.pace[pair.collider_b()];
+    const double linear = time * (nodes.motion[pair.a].v - nodes.motion[pair.b].v).norm();
+    return linear + a.turning + b.turning > a.thickness + b.thickness;
+}
+
+Encounter::Encounter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+                     const Pair& pair)
+    : a_(shapes.record[colliders.record[pair.collider_a()].shape].shape),
+      b_(shapes.record[colliders.record[pair.collider_b()].shape].shape),
+      motion_a_(motion_of(nodes, colliders.record[pair.collider_a()], pairs.placement[pair.collider_a()])),
+      motion_b_(motion_of(nodes, colliders.record[pair.collider_b()], pairs.placement[pair.collider_b()])),
+      arm_a_(rotation_of(colliders.record[pair.collider_a()], motion_a_.at) * nodes.mass[pair.a].centre) {}
+
+double Encounter::meeting(double time) const {
+    const double one = collision::thickness(a_), other = collision::thickness(b_);
+    const double thinner = one > 0 && other > 0 ? std::min(one, other) : std::max(one, other);
+    const double reach = std::min(kReach, kReachOfThickness * std::max(one, other));
+    return collision::find_impact(a_, motion_a_, b_, motion_b_, reach, kDepth * thinner, kAhead * time);
+}
+
+// Levers stay as they are then, when they matter.
+void Encounter::bring_to_present(double then, Pair& pair) const {
+    const Way way_a(motion_a_, then), way_b(motion_b_, then);
+    const Vec3 n = pair.manifold.normal.cast<double>();
+    const Vec3 between = motion_b_.centre + way_b.dx - motion_a_.centre - way_a.dx;  // then
+    for (int k = 0; k < pair.manifold.count; ++k) {
+        collision::ContactPoint& point = pair.manifold.points[k];
+        const Vec3 lever_a = point.position.cast<double>() - way_a.turn * arm_a_, lever_b = lever_a - between;
+        point.position = (arm_a_ + lever_a).cast<float>();
+        point.separation -= static_cast<float>(n.dot(way_b.moved(lever_b) - way_a.moved(lever_a)));
+    }
+    pair.apart = (way_a.dx - way_b.dx).cast<float>();
+}
+
+}  // namespace taut

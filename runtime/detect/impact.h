@@ -1,0 +1,42 @@
+// Continuous collision: what moves past its own thickness in a frame is looked for along its way. The contact is that
+// of the moment at which the two shapes meet, told at the present poses: its separation is what is left of the way. So
+// the solver, which lets a gap close but no more, stops them where they meet, two-way and in one system with the rest.
+//
+//   gap now = gap then - n . ((x_b + R_b r_b) - (x_a + R_a r_a)) from now to then, r as they are then
+#pragma once
+
+#include "collision/collide.h"
+#include "state/colliders.h"
+#include "state/pairs.h"
+#include "state/shapes.h"
+
+namespace taut {
+
+// Forces of the frame may speed up what is under way: so many frames are looked ahead.
+constexpr double kAhead = 1.25;
+
+Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time);
+
+// Whether two colliders move further against each other in time [s] than they are thick.
+bool fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time);
+
+// Two colliders under way.
+class Encounter {
+public:
+    Encounter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+              const Pair& pair);
+
+    // When they meet within time [s]: infinite if they do not, 0 where they are close by now.
+    double meeting(double time) const;
+    collision::Placement a_after(double time) const { return motion_a_.after(time); }
+    collision::Placement b_after(double time) const { return motion_b_.after(time); }
+    // A pair's points from the moment `then` [s] to the present: separations, Pair::apart, and positions at side a.
+    void bring_to_present(double then, Pair& pair) const;
+
+private:
+    const collision::Shape &a_, &b_;
+    collision::Motion motion_a_, motion_b_;
+    Vec3 arm_a_;  // from the origin of a's node, which positions are relative to, to its centre of mass [m]
+};
+
+}  // namespace taut

@@ -1,0 +1,120 @@
+// Nothing tunnels: bodies that pass many times their own thickness in a step, against walls thinner than that.
+#include <random>
+
+#include "physics/surface_lab.h"
+
+using namespace lab;
+
+namespace {
+
+void weightless(taut_world_def& def) { def.gravity = {0, 0, 0}; }
+
+double between(std::mt19937& random, double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+}
+
+Vec direction(std::mt19937& random) {
+    for (;;) {
+        const Vec v(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));
+        if (norm(v) > 0.1 && norm(v) < 1) return unit(v);
+    }
+}
+
+enum class Bullet { ball, box, rod, hull };
+enum class Wall { thick, plate, sheet, mesh, plane };
+
+taut_shape shape_of(const World& world, Bullet bullet) {
+    if (bullet == Bullet::ball) return world.sphere(0.02);
+    if (bullet == Bullet::box) return world.box({0.05, 0.03, 0.04});
+    if (bullet == Bullet::rod) {
+        taut_capsule_def d;
+        taut_capsule_def_init(&d);
+        d.radius = 0.01f;
+        d.half_length = 0.3f;
+        taut_shape out{};
+        ok(taut_world_add_capsule(world.handle, &d, &out));
+        return out;
+    }
+    const taut_vec3 points[] = {
+        {0.06f, 0, 0}, {-0.04f, 0.04f, 0.01f}, {-0.03f, -0.04f, 0}, {0, 0.01f, 0.05f}, {0, 0, -0.05f}};
+    taut_hull_def d;
+    taut_hull_def_init(&d);
+    d.points = points;
+    d.point_count = 5;
+    taut_shape out{};
+    ok(taut_world_add_hull(world.handle, &d, &out));
+    return out;
+}
+
+// Across x = 0; bodies come from the side of negative x.
+taut_shape shape_of(const World& world, Wall wall) {
+    if (wall == Wall::thick) return world.box({0.2, 6, 6});
+    if (wall == Wall::plate) return world.box({0.01, 6, 6});
+    if (wall == Wall::sheet) return world.box({0.001, 6, 6});
+    if (wall == Wall::plane) return world.plane({-1, 0, 0});
+    Triangles triangles;
+    for (int i = -6; i < 6; ++i)
+        for (int k = -6; k < 6; ++k)
+            triangles.add_quad({0, i * 1.0, k * 1.0}, {0, i * 1.0, k + 1.0}, {0, i + 1.0, k + 1.0},
+                               {0, i + 1.0, k * 1.0}, (i + k) % 2 != 0);
+    return mesh(world, triangles, true);
+}
+
+struct Row {
+    const char* name;
+    Bullet bullet;
+    Wall wall;
+};
+
+struct Tunnel : testing::TestWithParam<Row> {};
+
+// Of 40 shots at a speed, those that came through, in any step before they are due to have slid off the wall.
+int through(const Row& row, double speed, double restitution, uint32_t seed) {
+    std::mt19937 random(seed);
+    int lost = 0;
+    for (int shot = 0; shot < 40; ++shot) {
+        World world(weightless);
+        world.add({.kind = TAUT_BODY_STATIC, .shape = shape_of(world, row.wall), .restitution = restitution});
+        const double angle = between(random, 0, 0.7), round = between(random, 0, 2 * kPi);
+        const Vec way(std::cos(angle), std::sin(angle) * std::cos(round), std::sin(angle) * std::sin(round));
+        const Vec start = -between(random, 0.6, 3) * way;
+        const taut_body bullet = world.add({.shape = shape_of(world, row.bullet),
+                                            .position = start,
+                                            .rotation = Quat::turn(direction(random), between(random, 0, kPi)),
+                                            .velocity = speed * way,
+                                            .spin = between(random, 0, 60) * direction(random),
+                                            .mass = 0.1,
+                                            .restitution = restitution});
+        bool passed = false;
+        for (int frame = 0; frame * world.frame() * speed < 4; ++frame) {
+            world.step();
+            const Vec p = position(bullet);
+            passed = passed || !finite(bullet) || (p.x > 0 && std::abs(p.y) < 5.5 && std::abs(p.z) < 5.5);
+        }
+        lost += passed;
+    }
+    return lost;
+}
+
+TEST_P(Tunnel, NothingComesThroughAtAnySpeed) {
+    for (double speed : {20.0, 50.0, 100.0, 300.0, 1000.0, 5000.0})
+        for (double restitution : {0.0, 0.7})
+            EXPECT_EQ(through(GetParam(), speed, restitution, 1), 0) << speed << " m/s, restitution " << restitution;
+}
+
+const Row kRows[] = {
+    {"ball_thick", Bullet::ball, Wall::thick}, {"ball_plate", Bullet::ball, Wall::plate},
+    {"ball_sheet", Bullet::ball, Wall::sheet}, {"ball_mesh", Bullet::ball, Wall::mesh},
+    {"ball_plane", Bullet::ball, Wall::plane}, {"box_plate", Bullet::box, Wall::plate},
+    {"box_sheet", Bullet::box, Wall::sheet},   {"box_mesh", Bullet::box, Wall::mesh},
+    {"box_plane", Bullet::box, Wall::plane},   {"rod_plate", Bullet::rod, Wall::plate},
+    {"rod_sheet", Bullet::rod, Wall::sheet},   {"rod_mesh", Bullet::rod, Wall::mesh},
+    {"rod_plane", Bullet::rod, Wall::plane},   {"hull_plate", Bullet::hull, Wall::plate},
+    {"hull_mesh", Bullet::hull, Wall::mesh},   {"hull_plane", Bullet::hull, Wall::plane},
+};
+
+std::string name_of(const testing::TestParamInfo<Row>& row) { return row.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Bullets, Tunnel, testing::ValuesIn(kRows), name_of);
+
+}  // namespace
