@@ -22,6 +22,10 @@ struct Collider {
     taut_material material{};
     taut_filter filter{};
     uint64_t user_data = 0;
+    // Of its surface against the body, in the shape's frame: surface_velocity + surface_spin x p [m/s], [rad/s].
+    Vec3f surface_velocity = Vec3f::Zero(), surface_spin = Vec3f::Zero();
+
+    bool driven() const { return surface_velocity != Vec3f::Zero() || surface_spin != Vec3f::Zero(); }
 
     bool at_origin() const { return position == Vec3::Zero() && rotation.coeffs() == Quat::Identity().coeffs(); }
 };
