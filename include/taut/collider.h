@@ -24,7 +24,8 @@ typedef enum taut_combine {
     TAUT_COMBINE_AVERAGE = 2,        /**< (a + b) / 2 */
     TAUT_COMBINE_MINIMUM = 3,        /**< min(a, b) */
     TAUT_COMBINE_PRODUCT = 4,        /**< a b */
-    TAUT_COMBINE_MAXIMUM = 5         /**< max(a, b) */
+    TAUT_COMBINE_MAXIMUM = 5,        /**< max(a, b) */
+    TAUT_COMBINE_MAX = 0x7fffffff
 } taut_combine;
 
 /**

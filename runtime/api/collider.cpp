@@ -245,6 +245,7 @@ taut_result taut_collider_set_surface_velocity(taut_collider handle, taut_vec3 v
         if (!check_own(check, world, collider.node)) return check.result();
         collider.surface_velocity = to_vec(velocity).cast<float>();
         collider.surface_spin = to_vec(spin).cast<float>();
+        collider.driven = collider.surface_velocity != Vec3f::Zero() || collider.surface_spin != Vec3f::Zero();
         return TAUT_OK;
     });
 }

@@ -29,7 +29,7 @@ void add_surface(Hash& hash, const Collider& collider) {
         hash.add(m.rolling_friction);
         hash.add(m.spinning_friction);
     }
-    if (!collider.driven()) return;
+    if (!collider.driven) return;
     for (const Vec3f* v : {&collider.surface_velocity, &collider.surface_spin}) hash.add(Vec3(v->cast<double>()));
 }
 

@@ -38,7 +38,7 @@ struct Pair {
     // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
     // bodies: drive + drive_spin x p [m/s], world axes, p as the points of the manifold.
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
-    bool driven = false;      // any of that
+    bool driven = false;      // else these two mean nothing
     bool on_surface = false;  // a shape has parts; of records with part 0
     bool filtered = false;    // never collides (filter, joint); kept to remember the answer
     bool touching = false;    // had a point at the end of the last step; part 0: or another part had
