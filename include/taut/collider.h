@@ -14,10 +14,35 @@
 extern "C" {
 #endif
 
-/** Surface of a collider. A pair uses sqrt(friction_a * friction_b) and max(restitution_a, restitution_b). */
+/**
+ * How a coefficient of a pair follows from those of its two surfaces, a and b. Where the surfaces name different
+ * rules, the one further down this list is used.
+ */
+typedef enum taut_combine {
+    TAUT_COMBINE_DEFAULT = 0,        /**< friction: geometric mean; restitution: maximum */
+    TAUT_COMBINE_GEOMETRIC_MEAN = 1, /**< sqrt(a b) */
+    TAUT_COMBINE_AVERAGE = 2,        /**< (a + b) / 2 */
+    TAUT_COMBINE_MINIMUM = 3,        /**< min(a, b) */
+    TAUT_COMBINE_PRODUCT = 4,        /**< a b */
+    TAUT_COMBINE_MAXIMUM = 5,        /**< max(a, b) */
+    TAUT_COMBINE_MAX = 0x7fffffff
+} taut_combine;
+
+/**
+ * Surface of a collider. Fields not named in an initialiser are 0, which is the default of all but the first.
+ *
+ * Rolling and spinning friction are what a soft surface does to a body that rolls or spins on it: a torque of at most
+ * their length times the contact's normal force, against the relative rotation about the axes in the contact's plane
+ * and about its normal. A ball of radius r stays on slopes up to tan(angle) = rolling_friction / r. A pair uses the
+ * larger value of its two surfaces. Particles do not rotate, and are not affected.
+ */
 typedef struct taut_material {
-    float friction;    /**< Coulomb coefficient, [0, 100]. Default 0.5 */
-    float restitution; /**< approach speed kept as separation speed, [0, 1]. Default 0 */
+    float friction;                /**< Coulomb coefficient, [0, 100]. Default 0.5 */
+    float restitution;             /**< approach speed kept as separation speed, [0, 1]. Default 0 */
+    taut_combine friction_rule;    /**< of friction in a pair */
+    taut_combine restitution_rule; /**< of restitution in a pair */
+    float rolling_friction;        /**< arm of the rolling resistance [m], [0, 1000]. Default 0 */
+    float spinning_friction;       /**< arm of the torque against spinning [m], [0, 1000]. Default 0 */
 } taut_material;
 
 /**
@@ -75,7 +100,7 @@ TAUT_API taut_result taut_body_get_colliders(taut_body body, taut_collider* coll
  */
 TAUT_API taut_result taut_body_set_mass_from_colliders(taut_body body);
 
-/** The collider as a def would make it anew. */
+/** The collider as a def would make it anew, but for its surface velocity. */
 TAUT_API taut_result taut_collider_get_def(taut_collider collider, taut_collider_def* out);
 TAUT_API taut_result taut_collider_get_body(taut_collider collider, taut_body* out);
 TAUT_API taut_result taut_collider_get_user_data(taut_collider collider, uint64_t* out);
@@ -91,6 +116,18 @@ TAUT_API taut_result taut_collider_set_material(taut_collider collider, const ta
 TAUT_API taut_result taut_collider_set_filter(taut_collider collider, const taut_filter* filter);
 /** Changes its share in a mass taken from colliders [kg/m^3], [0, 1e8]; the body's mass stays as it is. */
 TAUT_API taut_result taut_collider_set_density(taut_collider collider, float density);
+/**
+ * Moves the surface of a collider along itself while its body stays as it is: a conveyor belt, a turntable, a track.
+ * At a point p, in the collider's frame (that of its shape, which turns with the body), the surface runs at
+ * velocity + spin x p. Friction drives what touches it to the part of this along the contact's plane, with the
+ * opposite force on the collider's body. Kept until the next call; 0 by default.
+ * @param velocity [m/s], length at most 10000. @param spin [rad/s], length at most 10000.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names argument and value), TAUT_IN_USE (of a cable), TAUT_STALE_HANDLE,
+ *         TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_collider_set_surface_velocity(taut_collider collider, taut_vec3 velocity, taut_vec3 spin);
+/** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_collider_get_surface_velocity(taut_collider collider, taut_vec3* velocity, taut_vec3* spin);
 
 #ifdef __cplusplus
 }

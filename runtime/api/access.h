@@ -28,6 +28,7 @@ constexpr Range kGravity{-1e4, 1e4};   // [m/s^2]
 constexpr Range kGravityScale{-1000, 1000};
 constexpr Range kTimeStep{1e-4, 0.1};  // [s]
 constexpr Range kFriction{0, 100};
+constexpr Range kFrictionArm{0, 1000};  // [m]
 constexpr Range kUnitInterval{0, 1};
 constexpr Range kDensity{0, 1e8, true};                                       // [kg/m^3]
 constexpr Range kBodyMass{1e-6, 1e15};                                        // [kg]

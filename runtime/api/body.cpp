@@ -38,7 +38,7 @@ Check& check_def(Check& check, const taut_body_def& def) {
         check.zero("linear_velocity", def.linear_velocity, "for a static body")
             .zero("angular_velocity", def.angular_velocity, "for a static body");
     }
-    check_material(check, "material.friction", "material.restitution", def.material)
+    check_material(check, kMaterialInDef, def.material)
         .zero("filter.reserved", def.filter.reserved)
         .number("density", def.density, kDensity)
         .zero_or("mass", def.mass, kBodyMass)
@@ -202,8 +202,7 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         .bounded("position", def->position, kPosition)
         .bounded("velocity", def->velocity, kSpeed)
         .number("gravity_scale", def->gravity_scale, kGravityScale);
-    check_material(check, "material.friction", "material.restitution", def->material)
-        .zero("filter.reserved", def->filter.reserved);
+    check_material(check, kMaterialInDef, def->material).zero("filter.reserved", def->filter.reserved);
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         const bool has_shape = def->shape.bits != 0;
@@ -293,7 +292,7 @@ taut_result taut_body_get_material(taut_body handle, taut_material* out) {
 taut_result taut_body_set_material(taut_body handle, const taut_material* material) {
     Check check(__func__);
     if (!check.pointer("material", material)) return check.result();
-    if (!check_material(check, "friction", "restitution", *material)) return check.result();
+    if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         for_colliders(world.nodes, world.colliders, node,
                       [&](uint32_t c) { world.colliders.record[c].material = *material; });

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "api/access.h"
+#include "api/collider_def.h"
 #include "models/cable.h"
 #include "models/cable_path.h"
 
@@ -70,9 +71,8 @@ bool check_def(Check& check, const taut_cable_def& def) {
         .number("stretch_compliance", def.stretch_compliance, kStretch)
         .number("stretch_damping", def.stretch_damping, kCableDamping)
         .zero_or("bending_stiffness", def.bending_stiffness, kBending)
-        .number("bending_damping", def.bending_damping, kCableDamping)
-        .number("material.friction", def.material.friction, kFriction)
-        .number("material.restitution", def.material.restitution, kUnitInterval)
+        .number("bending_damping", def.bending_damping, kCableDamping);
+    check_material(check, kMaterialInDef, def.material)
         .zero("filter.reserved", def.filter.reserved)
         .boolean("self_collision", def.self_collision)
         .number("gravity_scale", def.gravity_scale, kGravityScale);

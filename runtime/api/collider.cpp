@@ -12,9 +12,13 @@ using namespace taut;
 
 namespace taut {
 
-Check& check_material(Check& check, const char* friction, const char* restitution, const taut_material& material) {
-    return check.number(friction, material.friction, kFriction)
-        .number(restitution, material.restitution, kUnitInterval);
+Check& check_material(Check& check, const MaterialNames& names, const taut_material& material) {
+    return check.number(names.friction, material.friction, kFriction)
+        .number(names.restitution, material.restitution, kUnitInterval)
+        .choice(names.friction_rule, material.friction_rule, TAUT_COMBINE_MAXIMUM)
+        .choice(names.restitution_rule, material.restitution_rule, TAUT_COMBINE_MAXIMUM)
+        .number(names.rolling_friction, material.rolling_friction, kFrictionArm)
+        .number(names.spinning_friction, material.spinning_friction, kFrictionArm);
 }
 
 Check& check_collider_def(Check& check, const taut_collider_def& def) {
@@ -22,8 +26,7 @@ Check& check_collider_def(Check& check, const taut_collider_def& def) {
         .zero_or("density", def.density, kDensity)
         .vector("position", def.position, kShapeCoordinate)
         .rotation("rotation", def.rotation);
-    return check_material(check, "material.friction", "material.restitution", def.material)
-        .zero("filter.reserved", def.filter.reserved);
+    return check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
 }
 
 taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def,
@@ -206,7 +209,7 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
 taut_result taut_collider_set_material(taut_collider handle, const taut_material* material) {
     Check check(__func__);
     if (!check.pointer("material", material)) return check.result();
-    if (!check_material(check, "friction", "restitution", *material)) return check.result();
+    if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         world.colliders.record[collider].material = *material;
         return TAUT_OK;
@@ -230,6 +233,30 @@ taut_result taut_collider_set_density(taut_collider handle, float density) {
     if (!check.zero_or("density", density, kDensity)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         world.colliders.record[collider].density = density;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_surface_velocity(taut_collider handle, taut_vec3 velocity, taut_vec3 spin) {
+    Check check(__func__);
+    if (!check.bounded("velocity", velocity, kSpeed).bounded("spin", spin, kSpeed)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        Collider& collider = world.colliders.record[index];
+        if (!check_own(check, world, collider.node)) return check.result();
+        collider.surface_velocity = to_vec(velocity).cast<float>();
+        collider.surface_spin = to_vec(spin).cast<float>();
+        collider.driven = collider.surface_velocity != Vec3f::Zero() || collider.surface_spin != Vec3f::Zero();
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_get_surface_velocity(taut_collider handle, taut_vec3* velocity, taut_vec3* spin) {
+    Check check(__func__);
+    if (!check.pointer("velocity", velocity).pointer("spin", spin)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
+        const Collider& collider = world.colliders.record[index];
+        *velocity = to_vec3(collider.surface_velocity.cast<double>());
+        *spin = to_vec3(collider.surface_spin.cast<double>());
         return TAUT_OK;
     });
 }

@@ -5,10 +5,20 @@
 
 namespace taut {
 
-constexpr taut_material kDefaultMaterial{0.5f, 0};
+constexpr taut_material kDefaultMaterial{0.5f, 0, TAUT_COMBINE_DEFAULT, TAUT_COMBINE_DEFAULT, 0, 0};
 constexpr taut_filter kDefaultFilter{1, UINT64_MAX, 0, 0};
 
-Check& check_material(Check& check, const char* friction, const char* restitution, const taut_material& material);
+// What a refusal calls the fields of a material.
+struct MaterialNames {
+    const char *friction, *restitution, *friction_rule, *restitution_rule, *rolling_friction, *spinning_friction;
+};
+constexpr MaterialNames kMaterialAlone{"friction",         "restitution",      "friction_rule",
+                                       "restitution_rule", "rolling_friction", "spinning_friction"};
+constexpr MaterialNames kMaterialInDef{"material.friction",         "material.restitution",
+                                       "material.friction_rule",    "material.restitution_rule",
+                                       "material.rolling_friction", "material.spinning_friction"};
+
+Check& check_material(Check& check, const MaterialNames& names, const taut_material& material);
 Check& check_collider_def(Check& check, const taut_collider_def& def);
 
 // The collider that a checked def asks for on a body of this kind, but for its node; its shape is looked up.

@@ -34,9 +34,13 @@ void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& froz
 }
 
 void drop_bad_impulses(Pairs& pairs, Joints& joints) {
-    for (Pair& pair : pairs.list)
-        for (Impulse& p : pair.impulse)
-            if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
+    const auto drop = [](Impulse& p) {
+        if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
+    };
+    for (Pair& pair : pairs.list) {
+        for (Impulse& p : pair.impulse) drop(p);
+        drop(pair.turning);
+    }
     for (Joint& joint : joints.record) {
         bool bad = false;
         for (double& force : joint.lambda) {

@@ -38,6 +38,7 @@ enum class Curvature {
 enum class Bound : uint8_t {
     free,  // equality: any lambda
     cone,  // row 0 >= 0, rows 1 and 2 within friction * row 0
+    load,  // row 0, and rows 1 and 2, each within an arm times the normal impulses of the contact that they belong to
 };
 
 // The line that a constraint keeps taut between two nodes: from the end of a lever on a to the end of one on b [m].
@@ -75,6 +76,7 @@ extern const ConstraintType kDistance;
 extern const ConstraintType kBend;
 extern const ConstraintType kContact;
 extern const ConstraintType kSpanContact;
+extern const ConstraintType kRolling;
 // Between joint frames (joint_frames.h); their coordinates are stated in their files.
 extern const ConstraintType kFixed;
 extern const ConstraintType kHinge;

@@ -23,13 +23,29 @@ struct alignas(32) SweepShift {        // since the contacts were found
     float dq[4] = {0, 0, 0, 1};        // rotation x, y, z, w
 };
 
+constexpr uint32_t kNoLanes = UINT32_MAX;
+
 struct alignas(32) LaneGroup {
     uint32_t a[kLanes], b[kLanes];  // index into arrays by node
     uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
     float normal[3][kLanes], tangent[3][kLanes];
     float friction[kLanes];
-    uint32_t first_point;  // in LanePoint, one for each of `points`
-    uint32_t points;       // most points of a lane
+    uint32_t first_point;             // in LanePoint, one for each of `points`
+    uint32_t points;                  // most points of a lane
+    uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no surface of a lane moves
+    uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has rolling or spinning friction
+};
+
+struct alignas(32) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move
+    float speed[2][kLanes];     // along the tangents [m/s]
+};
+
+struct alignas(32) LaneRolling {   // about normal, tangent 1, tangent 2; lanes without it have zero arms
+    float arm[2][kLanes];          // of spinning and of rolling [m]
+    float spin_mass[kLanes];       // 1 / k about the normal [kg m^2]
+    float roll_mass[3][kLanes];    // inverse of the 2x2 block about the tangents: 11, 22, 12 [kg m^2]
+    float isotropic_mass[kLanes];  // 1 / its larger eigenvalue [kg m^2]
+    float impulse[3][kLanes];      // [N m s]
 };
 
 struct alignas(32) LanePoint {           // empty places have zero masses
@@ -49,18 +65,23 @@ struct alignas(32) LanePoint {           // empty places have zero masses
 struct LaneView {
     const LaneGroup* group;
     LanePoint* point;
+    const LaneDrive* drive;
+    LaneRolling* rolling;
 };
 
 struct ContactLanes {
-    explicit ContactLanes(Memory& memory) : group(memory), point(memory), colour_begin(memory) {}
+    explicit ContactLanes(Memory& memory)
+        : group(memory), point(memory), drive(memory), rolling(memory), colour_begin(memory) {}
 
     Array<LaneGroup> group;
     Array<LanePoint> point;
+    Array<LaneDrive> drive;
+    Array<LaneRolling> rolling;
     Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
 
     bool bounces = false;  // some point has restitution
 
-    LaneView view() { return {group.data(), point.data()}; }
+    LaneView view() { return {group.data(), point.data(), drive.data(), rolling.data()}; }
 };
 
 // Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.

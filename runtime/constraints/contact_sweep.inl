@@ -3,7 +3,9 @@
 // Soft normal row (frequency f, damping ratio z, om = 2 pi f): compliance k_n / a2, a1 = 2 z + h om, a2 = h om a1:
 //   dp = -mass_scale/k_n (vn + bias) - impulse_scale p,  p >= 0
 // Friction on the circular cone: q = p_t - K^-1 v_t; if |q| > mu p_n the step is isotropic, q = p_t - v_t / k_max,
-// which opposes the slip, then projected on the circle.
+// which opposes the slip, then projected on the circle. Where surfaces move, v_t is what misses their speed.
+// Rolling and spinning friction: the same on the relative angular velocity, after the points of a pair, with the sum of
+// their normal impulses times an arm as the limit.
 #pragma once
 
 #include "constraints/contact_lanes.h"
@@ -54,6 +56,13 @@ struct ContactSweep {
         }
         V at(const V& r) const {  // v + w x r
             return V{velocity[0], velocity[1], velocity[2]} + cross(V{velocity[4], velocity[5], velocity[6]}, r);
+        }
+        V spin() const { return {velocity[4], velocity[5], velocity[6]}; }
+        void add_spin(const V& l) {
+            const V change = turn(l);
+            velocity[4] = velocity[4] + change.x;
+            velocity[5] = velocity[5] + change.y;
+            velocity[6] = velocity[6] + change.z;
         }
         void add(const V& p, const V& r) {
             velocity[0] = velocity[0] + inv_mass * p.x;
@@ -113,13 +122,12 @@ struct ContactSweep {
         return {zero - v.x, zero - v.y, zero - v.z};
     }
 
-    static void friction_rows(LanePoint& p, const Frame& f, const V& ra, const V& rb, Side& a, Side& b) {
-        const V slip = b.at(rb) - a.at(ra);
-        const F v1 = dot(slip, f.t1), v2 = dot(slip, f.t2);
-        const F old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
-        const F m11 = F::load(p.friction_mass[0]), m22 = F::load(p.friction_mass[1]), m12 = F::load(p.friction_mass[2]);
-        const F iso = F::load(p.isotropic_mass);
-        const F limit = f.friction * F::load(p.impulse[0]);
+    // Changes an impulse in the plane of two rows by one step against their speeds, and keeps it within a circle.
+    [[gnu::always_inline]] static void circle(F& p1, F& p2, const F& v1, const F& v2, const float (&mass)[3][kLanes],
+                                              const float (&isotropic_mass)[kLanes], const F& limit) {
+        const F old1 = p1, old2 = p2;
+        const F m11 = F::load(mass[0]), m22 = F::load(mass[1]), m12 = F::load(mass[2]);
+        const F iso = F::load(isotropic_mass);
         F q1 = old1 - (m11 * v1 + m12 * v2), q2 = old2 - (m12 * v1 + m22 * v2);
         const F inside = q1 * q1 + q2 * q2, squared = limit * limit;
         q1 = F::if_greater(inside, squared, old1 - iso * v1, q1);
@@ -127,13 +135,76 @@ struct ContactSweep {
         const F length2 = q1 * q1 + q2 * q2;
         const F one = F::all(1);
         const F scale = F::if_greater(length2, squared, limit / F::sqrt(F::max(length2, F::all(1e-30f))), one);
-        q1 = scale * q1;
-        q2 = scale * q2;
+        p1 = scale * q1;
+        p2 = scale * q2;
+    }
+
+    static void friction_rows(LanePoint& p, const LaneDrive* drive, const Frame& f, const V& ra, const V& rb, Side& a,
+                              Side& b) {
+        const V slip = b.at(rb) - a.at(ra);
+        F v1 = dot(slip, f.t1), v2 = dot(slip, f.t2);
+        if (drive) {
+            v1 = v1 - F::load(drive->speed[0]);
+            v2 = v2 - F::load(drive->speed[1]);
+        }
+        const F old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
+        F q1 = old1, q2 = old2;
+        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, f.friction * F::load(p.impulse[0]));
         q1.store(p.impulse[1]);
         q2.store(p.impulse[2]);
         const V push = (q1 - old1) * f.t1 + (q2 - old2) * f.t2;
         b.add(push, rb);
         a.add(zero_minus(push), ra);
+    }
+
+    // Of the points of a group.
+    static const LaneDrive* drive_of(const LaneView& contacts, const LaneGroup& g, uint32_t point) {
+        return g.first_drive == kNoLanes ? nullptr : contacts.drive + g.first_drive + point;
+    }
+
+    [[gnu::noinline]] static void rolling_rows(LaneView contacts, const LaneGroup& g, const Frame& f, Side& a,
+                                               Side& b) {
+        LaneRolling& r = contacts.rolling[g.rolling];
+        F load = F::all(0);
+        for (uint32_t k = 0; k < g.points; ++k) load = load + F::load(contacts.point[g.first_point + k].impulse[0]);
+        const F old0 = F::load(r.impulse[0]), most = F::load(r.arm[0]) * load;
+        const F step = F::load(r.spin_mass) * dot(b.spin() - a.spin(), f.n);
+        const F least = F::all(0) - most, q0 = F::max(least, F::all(0) - F::max(least, step - old0));  // both ways
+        q0.store(r.impulse[0]);
+        const V spin = (q0 - old0) * f.n;
+        b.add_spin(spin);
+        a.add_spin(zero_minus(spin));
+        const V slip = b.spin() - a.spin();
+        const F old1 = F::load(r.impulse[1]), old2 = F::load(r.impulse[2]);
+        F q1 = old1, q2 = old2;
+        circle(q1, q2, dot(slip, f.t1), dot(slip, f.t2), r.roll_mass, r.isotropic_mass, F::load(r.arm[1]) * load);
+        q1.store(r.impulse[1]);
+        q2.store(r.impulse[2]);
+        const V roll = (q1 - old1) * f.t1 + (q2 - old2) * f.t2;
+        b.add_spin(roll);
+        a.add_spin(zero_minus(roll));
+    }
+
+    // k about the normal, the 2x2 block about the tangents and its larger eigenvalue; where nothing turns, no mass.
+    [[gnu::noinline]] static void prepare_rolling(LaneRolling& r, const Frame& f, const Side& a, const Side& b) {
+        const F zero = F::all(0), one = F::all(1), half = F::all(0.5f), tiny = F::all(1e-30f);
+        const V w0 = a.turn(f.n) + b.turn(f.n), w1 = a.turn(f.t1) + b.turn(f.t1), w2 = a.turn(f.t2) + b.turn(f.t2);
+        const F k0 = dot(f.n, w0), k11 = dot(f.t1, w1), k22 = dot(f.t2, w2), k12 = dot(f.t2, w1);
+        const F mean = half * (k11 + k22), diff = half * (k11 - k22);
+        const F largest = mean + F::sqrt(diff * diff + k12 * k12);
+        const F det = k11 * k22 - k12 * k12;
+        const F inv_det = F::if_greater(det, tiny, one / F::max(det, tiny), zero);
+        F::if_greater(k0, tiny, one / F::max(k0, tiny), zero).store(r.spin_mass);
+        (k22 * inv_det).store(r.roll_mass[0]);
+        (k11 * inv_det).store(r.roll_mass[1]);
+        (zero - k12 * inv_det).store(r.roll_mass[2]);
+        F::if_greater(largest, tiny, one / F::max(largest, tiny), zero).store(r.isotropic_mass);
+    }
+
+    [[gnu::noinline]] static void warm_start_rolling(const LaneRolling& r, const Frame& f, Side& a, Side& b) {
+        const V spin = F::load(r.impulse[0]) * f.n + F::load(r.impulse[1]) * f.t1 + F::load(r.impulse[2]) * f.t2;
+        b.add_spin(spin);
+        a.add_spin(zero_minus(spin));
     }
 
     // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue.
@@ -167,6 +238,7 @@ struct ContactSweep {
                 (used / F::max(largest, tiny)).store(p.isotropic_mass);
                 dot(b.at(rb) - a.at(ra), f.n).store(p.approach);
             }
+            if (g.rolling != kNoLanes) prepare_rolling(contacts.rolling[g.rolling], f, a, b);
         }
     }
 
@@ -185,6 +257,7 @@ struct ContactSweep {
                 b.add(push, load(p.rb));
                 a.add(zero_minus(push), load(p.ra));
             }
+            if (g.rolling != kNoLanes) warm_start_rolling(contacts.rolling[g.rolling], f, a, b);
             a.scatter(g.a, velocities);
             b.scatter(g.b, velocities);
         }
@@ -211,8 +284,9 @@ struct ContactSweep {
                 const F bias = F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least));
                 normal_row(p, f.n, ra, rb, a, b, bias, F::if_greater(gap, zero, one, soft_mass),
                            F::if_greater(gap, zero, zero, soft_impulse));
-                friction_rows(p, f, ra, rb, a, b);
+                friction_rows(p, drive_of(contacts, g, k), f, ra, rb, a, b);
             }
+            if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
             a.scatter(g.a, velocities);
             b.scatter(g.b, velocities);
         }
@@ -232,8 +306,9 @@ struct ContactSweep {
                 const V ra = load(p.ra), rb = load(p.rb);
                 const F gap = F::load(p.gap);
                 normal_row(p, f.n, ra, rb, a, b, F::if_greater(gap, zero, gap * inv_h, zero), one, zero);
-                friction_rows(p, f, ra, rb, a, b);
+                friction_rows(p, drive_of(contacts, g, k), f, ra, rb, a, b);
             }
+            if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
             a.scatter(g.a, velocities);
             b.scatter(g.b, velocities);
         }

@@ -5,8 +5,8 @@ namespace taut {
 
 std::span<const ConstraintType* const> constraint_types() {
     static const ConstraintType* const types[] = {
-        &kBall,  &kDistance, &kBend,        &kContact,   &kSpanContact, &kFixed,
-        &kHinge, &kSlider,   &kCylindrical, &kUniversal, &kConeTwist,   &kSixDof,
+        &kBall,   &kDistance,    &kBend,      &kContact,   &kSpanContact, &kFixed,   &kHinge,
+        &kSlider, &kCylindrical, &kUniversal, &kConeTwist, &kSixDof,      &kRolling,
     };
     return types;
 }

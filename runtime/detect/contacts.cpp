@@ -5,6 +5,7 @@
 
 #include "detect/detect.h"
 #include "detect/impact.h"
+#include "detect/surfaces.h"
 
 namespace taut {
 namespace {
@@ -48,10 +49,12 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, const c
     }
 }
 
-// Two surfaces in touch: the geometric mean of their friction, the livelier restitution.
-void combine_surfaces(const Collider& a, const Collider& b, Pair& pair) {
-    pair.friction = std::sqrt(a.material.friction * b.material.friction);
-    pair.restitution = std::max(a.material.restitution, b.material.restitution);
+// Friction torques carried over, turned into the frame of the new manifold.
+void carry_turning(const collision::Manifold& old, Impulse turning, float spin_slip, Pair& pair) {
+    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), o1 = tangent_of(old.normal);
+    const Vec3f sum = turning.normal * old.normal + turning.tangent1 * o1 + turning.tangent2 * old.normal.cross(o1);
+    pair.turning = {sum.dot(n), sum.dot(t1), sum.dot(n.cross(t1)), turning.slip};
+    pair.spin_slip = spin_slip;
 }
 
 // Two shapes as they stand in a pair, or as they will where they meet later in the time ahead [s].
@@ -72,6 +75,7 @@ public:
     Shaped& operator=(const Shaped&) = delete;
 
     const collision::Placement& at_a() const { return *at_a_; }
+    const collision::Placement& at_b() const { return *at_b_; }
     bool has_parts() const { return collision::has_parts(a_) || collision::has_parts(b_); }
 
     void find_points(collision::PairCache& cache, collision::Manifold& manifold) const {
@@ -106,38 +110,40 @@ private:
     collision::Placement met_[2];         // where they meet
 };
 
-// From the origin of a collider's shape, which the narrowphase knows, to that of its node.
-void move_to_node(const Nodes& nodes, const Collider& a, const collision::Placement& at,
-                  collision::Manifold& manifold) {
-    if (a.node_b == kNone && a.position == Vec3::Zero()) return;
+// Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
+Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at) {
+    if (a.node_b != kNone) return (at.position - nodes.motion[a.node].x).cast<float>();
+    if (a.position == Vec3::Zero()) return Vec3f::Zero();
     const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
-    const Vec3f offset = a.node_b == kNone ? Vec3f(body_rotation * a.position.cast<float>())
-                                           : Vec3f((at.position - nodes.motion[a.node].x).cast<float>());
-    for (int k = 0; k < manifold.count; ++k) manifold.points[k].position += offset;
+    return body_rotation * a.position.cast<float>();
 }
 
-// A pair's new manifold: its place and surface, and the impulses of the old one.
+// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
 void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const collision::Manifold& old,
-           const Impulse* before, Pair& pair) {
-    const uint32_t a = pair.collider_a();
-    move_to_node(nodes, colliders.record[a], shaped.at_a(), pair.manifold);
+           const Pair& before, Pair& pair) {
+    const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
+    const Vec3f from_a = offset_of(nodes, a, shaped.at_a());
+    for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
     pair.apart.setZero();
     shaped.bring_to_present(pair);
-    combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
+    combine_surfaces(nodes, a, b, shaped.at_a(), shaped.at_b(), from_a, pair);
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+        pair.turning = {};
+        pair.spin_slip = -1;
         return;
     }
     Impulse carried[4];
-    std::copy(before, before + 4, carried);
+    std::copy(before.impulse, before.impulse + 4, carried);
     carry_impulses(old, carried, pair.manifold, pair.impulse);
+    if (pair.turns()) carry_turning(old, before.turning, before.spin_slip, pair);
 }
 
 // Manifold of one pair, with the impulses of the last one.
 void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     shaped.find_points(pair.cache, pair.manifold);
-    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair.impulse, pair);
+    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair, pair);
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -178,8 +184,7 @@ void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colli
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        adopt(shaped, nodes, colliders, before ? before->manifold : first.manifold,
-              before ? before->impulse : first.impulse, pair);
+        adopt(shaped, nodes, colliders, before ? before->manifold : first.manifold, before ? *before : first, pair);
     }
 }
 
@@ -208,7 +213,7 @@ void refresh_part(const Shaped& shaped, const Nodes& nodes, const Colliders& col
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair.impulse, pair);
+    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair, pair);
 }
 
 }  // namespace

@@ -20,6 +20,19 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
     }
 }
 
+// What most surfaces do not have.
+void add_surface(Hash& hash, const Collider& collider) {
+    const taut_material& m = collider.material;
+    if (m.friction_rule != TAUT_COMBINE_DEFAULT || m.restitution_rule != TAUT_COMBINE_DEFAULT)
+        hash.add(static_cast<uint64_t>(m.friction_rule) << 32 | static_cast<uint64_t>(m.restitution_rule));
+    if (m.rolling_friction != 0 || m.spinning_friction != 0) {
+        hash.add(m.rolling_friction);
+        hash.add(m.spinning_friction);
+    }
+    if (!collider.driven) return;
+    for (const Vec3f* v : {&collider.surface_velocity, &collider.surface_spin}) hash.add(Vec3(v->cast<double>()));
+}
+
 void add_colliders(Hash& hash, const Colliders& colliders) {
     for (uint32_t i = 0; i < colliders.record.size(); ++i) {
         const Collider& collider = colliders.record[i];
@@ -30,6 +43,7 @@ void add_colliders(Hash& hash, const Colliders& colliders) {
         hash.add(collider.rotation);
         hash.add(collider.material.friction);
         hash.add(collider.material.restitution);
+        add_surface(hash, collider);
         hash.add(collider.filter.category);
         hash.add(collider.filter.mask);
         hash.add(static_cast<uint64_t>(static_cast<uint32_t>(collider.filter.group)));
@@ -108,6 +122,10 @@ void add_pairs(Hash& hash, const Pairs& pairs) {
             hash.add(pair.impulse[k].tangent2);
             hash.add(pair.impulse[k].slip);
         }
+        if (!pair.turns()) continue;
+        for (float x :
+             {pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2, pair.turning.slip, pair.spin_slip})
+            hash.add(x);
     }
 }
 

@@ -105,14 +105,25 @@ private:
         return alignment > 0;
     }
 
-    static void project(const RowBlock& block, RowVector& mu) {
+    void project(const RowBlock& block, RowVector& mu) const {
+        if (block.type->bound == Bound::load) {  // its contact points went before
+            double load = 0;
+            for (uint32_t k = 0; k < block.loads; ++k) load += next_[block.loaded + 3 * k];
+            mu[0] = std::clamp(mu[0], -block.arm[0] * load, block.arm[0] * load);
+            limit_circle(mu, block.arm[1] * load);
+            return;
+        }
         if (block.type->bound != Bound::cone) {
             for (int r = 0; r < block.type->rows; ++r)
                 if (!block.locked(r)) mu[r] = 0;
             return;
         }
         mu[0] = std::max(0.0, mu[0]);
-        const double limit = block.friction * mu[0], size = std::sqrt(mu[1] * mu[1] + mu[2] * mu[2]);
+        limit_circle(mu, block.friction * mu[0]);
+    }
+
+    static void limit_circle(RowVector& mu, double limit) {
+        const double size = std::sqrt(mu[1] * mu[1] + mu[2] * mu[2]);
         if (size > limit) mu.tail(2) *= limit / size;
     }
 
@@ -126,8 +137,11 @@ private:
         for (int row = 0; row < block.type->rows; ++row)
             if (!block.locked(row)) r[row] = 0;
         const RowVector error = error_of(sys_, block);
-        if (block.type->bound == Bound::cone) {  // only the normal row has a target
+        if (block.type->bound == Bound::load) return r;
+        if (block.type->bound == Bound::cone) {  // only the normal row has a position to reach
             const double gap = error[0];
+            r[1] -= block.drive[0];
+            r[2] -= block.drive[1];
             if (phase == Phase::bouncing && block.bounce > 0 && mu[0] > 0)
                 r[0] -= block.bounce;
             else if (gap > 0)

@@ -89,45 +89,93 @@ void ActiveSet::gather_axes(uint32_t index) {
     }
 }
 
+bool ActiveSet::loaded(const BoundedRow& lead) const {
+    bool any = false;
+    for (uint32_t k = 0; k < lead.loads; ++k) any = any || rows()[lead.load + kContactRows * k].on;
+    return any;
+}
+
+// How fast the tangents of a lead miss what friction drives them to.
+double ActiveSet::slide(const BoundedRow& lead, const Array<Velocity>& velocity) const {
+    double squared = 0;
+    for (const BoundedRow* r = &lead; r < &lead + lead.width; ++r) {
+        const double miss = speed(*r, velocity) - r->target;
+        squared += miss * miss;
+    }
+    return std::sqrt(squared);
+}
+
 // A new contact starts out sliding, at the force that stops its approach: c = |vt| / (friction * that force).
-void ActiveSet::begin_slip(BoundedRow* tangents, const BoundedRow& normal) {
-    const double approach = std::max(0.0, -speed(normal, sys_.free));
+void ActiveSet::begin_slip(BoundedRow& lead) {
     const double at_rest = 0.25 * sys_.h * std::sqrt(s_.settings.gravity_squared);
-    const double push = std::max(0.0, normal.mu) + std::max(approach, at_rest) / normal.k;
-    const double slide = length(speed(tangents[0], sys_.free), speed(tangents[1], sys_.free));
-    *tangents[0].slip = static_cast<float>(slide / std::max(1e-30, tangents[0].limit * push));
-    for (int i = 0; i < 2; ++i) tangents[i].c = std::max<double>(tangents[i].least, *tangents[i].slip);
+    double push = 0;
+    for (uint32_t k = 0; k < lead.loads; ++k) {
+        const BoundedRow& normal = rows()[lead.load + kContactRows * k];
+        const double approach = std::max(0.0, -speed(normal, sys_.free));
+        if (normal.on) push += std::max(0.0, normal.mu) + std::max(approach, at_rest) / normal.k;
+    }
+    *lead.slip = static_cast<float>(slide(lead, sys_.free) / std::max(1e-30, lead.limit * push));
+    for (BoundedRow* r = &lead; r < &lead + lead.width; ++r) r->c = std::max<double>(r->least, *lead.slip);
+}
+
+// Makes a row and those after it the tangents of one friction.
+void ActiveSet::gather_tangents(BoundedRow& first, uint32_t width, uint32_t load, uint32_t loads, double limit, float& slip) {
+    first.width = width;
+    first.load = load;
+    first.loads = loads;
+    const bool on = loaded(first);
+    for (BoundedRow* r = &first; r < &first + width; ++r) {
+        r->on = on;
+        r->limit = limit;
+        r->slip = &slip;
+        if (slip > r->least) r->c = slip;
+    }
+    if (on && slip < 0) begin_slip(first);
 }
 
 void ActiveSet::gather_contact(uint32_t index) {
     const RowBlock& block = sys_.rows.block[index];
     const double softness = b_.tower ? std::min(kTowerSoftness, 1e-2 / b_.mass_ratio) : kContactSoftness;
-    const size_t first = s_.scratch.bounded.size();
+    const uint32_t first = b_.bounded_count;
     for (int row = 0; row < 3; ++row) {
         BoundedRow& r = add(row == 0 ? Kind::push : Kind::tangent, index, row, 1, softness);
         r.mu = sys_.rows.impulse[block.row + static_cast<uint32_t>(row)];
+        if (row > 0) r.target = r.relaxed_target = block.drive[row - 1];
     }
-    BoundedRow* r = s_.scratch.bounded.data() + first;
+    BoundedRow* r = &rows()[first];
     r[0].gap = sys_.rows.error[block.row];
     r[0].speculative = r[0].gap > kSpeculative;
     r[0].target = r[0].speculative ? -r[0].gap / sys_.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.h);
     r[0].relaxed_target = r[0].speculative ? r[0].target : 0;
     r[0].bounce = block.bounce;
     r[0].on = r[0].gap < 0 || r[0].mu > 0;
-    for (int i = 1; i < 3; ++i) {
-        r[i].on = r[0].on;
-        r[i].limit = block.friction;
-        r[i].slip = &block.contact->slip;
-        if (*r[i].slip > r[i].least) r[i].c = *r[i].slip;
+    gather_tangents(r[1], 2, first, 1, block.friction, block.contact->slip);
+}
+
+// After the points that load it.
+void ActiveSet::gather_rolling(uint32_t index) {
+    const RowBlock& block = sys_.rows.block[index];
+    const uint32_t first = b_.bounded_count, load = first - kContactRows * block.loads;
+    for (int row = 0; row < 3; ++row) {
+        if (block.arm[row > 0] == 0) continue;
+        BoundedRow& r = add(Kind::tangent, index, row, 1, kContactSoftness);
+        r.mu = sys_.rows.impulse[block.row + static_cast<uint32_t>(row)];
     }
-    if (r[0].on && block.contact->slip < 0) begin_slip(r + 1, r[0]);
+    BoundedRow* r = &rows()[first];
+    if (block.arm[0] > 0) gather_tangents(*r++, 1, load, block.loads, block.arm[0], *block.spin_slip);
+    if (block.arm[1] > 0) gather_tangents(*r, 2, load, block.loads, block.arm[1], block.contact->slip);
 }
 
 void ActiveSet::gather() {
     b_.first_bounded = static_cast<uint32_t>(s_.scratch.bounded.size());
     b_.bounded_count = 0;
     for (uint32_t j = 0; j < b_.joints.size(); ++j) gather_axes(b_.first_row_block + j);
-    for (uint32_t c = 0; c < b_.contact_count; ++c) gather_contact(b_.first_contact + c);
+    for (uint32_t c = b_.first_contact; c < b_.first_contact + b_.contact_count; ++c) {
+        if (sys_.rows.block[c].type->bound == Bound::load)
+            gather_rolling(c);
+        else
+            gather_contact(c);
+    }
 }
 
 void ActiveSet::aim_biased() {
@@ -153,14 +201,18 @@ void ActiveSet::take_impulses() {
     }
 }
 
-void ActiveSet::turn_off(size_t i) {
-    auto all = rows();
-    all[i].on = false;
-    all[i].mu = 0;
-    for (size_t t = i + 1; t < all.size() && t <= i + 2 && all[t].kind == Kind::tangent; ++t) {
-        all[t].on = false;
-        all[t].mu = 0;
-        *all[t].slip = -1;
+// Tangents come and go with what loads them.
+void ActiveSet::follow_loads() {
+    for (BoundedRow& first : rows()) {
+        if (first.width == 0 || first.on == loaded(first)) continue;
+        for (BoundedRow* r = &first; r < &first + first.width; ++r) {
+            r->on = !r->on;
+            r->mu = 0;
+        }
+        if (first.on)
+            begin_slip(first);
+        else
+            *first.slip = -1;
     }
 }
 
@@ -174,35 +226,31 @@ bool ActiveSet::revise_box(BoundedRow& r) const {
 
 bool ActiveSet::revise() {
     bool changed = false;
-    auto all = rows();
-    for (size_t i = 0; i < all.size(); ++i) {
-        BoundedRow& r = all[i];
+    for (BoundedRow& r : rows()) {
         if (r.kind == Kind::box) changed = revise_box(r) || changed;
         if (r.kind != Kind::push) continue;
         if (r.on && r.mu < 0) {
-            turn_off(i);
+            r.on = false;
+            r.mu = 0;
             changed = true;
         } else if (!r.on && r.gap + sys_.h * speed(r, sys_.exact) < -kClosing) {
             r.on = true;
-            const bool contact = i + 2 < all.size() && all[i + 1].kind == Kind::tangent;
-            if (contact) {
-                all[i + 1].on = all[i + 2].on = true;
-                begin_slip(&all[i + 1], r);
-            }
             changed = true;
         }
     }
+    follow_loads();
     return changed;
 }
 
 bool ActiveSet::drop_pulling() {
     bool changed = false;
-    auto all = rows();
-    for (size_t i = 0; i < all.size(); ++i) {
-        if (all[i].kind != Kind::push || !all[i].on || all[i].mu >= 0) continue;
-        turn_off(i);
+    for (BoundedRow& r : rows()) {
+        if (r.kind != Kind::push || !r.on || r.mu >= 0) continue;
+        r.on = false;
+        r.mu = 0;
         changed = true;
     }
+    follow_loads();
     return changed;
 }
 
@@ -224,33 +272,34 @@ bool ActiveSet::acceptable() const {
     return pull <= kAcceptedPull * total && excess <= kAcceptedPull * total && closing <= kAcceptedClosing;
 }
 
-// c of a contact's friction in the next substep, and its impulse within the cone.
-void ActiveSet::follow_slip(BoundedRow* tangents, double bound) const {
-    const double slide = length(speed(tangents[0], sys_.kept), speed(tangents[1], sys_.kept));
-    const double size = length(tangents[0].mu, tangents[1].mu), excess = std::max(0.0, size - bound);
-    const bool slid = tangents[0].c > tangents[0].least;
+// c of a friction in the next substep, and its impulse within its bound.
+void ActiveSet::follow_slip(BoundedRow& lead) const {
+    double bound = 0, squared = 0;
+    for (uint32_t k = 0; k < lead.loads; ++k) bound += rows()[lead.load + kContactRows * k].mu;
+    bound *= lead.limit;
+    for (const BoundedRow* r = &lead; r < &lead + lead.width; ++r) squared += r->mu * r->mu;
+    const double size = std::sqrt(squared), excess = std::max(0.0, size - bound);
+    const bool slid = lead.c > lead.least;
     double next = 0;
     if (slid || excess > 1e-6 * bound) {
-        next = std::max(slid ? 0.5 * tangents[0].c : 0, (slide + excess * tangents[0].k) / std::max(1e-30, bound));
-        if (next <= tangents[0].least) next = 0;
+        next = std::max(slid ? 0.5 * lead.c : 0, (slide(lead, sys_.kept) + excess * lead.k) / std::max(1e-30, bound));
+        if (next <= lead.least) next = 0;
     }
-    *tangents[0].slip = static_cast<float>(std::min(next, 1e30));
-    for (int i = 0; i < 2 && excess > 0; ++i) tangents[i].mu *= bound / size;
+    *lead.slip = static_cast<float>(std::min(next, 1e30));
+    for (BoundedRow* r = &lead; r < &lead + lead.width && excess > 0; ++r) r->mu *= bound / size;
 }
 
 void ActiveSet::store() {
-    auto all = rows();
-    for (size_t i = 0; i < all.size(); ++i) {
-        BoundedRow& r = all[i];
+    for (BoundedRow& r : rows()) {
         if (r.kind == Kind::box) r.mu = std::clamp(r.mu, -r.limit, r.limit);
         if (r.kind == Kind::push) r.mu = std::max(0.0, r.mu);
-        if (r.kind != Kind::tangent || r.row != 1) continue;
+        if (r.width == 0) continue;
         if (r.on)
-            follow_slip(&r, r.limit * all[i - 1].mu);
+            follow_slip(r);
         else
             *r.slip = -1;
     }
-    for (BoundedRow& r : all) {
+    for (BoundedRow& r : rows()) {
         if (r.force)
             *r.force = static_cast<float>(r.mu / sys_.h);
         else

@@ -2,8 +2,9 @@
 //
 //   round     solve with the rows that are on; drop those that pull, add those that would close; at most a few times
 //   box       a drive or friction whose impulse passes its limit is that limit, until it no longer lags behind
-//   tangents  secant: a sliding contact has target velocity 0 and c = |v| / (friction * push), which gives that impulse
-//             against v, implicitly; c follows with one substep of lag, at most halved
+//   tangents  secant: a sliding contact aims at no slip and has c = |v| / (friction * push), which gives that impulse
+//             against the slip v, implicitly; c follows with one substep of lag, at most halved. Rolling and spinning
+//             friction likewise, with angular velocities and an arm in the place of friction
 //   relaxed   solved again on the same factor: rows that rest want velocity 0 with the impulse they have, so that the
 //             push that undoes overlaps moves positions and is not kept
 // Rules and their evidence: measured on chains over edges and towers, the tests of scenes hold them.
@@ -46,10 +47,14 @@ private:
     void gather_axes(uint32_t block);
     void gather_contact(uint32_t block);
     BoundedRow& add(BoundedRow::Kind kind, uint32_t index, int row, double sign, double softness);
-    void begin_slip(BoundedRow* tangents, const BoundedRow& normal);
-    void follow_slip(BoundedRow* tangents, double bound) const;
+    void gather_rolling(uint32_t block);
+    void gather_tangents(BoundedRow& first, uint32_t width, uint32_t load, uint32_t loads, double limit, float& slip);
+    void follow_loads();
+    bool loaded(const BoundedRow& lead) const;
+    double slide(const BoundedRow& lead, const Array<Velocity>& velocity) const;
+    void begin_slip(BoundedRow& lead);
+    void follow_slip(BoundedRow& lead) const;
     bool revise_box(BoundedRow& row) const;
-    void turn_off(size_t i);
 
     Substep& s_;
     System& sys_;

@@ -9,10 +9,12 @@
 
 namespace taut {
 
+constexpr uint32_t kContactRows = 3;  // a push and two tangents
+
 struct BoundedRow {
     enum class Kind : uint8_t {
         push,     // mu >= 0, on only while it pushes
-        tangent,  // two in a row after a contact's normal row, |mu| within friction * its impulse
+        tangent,  // of friction: those after a lead share a bound, |mu| within limit * the impulses of its loads
         box,      // |mu| <= limit, known where it is at its limit
     };
 
@@ -37,8 +39,11 @@ struct BoundedRow {
     double target = 0;          // with the push that undoes an overlap [m/s]
     double relaxed_target = 0;  // without
     double goal = 0;            // of this solve
-    double limit = 0;           // of a box [N s]; of tangents the coefficient of friction
+    double limit = 0;           // of a box [N s]; of tangents the coefficient of friction, or an arm [m]
     double mu = 0;              // [N s]
+    uint32_t width = 0;         // of a lead, the first tangent of a friction: how many tangents it has; else 0
+    uint32_t load = 0;          // of a lead: the first of the pushes that bound it, in the rows of the block,
+    uint32_t loads = 0;         // and how many there are, kContactRows apart
     float* slip = nullptr;      // of tangents, carried: c of a sliding contact; 0: it sticks; -1: new
     float* force = nullptr;     // carried, of axis rows [N]
 };

@@ -113,10 +113,29 @@ public:
         p[0] = std::max(0.0, p[0] - step);
         move_to(p);
 
+        solve_circle(s, block_.friction * p[0]);
+    }
+
+    // Spinning first, then rolling on its circle.
+    void solve_load() {
+        const RowMatrix s = effective();
+        if (!(s(0, 0) > 0)) return;  // both bodies stand still
+        double load = 0;
+        for (uint32_t k = 0; k < block_.loads; ++k) load += system_.rows.impulse[block_.loaded + 3 * k];
+        RowVector p = impulse();
+        const double limit = block_.arm[0] * load;
+        p[0] = std::clamp(p[0] - velocity()[0] / s(0, 0), -limit, limit);
+        move_to(p);
+        solve_circle(s, block_.arm[1] * load);
+    }
+
+private:
+    // Rows 1 and 2 towards no slip on a circle; isotropic where they slide.
+    void solve_circle(const RowMatrix& s, double limit) {
+        RowVector p = impulse();
         const RowVector v = velocity();
         const Eigen::Matrix2d k = s.bottomRightCorner<2, 2>();
-        const Eigen::Vector2d slip(v[1], v[2]), old(p[1], p[2]);
-        const double limit = block_.friction * p[0];
+        const Eigen::Vector2d slip(v[1] - block_.drive[0], v[2] - block_.drive[1]), old(p[1], p[2]);
         Eigen::Vector2d q = old - k.inverse() * slip;
         if (q.norm() > limit) {
             const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
@@ -128,7 +147,6 @@ public:
         move_to(p);
     }
 
-private:
     Eigen::Map<const RowJacobian> jacobian(int node) const { return jacobian_of(system_, block_, node); }
 
     System& system_;
@@ -215,6 +233,8 @@ void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
         RowSweep row(s.system, blocks[i]);
         if (blocks[i].type->bound == Bound::cone)
             row.solve_cone(soft, biased);
+        else if (blocks[i].type->bound == Bound::load)
+            row.solve_load();
         else
             row.solve_joint(soft, biased);
     }

@@ -20,8 +20,11 @@ struct Collider {
     Vec3 position = Vec3::Zero();      // of the shape's origin in the frame of the body's origin [m]
     Quat rotation = Quat::Identity();  // body from shape
     taut_material material{};
+    bool driven = false;  // surface_velocity or surface_spin is not zero
     taut_filter filter{};
     uint64_t user_data = 0;
+    // Of its surface against the body, in the shape's frame: surface_velocity + surface_spin x p [m/s], [rad/s].
+    Vec3f surface_velocity = Vec3f::Zero(), surface_spin = Vec3f::Zero();
 
     bool at_origin() const { return position == Vec3::Zero() && rotation.coeffs() == Quat::Identity().coeffs(); }
 };

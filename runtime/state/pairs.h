@@ -33,10 +33,20 @@ struct Pair {
     Impulse impulse[4];            // by point: carried in, updated by the solver
     float friction = 0;            // of the two surfaces together
     float restitution = 0;
+    float spinning = 0, rolling = 0;  // arms of the friction torques [m]
+    Impulse turning;                  // of these torques [N m s]; slip: of rolling [rad^2/(kg m^2)]
+    float spin_slip = -1;             // the same of spinning
+    // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
+    // bodies: drive + drive_spin x p [m/s], world axes, p as the points of the manifold.
+    Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
+    bool driven = false;      // else these two mean nothing
     bool on_surface = false;  // a shape has parts; of records with part 0
     bool filtered = false;    // never collides (filter, joint); kept to remember the answer
     bool touching = false;    // had a point at the end of the last step; part 0: or another part had
 
+    // Of a point of the manifold.
+    Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
+    bool turns() const { return spinning > 0 || rolling > 0; }
     uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
 };

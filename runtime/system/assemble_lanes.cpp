@@ -25,6 +25,27 @@ void fill_lane(LanePoint& p, int lane, const collision::ContactPoint& point, con
     p.restitution[lane] = restitution;
 }
 
+// What the moving surfaces of a pair, if any, drive its points to.
+void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* pair) {
+    for (uint32_t k = 0; k < g.points; ++k) {
+        float(&speed)[2][kLanes] = lanes.drive[g.first_drive + k].speed;
+        speed[0][lane] = speed[1][lane] = 0;
+        if (!pair || !pair->driven || static_cast<int>(k) >= pair->manifold.count) continue;
+        const Vec3f t1 = tangent_of(pair->manifold.normal), drive = pair->drive_at(static_cast<int>(k));
+        speed[0][lane] = drive.dot(t1);
+        speed[1][lane] = drive.dot(pair->manifold.normal.cross(t1));
+    }
+}
+
+void fill_rolling(LaneRolling& rolling, int lane, const Pair* pair) {
+    rolling.arm[0][lane] = pair ? pair->spinning : 0;
+    rolling.arm[1][lane] = pair ? pair->rolling : 0;
+    const bool turns = pair && pair->turns();
+    rolling.impulse[0][lane] = turns ? pair->turning.normal : 0;
+    rolling.impulse[1][lane] = turns ? pair->turning.tangent1 : 0;
+    rolling.impulse[2][lane] = turns ? pair->turning.tangent2 : 0;
+}
+
 // One pair into one lane of a group; its points into the group's first points.
 void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
@@ -57,6 +78,9 @@ void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nod
             for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
         }
         for (uint32_t k = filled; k < g.points; ++k) clear_lane(lanes.point[g.first_point + k], lane);
+        const Pair* pair = g.pair[lane] == kNone ? nullptr : &pairs.list[g.pair[lane]];
+        if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair);
+        if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair);
     }
 }
 
@@ -66,9 +90,22 @@ void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, u
     g.first_point = static_cast<uint32_t>(lanes.point.size());
     g.points = pairs.active[items[0]].points;
     lanes.point.resize(lanes.point.size() + g.points);
+    bool driven = false, turns = false;
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
         g.pair[lane] = lane < count ? pairs.active[items[lane]].pair : kNone;
-        lanes.bounces = lanes.bounces || (lane < count && pairs.list[g.pair[lane]].restitution > 0);
+        if (lane >= count) continue;
+        const Pair& pair = pairs.list[g.pair[lane]];
+        lanes.bounces = lanes.bounces || pair.restitution > 0;
+        driven = driven || pair.driven;
+        turns = turns || pair.turns();
+    }
+    if (driven) {
+        g.first_drive = static_cast<uint32_t>(lanes.drive.size());
+        lanes.drive.resize(lanes.drive.size() + g.points);
+    }
+    if (turns) {
+        g.rolling = static_cast<uint32_t>(lanes.rolling.size());
+        lanes.rolling.emplace_back();
     }
 }
 
@@ -97,6 +134,8 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     ContactLanes& lanes = system.contacts;
     lanes.group.clear();
     lanes.point.clear();
+    lanes.drive.clear();
+    lanes.rolling.clear();
     lanes.bounces = false;
     lanes.colour_begin.assign(1, 0);
     for (uint32_t c = 0; c < kMaxColours; ++c) {
@@ -118,6 +157,10 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
             const LanePoint& p = lanes.point[g.first_point + static_cast<uint32_t>(k)];
             pair.impulse[k] = {p.impulse[0][lane], p.impulse[1][lane], p.impulse[2][lane]};
         }
+        if (!pair.turns()) return;
+        const float(&turning)[3][kLanes] = lanes.rolling[g.rolling].impulse;
+        pair.turning = {turning[0][lane], turning[1][lane], turning[2][lane]};
+        pair.spin_slip = -1;
     };
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t g = begin; g < end; ++g)

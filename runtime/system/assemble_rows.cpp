@@ -108,6 +108,14 @@ double bounce_speed(const Vec3& apart, const Vec3& normal, double restitution) {
     return approach > kBounceSpeed ? restitution * approach : 0.0;
 }
 
+// What a block of rows carries over.
+void carry(System& system, RowBlock& block, Impulse& impulse) {
+    block.contact = &impulse;
+    system.rows.impulse[block.row] = impulse.normal;
+    system.rows.impulse[block.row + 1] = impulse.tangent1;
+    system.rows.impulse[block.row + 2] = impulse.tangent2;
+}
+
 RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
     RowBlock& block = add_block(system, kContact);
     block.data = &data;
@@ -132,31 +140,55 @@ RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& dat
     return block;
 }
 
+// What moving surfaces drive the tangents of a contact point to.
+void set_drive(const Pair& pair, int k, RowBlock& block) {
+    if (!pair.driven) return;
+    const Vec3f t1 = tangent_of(pair.manifold.normal), t2 = pair.manifold.normal.cross(t1);
+    const Vec3f speed = pair.drive_at(k);
+    block.drive[0] = speed.dot(t1);
+    block.drive[1] = speed.dot(t2);
+}
+
+// Friction torques of a pair whose points' rows begin at `points`.
+void add_rolling(System& system, Pair& pair, uint32_t points) {
+    RowBlock& block = add_block(system, kRolling);
+    RollingData& data = system.rows.rolling_data.emplace_back();
+    data.basis = basis_of(pair);
+    block.data = &data;
+    block.node[0] = pair.a + 1;
+    block.node[1] = pair.b + 1;
+    block.arm[0] = pair.spinning;
+    block.arm[1] = pair.rolling;
+    block.loaded = points;
+    block.loads = static_cast<uint32_t>(pair.manifold.count);
+    block.spin_slip = &pair.spin_slip;
+    carry(system, block, pair.turning);
+}
+
 // Rows of the points of some active pairs; room for their data is reserved.
 void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs& pairs, const Nodes& nodes) {
     Rows& rows = system.rows;
     for (uint32_t p : active_pairs) {
         Pair& pair = pairs.list[pairs.active[p].pair];
+        const uint32_t points = static_cast<uint32_t>(rows.error.size());
         for (int k = 0; k < pair.manifold.count; ++k) {
             RowBlock& block =
                 pairs.active[p].spans()
                     ? add_point(system, pair, rows.span_data.emplace_back(span_contact_data(system, nodes, pair, k)))
                     : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pair, k)));
             block.friction = pair.friction;
-            block.contact = &pair.impulse[k];
-            rows.impulse[block.row] = block.contact->normal;
-            rows.impulse[block.row + 1] = block.contact->tangent1;
-            rows.impulse[block.row + 2] = block.contact->tangent2;
+            set_drive(pair, k, block);
+            carry(system, block, pair.impulse[k]);
         }
+        if (pair.turns() && pair.manifold.count > 0) add_rolling(system, pair, points);
     }
 }
 
 // Addresses of contact data must not move while rows are added.
 template <class Data>
-void reserve_points(Array<Data>& data, size_t pairs) {
-    constexpr size_t kPoints = 4;
+void reserve_room(Array<Data>& data, size_t most) {
     data.clear();
-    data.reserve(kPoints * pairs);
+    data.reserve(most);
 }
 
 }  // namespace
@@ -178,8 +210,11 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
-    reserve_points(rows.data, (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size());
-    reserve_points(rows.span_data, group.span_pairs.size() + group.direct_pairs.size());
+    constexpr size_t kPoints = 4;
+    const size_t whole = (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size();
+    reserve_room(rows.data, kPoints * whole);
+    reserve_room(rows.span_data, kPoints * (group.span_pairs.size() + group.direct_pairs.size()));
+    reserve_room(rows.rolling_data, whole);
     if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
     add_contacts(system, group.span_pairs, pairs, nodes);
     rows.lasting = static_cast<uint32_t>(rows.block.size());
@@ -195,6 +230,7 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
     rows.jacobian.resize(none ? rows.jacobian.size() : rows.block[rows.lasting].jacobian);
     rows.block.resize(rows.lasting);
     rows.data.clear();  // a solver that takes all contacts as rows has no blocks
+    rows.rolling_data.clear();
     rows.span_data.resize(rows.lasting_spans);
     for (uint32_t b : group.blocks) {
         blocks[b].first_contact = static_cast<uint32_t>(rows.block.size());
@@ -206,9 +242,11 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
 void evaluate_rows(System& system, double frame_left, double frame) {
     system.frame_left = frame_left;
     Rows& rows = system.rows;
+    size_t next_rolling = 0;  // their data are in the order of their blocks
     for (const RowBlock& block : rows.block) {
         Pose poses[kMaxNodes];
         for (int i = 0; i < block.type->nodes; ++i) poses[i] = system.pose[block.node[i]];
+        if (block.type->bound == Bound::load) rows.rolling_data[next_rolling++].align(poses);
         block.type->evaluate(block.data, poses, &rows.error[block.row], &rows.jacobian[block.jacobian]);
         if (!block.force) continue;
         for (int r = 0; r < block.type->rows; ++r) {

@@ -16,6 +16,7 @@
 #include "constraints/constraint.h"
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
+#include "constraints/rolling.h"
 #include "constraints/span_contact.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
@@ -44,6 +45,10 @@ struct RowBlock {
     AxisMemory* memory;              // of each row, with axis
     Impulse* contact;                // what a contact point carries on; null for joints
     double friction;                 // of a cone
+    double drive[2];                 // of a cone: J v that friction drives the tangents to [m/s]
+    double arm[2];                   // of a load: spinning, rolling [m]
+    uint32_t loaded, loads;          // of a load: first row of its contact points, each of three; how many there are
+    float* spin_slip;                // of a load: what spinning carries on; rolling is in contact
     double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
     bool fresh;                      // lambda of the last substep means nothing yet
 
@@ -59,7 +64,13 @@ struct RowBlock {
 
 struct Rows {
     explicit Rows(Memory& memory)
-        : block(memory), error(memory), jacobian(memory), impulse(memory), data(memory), span_data(memory) {}
+        : block(memory),
+          error(memory),
+          jacobian(memory),
+          impulse(memory),
+          data(memory),
+          span_data(memory),
+          rolling_data(memory) {}
 
     // First the rows that stay for the frame: those of joints, then those of swept contacts that come as rows. After
     // them the contacts of blocks, new in each substep.
@@ -71,6 +82,7 @@ struct Rows {
     Array<double> impulse;             // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
     Array<ContactData> data;           // of contact rows: where a solver takes all as rows, and those of blocks
     Array<SpanContactData> span_data;  // of contacts with a side of two nodes
+    Array<RollingData> rolling_data;   // of contacts with rolling or spinning friction, after their points
 };
 
 struct System {

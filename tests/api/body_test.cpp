@@ -95,13 +95,17 @@ TEST_F(Bodies, KindMaterialAndUserData) {
     ASSERT_OK(taut_body_set_user_data(p.bob, 0xdeadbeef12345678));
     ASSERT_OK(taut_body_get_user_data(p.bob, &data));
     EXPECT_EQ(data, 0xdeadbeef12345678);
-    taut_material material = {0.25f, 1};
+    taut_material material = {};
+    material.friction = 0.25f;
+    material.restitution = 1;
     ASSERT_OK(taut_body_set_material(p.crate, &material));
     for (float bad : {NAN, INFINITY, -INFINITY, -0.1f, 101.0f}) {
-        material = {bad, 0};
+        material = {};
+        material.friction = bad;
         EXPECT_EQ(taut_body_set_material(p.crate, &material), TAUT_INVALID_ARGUMENT);
         EXPECT_TRUE(contains(taut_last_error(), "taut_body_set_material: friction")) << taut_last_error();
-        material = {0, bad};
+        material = {};
+        material.restitution = bad;
         EXPECT_EQ(taut_body_set_material(p.crate, &material), TAUT_INVALID_ARGUMENT);
         EXPECT_TRUE(contains(taut_last_error(), "taut_body_set_material: restitution")) << taut_last_error();
     }

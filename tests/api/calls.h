@@ -327,7 +327,8 @@ inline std::vector<Call<taut_body>> body_calls() {
          }},
         {"taut_body_set_material",
          [](taut_body b) {
-             const taut_material material = {0.5f, 0};
+             taut_material material = {};
+             material.friction = 0.5f;
              return taut_body_set_material(b, &material);
          }},
         {"taut_body_get_pose",
@@ -458,7 +459,8 @@ inline std::vector<Call<taut_collider>> collider_calls(const Populated& p) {
          }},
         {"taut_collider_set_material",
          [](taut_collider c) {
-             const taut_material material = {0.5f, 0};
+             taut_material material = {};
+             material.friction = 0.5f;
              return taut_collider_set_material(c, &material);
          }},
         {"taut_collider_set_filter",
@@ -467,6 +469,15 @@ inline std::vector<Call<taut_collider>> collider_calls(const Populated& p) {
              return taut_collider_set_filter(c, &filter);
          }},
         {"taut_collider_set_density", [](taut_collider c) { return taut_collider_set_density(c, 10); }},
+        {"taut_collider_set_surface_velocity",
+         [](taut_collider c) {
+             return taut_collider_set_surface_velocity(c, {1, 0, 0}, {0, 2, 0});
+         }},
+        {"taut_collider_get_surface_velocity",
+         [](taut_collider c) {
+             taut_vec3 velocity, spin;
+             return taut_collider_get_surface_velocity(c, &velocity, &spin);
+         }},
         {"taut_collider_remove", [](taut_collider c) { return taut_collider_remove(c); }},
     };
 }

@@ -72,6 +72,12 @@ TEST_F(ColliderCalls, RefuseWhatIsOutOfRange) {
     refuse("rotation", TAUT_INVALID_ARGUMENT, [](Def& d) { d.rotation = {0, 0, 0, 2}; });
     refuse("material.friction", TAUT_INVALID_ARGUMENT, [](Def& d) { d.material.friction = -0.1f; });
     refuse("material.restitution", TAUT_INVALID_ARGUMENT, [](Def& d) { d.material.restitution = 1.1f; });
+    refuse("material.friction_rule is 6", TAUT_INVALID_ARGUMENT,
+           [](Def& d) { d.material.friction_rule = static_cast<taut_combine>(6); });
+    refuse("material.restitution_rule is 6", TAUT_INVALID_ARGUMENT,
+           [](Def& d) { d.material.restitution_rule = static_cast<taut_combine>(6); });
+    refuse("material.rolling_friction", TAUT_INVALID_ARGUMENT, [](Def& d) { d.material.rolling_friction = -1; });
+    refuse("material.spinning_friction", TAUT_INVALID_ARGUMENT, [](Def& d) { d.material.spinning_friction = NAN; });
     refuse("filter.reserved", TAUT_INVALID_ARGUMENT, [](Def& d) { d.filter.reserved = 1; });
     refuse("shape", TAUT_STALE_HANDLE, [](Def& d) { d.shape = {0}; });
     refuse("plane", TAUT_INVALID_ARGUMENT, [&](Def& d) { d.shape = p.plane; });
@@ -83,6 +89,10 @@ TEST_F(ColliderCalls, RefuseWhatIsOutOfRange) {
     taut_collider out = {0};
     EXPECT_EQ(taut_body_add_collider(p.bob, &good, &out), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_collider_set_density(p.collider, NAN), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_collider_set_surface_velocity(p.collider, {0, 1.1e4f, 0}, {0, 0, 0}), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "taut_collider_set_surface_velocity: velocity")) << taut_last_error();
+    EXPECT_EQ(taut_collider_set_surface_velocity(p.collider, {0, 1, 0}, {0, 0, NAN}), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "spin.z")) << taut_last_error();
     EXPECT_EQ(taut_collider_set_shape(p.collider, p.plane, {0, 0, 0}, {0, 0, 0, 1}), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_collider_set_shape(p.collider, p.box, {0, 2e4f, 0}, {0, 0, 0, 1}), TAUT_INVALID_ARGUMENT);
     EXPECT_TRUE(watch.unchanged());
@@ -92,7 +102,7 @@ TEST_F(ColliderCalls, ReadBackWhatWasWritten) {
     taut_collider_def def = collider_def(p.box, {1, 2, 3});
     def.rotation = {0, 0.6f, 0, 0.8f};
     def.density = 7;
-    def.material = {0.25f, 0.5f};
+    def.material = {0.25f, 0.5f, TAUT_COMBINE_MINIMUM, TAUT_COMBINE_AVERAGE, 0.03f, 0.04f};
     def.filter = {2, 5, -3, 0};
     def.user_data = 42;
     const taut_collider collider = add_collider(p.crate, def);
@@ -104,8 +114,20 @@ TEST_F(ColliderCalls, ReadBackWhatWasWritten) {
     EXPECT_FLOAT_EQ(read.rotation.y, 0.6f);
     EXPECT_EQ(read.density, 7);
     EXPECT_EQ(read.material.friction, 0.25f);
+    EXPECT_EQ(read.material.restitution, 0.5f);
+    EXPECT_EQ(read.material.friction_rule, TAUT_COMBINE_MINIMUM);
+    EXPECT_EQ(read.material.restitution_rule, TAUT_COMBINE_AVERAGE);
+    EXPECT_EQ(read.material.rolling_friction, 0.03f);
+    EXPECT_EQ(read.material.spinning_friction, 0.04f);
     EXPECT_EQ(read.filter.group, -3);
     EXPECT_EQ(read.user_data, 42u);
+    taut_vec3 velocity = {7, 7, 7}, spin = {7, 7, 7};
+    ASSERT_OK(taut_collider_get_surface_velocity(collider, &velocity, &spin));
+    EXPECT_TRUE(velocity.x == 0 && velocity.y == 0 && velocity.z == 0);
+    ASSERT_OK(taut_collider_set_surface_velocity(collider, {1, 2, 3}, {0, 0, -4}));
+    ASSERT_OK(taut_collider_get_surface_velocity(collider, &velocity, &spin));
+    EXPECT_TRUE(velocity.x == 1 && velocity.y == 2 && velocity.z == 3);
+    EXPECT_TRUE(spin.x == 0 && spin.y == 0 && spin.z == -4);
     taut_body body = {0};
     ASSERT_OK(taut_collider_get_body(collider, &body));
     EXPECT_EQ(body.bits, p.crate.bits);

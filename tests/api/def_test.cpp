@@ -155,6 +155,8 @@ TEST_F(Refusals, Body) {
                        FIELD3(Def, angular_velocity, -1e4, 1e4),
                        FIELD(Def, material.friction, 0, 100),
                        FIELD(Def, material.restitution, 0, 1),
+                       FIELD(Def, material.rolling_friction, 0, 1000),
+                       FIELD(Def, material.spinning_friction, 0, 1000),
                        FIELD(Def, density, 0, 1e8, Field::open_below),
                        FIELD(Def, mass, 1e-6, 1e15),
                        FIELD3(Def, centre_of_mass, -1e4, 1e4),

@@ -322,6 +322,16 @@ private:
         if (added) keep(shapes_, out, w);
     }
 
+    taut_material material(double most_friction) {
+        taut_material out{};
+        out.friction = real(0, most_friction);
+        out.restitution = real(0, 1);
+        if (one_in(8)) out.friction_rule = static_cast<taut_combine>(byte() % 7);
+        if (one_in(8)) out.rolling_friction = real(0, 0.2);
+        if (one_in(8)) out.spinning_friction = real(0, 0.2);
+        return out;
+    }
+
     taut_collider_def collider_def(size_t w) {
         taut_collider_def def;
         taut_collider_def_init(&def);
@@ -330,7 +340,7 @@ private:
         def.position = vec(1);
         def.rotation = quat();
         def.density = real(0, 5000);
-        def.material = {real(0, 2), real(0, 1)};
+        def.material = material(2);
         return def;
     }
 
@@ -349,7 +359,7 @@ private:
             def.angular_velocity = vec(10);
         }
         def.shape = pick(shapes_, w);
-        def.material = {real(0, 2), real(0, 1)};
+        def.material = material(2);
         def.density = real(1, 5000);
         if (one_in(3)) def.mass = real(0.01, 1000);
         if (one_in(8))
@@ -734,8 +744,8 @@ private:
                 break;
             }
             case 3: {
-                const taut_material material = {real(0, 100), real(0, 1)};
-                run("taut_body_set_material", [&] { return taut_body_set_material(body, &material); });
+                const taut_material changed = material(100);
+                run("taut_body_set_material", [&] { return taut_body_set_material(body, &changed); });
                 break;
             }
             default: {

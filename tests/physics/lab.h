@@ -89,6 +89,7 @@ struct BodyPlan {
     double mass = 0;  // [kg], 0: from density
     Vec inertia{};    // principal, about the centre [kg m^2]; 0: from the shape
     double friction = 0.5, restitution = 0;
+    double rolling = 0, spinning = 0;  // arms of the friction torques [m]
     double gravity_scale = 1;
     int32_t group = 0;
 };
@@ -150,7 +151,10 @@ public:
                      0,
                      0,
                      0};
-        d.material = {static_cast<float>(plan.friction), static_cast<float>(plan.restitution)};
+        d.material.friction = static_cast<float>(plan.friction);
+        d.material.restitution = static_cast<float>(plan.restitution);
+        d.material.rolling_friction = static_cast<float>(plan.rolling);
+        d.material.spinning_friction = static_cast<float>(plan.spinning);
         d.gravity_scale = static_cast<float>(plan.gravity_scale);
         d.filter.group = plan.group;
         taut_body out{};

@@ -321,7 +321,9 @@ TEST_P(EverySolver, ContactForcesCarryTheWeight) {
 TEST_P(EverySolver, BouncesBack) {
     Scene scene(GetParam(), 0);
     const taut_body ground = scene.ground(), ball = scene.sphere(TAUT_BODY_DYNAMIC, 0.5f, {0, 2, 0});
-    const taut_material lively{0.5f, 0.6f};
+    taut_material lively{};
+    lively.friction = 0.5f;
+    lively.restitution = 0.6f;
     taut_body_set_material(ground, &lively);
     taut_body_set_material(ball, &lively);
     double fastest = 0, up = 0;

@@ -21,6 +21,8 @@ constexpr uint32_t kGroups = 64, kNodes = 120;
 struct Data {
     std::vector<LaneGroup> group;
     std::vector<LanePoint> point;
+    std::vector<LaneDrive> drive;
+    std::vector<LaneRolling> rolling;
     std::vector<SweepVelocity> velocity;
     std::vector<SweepMass> mass;
     std::vector<SweepShift> shift;
@@ -61,6 +63,8 @@ struct Data {
                 }
                 g.friction[lane] = empty ? 0 : std::abs(any());
             }
+            if (i % 3 == 1) add_drive(g, any);
+            if (i % 4 == 2) add_rolling(g, any);
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint p{};
                 for (int lane = 0; lane < kLanes; ++lane) {
@@ -82,9 +86,29 @@ struct Data {
         }
     }
 
+    template <class Any>
+    void add_drive(LaneGroup& g, Any& any) {
+        g.first_drive = static_cast<uint32_t>(drive.size());
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LaneDrive& d = drive.emplace_back();
+            for (int lane = 0; lane < kLanes; ++lane)
+                for (int t = 0; t < 2; ++t) d.speed[t][lane] = g.pair[lane] == kNone ? 0 : 2 * any();
+        }
+    }
+    template <class Any>
+    void add_rolling(LaneGroup& g, Any& any) {
+        g.rolling = static_cast<uint32_t>(rolling.size());
+        LaneRolling& r = rolling.emplace_back();
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const bool none = g.pair[lane] == kNone || any() < -0.5f;
+            for (int t = 0; t < 2; ++t) r.arm[t][lane] = none ? 0 : 0.1f * std::abs(any());
+            for (int t = 0; t < 3; ++t) r.impulse[t][lane] = none ? 0 : 0.01f * any();
+        }
+    }
+
     // Everything that a step calls, over and over.
     void run(const ContactKernels& kernels) {
-        const LaneView view{group.data(), point.data()};
+        const LaneView view{group.data(), point.data(), drive.data(), rolling.data()};
         const SweepTerms terms = soft_terms(1.0 / 240);
         kernels.prepare(view, 0, kGroups, velocity.data(), mass.data());
         kernels.warm_start(view, 0, kGroups, velocity.data(), mass.data());
@@ -111,6 +135,8 @@ void expect_same_bits(const ContactKernels& kernels) {
         ASSERT_TRUE(std::isfinite(sum));
         ASSERT_TRUE(same_bits(scalar.velocity, other.velocity));
         ASSERT_TRUE(same_bits(scalar.point, other.point));
+        ASSERT_FALSE(scalar.rolling.empty());
+        ASSERT_TRUE(same_bits(scalar.rolling, other.rolling));
     }
 }
 
@@ -146,6 +172,21 @@ TEST(ContactKernels, EmptyPlacesStayEmpty) {
 
 // ---------------------------------------------------------------- rows
 
+// Friction torques, and surfaces that run, of some pairs.
+void add_surface(Pair& pair, Random& random) {
+    if (random.unit() < 0.5) {
+        pair.spinning = static_cast<float>(0.05 * random.unit());
+        pair.rolling = static_cast<float>(0.1 * random.unit());
+        const Vec3 carried = 0.01 * random.vector();
+        pair.turning = {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
+                        static_cast<float>(carried.z())};
+    }
+    if (random.unit() < 0.5) return;
+    pair.driven = true;
+    pair.drive = random.vector().cast<float>();
+    pair.drive_spin = random.vector().cast<float>();
+}
+
 // Bodies of many masses touching at random, with impulses carried in: a few colours, none of them the last.
 void build_pile(Rig& rig, uint64_t seed) {
     Random random(seed);
@@ -175,6 +216,7 @@ void build_pile(Rig& rig, uint64_t seed) {
             for (Pair& pair : rig.w.pairs.list) {
                 if (pair.key != key) continue;
                 pair.friction = static_cast<float>(random.unit());
+                if (seed % 2 == 0) add_surface(pair, random);
                 for (int k = 0; k < pair.manifold.count; ++k) {
                     pair.impulse[k].normal = static_cast<float>(random.unit());
                     pair.impulse[k].tangent1 = static_cast<float>(0.2 * random.unit());
@@ -190,6 +232,8 @@ std::vector<Vec3> impulses(const Rig& rig) {
     for (const Pair& pair : rig.w.pairs.list)
         for (int k = 0; k < pair.manifold.count; ++k)
             out.push_back(Vec3(pair.impulse[k].normal, pair.impulse[k].tangent1, pair.impulse[k].tangent2));
+    for (const Pair& pair : rig.w.pairs.list)
+        out.push_back(Vec3(pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2));
     return out;
 }
 
