@@ -23,6 +23,23 @@ struct Pair {
     PairCache& cache;
 };
 
+// Two shapes as they stand in the world.
+struct Sides {
+    const Shape& a;
+    const Shape& b;
+    const Placement& at_a;
+    const Placement& at_b;
+    Vec3f apart;  // from a's origin to b's, world axes [m]
+    float margin;
+};
+
+// Whether the axis that parted the pair last still holds it further apart than the margin. Asked before the kernel, in
+// the world: the pair's own frame costs more than the answer.
+using ApartTest = bool (*)(const Sides& sides, const PairCache& cache);
+
+bool boxes_apart(const Sides& sides, const PairCache& cache);
+bool polytopes_apart(const Sides& sides, const PairCache& cache);
+
 // Fills out (empty on entry) in a's frame: normal from a to b, positions in a's axes about a's origin.
 using Kernel = void (*)(const Pair& pair, Manifold& out);
 
