@@ -64,9 +64,10 @@ struct Preference {
 
     explicit Preference(float size) : slop(std::min(0.0025f, 0.1f * size)), keep(0.4f * slop) {}
 
+    // By how much an edge pair must separate more than a face, at least.
+    float ask(bool was_edge) const { return was_edge ? slop - keep : slop; }
     bool edge_wins(float edge, float face, bool was_edge) const {
-        const float ask = was_edge ? slop - keep : slop;
-        return edge > face + ask && edge > 0.9f * face + 0.2f * ask;
+        return edge > face + ask(was_edge) && edge > 0.9f * face + 0.2f * ask(was_edge);
     }
     // The incident face may lie beside the reference face where edges are what meets: then the clipped face shows
     // nothing of the overlap (found: its deepest point).

@@ -29,6 +29,19 @@ struct FaceView {
             ++polygon.count;
         }
     }
+    // Whether no edge pair separates by ask more than the face. Its deepest point is a vertex of the other polytope: no
+    // axis separates further than that vertex is from the reference, which is over the face or, inside, nearest to it.
+    bool decides(float ask, float slack) const {
+        const Vec3f vertex = other_in_reference * other.vertices[size_t(support(other, -up))];
+        const float x = face.u.dot(vertex), y = face.v.dot(vertex), z = face.normal.dot(vertex) - face.offset;
+        for (const Side& side : reference.sides_of(face)) {
+            if (side.x * x + side.y * y - side.offset > slack) return false;
+        }
+        for (const Face& beside : reference.faces) {
+            if (beside.normal.dot(vertex) - beside.offset > z + ask) return false;
+        }
+        return true;
+    }
     float height() const { return face.normal.dot(other_in_reference.position) - face.offset; }
     // Whether one of the corners is as deep as any vertex, within tolerance [m].
     bool holds_deepest(const Polygon& polygon, float tolerance) const {
@@ -37,6 +50,11 @@ struct FaceView {
         return least <= height() - highest(other, -up) + tolerance;
     }
 };
+
+FaceView view_of(const PolytopePair& pair, Axis axis) {
+    if (axis.kind == AxisKind::face_a) return {pair.a, axis.i, pair.b, pair.b_in_a};
+    return {pair.b, axis.j, pair.a, pair.a_in_b};
+}
 
 // The normal comes out of the reference face. incident: the face last found to lie against it, if known.
 void clip_faces(const FaceView& view, uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) {
@@ -70,14 +88,10 @@ void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out
 
 // kept: the axis is last frame's, with the face that lay against it; else the axis gets that face.
 void contact(const PolytopePair& pair, Axis& axis, bool kept, float margin, Manifold& out) {
-    if (axis.kind == AxisKind::edges) {
-        edge_point(pair, axis, margin, out);
-    } else if (axis.kind == AxisKind::face_a) {
-        clip_faces({pair.a, axis.i, pair.b, pair.b_in_a}, axis.j, kept, false, margin, out);
-    } else {
-        clip_faces({pair.b, axis.j, pair.a, pair.a_in_b}, axis.i, kept, true, margin, out);
-        move_to_a(pair.b_in_a, out);
-    }
+    if (axis.kind == AxisKind::edges) return edge_point(pair, axis, margin, out);
+    const bool on_b = axis.kind == AxisKind::face_b;
+    clip_faces(view_of(pair, axis), on_b ? axis.i : axis.j, kept, on_b, margin, out);
+    if (on_b) move_to_a(pair.b_in_a, out);
 }
 
 // The contact of the best axis; returns the axis taken.
@@ -118,10 +132,15 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
         if (face_b.distance > margin || face_b.distance > face.distance + (b_was ? -keep : keep)) face = face_b;
     }
     if (face.distance > margin) return write(face.axis, false, pair, shapes.cache);
+    const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
+    const FaceView view = view_of(pair, face.axis);
+    if (view.decides(Preference(pair.size()).ask(was_edge), flush_slack(view.reference.inner_radius))) {
+        contact(pair, face.axis, false, margin, out);
+        return write(face.axis, true, pair, shapes.cache);
+    }
     const float depth = std::max(margin, -face.distance);
     const Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
     if (edges.distance > margin) return write(edges.axis, false, pair, shapes.cache);
-    const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
     const Axis taken = choose_contact(pair, face, edges, was_edge, margin, out);
     write(taken, true, pair, shapes.cache);
 }
