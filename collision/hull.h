@@ -19,8 +19,9 @@ struct Hull {
     float inner_radius = 0;
     float outer_radius = 0;
 
-    Polytope polytope;  // all of the above in one view
+    Polytope polytope;  // all of the above in one view, as it was when last laid out
 
+    void lay_out() { polytope = {vertices, packs, faces, loops, sides, edges, centre, inner_radius, outer_radius}; }
     const Polytope& view() const { return polytope; }
 };
 
