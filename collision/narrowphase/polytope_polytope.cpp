@@ -15,7 +15,7 @@ struct FaceView {
     const Face& face = reference.faces[size_t(number)];
     const Vec3f up = other_in_reference.rotation.transpose() * face.normal;  // the normal in the other's frame
 
-    // Heights over the face: u, v, normal times a point of the other's frame.
+    // The corners of a face of the other polytope in this face's coordinates.
     void lay_out(int incident, Polygon& polygon) const {
         const Vec3f along = other_in_reference.rotation.transpose() * face.u;
         const Vec3f across = other_in_reference.rotation.transpose() * face.v;
