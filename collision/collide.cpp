@@ -12,21 +12,23 @@ namespace {
 struct Entry {
     Kernel kernel;
     bool swapped;
+    ApartTest apart;
 };
 
 void never_touch(const Pair&, Manifold&) {}
+bool ask_the_kernel(const Sides&, const PairCache&) { return false; }
 
-constexpr Entry kNone = {never_touch, false};
-constexpr Entry kBoxes = {box_box, false};
-constexpr Entry kPolytopes = {polytope_polytope, false};
-constexpr Entry kRounds = {round_round, false};
-constexpr Entry kOnRound = {polytope_round, false};
-constexpr Entry kRoundOn = {polytope_round, true};
-constexpr Entry kOnPlane = {core_plane, false};
-constexpr Entry kUnder = {core_plane, true};
-constexpr Entry kConvex = {convex_convex, false};
-constexpr Entry kConvexOnPlane = {convex_plane, false};
-constexpr Entry kUnderConvex = {convex_plane, true};
+constexpr Entry kNone = {never_touch, false, ask_the_kernel};
+constexpr Entry kBoxes = {box_box, false, boxes_apart};
+constexpr Entry kPolytopes = {polytope_polytope, false, polytopes_apart};
+constexpr Entry kRounds = {round_round, false, ask_the_kernel};
+constexpr Entry kOnRound = {polytope_round, false, ask_the_kernel};
+constexpr Entry kRoundOn = {polytope_round, true, ask_the_kernel};
+constexpr Entry kOnPlane = {core_plane, false, ask_the_kernel};
+constexpr Entry kUnder = {core_plane, true, ask_the_kernel};
+constexpr Entry kConvex = {convex_convex, false, ask_the_kernel};
+constexpr Entry kConvexOnPlane = {convex_plane, false, ask_the_kernel};
+constexpr Entry kUnderConvex = {convex_plane, true, ask_the_kernel};
 
 // Rows and columns: plane, box, sphere, capsule, hull, cylinder, cone, tapered capsule. Surfaces have none, see
 // collide_parts().
@@ -41,9 +43,8 @@ constexpr std::array<std::array<Entry, kShapeKinds>, kShapeKinds> kKernels = {{
     {kConvexOnPlane, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex},
 }};
 
-// Where b lies as a sees it: the difference of positions in double, all else in single precision.
-Pose relative(const Placement& a, const Placement& b) {
-    const Vec3f apart = (b.position - a.position).cast<float>();
+// Where b lies as a sees it.
+Pose relative(const Placement& a, const Placement& b, const Vec3f& apart) {
     return {a.rotation.transpose() * b.rotation, a.rotation.transpose() * apart};
 }
 
@@ -60,16 +61,18 @@ void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placem
     out.count = 0;
     if (has_parts(a) || has_parts(b)) return;
     const Entry& entry = kKernels[size_t(a.kind)][size_t(b.kind)];
+    // The difference of positions in double, all else in single precision.
+    const Vec3f apart = (at_b.position - at_a.position).cast<float>();
+    if (entry.apart({a, b, at_a, at_b, apart, margin}, cache)) return;
     if (!entry.swapped) {
-        entry.kernel({a, b, at_a, at_b, relative(at_a, at_b), margin, cache}, out);
+        entry.kernel({a, b, at_a, at_b, relative(at_a, at_b, apart), margin, cache}, out);
         if (out.count > 0) to_world(at_a.rotation, out);
         return;
     }
-    entry.kernel({b, a, at_b, at_a, relative(at_b, at_a), margin, cache}, out);
+    entry.kernel({b, a, at_b, at_a, relative(at_b, at_a, -apart), margin, cache}, out);
     if (out.count == 0) return;
     to_world(at_b.rotation, out);
     out.normal = -out.normal;
-    const Vec3f apart = (at_b.position - at_a.position).cast<float>();
     for (int i = 0; i < out.count; ++i) out.points[i].position += apart;
 }
 

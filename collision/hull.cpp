@@ -229,7 +229,7 @@ std::span<const Vec3f> hull_vertices(const Hull& hull) { return hull.vertices; }
 
 void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices) {
     indices.clear();
-    const Polytope polytope = hull.view();
+    const Polytope& polytope = hull.view();
     for (const Face& face : polytope.faces) {
         const auto loop = polytope.loop_of(face);
         for (size_t i = 2; i < loop.size(); ++i) indices.insert(indices.end(), {loop[0], loop[i - 1], loop[i]});

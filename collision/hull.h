@@ -19,7 +19,10 @@ struct Hull {
     float inner_radius = 0;
     float outer_radius = 0;
 
-    Polytope view() const { return {vertices, packs, faces, loops, sides, edges, centre, inner_radius, outer_radius}; }
+    Polytope polytope;  // all of the above in one view, as it was when last laid out
+
+    void lay_out() { polytope = {vertices, packs, faces, loops, sides, edges, centre, inner_radius, outer_radius}; }
+    const Polytope& view() const { return polytope; }
 };
 
 // Corner loops of a closed convex surface, counter-clockwise from outside; indices into some list of points.

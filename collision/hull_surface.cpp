@@ -214,6 +214,7 @@ std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, co
         hull->inner_radius = std::min(hull->inner_radius, face.offset - face.normal.dot(hull->centre));
     }
     for (const Vec3f& v : hull->vertices) hull->outer_radius = std::max(hull->outer_radius, (v - hull->centre).norm());
+    hull->lay_out();
     return hull;
 }
 

@@ -6,7 +6,7 @@ namespace taut::collision {
 namespace {
 
 // A point this much deeper than the chosen ones takes the nearest one's place [m].
-constexpr float kClearlyDeeper = 0.003f;
+constexpr float kClearlyDeeper = 0.001f;
 
 struct Chosen {
     int count = 0;

@@ -55,6 +55,18 @@ inline Eigen::Array4f heights(const VertexPack& pack, const Vec3f& direction) {
     return pack.x * direction.x() + pack.y * direction.y() + pack.z * direction.z();
 }
 
+// direction . v of all vertices into an aligned array of kMaxVertices; returns the most.
+inline float find_heights(const Polytope& polytope, const Vec3f& direction, float* height) {
+    Eigen::Array4f best = heights(polytope.packs[0], direction);
+    for (const VertexPack& pack : polytope.packs) {
+        const Eigen::Array4f four = heights(pack, direction);
+        Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{height} = four;
+        best = best.max(four);
+        height += 4;
+    }
+    return best.maxCoeff();
+}
+
 // max over vertices of direction . v
 inline float highest(const Polytope& polytope, const Vec3f& direction) {
     Eigen::Array4f best = heights(polytope.packs[0], direction);
@@ -65,13 +77,7 @@ inline float highest(const Polytope& polytope, const Vec3f& direction) {
 // Index of the vertex furthest along direction; the first of equals.
 inline int support(const Polytope& polytope, const Vec3f& direction) {
     alignas(16) float height[kMaxVertices];
-    Eigen::Array4f best = heights(polytope.packs[0], direction);
-    for (size_t i = 0; i < polytope.packs.size(); ++i) {
-        const Eigen::Array4f pack = heights(polytope.packs[i], direction);
-        Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(height + 4 * i) = pack;
-        best = best.max(pack);
-    }
-    const float top = best.maxCoeff();
+    const float top = find_heights(polytope, direction, height);
     const int last = int(polytope.vertices.size()) - 1;
     int index = 0;
     // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): the packs cover all vertices

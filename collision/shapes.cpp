@@ -167,7 +167,7 @@ Box tapered_capsule_bounds(const Shape& shape, const Placement& at) {
 }
 
 Box hull_bounds(const Shape& shape, const Placement& at) {
-    const Polytope polytope = shape.hull->view();
+    const Polytope& polytope = shape.hull->view();
     Vec3 lo, hi;
     for (int i = 0; i < 3; ++i) {
         const Vec3f axis = at.rotation.row(i);

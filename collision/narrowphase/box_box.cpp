@@ -15,6 +15,9 @@ constexpr int kAxes = 15;
 // The cache's word 0: 1 + axis, and whether the boxes touched along it.
 constexpr uint32_t kTouching = 1u << 8;
 
+// Nearly parallel edges (0.6 degrees) have no axis of their own: the square of the sine of their angle.
+constexpr float kParallel = 1e-4f;
+
 constexpr int next(int axis) { return axis == 2 ? 0 : axis + 1; }
 
 struct Boxes {
@@ -35,19 +38,16 @@ struct Boxes {
     float face_b(int j) const {
         return std::fabs(t_in_b[j]) - b[j] - (q(0, j) * a[0] + q(1, j) * a[1] + q(2, j) * a[2]);
     }
-    // n = e_i x r_j / sin of their angle; nearly parallel edges (0.6 degrees) have no axis of their own.
-    float edge(int i, int j) const {
+    // n = e_i x r_j / sin of their angle; -1e30 for one that separates by no more than least (not positive).
+    float edge(int i, int j, float least) const {
         const float sine_squared = 1 - r(i, j) * r(i, j);
-        if (sine_squared < 1e-4f) return -1e30f;
+        if (sine_squared < kParallel) return -1e30f;
         const int i1 = next(i), i2 = next(i1), j1 = next(j), j2 = next(j1);
         const float reach = a[i1] * q(i2, j) + a[i2] * q(i1, j) + b[j1] * q(i, j2) + b[j2] * q(i, j1);
-        return (std::fabs(t[i2] * r(i1, j) - t[i1] * r(i2, j)) - reach) / std::sqrt(sine_squared);
+        const float apart = std::fabs(t[i2] * r(i1, j) - t[i1] * r(i2, j)) - reach;
+        return apart > least ? apart / std::sqrt(sine_squared) : -1e30f;
     }
-    float separation(int axis) const {
-        if (axis < 3) return face_a(axis);
-        if (axis < kFirstEdge) return face_b(axis - 3);
-        return edge((axis - kFirstEdge) / 3, (axis - kFirstEdge) % 3);
-    }
+    float face(int axis) const { return axis < 3 ? face_a(axis) : face_b(axis - 3); }
     float size() const { return std::min(a.minCoeff(), b.minCoeff()); }
 };
 
@@ -61,24 +61,25 @@ struct Axes {
     int separating = -1;  // an axis further apart than the margin; the rest is unset then
 };
 
-// kept: last frame's face, preferred by keep [m]; -1 for none.
-Axes find_axes(const Boxes& boxes, float margin, int kept, float keep) {
+// kept: last frame's face, preferred; -1 for none. Edges that could not be chosen over the best face are left out.
+Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& preference) {
     Axes axes;
     float best = -1e30f;
     for (int axis = 0; axis < kFirstEdge; ++axis) {
-        const float s = boxes.separation(axis);
+        const float s = boxes.face(axis);
         if (s > margin) {
             axes.separating = axis;
             return axes;
         }
-        const float score = axis == kept ? s + keep : s;
+        const float score = axis == kept ? s + preference.keep : s;
         if (score > best + 1e-5f) {
             best = score;
             axes.face = {axis, s};
         }
     }
+    const float least = std::min(0.0f, axes.face.separation - preference.slop);
     for (int axis = kFirstEdge; axis < kAxes; ++axis) {
-        const float s = boxes.separation(axis);
+        const float s = boxes.edge((axis - kFirstEdge) / 3, (axis - kFirstEdge) % 3, least);
         if (s > margin) {
             axes.separating = axis;
             return axes;
@@ -162,16 +163,36 @@ void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out)
     move_to_a(pair.b_in_a, out);
 }
 
+// Of a box from its centre along an axis of the world.
+float reach(const Shape& box, const Placement& at, const Vec3f& axis) {
+    return (at.rotation.transpose() * axis).cwiseAbs().dot(box.size);
+}
+
 }  // namespace
+
+bool boxes_apart(const Sides& sides, const PairCache& cache) {
+    const uint32_t word = cache.words[0];
+    const int axis = int(word & 0xff) - 1;
+    if (axis < 0 || axis >= kAxes || word & kTouching) return false;
+    const Mat3f& a = sides.at_a.rotation;
+    const Mat3f& b = sides.at_b.rotation;
+    Vec3f n;
+    if (axis < kFirstEdge) {
+        n = axis < 3 ? a.col(axis) : b.col(axis - 3);
+    } else {
+        n = a.col((axis - kFirstEdge) / 3).cross(b.col((axis - kFirstEdge) % 3));
+        if (n.squaredNorm() < kParallel) return false;
+    }
+    return std::fabs(n.dot(sides.apart)) >
+           reach(sides.a, sides.at_a, n) + reach(sides.b, sides.at_b, n) + sides.margin * n.norm();
+}
 
 void box_box(const Pair& pair, Manifold& out) {
     const Boxes boxes(pair);
     uint32_t& word = pair.cache.words[0];
     const int kept = int(word & 0xff) - 1;
-    if (kept >= 0 && kept < kAxes && !(word & kTouching) && boxes.separation(kept) > pair.margin) return;
-
     const Preference preference(boxes.size());
-    const Axes axes = find_axes(boxes, pair.margin, word & kTouching ? kept : -1, preference.keep);
+    const Axes axes = find_axes(boxes, pair.margin, word & kTouching ? kept : -1, preference);
     if (axes.separating >= 0) {
         word = uint32_t(axes.separating + 1);
         return;

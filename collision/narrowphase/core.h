@@ -22,13 +22,13 @@ class PolytopeOf {
 public:
     explicit PolytopeOf(const Shape& shape) {
         if (!shape.hull) box_.emplace(shape.size);
-        view_ = shape.hull ? shape.hull->view() : box_->view();
+        view_ = shape.hull ? &shape.hull->view() : &box_->view();
     }
-    const Polytope& view() const { return view_; }
+    const Polytope& view() const { return *view_; }
 
 private:
     std::optional<BoxPolytope> box_;
-    Polytope view_;
+    const Polytope* view_;
 };
 
 }  // namespace taut::collision

@@ -23,6 +23,23 @@ struct Pair {
     PairCache& cache;
 };
 
+// Two shapes as they stand in the world.
+struct Sides {
+    const Shape& a;
+    const Shape& b;
+    const Placement& at_a;
+    const Placement& at_b;
+    Vec3f apart;  // from a's origin to b's, world axes [m]
+    float margin;
+};
+
+// Whether the axis that parted the pair last still holds it further apart than the margin. Asked before the kernel, in
+// the world: the pair's own frame costs more than the answer.
+using ApartTest = bool (*)(const Sides& sides, const PairCache& cache);
+
+bool boxes_apart(const Sides& sides, const PairCache& cache);
+bool polytopes_apart(const Sides& sides, const PairCache& cache);
+
 // Fills out (empty on entry) in a's frame: normal from a to b, positions in a's axes about a's origin.
 using Kernel = void (*)(const Pair& pair, Manifold& out);
 
@@ -47,9 +64,10 @@ struct Preference {
 
     explicit Preference(float size) : slop(std::min(0.0025f, 0.1f * size)), keep(0.4f * slop) {}
 
+    // By how much an edge pair must separate more than a face, at least.
+    float ask(bool was_edge) const { return was_edge ? slop - keep : slop; }
     bool edge_wins(float edge, float face, bool was_edge) const {
-        const float ask = was_edge ? slop - keep : slop;
-        return edge > face + ask && edge > 0.9f * face + 0.2f * ask;
+        return edge > face + ask(was_edge) && edge > 0.9f * face + 0.2f * ask(was_edge);
     }
     // The incident face may lie beside the reference face where edges are what meets: then the clipped face shows
     // nothing of the overlap (found: its deepest point).

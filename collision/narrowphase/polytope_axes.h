@@ -11,7 +11,9 @@ enum class AxisKind : uint8_t { none, face_a, face_b, edges };
 // Names an axis by the features it comes from; i and j are face or edge numbers.
 struct Axis {
     AxisKind kind = AxisKind::none;
-    uint8_t i = 0, j = 0;  // face_a: i; face_b: j; edges: i of a, j of b
+    // face_a: the axis of face i of a; face_b: of face j of b, and once they touch the other number is the face that
+    // lies against it; edges: i of a, j of b
+    uint8_t i = 0, j = 0;
 
     bool operator==(const Axis&) const = default;
 };
@@ -31,8 +33,6 @@ struct PolytopePair {
 
     // The unit axis from a to b, a's frame.
     Vec3f normal(Axis axis) const;
-    // How far the polytopes are apart along it.
-    float distance(Axis axis) const;
     bool valid(Axis axis) const;
     float size() const { return std::min(a.outer_radius, b.outer_radius); }
 
@@ -51,8 +51,5 @@ Separation best_face_b(const PolytopePair& pair, float margin);
 // The pair of edges that separates most, among those that could bear less than depth of overlap: edges on the
 // far sides, as seen along the unit normal (a to b), can not.
 Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float margin);
-
-// Of the faces around the vertex deepest below the reference face, the one that looks most against it.
-int incident_face(const Polytope& polytope, const Vec3f& reference_normal);
 
 }  // namespace taut::collision

@@ -72,7 +72,7 @@ void PolytopeSurface::start(const Facet& facet) {
     plane_.v = facet.normal.cross(plane_.u);
     plane_.offset = facet.offset;
     mirrored_ = facet.flipped;
-    incident_number_ = incident_face(body_, facet.normal);
+    incident_number_ = face_against(body_, facet.normal);
     slack_ = facet.height < -preference_.slop ? 0.0f : flush_slack(body_.inner_radius);
     incident_.count = points_.count = 0;
     for (const int corner : body_.loop_of(body_.faces[size_t(incident_number_)])) {

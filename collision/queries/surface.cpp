@@ -133,6 +133,7 @@ public:
             hull.packs[0].z[i] = p.z();
         }
         hull.inner_radius = inner;
+        hull.lay_out();
         shape_.kind = ShapeKind::hull;
         shape_.hull = std::shared_ptr<const Hull>(std::shared_ptr<const Hull>(), &hull);  // not owned
         at_ = {at.position + triangles.to_world(middle), at.rotation};

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <set>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "vector.h"
 
@@ -95,6 +98,68 @@ double box_depth(const Placed& a, const Placed& b) {
     return least;
 }
 
+bool is_polytope(const Shape& shape) { return shape.kind == ShapeKind::box || shape.kind == ShapeKind::hull; }
+
+// Directions in which a box or hull may part from another: out of its faces, and along its edges. Of a hull, all
+// triangles of its points that have no point outside; two in one plane give the same.
+struct Directions {
+    std::vector<Vec> normals, edges;
+};
+
+Directions directions_of(const Placed& p) {
+    Directions out;
+    if (p.shape->kind == ShapeKind::box) {
+        for (const Vec& axis : axes_of(p)) {
+            out.edges.push_back(axis);
+            out.normals.insert(out.normals.end(), {axis, axis * -1});
+        }
+        return out;
+    }
+    constexpr double kFlat = 1e-7;  // [m]
+    std::vector<Vec> points;
+    for (const taut_vec3& point : p.shape->points) points.push_back(rotate(p.rotation, of(point)));
+    std::set<std::pair<size_t, size_t>> edges;
+    for (size_t i = 0; i < points.size(); ++i)
+        for (size_t j = i + 1; j < points.size(); ++j)
+            for (size_t k = j + 1; k < points.size(); ++k) {
+                Vec normal = cross(points[j] - points[i], points[k] - points[i]);
+                const double area = length(normal);
+                if (!(area > kFlat * kFlat)) continue;
+                normal = normal * (1 / area);
+                double above = 0, below = 0;
+                for (const Vec& point : points) {
+                    above = std::max(above, dot(normal, point - points[i]));
+                    below = std::min(below, dot(normal, point - points[i]));
+                }
+                if (above > kFlat && below < -kFlat) continue;
+                out.normals.push_back(above > kFlat ? normal * -1 : normal);
+                edges.insert({{i, j}, {i, k}, {j, k}});
+            }
+    for (const auto& [i, j] : edges) out.edges.push_back((points[j] - points[i]) * (1 / length(points[j] - points[i])));
+    return out;
+}
+
+// Separating axes of boxes and hulls: exact.
+double polytope_depth(const Placed& a, const Placed& b) {
+    constexpr double kParallel = 1e-6;
+    const Vec offset = of(b.position) - of(a.position);
+    const Directions of_a = directions_of(a), of_b = directions_of(b);
+    double least = std::numeric_limits<double>::infinity();
+    const auto attempt = [&](Vec n) { least = std::min(least, reach(a, n) + reach(b, n * -1) - dot(n, offset)); };
+    for (const Vec& n : of_a.normals) attempt(n);
+    for (const Vec& n : of_b.normals) attempt(n * -1);
+    if (least <= 0) return least;
+    for (const Vec& u : of_a.edges)
+        for (const Vec& v : of_b.edges) {
+            const Vec axis = cross(u, v);
+            const double size = length(axis);
+            if (!(size > kParallel)) continue;
+            attempt(axis * (1 / size));
+            attempt(axis * (-1 / size));
+        }
+    return least;
+}
+
 // Any two convex shapes: the least overlap of their shadows over directions all round, then ever closer about the best.
 double searched_depth(const Placed& a, const Placed& b) {
     constexpr int kAllRound = 400, kNearby = 12, kRefinements = 14;
@@ -133,6 +198,7 @@ double overlap_depth(const Placed& a, const Placed& b) {
     if (ka == ShapeKind::sphere && kb == ShapeKind::sphere) return sphere_depth(a, b);
     if (ka == ShapeKind::box && kb == ShapeKind::sphere) return box_sphere_depth(a, b);
     if (ka == ShapeKind::sphere && kb == ShapeKind::box) return box_sphere_depth(b, a);
+    if (is_polytope(*a.shape) && is_polytope(*b.shape)) return polytope_depth(a, b);
     return searched_depth(a, b);
 }
 

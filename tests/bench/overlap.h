@@ -11,9 +11,9 @@ struct Placed {
     taut_quat rotation{0, 0, 0, 1};
 };
 
-// Shortest translation that separates the two [m]: 0 or less when they don't overlap. Exact for boxes and spheres in
-// any pairing and for everything against a plane; for other hulls and capsules searched over directions, to some 0.1
-// mm. Throws std::invalid_argument for other kinds.
+// Shortest translation that separates the two [m]: 0 or less when they don't overlap. Exact for boxes and hulls, boxes
+// and spheres, and everything against a plane; for the other pairs of capsules, spheres and hulls searched over
+// directions, to some 0.1 mm of small shapes. Throws std::invalid_argument for other kinds.
 double overlap_depth(const Placed& a, const Placed& b);
 
 // Radius of a sphere around the shape's origin; infinite for a plane.

@@ -208,6 +208,51 @@ TEST(CollisionContacts, ForeignCacheDoesNoHarm) {
     }
 }
 
+// Whatever axis is on record as the one that parted the pair, two that overlap do touch.
+TEST(CollisionContacts, NoAxisOnRecordHidesAnOverlap) {
+    Random random(12);
+    int overlaps = 0;
+    for (int run = 0; run < 4000; ++run) {
+        const Shape a = oracle::random_shape(run % 2 ? ShapeKind::box : ShapeKind::hull, random);
+        const Shape b = oracle::random_shape(run / 2 % 2 ? ShapeKind::box : ShapeKind::hull, random);
+        const Placement at_a{Vec3::Zero(), random.rotation()};
+        const Placement at_b{random.uniform(0.3, 0.9) * random.unit(), random.rotation()};
+        if (oracle::separation(oracle::core(a, at_a), oracle::core(b, at_b)) > -1e-4) continue;
+        ++overlaps;
+        PairCache cache;
+        // A kind of axis and a feature of each, numbers that every box and hull has.
+        const auto number = [&](double most) { return uint32_t(random.uniform(0, most)); };
+        cache.words[0] = number(16) | number(6) << 8 | number(6) << 16;
+        Manifold m;
+        collide(a, at_a, b, at_b, kMargin, cache, m);
+        EXPECT_GT(m.count, 0) << "seed 12 run " << run;
+    }
+    EXPECT_GT(overlaps, 1000);
+}
+
+// Of many low corners four are kept, and none that is left out lies more than a millimetre deeper.
+TEST(CollisionContacts, HullOnAPlaneStandsOnItsDeepestCorner) {
+    Random random(13);
+    const Shape ground = oracle::plane(Vec3f::UnitY());
+    for (int run = 0; run < 500; ++run) {
+        std::vector<Vec3f> points = {Vec3f(0, 1, 0)};
+        for (int i = 0; i < 12; ++i) {
+            const double angle = random.uniform(0, 6.28);
+            points.push_back(
+                Vec3f(0.4f * float(std::cos(angle)), float(random.uniform(0, 0.01)), 0.4f * float(std::sin(angle))));
+        }
+        const Shape hull = oracle::hull(points);
+        const Manifold m = collide_above(ground, hull, Vec3(0, -0.006, 0));
+        float lowest = 1;
+        for (const Vec3f& v : hull_vertices(*hull.hull)) lowest = std::min(lowest, v.y() - 0.006f);
+        ASSERT_GT(m.count, 0);
+        float deepest = 1;
+        for (int i = 0; i < m.count; ++i) deepest = std::min(deepest, m.points[i].separation);
+        EXPECT_LT(deepest, lowest + 0.00101f) << "seed 13 run " << run;
+        EXPECT_GT(deepest, lowest - 1e-5f);
+    }
+}
+
 // ---------------------------------------------------------------- degenerate poses
 
 TEST(CollisionContacts, CoincidentShapesGetAUnitNormal) {

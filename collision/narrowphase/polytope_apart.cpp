@@ -1,0 +1,66 @@
+// Whether a box or hull and another are still apart along the axis that parted them, all in world axes.
+#include "collision/hull.h"
+#include "collision/narrowphase/polytope_cache.h"
+
+namespace taut::collision {
+namespace {
+
+// Edges within 1e-3 rad of parallel have no axis of their own.
+constexpr float kParallel = 1e-3f;
+
+// A box or hull as axes of the world meet it.
+struct Placed {
+    const Shape& shape;
+    const Mat3f& rotation;
+
+    bool valid(AxisKind kind, int number) const {
+        const bool edges = kind == AxisKind::edges;
+        if (!shape.hull) return number < (edges ? 12 : 6);
+        return size_t(number) < (edges ? shape.hull->edges.size() : shape.hull->faces.size());
+    }
+    // Its reach about its origin along an axis.
+    float reach(const Vec3f& axis) const {
+        const Vec3f own = rotation.transpose() * axis;
+        return shape.hull ? highest(shape.hull->view(), own) : own.cwiseAbs().dot(shape.size);
+    }
+    Vec3f normal(int face) const {
+        if (shape.hull) return rotation * shape.hull->faces[size_t(face)].normal;
+        return rotation.col(face / 2) * (face % 2 ? 1.0f : -1.0f);
+    }
+    float offset(int face) const { return shape.hull ? shape.hull->faces[size_t(face)].offset : shape.size[face / 2]; }
+    Vec3f edge(int number) const {
+        if (!shape.hull) return rotation.col(number / 4);
+        const Polytope& polytope = shape.hull->view();
+        return (rotation * polytope.direction(polytope.edges[size_t(number)])).normalized();
+    }
+    Vec3f centre() const { return shape.hull ? Vec3f(rotation * shape.hull->centre) : Vec3f::Zero(); }
+};
+
+// Whether two edges' common normal holds the shapes further apart than the margin.
+bool edges_part(const Placed& a, const Placed& b, Axis axis, const Sides& sides) {
+    Vec3f n = a.edge(axis.i).cross(b.edge(axis.j));
+    const float sine = n.norm();
+    if (sine < kParallel) return false;
+    if (n.dot(sides.apart + b.centre() - a.centre()) < 0) n = -n;
+    return n.dot(sides.apart) > a.reach(n) + b.reach(-n) + sides.margin * sine;
+}
+
+}  // namespace
+
+bool polytopes_apart(const Sides& sides, const PairCache& cache) {
+    const Kept kept = read_axis(cache.words[0]);
+    if (kept.touching) return false;
+    const Placed a = {sides.a, sides.at_a.rotation};
+    const Placed b = {sides.b, sides.at_b.rotation};
+    const Axis axis = kept.axis;
+    if (axis.kind == AxisKind::none || !a.valid(axis.kind, axis.i) || !b.valid(axis.kind, axis.j)) return false;
+    if (axis.kind == AxisKind::edges) return edges_part(a, b, axis, sides);
+    if (axis.kind == AxisKind::face_a) {
+        const Vec3f n = a.normal(axis.i);
+        return n.dot(sides.apart) > a.offset(axis.i) + b.reach(-n) + sides.margin;
+    }
+    const Vec3f n = b.normal(axis.j);
+    return -n.dot(sides.apart) > b.offset(axis.j) + a.reach(-n) + sides.margin;
+}
+
+}  // namespace taut::collision
