@@ -1,4 +1,5 @@
 /* The headers as a C11 compiler sees them, each before any other of its kind, and a world that falls. */
+#include <taut/sleep.h>
 #include <taut/query.h>
 #include <taut/lint.h>
 #include <taut/profile.h>
