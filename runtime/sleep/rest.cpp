@@ -28,7 +28,9 @@ template <class Condition>
 void transfer(Array<Pair>& from, Array<Pair>& to, Array<Pair>& scratch, Condition&& condition) {
     if (std::none_of(from.begin(), from.end(), condition)) return;
     scratch.clear();
-    scratch.reserve(from.size() + to.size());
+    const size_t all = from.size() + to.size();  // each of the three takes another's place in time
+    for (Array<Pair>* list : {&from, &to, &scratch})
+        if (list->capacity() < all) list->reserve(all + all / 2);
     auto stays = to.begin();
     for (const Pair& pair : from) {
         if (!condition(pair)) continue;
@@ -81,7 +83,7 @@ void recall_pairs(World& world) {
 }
 
 void retire_pairs(World& world) {
-    if (!world.def.sleeping) return;
+    if (world.sleep.bodies == 0) return;
     Pairs& pairs = world.pairs;
     transfer(pairs.list, pairs.resting, pairs.scratch, [&](const Pair& pair) {
         return some_side(pair, rests, world.nodes) && !some_side(pair, moves, world.nodes);

@@ -39,6 +39,8 @@ uint32_t Nodes::add() {
 
 void Nodes::remove(uint32_t node) {
     info[node] = {};
+    rest[node] = {};
+    sleep[node] = {};
     ids.destroy(node);
 }
 

@@ -25,7 +25,8 @@ TEST_P(UntilSomebodySleeps, NothingDiffersFromAWorldWithoutSleeping) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, UntilSomebodySleeps,
-                         testing::Values("stack10", "pyramid10", "shapes200", "ragdolls6", "terrain", "tensegrity"),
+                         testing::Values("stack10", "pyramid10", "heavy_on_light_r1000", "shapes200", "grains300_r1",
+                                         "terrain"),
                          [](const auto& tested) -> std::string { return tested.param; });
 
 TEST(FallsAsleep, StackAsAWholeAfterTheTimeOfTheDef) {
@@ -84,8 +85,36 @@ TEST(FallsAsleep, HangingChainThatKeepsItsForces) {
     }
 }
 
-TEST(FallsAsleep, RagdollsAndPiles) {
-    for (const char* name : {"ragdolls6", "shapes200", "grains300_r1", "heavy_on_light_r1000", "terrain"}) {
+// A trunk with four limbs of two parts each, their hinges as stiff as a body's.
+TEST(FallsAsleep, PuppetAsAWholeWhereItFell) {
+    const World world(let_sleep);
+    world.add_ground();
+    const taut_shape part = world.box({0.25, 0.06, 0.06});
+    std::vector<taut_body> puppet{world.add({.shape = world.box({0.3, 0.1, 0.2}), .position = {0, 1, 0}})};
+    for (const Vec& side : {Vec(1, 0, 0.15), Vec(1, 0, -0.15), Vec(-1, 0, 0.15), Vec(-1, 0, -0.15)}) {
+        Vec end(0.3 * side.x, 1, side.z);
+        taut_body inner = puppet[0];
+        for (int i = 0; i < 2; ++i) {
+            puppet.push_back(world.add({.shape = part, .position = end + Vec(0.25 * side.x, 0, 0)}));
+            taut_hinge_joint_def def;
+            taut_hinge_joint_def_init(&def);
+            def.body_a = inner, def.body_b = inner = puppet.back();
+            def.angle.friction = 2;
+            ok(taut_joint_frames_from_world(world.handle, def.body_a, def.body_b, end.pos(), {0, 0, 1}, &def.frame_a,
+                                            &def.frame_b));
+            taut_joint out{};
+            ok(taut_world_add_hinge_joint(world.handle, &def, &out));
+            end += Vec(0.5 * side.x, 0, 0);
+        }
+    }
+    ASSERT_GT(steps_to_sleep(world, puppet, 300), 0);
+    EXPECT_EQ(events_of(world.handle).fell_asleep_count, puppet.size()) << "all in one step";
+    ok(taut_body_apply_impulse(puppet[8], {0, 1, 0}, {}));
+    EXPECT_TRUE(all_awake(puppet));
+}
+
+TEST(FallsAsleep, Piles) {
+    for (const char* name : {"shapes200", "grains300_r1", "heavy_on_light_r1000"}) {
         scenes::Scene scene = scenes::make_scene(name);
         scene.world.sleeping = 1;
         RunningScene run(scene);
@@ -126,7 +155,7 @@ TEST(Asleep, NothingMoves) {
         ok(taut_world_step(world.world));
         const taut_events events = events_of(world.world);
         ASSERT_EQ(events.moved_count + events.begin_count + events.end_count + events.fell_asleep_count, 0u) << i;
-        ASSERT_EQ(world.profile().allocations, 0u) << i;
+        ASSERT_TRUE(i == 0 || world.profile().allocations == 0) << i;
     }
     EXPECT_TRUE(Bits(world.world, bricks) == before);
     uint32_t now = 0;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstring>
-#include <map>
 
 #include "scenes/running_scene.h"
 
