@@ -20,7 +20,7 @@ taut_result taut_body_set_awake(taut_body handle, uint32_t awake) {
     if (!check.boolean("awake", awake)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         check.require(moves_by_forces(world.nodes.info[node].kind), "body is static or kinematic")
-            .require(world.def.sleeping != 0, "the world's def does not let bodies sleep", TAUT_UNSUPPORTED);
+            .require(awake || world.def.sleeping, "awake is 0, but the world's def does not let bodies sleep");
         if (!check) return check.result();
         if (awake)
             wake(world, node);

@@ -229,7 +229,8 @@ TEST(StaysAwake, InAWorldWithoutSleeping) {
     const std::vector<taut_body> stack = add_stack(world, 3);
     world.step(300);
     EXPECT_TRUE(all_awake(stack));
-    EXPECT_EQ(taut_body_set_awake(stack[0], 0), TAUT_UNSUPPORTED);
+    EXPECT_EQ(taut_body_set_awake(stack[0], 0), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_body_set_awake(stack[0], 1), TAUT_OK);
 }
 
 // A turntable without friction moves below what stands on it.

@@ -59,7 +59,7 @@ struct Zoo {
                 bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(which));
                 break;
             case 3:
-                ok(taut_body_set_velocity(platform, {0, static_cast<float>(dice.between(-0.3, 0.3)), 0}, {}));
+                ok(taut_body_set_velocity(platform, {static_cast<float>(dice.between(-0.3, 0.3)), 0, 0}, {}));
                 break;
             case 4:
                 ok(taut_body_set_velocity(platform, {}, {}));
@@ -95,8 +95,8 @@ TEST_P(RandomSleep, StaysWholeAndTellsTheTruth) {
         }
         ASSERT_EQ(zoo.world.profile().awake, awake_now) << step;
     }
-    EXPECT_GT(fell_asleep, 25u);
-    EXPECT_GT(woke, 20u);
+    EXPECT_GT(fell_asleep, 20u);
+    EXPECT_GT(woke, 10u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSleep, testing::Range(101u, 117u));

@@ -60,11 +60,4 @@ inline int steps_to_sleep(const World& world, const std::vector<taut_body>& bodi
     return -1;
 }
 
-inline taut_world_def sleeping_def() {
-    taut_world_def def;
-    taut_world_def_init(&def);
-    let_sleep(def);
-    return def;
-}
-
 }  // namespace lab
