@@ -52,6 +52,7 @@ scenes::Scene scene_of(const Options& options) {
     if (options.solver) scene.world.solver = scenes::solver_named(*options.solver);
     scene.world.hooks.log = print_log;
     scene.world.threads = options.threads;
+    scene.world.sleeping = options.sleep ? 1 : 0;
     return scene;
 }
 

@@ -31,6 +31,14 @@ const Colour kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
 
 Vec3 vec(taut_pos p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
+bool is_asleep(taut_body body) {
+    uint32_t awake = 1;
+    scenes::check(taut_body_is_awake(body, &awake), "asking whether a body is awake");
+    return awake == 0;
+}
+
+Colour darker(const Colour& colour) { return {0.4f * colour.x, 0.4f * colour.y, 0.4f * colour.z}; }
+
 // Neighbours rarely share a colour, and a body keeps its own.
 template <size_t N>
 Colour pick(const Colour (&colours)[N], size_t index) {
@@ -252,7 +260,8 @@ void SceneView::add_bodies(render::DrawList& list, bool tension) const {
         Look look = scene_.bodies[i].look;
         if (look == Look::hidden || look == Look::ground || is_in_the_way(i)) continue;
         bool shows_force = tension && (look == Look::link || look == Look::particle);
-        add_body(list, i, shows_force ? scale_.colour(force[i]) : colour_of(look, i));
+        const Colour colour = shows_force ? scale_.colour(force[i]) : colour_of(look, i);
+        add_body(list, i, is_asleep(world_.bodies[i]) ? darker(colour) : colour);
     }
     for (const scenes::Decoration& decoration : scene_.decorations) {
         Instance instance;

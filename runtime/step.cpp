@@ -8,6 +8,7 @@
 #include "integrate/integrate.h"
 #include "models/cable.h"
 #include "publish/publish.h"
+#include "sleep/sleep.h"
 #include "system/assemble.h"
 #include "world.h"
 
@@ -16,14 +17,21 @@ namespace {
 
 void remember_poses(Nodes& nodes) {
     for (uint32_t node = 0; node < nodes.slots(); ++node)
-        if (nodes.info[node].kind != NodeKind::dead) nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
+        if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
+            nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
 }
 
 void detect(World& w, Stopwatch& watch) {
+    recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     update_pairs(w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
+    retire_pairs(w);
     w.profile.broadphase_us = watch.lap();
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+    if (wake_touched(w)) {
+        recall_pairs(w);
+        find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+    }
     w.profile.narrowphase_us = watch.lap();
 }
 
@@ -123,6 +131,7 @@ void step(World& w) {
     publish_motion(w, w.frozen);
     publish_profile(w);
     break_joints(w);
+    update_sleep(w);
     w.profile.publish_us = watch.lap();
     w.profile.allocations = w.memory.calls() - calls;
     w.profile.step_us = whole.lap();

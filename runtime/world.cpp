@@ -14,6 +14,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       cables(memory),
       broadphase(memory),
       pairs(memory),
+      sleep(memory),
       partition(memory),
       system(memory),
       scratch(memory),
@@ -22,6 +23,8 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       moved(memory),
       quarantined(memory),
       broken(memory),
+      fell_asleep(memory),
+      woke(memory),
       frozen(memory) {
     pairs.world = id;
 }

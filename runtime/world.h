@@ -13,6 +13,7 @@
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
+#include "state/sleep.h"
 #include "system/system.h"
 #include "threads/team.h"
 
@@ -34,6 +35,7 @@ struct World {
     Cables cables;
     collision::Broadphase broadphase;
     Pairs pairs;
+    Sleep sleep;
     double accumulator = 0;  // frame time not yet stepped [s]
 
     // derived: rebuilt by each step from the state, kept for its memory and for what blocks remember
@@ -46,6 +48,7 @@ struct World {
     Array<taut_moved_event> moved;
     Array<taut_quarantine_event> quarantined;
     Array<taut_joint_break_event> broken;
+    Array<taut_sleep_event> fell_asleep, woke;
     Array<uint32_t> frozen;  // nodes quarantined by the last step
     taut_profile profile{};
 

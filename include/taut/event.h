@@ -44,6 +44,12 @@ typedef struct taut_joint_break_event {
     taut_vec3 torque; /**< on end b about its anchor [N m] */
 } taut_joint_break_event;
 
+/** A body or particle that fell asleep or woke; see sleep.h. */
+typedef struct taut_sleep_event {
+    taut_body body;
+    uint64_t user_data;
+} taut_sleep_event;
+
 /** The events of the last step. */
 typedef struct taut_events {
     const taut_contact_event* begin;
@@ -56,7 +62,11 @@ typedef struct taut_events {
     uint32_t quarantined_count;
     const taut_joint_break_event* broken; /**< in the order of the joints' slots */
     uint32_t broken_count;
-    uint32_t reserved; /**< zero */
+    uint32_t reserved;                   /**< zero */
+    const taut_sleep_event* fell_asleep; /**< asleep now, awake by the events before; in the order of the slots */
+    const taut_sleep_event* woke;        /**< the other way round */
+    uint32_t fell_asleep_count;
+    uint32_t woke_count;
 } taut_events;
 
 /** One point of a touching pair. */

@@ -44,6 +44,8 @@ typedef struct taut_profile {
     float penetration;    /**< deepest overlap found by the step [m] */
     uint64_t bytes;       /**< held from the allocator */
     uint64_t allocations; /**< calls of the allocator during the step */
+    uint32_t awake;       /**< of the bodies; counts and quality above, but for bodies and joints, are theirs alone */
+    uint32_t sleeping_islands;
 } taut_profile;
 
 /** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_STALE_HANDLE, TAUT_LOCKED. Thread safety: as event.h. */

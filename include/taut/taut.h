@@ -16,6 +16,7 @@
 #include <taut/profile.h>
 #include <taut/query.h>
 #include <taut/shape.h>
+#include <taut/sleep.h>
 #include <taut/world.h>
 
 #endif

@@ -41,6 +41,12 @@ typedef struct taut_world_def {
                                        its own, which sleep between steps. With task hooks the host's workers help
                                        instead, and it stays 1. Results do not depend on it. Default 1 */
     taut_hooks hooks;             /**< default: none */
+    uint32_t sleeping;            /**< 1: islands that came to rest fall asleep and cost next to nothing; see sleep.h.
+                                       Default 0 */
+    float sleep_speed;            /**< a body is quiet while no point of it is faster [m/s], [0, 10]. Default 0.03 */
+    float sleep_time;             /**< an island falls asleep after all of it was quiet for so long [s], [0, 1e3].
+                                       Default 0.5 */
+    uint32_t reserved;            /**< zero */
 } taut_world_def;
 
 /** What taut_world_advance did. */

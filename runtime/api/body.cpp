@@ -8,6 +8,7 @@
 #include "api/body_mass.h"
 #include "api/collider_def.h"
 #include "models/bodies.h"
+#include "sleep/wake.h"
 
 using namespace taut;
 
@@ -82,6 +83,20 @@ void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
     motion.w = motion.slow_w = w;
 }
 
+// A kinematic body that is told to stand still has no news for what rests on it.
+void give_velocity(World& world, uint32_t node, const Vec3& v, const Vec3& w) {
+    NodeMotion& motion = world.nodes.motion[node];
+    if (world.nodes.info[node].kind != NodeKind::kinematic || !stands_still(v, w)) wake(world, node);
+    set_velocity(motion, v, w);
+}
+
+// Of the next step. Nothing does not wake a body.
+void add_load(World& world, uint32_t node, const Vec3& force, const Vec3& torque) {
+    if (force != Vec3::Zero() || torque != Vec3::Zero()) wake(world, node);
+    world.nodes.load[node].force += force;
+    world.nodes.load[node].torque += torque;
+}
+
 taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                      std::span<const Collider> colliders, taut_body* out) {
     check.require(world.nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT);
@@ -140,6 +155,7 @@ taut_result push(Check& check, World& world, uint32_t node, const Vec3& impulse,
     check.require(within(v.norm(), motion.v.norm()), "impulse gives a speed beyond 1e4 m/s");
     check.require(within(w.norm(), motion.w.norm()), "impulse gives an angular speed beyond 1e4 rad/s");
     if (!check) return check.result();
+    wake(world, node);
     motion.v = v;
     motion.w = w;
     return TAUT_OK;
@@ -294,6 +310,7 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        wake(world, node);
         for_colliders(world.nodes, world.colliders, node,
                       [&](uint32_t c) { world.colliders.record[c].material = *material; });
         return TAUT_OK;
@@ -327,9 +344,11 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
             throw;
         }
         world.nodes.before[node] = origin_pose(world, node);  // no streak while rendering between the two
-        for (Pair& pair : world.pairs.list) {
+        wake(world, node);
+        wake_near(world, node);
+        for_pairs(world.pairs, [&](Pair& pair) {
             if (ends_on(node)(pair)) std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
-        }
+        });
         return TAUT_OK;
     });
 }
@@ -399,7 +418,7 @@ taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3
         check.require(kind != NodeKind::fixed, "body is static: it has no velocity");
         if (kind == NodeKind::particle) check.zero("angular", angular, "for a particle");
         if (!check) return check.result();
-        set_velocity(world.nodes.motion[node], to_vec(linear), to_vec(angular));
+        give_velocity(world, node, to_vec(linear), to_vec(angular));
         return TAUT_OK;
     });
 }
@@ -420,7 +439,7 @@ taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) 
         check.require(v.norm() <= kSpeed.hi, "target.position asks for a speed beyond 1e4 m/s");
         check.require(w.norm() <= kSpeed.hi, "target.rotation asks for an angular speed beyond 1e4 rad/s");
         if (!check) return check.result();
-        set_velocity(motion, v, w);
+        give_velocity(world, node, v, w);
         return TAUT_OK;
     });
 }
@@ -431,8 +450,7 @@ taut_result taut_body_apply_force(taut_body handle, taut_vec3 force, taut_vec3 t
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const Vec3 moment = to_vec(torque);
         if (!check_pushable(check, world.nodes.info[node].kind, !moment.isZero(0))) return check.result();
-        world.nodes.load[node].force += to_vec(force);
-        world.nodes.load[node].torque += moment;
+        add_load(world, node, to_vec(force), moment);
         return TAUT_OK;
     });
 }
@@ -443,12 +461,9 @@ taut_result taut_body_apply_force_at(taut_body handle, taut_vec3 force, taut_pos
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const NodeKind kind = world.nodes.info[node].kind;
         if (!check_pushable(check, kind, false)) return check.result();
-        NodeLoad& load = world.nodes.load[node];
-        load.force += to_vec(force);
         // A particle is where it is: the point does not matter.
-        if (kind != NodeKind::particle) {
-            load.torque += (to_vec(point) - world.nodes.motion[node].x).cross(to_vec(force));
-        }
+        const Vec3 arm = to_vec(point) - world.nodes.motion[node].x;
+        add_load(world, node, to_vec(force), kind != NodeKind::particle ? arm.cross(to_vec(force)) : Vec3::Zero());
         return TAUT_OK;
     });
 }

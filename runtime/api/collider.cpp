@@ -7,6 +7,7 @@
 #include "api/collider_def.h"
 #include "detect/detect.h"
 #include "models/bodies.h"
+#include "sleep/wake.h"
 
 using namespace taut;
 
@@ -99,6 +100,7 @@ taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* de
         if (!check.require(world.colliders.ids.slots() < kMaxSlots, "too many colliders", TAUT_LIMIT))
             return check.result();
         *out = world.collider_handle(add_collider(world, collider));
+        wake(world, node);
         return TAUT_OK;
     });
 }
@@ -142,6 +144,7 @@ taut_result taut_body_set_mass_from_colliders(taut_body handle) {
         NodeMass fresh = mass;
         set_body_mass(check, world.shapes, colliders, fresh);
         if (!check) return check.result();
+        wake(world, node);
         shift_centre(world, node, world.nodes.motion[node].q * (fresh.centre - mass.centre));
         mass = fresh;
         return TAUT_OK;
@@ -200,8 +203,11 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         --world.shapes.record[collider.shape].users;
         ++world.shapes.record[changed.shape].users;
         collider = changed;
-        for (Pair& pair : world.pairs.list)
+        wake(world, collider.node);
+        wake_near(world, collider.node);
+        for_pairs(world.pairs, [&](Pair& pair) {
             if (ends_on_collider(index)(pair)) pair.cache = {};
+        });
         return TAUT_OK;
     });
 }
@@ -211,6 +217,7 @@ taut_result taut_collider_set_material(taut_collider handle, const taut_material
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        wake(world, world.colliders.record[collider].node);
         world.colliders.record[collider].material = *material;
         return TAUT_OK;
     });
@@ -222,6 +229,8 @@ taut_result taut_collider_set_filter(taut_collider handle, const taut_filter* fi
     if (!check.zero("reserved", filter->reserved)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
+        wake(world, world.colliders.record[collider].node);
+        wake_near(world, world.colliders.record[collider].node);
         forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));  // asked anew by the step
         world.colliders.record[collider].filter = *filter;
         return TAUT_OK;

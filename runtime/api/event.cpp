@@ -21,7 +21,11 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 size(world.quarantined),
                 world.broken.data(),
                 size(world.broken),
-                0};
+                0,
+                world.fell_asleep.data(),
+                world.woke.data(),
+                size(world.fell_asleep),
+                size(world.woke)};
         return TAUT_OK;
     });
 }
@@ -31,17 +35,17 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
     if (!check.pointer("count", count)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         uint32_t needed = 0;
-        for (const Pair& pair : world.pairs.list) {
+        for_pairs(world.pairs, [&](const Pair& pair) {
             if (pair.touching) needed += static_cast<uint32_t>(pair.manifold.count);
-        }
+        });
         if (needed > capacity) {
             *count = needed;
             return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
         }
         if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
         *count = needed;
-        for (const Pair& pair : world.pairs.list) {
-            if (!pair.touching) continue;
+        for_pairs(world.pairs, [&](const Pair& pair) {
+            if (!pair.touching) return;
             const taut_body a = world.body_handle(pair.a), b = world.body_handle(pair.b);
             const Vec3 origin = world.nodes.origin(pair.a);
             const Vec3f& normal = pair.manifold.normal;
@@ -58,7 +62,7 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
                                world.collider_handle(pair.collider_a()),
                                world.collider_handle(pair.collider_b())};
             }
-        }
+        });
         return TAUT_OK;
     });
 }

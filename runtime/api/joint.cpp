@@ -1,6 +1,8 @@
 // Joints that are there: what they connect, and changes of what they do.
 #include <taut/joint.h>
 
+#include <tuple>
+
 #include "api/joint_parts.h"
 
 using namespace taut;
@@ -18,11 +20,22 @@ taut_result with_axis(const Check& check, taut_joint handle, uint32_t axis, Use 
     });
 }
 
+bool same(const Axis& a, const Axis& b) {
+    const auto all = [](const Axis& x) {
+        return std::tie(x.mode, x.lower, x.upper, x.limit_compliance, x.limit_damping, x.stiffness, x.damping, x.target,
+                        x.speed, x.max_force, x.friction);
+    };
+    return all(a) == all(b);
+}
+
 template <class Change>
 taut_result change(const Check& check, taut_joint handle, Change&& apply) {
     if (!check) return check.result();
-    return with(check.call(), handle, Use::write,
-                [&](World& world, uint32_t index) { return apply(world, world.joints.record[index]); });
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        const taut_result changed = apply(world, world.joints.record[index]);
+        if (changed == TAUT_OK) wake_ends(world, world.joints.record[index]);
+        return changed;
+    });
 }
 
 }  // namespace
@@ -31,6 +44,7 @@ taut_result taut_joint_remove(taut_joint handle) {
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         const Joint& joint = world.joints.record[index];
         reserve_pair_of_ends(world, joint);
+        wake_ends(world, joint);
         if (!joint.collide_connected) forget_pair_of_ends(world, joint);
         world.joints.remove(index);
         return TAUT_OK;
@@ -58,8 +72,8 @@ taut_result taut_joint_get_user_data(taut_joint handle, uint64_t* out) {
 }
 
 taut_result taut_joint_set_user_data(taut_joint handle, uint64_t value) {
-    return change(Check(__func__), handle, [&](World&, Joint& joint) {
-        joint.user_data = value;
+    return with(__func__, handle, Use::write, [&](World& world, uint32_t index) {
+        world.joints.record[index].user_data = value;
         return TAUT_OK;
     });
 }
@@ -110,7 +124,7 @@ taut_result taut_joint_get_axis(taut_joint handle, uint32_t axis, taut_axis_def*
 taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axis_def* def) {
     Check check(__func__);
     if (!check.pointer("def", def)) return check.result();
-    return with_axis(check, handle, axis, Use::write, [&](const World& world, Joint& joint, const JointAxis& place) {
+    return with_axis(check, handle, axis, Use::write, [&](World& world, Joint& joint, const JointAxis& place) {
         if (!check_axis(check, kind_of(joint), place, *def)) return check.result();
         const JointReading reading = read_joint(world.nodes, joint);
         const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
@@ -118,7 +132,9 @@ taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axi
         check.require(def->drive.frequency == 0 || inverse_mass > 0,
                       "drive.frequency is given, but neither end moves any more");
         if (!check) return check.result();
-        change_axis(joint, place.row, make_axis(place, *def, inverse_mass));
+        const Axis wanted = make_axis(place, *def, inverse_mass);
+        if (!same(wanted, joint.axis[place.row])) wake_ends(world, joint);
+        change_axis(joint, place.row, wanted);
         return TAUT_OK;
     });
 }
@@ -126,11 +142,12 @@ taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axi
 taut_result taut_joint_set_target(taut_joint handle, uint32_t axis, float target, float speed) {
     Check check(__func__);
     if (!check.number("speed", speed, kSpeed)) return check.result();
-    return with_axis(check, handle, axis, Use::write, [&](const World&, Joint& joint, const JointAxis& place) {
+    return with_axis(check, handle, axis, Use::write, [&](World& world, Joint& joint, const JointAxis& place) {
         Axis& held = joint.axis[place.row];
         check.number("target", target, is_angle(joint, place.row) ? kJointAngle : kJointPosition)
             .require(has_drive(held), "the axis has no drive");
         if (!check) return check.result();
+        if (target != held.target || speed != held.speed) wake_ends(world, joint);  // hosts say it every frame
         held.target = target;
         held.speed = speed;
         return TAUT_OK;

@@ -180,6 +180,7 @@ taut_result add_joint(Check& check, World& world, const Joint& joint, taut_joint
     reserve_pair_of_ends(world, joint);
     const uint32_t index = world.joints.add(joint);
     if (!joint.collide_connected) forget_pair_of_ends(world, joint);
+    wake_ends(world, joint);
     *out = world.joint_handle(index);
     return TAUT_OK;
 }

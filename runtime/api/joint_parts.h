@@ -7,6 +7,7 @@
 #include "api/joint_kinds.h"
 #include "constraints/distance.h"
 #include "constraints/joint_frames.h"
+#include "sleep/wake.h"
 #include "state/joint_reading.h"
 
 namespace taut {
@@ -54,6 +55,11 @@ Check& check_distance(Check& check, const World& world, const Joint& joint);
 // throw, the second does not.
 void reserve_pair_of_ends(World& world, const Joint& joint);
 void forget_pair_of_ends(World& world, const Joint& joint);
+
+// What a joint holds goes on in another way.
+inline void wake_ends(World& world, const Joint& joint) {
+    for (uint32_t node : joint.nodes()) wake(world, node);
+}
 
 // Puts a changed joint in the place of the old one. What the change does to coordinates comes bit by bit over the next
 // step, unless the joint was never solved: then it is where the host wants it.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "api/access.h"
+#include "sleep/wake.h"
 
 using namespace taut;
 
@@ -13,6 +14,8 @@ namespace {
 // gets a step each frame.
 constexpr double kEarly = 1e-3;
 constexpr uint32_t kMaxThreads = 64;
+constexpr Range kSleepSpeed{0, 10};  // [m/s]
+constexpr Range kSleepTime{0, 1e3};  // [s]
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
     check.require(!hooks.allocate == !hooks.free,
@@ -35,7 +38,11 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .boolean("geometric_stiffness", def.geometric_stiffness)
         .number("velocity_filter", def.velocity_filter, kUnitInterval)
         .count("max_catch_up", def.max_catch_up, 1, 1000)
-        .count("threads", def.threads, 1, def.hooks.enqueue_task ? 1 : kMaxThreads);
+        .count("threads", def.threads, 1, def.hooks.enqueue_task ? 1 : kMaxThreads)
+        .boolean("sleeping", def.sleeping)
+        .number("sleep_speed", def.sleep_speed, kSleepSpeed)
+        .number("sleep_time", def.sleep_time, kSleepTime)
+        .zero("reserved", def.reserved);
     return check_hooks(check, def.hooks);
 }
 
@@ -54,6 +61,8 @@ void taut_world_def_init(taut_world_def* def) {
     def->velocity_filter = 0.25f;
     def->max_catch_up = 4;
     def->threads = 1;
+    def->sleep_speed = 0.03f;
+    def->sleep_time = 0.5f;
 }
 
 taut_result taut_world_create(const taut_world_def* def, taut_world* out) {
@@ -143,6 +152,8 @@ taut_result taut_world_set_gravity(taut_world handle, taut_vec3 gravity) {
     Check check(__func__);
     if (!check.vector("gravity", gravity, kGravity)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const taut_vec3 old = world.def.gravity;
+        if (gravity.x != old.x || gravity.y != old.y || gravity.z != old.z) wake_all(world);
         world.def.gravity = gravity;
         return TAUT_OK;
     });

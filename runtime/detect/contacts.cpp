@@ -243,8 +243,11 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
     pairs.placement.resize(slots);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t c = begin; c < end; ++c)
-            if (colliders.record[c].node != kNone) pairs.placement[c] = placement_of(nodes, colliders.record[c]);
+        for (uint32_t c = begin; c < end; ++c) {
+            const Collider& collider = colliders.record[c];
+            if (collider.node == kNone || nodes.rest[collider.node] == Rest::asleep) continue;
+            pairs.placement[c] = placement_of(nodes, collider);
+        }
     });
     team.for_ranges(static_cast<uint32_t>(pairs.list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {

@@ -50,7 +50,8 @@ collision::Placement place_between(const Nodes& nodes, const Collider& collider)
 
 bool moves(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.info[node].kind != NodeKind::fixed; }
 bool moves(const Nodes& nodes, const Collider& collider) {
-    return collider.node != kNone && (moves(nodes, collider.node) || moves(nodes, collider.node_b));
+    if (collider.node == kNone || nodes.rest[collider.node] == Rest::asleep) return false;
+    return moves(nodes, collider.node) || moves(nodes, collider.node_b);
 }
 
 // How far a node moves in a frame, for the broadphase; ahead of that where it is looked for along its way.
@@ -160,7 +161,7 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
     if (broadphase.refresh_pairs()) pairs.complete = false;
     if (pairs.complete) return;
     pairs.scratch.clear();
-    size_t old = 0;
+    size_t old = 0, resting = 0;
     const auto drop = [&](const Pair& pair) {  // it left the broadphase
         if (pair.touching && pair.part == 0) report_end(pairs, nodes, colliders, pair);
     };
@@ -170,6 +171,8 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
             while (old < pairs.list.size() && pairs.list[old].key == key) pairs.scratch.push_back(pairs.list[old++]);
             continue;
         }
+        while (resting < pairs.resting.size() && pairs.resting[resting].key < key) ++resting;
+        if (resting < pairs.resting.size() && pairs.resting[resting].key == key) continue;
         Pair& pair = pairs.scratch.emplace_back();
         pair.key = key;
         pair.a = colliders.record[pair.collider_a()].node;

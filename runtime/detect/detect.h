@@ -31,7 +31,7 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
 void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs);
 
-// Manifolds of all pairs at the present poses; impulses follow their features.
+// Manifolds of all pairs in the list at the present poses; impulses follow their features.
 void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                    double time_step);
 

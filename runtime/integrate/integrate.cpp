@@ -92,13 +92,14 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.place.assign(slots + 1, kNone);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node) {
-        if (nodes.info[node].kind == NodeKind::dead) continue;
+        if (nodes.info[node].kind == NodeKind::dead || nodes.rest[node] == Rest::asleep) continue;
         if (nodes.info[node].kind == NodeKind::kinematic) system.kinematic.push_back(node);
         const NodeMotion& m = nodes.motion[node];
         system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
         system.found[node + 1] = {m.x, m.q};
         system.exact[node + 1] = {m.v, m.w};
         set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
+        if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
         set_sweep_velocity(system.velocity[node + 1], m.v, m.w);
     }
 }
@@ -172,7 +173,7 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
 
 void commit_kinematic(Nodes& nodes, double time_step) {
     for (uint32_t node = 0; node < nodes.slots(); ++node) {
-        if (nodes.info[node].kind != NodeKind::kinematic) continue;
+        if (nodes.info[node].kind != NodeKind::kinematic || nodes.rest[node] != Rest::awake) continue;
         NodeMotion& m = nodes.motion[node];
         m.x += time_step * m.v;
         m.q = (rotation_from_vector(time_step * m.w) * m.q).normalized();

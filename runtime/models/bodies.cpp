@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "detect/detect.h"
+#include "sleep/wake.h"
 #include "state/joint_reading.h"
 
 namespace taut {
@@ -44,6 +45,7 @@ uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, 
 }
 
 void remove_node(World& world, uint32_t node) {
+    wake(world, node);
     // What may fail comes first.
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     remove_colliders(world, node);
@@ -68,10 +70,13 @@ uint32_t add_collider(World& world, const Collider& collider) {
     }
     link_to(world, record.node, kNone) = index;
     ++world.shapes.record[record.shape].users;
+    if (!moves_by_forces(world.nodes.info[record.node].kind))
+        wake_box(world, contact_box(world.nodes, world.shapes, record));
     return index;
 }
 
 void remove_collider(World& world, uint32_t collider) {
+    wake(world, world.colliders.record[collider].node);
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
     const Collider& record = world.colliders.record[collider];
     link_to(world, record.node, collider) = record.next;

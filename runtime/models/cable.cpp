@@ -10,6 +10,7 @@
 #include "constraints/distance.h"
 #include "constraints/joint_frames.h"
 #include "models/bodies.h"
+#include "sleep/wake.h"
 #include "state/joint_reading.h"
 
 namespace taut {
@@ -99,6 +100,7 @@ Joint make_clamp(const World& world, const Cable& cable, int e, const CableTie& 
 
 JointRef add_joint(World& world, const Joint& joint) {
     const uint32_t slot = world.joints.add(joint);
+    for (uint32_t node : joint.nodes()) wake(world, node);
     return {slot, world.joints.record[slot].serial};
 }
 
@@ -268,6 +270,7 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
 }
 
 void drop_cable_node(World& world, uint32_t node) {
+    wake(world, node);
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     while (world.nodes.info[node].collider != kNone) {
         drop_collider(world, world.nodes.info[node].collider);
@@ -293,6 +296,7 @@ void remove_cable(World& world, uint32_t index) {
     const auto own = [&](uint32_t node) { return node != kNone && world.nodes.info[node].cable == index; };
     // What may fail comes first.
     reserve_ended(world.pairs, [&](const Pair& pair) { return own(pair.a) || own(pair.b); });
+    for (uint32_t node : world.cables.record[index].node) wake(world, node);  // and what it is tied to
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
         const auto nodes = world.joints.record[joint].nodes();

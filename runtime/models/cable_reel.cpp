@@ -1,6 +1,8 @@
 // When segments are cut and joined, and what the files of links and particles share.
 #include "models/cable_reel.h"
 
+#include "sleep/wake.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,6 +77,8 @@ Reel::Plan Reel::plan() const {
     p.paid += std::min(end_.lost, kMakeGood * std::abs(p.paid));
     return p;
 }
+
+void Reel::wake_up() { wake(world_, outer()); }
 
 void Reel::advance() {
     const Plan p = plan();
@@ -158,8 +162,10 @@ void for_each_reel(World& world, Act act) {
 
 void reel_cables(World& world) {
     drop_loose_parts(world);
-    for_each_reel(world, [](Reel reel) {
-        if (reel.works()) reel.fit();
+    for_each_reel(world, [&](Reel reel) {
+        if (!reel.works()) return;
+        reel.wake_up();
+        reel.fit();
     });
     for_each_reel(world, [](Reel reel) { reel.works() ? reel.advance() : reel.rest(); });
 }

@@ -27,10 +27,11 @@ public:
         : world_(world), index_(index), e_(end), c_(world.cables.record[index]), end_(c_.end[end]) {}
 
     bool works() const { return tied() && (end_.reel_speed != 0 || end_.wanted_speed != 0 || end_.owed != 0); }
-    // Cuts and joins segments until the end segment can change by what is planned.
+    // Cuts and joins segments of an awake cable until the end segment can change by what is planned.
     void fit();
     void advance();
     void rest();
+    void wake_up();
 
 private:
     struct Plan {

@@ -24,7 +24,7 @@ constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses alwa
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
-bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && moves_by_forces(nodes.info[node].kind); }
+bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.solved(node); }
 
 // The first of some nodes that moves, or kNone.
 uint32_t mover(const Nodes& nodes, std::span<const uint32_t> of) {
@@ -37,7 +37,7 @@ uint32_t mover(const Nodes& nodes, std::span<const uint32_t> of) {
 
 void note_loads(Joints& joints, const Nodes& nodes) {
     for (Joint& joint : joints.record) {
-        if (!joint.type) continue;
+        if (!joint.type || asleep(nodes, joint)) continue;
         double squared = 0, lighter = 1e300;
         for (int r = 0; r < joint.type->rows; ++r)
             if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];

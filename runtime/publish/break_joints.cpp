@@ -1,4 +1,5 @@
 #include "publish/publish.h"
+#include "sleep/wake.h"
 #include "state/joint_reading.h"
 
 namespace taut {
@@ -9,6 +10,7 @@ void break_joints(World& world) {
     for (uint32_t index = 0; index < world.joints.record.size(); ++index) {
         const Joint& joint = world.joints.record[index];
         if (!joint.type || (std::isinf(joint.break_force) && std::isinf(joint.break_torque))) continue;
+        if (asleep(world.nodes, joint)) continue;
         const Wrench load = wrench_of(joint, read_joint(world.nodes, joint));
         if (!(load.force.norm() > joint.break_force || load.torque.norm() > joint.break_torque)) continue;
         const Vec3f force = load.force.cast<float>(), torque = load.torque.cast<float>();
@@ -20,6 +22,7 @@ void break_joints(World& world) {
         // The two bodies may collide from the next step on: a pair that was filtered is found anew, and touched nobody.
         if (!joint.collide_connected && joint.node[0] != kNone && joint.node[1] != kNone)
             forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(joint.node[0], joint.node[1]));
+        for (uint32_t node : joint.nodes()) wake(world, node);
         world.joints.remove(index);
     }
 }

@@ -58,6 +58,7 @@ void publish_motion(World& world, const Array<uint32_t>& frozen) {
     world.quarantined.clear();
     for (uint32_t node = 0; node < nodes.slots(); ++node) {
         const NodeInfo& info = nodes.info[node];
+        if (nodes.rest[node] != Rest::awake) continue;
         if (info.kind == NodeKind::dead || info.kind == NodeKind::fixed) continue;
         const Vec3 origin = nodes.origin(node);
         const Quat& q = nodes.motion[node].q;
@@ -80,6 +81,7 @@ void publish_profile(World& world) {
     for (const Joint& joint : world.joints.record) {
         if (!joint.type) continue;
         ++p.joints;
+        if (asleep(world.nodes, joint)) continue;
         const JointError error = error_of(joint, read_joint(world.nodes, joint));
         p.joint_error = std::max(p.joint_error, static_cast<float>(error.linear));
     }

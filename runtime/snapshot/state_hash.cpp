@@ -33,6 +33,16 @@ void add_surface(Hash& hash, const Collider& collider) {
     for (const Vec3f* v : {&collider.surface_velocity, &collider.surface_spin}) hash.add(Vec3(v->cast<double>()));
 }
 
+// Of worlds with sleeping alone.
+void add_sleep(Hash& hash, const Nodes& nodes) {
+    for (uint32_t i = 0; i < nodes.slots(); ++i) {
+        if (nodes.info[i].kind == NodeKind::dead) continue;
+        const NodeSleep& sleep = nodes.sleep[i];
+        hash.add(sleep.quiet);
+        hash.add(static_cast<uint64_t>(sleep.next) << 8 | static_cast<uint64_t>(nodes.rest[i]) << 1 | sleep.can_sleep);
+    }
+}
+
 void add_colliders(Hash& hash, const Colliders& colliders) {
     for (uint32_t i = 0; i < colliders.record.size(); ++i) {
         const Collider& collider = colliders.record[i];
@@ -110,8 +120,8 @@ void add_cables(Hash& hash, const Cables& cables) {
 }
 
 void add_pairs(Hash& hash, const Pairs& pairs) {
-    for (const Pair& pair : pairs.list) {
-        if (pair.manifold.count == 0) continue;
+    for_pairs(pairs, [&](const Pair& pair) {
+        if (pair.manifold.count == 0) return;
         hash.add(pair.key);
         if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
         for (uint32_t word : pair.cache.words) hash.add(static_cast<uint64_t>(word));
@@ -122,11 +132,11 @@ void add_pairs(Hash& hash, const Pairs& pairs) {
             hash.add(pair.impulse[k].tangent2);
             hash.add(pair.impulse[k].slip);
         }
-        if (!pair.turns()) continue;
+        if (!pair.turns()) return;
         for (float x :
              {pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2, pair.turning.slip, pair.spin_slip})
             hash.add(x);
-    }
+    });
 }
 
 }  // namespace
@@ -136,6 +146,7 @@ uint64_t state_hash(const World& world) {
     for (float g : {world.def.gravity.x, world.def.gravity.y, world.def.gravity.z}) hash.add(g);
     hash.add(world.accumulator);
     add_nodes(hash, world.nodes);
+    if (world.def.sleeping) add_sleep(hash, world.nodes);
     add_colliders(hash, world.colliders);
     add_joints(hash, world.joints);
     add_cables(hash, world.cables);

@@ -56,6 +56,12 @@ inline bool ends_on(const Joint& joint, uint32_t node) {
     return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
 }
 
+// Between nodes that sleep; worlds without sleeping have none.
+inline bool asleep(const Nodes& nodes, const Joint& joint) {
+    const auto ends = joint.nodes();
+    return std::any_of(ends.begin(), ends.end(), [&](uint32_t node) { return node != kNone && nodes.sleeps(node); });
+}
+
 struct Joints {
     explicit Joints(Memory& memory) : ids(memory), record(memory) {}
 

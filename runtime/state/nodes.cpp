@@ -12,6 +12,8 @@ uint32_t Nodes::add() {
         mass.reserve(room);
         load.reserve(room);
         before.reserve(room);
+        rest.reserve(room);
+        sleep.reserve(room);
         info.reserve(room);
     }
     const uint32_t node = ids.create();
@@ -21,18 +23,24 @@ uint32_t Nodes::add() {
         mass.emplace_back();
         load.emplace_back();
         before.emplace_back();
+        rest.emplace_back();
+        sleep.emplace_back();
     } else {
         info[node] = {};
         motion[node] = {};
         mass[node] = {};
         load[node] = {};
         before[node] = {};
+        rest[node] = {};
+        sleep[node] = {};
     }
     return node;
 }
 
 void Nodes::remove(uint32_t node) {
     info[node] = {};
+    rest[node] = {};
+    sleep[node] = {};
     ids.destroy(node);
 }
 

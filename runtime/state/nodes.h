@@ -14,6 +14,11 @@ enum class NodeKind : uint8_t { fixed, kinematic, dynamic, particle, dead };
 
 inline bool moves_by_forces(NodeKind kind) { return kind == NodeKind::dynamic || kind == NodeKind::particle; }
 
+// Whether a step goes through a node. One that settles fell asleep in the last step, and the next one brings its boxes
+// and what solvers see of it up to date for the last time. A kinematic node sleeps while it stands still. In worlds
+// without sleeping, and where fixed or dead, nodes count as awake.
+enum class Rest : uint8_t { awake, settling, asleep };
+
 struct NodeMotion {
     Vec3 x = Vec3::Zero();       // centre of mass [m]
     Quat q = Quat::Identity();   // world from body
@@ -42,6 +47,13 @@ struct NodeInfo {
     uint64_t user_data = 0;
 };
 
+struct NodeSleep {
+    double quiet = 0;          // how long it has been slower than the world's sleep_speed [s]
+    uint32_t next = kNone;     // of its sleeping island: a ring; kNone while awake
+    bool can_sleep = true;     // its island may fall asleep
+    bool told_asleep = false;  // what events have said
+};
+
 struct NodePose {  // of the body's origin, for rendering
     Vec3 position = Vec3::Zero();
     Quat rotation = Quat::Identity();
@@ -49,13 +61,23 @@ struct NodePose {  // of the body's origin, for rendering
 
 struct Nodes {
     explicit Nodes(Memory& memory)
-        : ids(memory), info(memory), motion(memory), mass(memory), load(memory), before(memory) {}
+        : ids(memory),
+          info(memory),
+          motion(memory),
+          mass(memory),
+          load(memory),
+          before(memory),
+          rest(memory),
+          sleep(memory) {}
 
     // Adds a dead-to-live slot with default contents; throws std::bad_alloc before anything changes.
     uint32_t add();
     void remove(uint32_t node);
 
     uint32_t slots() const { return ids.slots(); }
+    // Moved by forces, and not asleep.
+    bool solved(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] == Rest::awake; }
+    bool sleeps(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] != Rest::awake; }
     Vec3 origin(uint32_t node) const { return motion[node].x - motion[node].q * mass[node].centre; }
 
     IdPool ids;
@@ -64,6 +86,8 @@ struct Nodes {
     Array<NodeMass> mass;
     Array<NodeLoad> load;
     Array<NodePose> before;  // origin pose before the last step
+    Array<Rest> rest;
+    Array<NodeSleep> sleep;
 };
 
 }  // namespace taut

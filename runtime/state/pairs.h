@@ -97,6 +97,7 @@ struct Pace {
 struct Pairs {
     explicit Pairs(Memory& memory)
         : list(memory),
+          resting(memory),
           scratch(memory),
           fresh(memory),
           active(memory),
@@ -108,6 +109,7 @@ struct Pairs {
           parts(memory) {}
 
     Array<Pair> list;                       // sorted by key and part
+    Array<Pair> resting;                    // sorted likewise: pairs of which no side moves and one is asleep
     bool complete = false;                  // all pairs of the broadphase are listed
     Array<Pair> scratch;                    // for merges into the list
     Array<Pair> fresh;                      // parts touched in this frame, sorted; find_contacts()
@@ -125,11 +127,22 @@ struct Pairs {
 // Notes that a touching pair ended.
 void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const Pair& pair);
 
+// Calls act(pair) for all pairs, resting ones too, in the order of key and part.
+template <class SomePairs, class Act>
+void for_pairs(SomePairs& pairs, Act&& act) {
+    auto resting = pairs.resting.begin();
+    for (auto& pair : pairs.list) {
+        while (resting != pairs.resting.end() && resting->key < pair.key) act(*resting++);
+        act(pair);
+    }
+    while (resting != pairs.resting.end()) act(*resting++);
+}
+
 // Room for the end events of the touching pairs that meet a condition.
 template <class Condition>
 void reserve_ended(Pairs& pairs, Condition&& condition) {
     size_t needed = pairs.ended.size();
-    for (const Pair& pair : pairs.list) needed += pair.touching && condition(pair);
+    for_pairs(pairs, [&](const Pair& pair) { needed += pair.touching && condition(pair); });
     if (needed > pairs.ended.capacity()) pairs.ended.reserve(std::max(needed, 2 * pairs.ended.capacity()));
 }
 
@@ -139,10 +152,11 @@ void reserve_ended(Pairs& pairs, Condition&& condition) {
 template <class Condition>
 void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, Condition&& condition) {
     reserve_ended(pairs, condition);
-    for (const Pair& pair : pairs.list) {
+    for_pairs(pairs, [&](const Pair& pair) {
         if (pair.touching && pair.part == 0 && condition(pair)) report_end(pairs, nodes, colliders, pair);
-    }
+    });
     std::erase_if(pairs.list, condition);
+    std::erase_if(pairs.resting, condition);
     pairs.complete = false;
 }
 

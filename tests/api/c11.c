@@ -1,4 +1,5 @@
 /* The headers as a C11 compiler sees them, each before any other of its kind, and a world that falls. */
+#include <taut/sleep.h>
 #include <taut/query.h>
 #include <taut/lint.h>
 #include <taut/profile.h>
@@ -21,7 +22,7 @@ _Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
 _Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 32, "plain values");
 _Static_assert(sizeof(taut_ball_joint_def) == 96 && sizeof(taut_distance_joint_def) == 152, "no hidden padding");
 _Static_assert(sizeof(taut_fixed_joint_def) == 144 && sizeof(taut_hinge_joint_def) == 200, "no hidden padding");
-_Static_assert(sizeof(taut_joint_break_event) == 40 && sizeof(taut_events) == 64, "no hidden padding");
+_Static_assert(sizeof(taut_joint_break_event) == 40 && sizeof(taut_events) == 88, "no hidden padding");
 _Static_assert(sizeof(taut_query_filter) == 64 && sizeof(taut_query_hit) == 64, "no hidden padding");
 _Static_assert(sizeof(taut_ray) == 40 && sizeof(taut_shape_cast) == 72 && sizeof(taut_distance) == 80, "likewise");
 _Static_assert(offsetof(taut_body_def, struct_size) == 0 && offsetof(taut_world_def, struct_size) == 0, "size first");

@@ -22,6 +22,10 @@ inline const taut_ray kDown = {{0, 5, 0}, {0, -10, 0}, 0};
 inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
     return {
         {"taut_world_step", [](taut_world w) { return taut_world_step(w); }},
+        {"taut_world_wake_box",
+         [](taut_world w) {
+             return taut_world_wake_box(w, {-1, -1, -1}, {1, 1, 1});
+         }},
         {"taut_world_advance", [](taut_world w) { return taut_world_advance(w, 0, nullptr); }},
         {"taut_world_get_gravity",
          [](taut_world w) {
@@ -302,6 +306,18 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
 // The kind of body that each call works on is in the comment; a stale handle fails before that matters.
 inline std::vector<Call<taut_body>> body_calls() {
     return {
+        {"taut_body_is_awake",
+         [](taut_body b) {
+             uint32_t out;
+             return taut_body_is_awake(b, &out);
+         }},
+        {"taut_body_set_awake", [](taut_body b) { return taut_body_set_awake(b, 1); }},
+        {"taut_body_get_can_sleep",
+         [](taut_body b) {
+             uint32_t out;
+             return taut_body_get_can_sleep(b, &out);
+         }},
+        {"taut_body_set_can_sleep", [](taut_body b) { return taut_body_set_can_sleep(b, 1); }},
         {"taut_body_get_kind",
          [](taut_body b) {
              taut_body_kind out;

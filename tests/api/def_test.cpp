@@ -235,7 +235,8 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
     }
 
     const Field fields[] = {FIELD3(Def, gravity, -1e4, 1e4), FIELD(Def, time_step, 1e-4, 0.1),
-                            FIELD(Def, velocity_filter, 0, 1)};
+                            FIELD(Def, velocity_filter, 0, 1), FIELD(Def, sleep_speed, 0, 10),
+                            FIELD(Def, sleep_time, 0, 1e3)};
     for (const Field& field : fields) {
         for (double value : {std::nan(""), HUGE_VAL, -HUGE_VAL, below(field, field.lo), above(field, field.hi)}) {
             const Def def = with(good, field, value);
@@ -258,6 +259,8 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         {"geometric_stiffness", &Def::geometric_stiffness, 0, 1},
         {"max_catch_up", &Def::max_catch_up, 1, 1000},
         {"threads", &Def::threads, 1, 64},
+        {"sleeping", &Def::sleeping, 0, 1},
+        {"reserved", &Def::reserved, 0, 0},
     };
     for (const auto& count : counts) {
         changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });

@@ -35,13 +35,14 @@ public:
     bool call() {
         using Action = void (Driver::*)();
         static constexpr Action actions[] = {
-            &Driver::add_shape,   &Driver::add_shape,    &Driver::add_body,      &Driver::add_body,
-            &Driver::add_body,    &Driver::add_particle, &Driver::add_particle,  &Driver::add_joint,
-            &Driver::add_joint,   &Driver::remove,       &Driver::read_body,     &Driver::read_body,
-            &Driver::read_joint,  &Driver::read_shape,   &Driver::read_world,    &Driver::write_body,
-            &Driver::write_body,  &Driver::write_body,   &Driver::push_body,     &Driver::push_body,
-            &Driver::write_joint, &Driver::write_world,  &Driver::step,          &Driver::step,
-            &Driver::step,        &Driver::advance,      &Driver::replace_world, &Driver::check_validity,
+            &Driver::add_shape,      &Driver::add_shape,    &Driver::add_body,     &Driver::add_body,
+            &Driver::add_body,       &Driver::add_particle, &Driver::add_particle, &Driver::add_joint,
+            &Driver::add_joint,      &Driver::remove,       &Driver::read_body,    &Driver::read_body,
+            &Driver::read_joint,     &Driver::read_shape,   &Driver::read_world,   &Driver::write_body,
+            &Driver::write_body,     &Driver::write_body,   &Driver::push_body,    &Driver::push_body,
+            &Driver::put_to_sleep,   &Driver::write_joint,  &Driver::write_world,  &Driver::step,
+            &Driver::step,           &Driver::step,         &Driver::advance,      &Driver::replace_world,
+            &Driver::check_validity,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;
@@ -182,6 +183,8 @@ private:
         def.substeps = 1 + byte() % 4;
         def.fixed_substeps = byte() & 1;
         def.sweeps = 1 + byte() % 4;
+        def.sleeping = byte() & 1;
+        def.sleep_time = 0.05f;
         taut_world out = {0};
         if (taut_world_create(&def, &out) != TAUT_OK) expect(false, taut_last_error());
         world = out;
@@ -756,6 +759,19 @@ private:
                 expect(read == value, "user data that changed");
             }
         }
+    }
+
+    void put_to_sleep() {
+        const taut_body body = pick(bodies_, pick_world());
+        uint32_t flag = byte() & 1, read = 0;
+        spoil(flag);
+        run("taut_body_set_can_sleep", [&] { return taut_body_set_can_sleep(body, flag); });
+        if (run("taut_body_set_awake", [&] { return taut_body_set_awake(body, flag); })) {
+            expect(taut_body_is_awake(body, &read) == TAUT_OK && read == flag, "a sleeper who is awake");
+        }
+        const taut_pos lo = pos(5), hi = pos(5);
+        const taut_world world = worlds_[pick_world()];
+        run("taut_world_wake_box", [&] { return taut_world_wake_box(world, lo, hi); });
     }
 
     void push_body() {

@@ -37,6 +37,7 @@ public:
     virtual Mass mass(size_t body) const = 0;
     virtual uint64_t state_hash() const = 0;
     virtual SolveTime solve_time() const { return {}; }
+    virtual uint32_t asleep() const { return 0; }       // bodies
     virtual uint32_t quarantined() const { return 0; }  // bodies frozen by the last step because they became non-finite
 };
 

@@ -51,6 +51,7 @@ uint32_t window(const scenes::Scene& scene, uint32_t steps, double seconds) {
 const char* const kFieldHelp = R"(JSON fields (one object on one line):
   engine scene threads bodies steps   what ran; bodies counts dynamic bodies and particles
   mean_ms median_ms p99_ms max_ms     wall time of one step
+  late_ms                             the same, median of the last 60 steps
   finite                              1 if every pose and velocity stayed finite
   state_hash                          of the final state; equal hashes mean equal runs
  piles: from final poses and true shapes
@@ -70,7 +71,8 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   first_vertical_s                    when the weight first passes below the anchor (null: never)
   period_s                            of a swing, mean over the run
   solve_us                            mean of one substep's assembly and direct solve
- as run: solver substeps seed geometric_stiffness)";
+ as run: solver substeps seed geometric_stiffness
+ with --sleep: asleep                 bodies at the end)";
 
 Metrics::Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps)
     : scene_(scene),

@@ -44,6 +44,11 @@ public:
         return {static_cast<double>(profile.assemble_us) + static_cast<double>(profile.factor_us), profile.solves};
     }
 
+    uint32_t asleep() const override {
+        const taut_profile profile = world_.profile();
+        return profile.bodies - profile.awake;
+    }
+
     uint32_t quarantined() const override {
         taut_events events{};
         scenes::check(taut_world_get_events(world_.world, &events), "reading the events");

@@ -85,6 +85,29 @@ INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams,
                                          "grains1000_r1", "terrain"),
                          [](const auto& tested) -> std::string { return tested.param; });
 
+// Islands fall asleep, and a brick that is kicked wakes its own.
+TEST(SleepOnTeams, GivesTheSameBits) {
+    scenes::Scene scene = scenes::make_scene("pyramid30");
+    scene.world.sleeping = 1;
+    scene.world.sleep_time = 0.1f;
+    const auto hashes_with = [&](uint32_t threads) {
+        scene.world.threads = threads;
+        RunningScene run(scene);
+        std::vector<uint64_t> out;
+        bool slept = false;
+        for (int step = 0, kicked = 0; step < 400 && kicked < 40; ++step) {
+            run.step();
+            out.push_back(hash_of(run));
+            slept = slept || run.world.profile().awake == 0;
+            if (slept && kicked++ == 0) ok(taut_body_apply_impulse(run.world.bodies.back(), {0, 0, 500}, {}));
+        }
+        EXPECT_TRUE(slept);
+        return out;
+    };
+    const auto alone = hashes_with(1);
+    for (uint32_t threads : {2u, 3u, 5u, 8u}) EXPECT_EQ(hashes_with(threads), alone) << threads << " threads";
+}
+
 // A difference of one part in 2^24 in one velocity must show, at once and after a while.
 TEST(StateHash, SeesTheLeastDifference) {
     scenes::Scene scene = scenes::make_scene("stack10");

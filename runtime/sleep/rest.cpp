@@ -1,0 +1,105 @@
+// Pairs of sleeping nodes, and the contacts that wake them.
+#include <algorithm>
+
+#include "sleep/sleep.h"
+#include "sleep/wake.h"
+
+namespace taut {
+namespace {
+
+// Bodies closer than this belong together, and one on its way that will be so close wakes the other [m]: more than
+// gravity adds to a step's way (2.7 mm at 60 Hz), less than what lies side by side by intent.
+constexpr double kClose = 0.005;
+
+bool moves(const Nodes& nodes, uint32_t node) {
+    return node != kNone && nodes.info[node].kind != NodeKind::fixed && nodes.rest[node] == Rest::awake;
+}
+
+bool some_side(const Pair& pair, bool (*is)(const Nodes&, uint32_t), const Nodes& nodes) {
+    const auto sides = {pair.a, pair.b, pair.a2, pair.b2};
+    return std::any_of(sides.begin(), sides.end(), [&](uint32_t node) { return is(nodes, node); });
+}
+
+bool sleeps(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.sleeps(node); }
+bool rests(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.rest[node] != Rest::awake; }
+
+// The pairs that meet a condition from one sorted list to another.
+template <class Condition>
+void transfer(Array<Pair>& from, Array<Pair>& to, Array<Pair>& scratch, Condition&& condition) {
+    if (std::none_of(from.begin(), from.end(), condition)) return;
+    scratch.clear();
+    const size_t all = from.size() + to.size();  // each of the three takes another's place in time
+    for (Array<Pair>* list : {&from, &to, &scratch})
+        if (list->capacity() < all) list->reserve(all + all / 2);
+    auto stays = to.begin();
+    for (const Pair& pair : from) {
+        if (!condition(pair)) continue;
+        while (stays != to.end() && stays->key < pair.key) scratch.push_back(*stays++);
+        scratch.push_back(pair);
+    }
+    scratch.insert(scratch.end(), stays, to.end());
+    to.swap(scratch);
+    std::erase_if(from, condition);
+}
+
+// How fast a point of a node, given from the origin of node a, comes towards the other side [m/s].
+double speed_along(const Nodes& nodes, uint32_t node, const Vec3& point, const Vec3& normal) {
+    const NodeMotion& m = nodes.motion[node];
+    return (m.v + m.w.cross(point - m.x)).dot(normal);
+}
+
+bool will_touch(const World& world, const Pair& pair) {
+    if (touches_closely(pair)) return true;
+    const Vec3 origin = world.nodes.origin(pair.a), normal = pair.manifold.normal.cast<double>();
+    for (int k = 0; k < pair.manifold.count; ++k) {
+        const collision::ContactPoint& point = pair.manifold.points[k];
+        const Vec3 at = origin + point.position.cast<double>();
+        double closing = 0;
+        for_sides(pair, [&](uint32_t a, uint32_t b) {
+            closing =
+                std::max(closing, speed_along(world.nodes, a, at, normal) - speed_along(world.nodes, b, at, normal));
+        });
+        if (static_cast<double>(point.separation) - closing * static_cast<double>(world.def.time_step) <= kClose)
+            return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+bool touches_closely(const Pair& pair) {
+    for (int k = 0; k < pair.manifold.count; ++k)
+        if (static_cast<double>(pair.manifold.points[k].separation) <= kClose || pair.impulse[k].normal > 0)
+            return true;
+    return false;
+}
+
+void recall_pairs(World& world) {
+    if (!world.sleep.recall) return;
+    Pairs& pairs = world.pairs;
+    transfer(pairs.resting, pairs.list, pairs.scratch,
+             [&](const Pair& pair) { return some_side(pair, moves, world.nodes); });
+    world.sleep.recall = false;
+}
+
+void retire_pairs(World& world) {
+    if (world.sleep.bodies == 0) return;
+    Pairs& pairs = world.pairs;
+    transfer(pairs.list, pairs.resting, pairs.scratch, [&](const Pair& pair) {
+        return some_side(pair, rests, world.nodes) && !some_side(pair, moves, world.nodes);
+    });
+}
+
+bool wake_touched(World& world) {
+    if (world.sleep.bodies == 0) return false;
+    for (const ActivePair& active : world.pairs.active) {
+        const Pair& pair = world.pairs.list[active.pair];
+        if (!some_side(pair, moves, world.nodes) || !some_side(pair, sleeps, world.nodes)) continue;
+        if (!will_touch(world, pair)) continue;
+        for (uint32_t node : active.nodes())
+            if (sleeps(world.nodes, node)) wake(world, node);
+    }
+    return world.sleep.recall;
+}
+
+}  // namespace taut
