@@ -41,6 +41,9 @@ typedef struct taut_world_def {
                                        its own, which sleep between steps. With task hooks the host's workers help
                                        instead, and it stays 1. Results do not depend on it. Default 1 */
     taut_hooks hooks;             /**< default: none */
+    uint32_t
+        contact_events; /**< of all pairs: sum of TAUT_CONTACT_EVENTS_ bits. Default TAUT_CONTACT_EVENTS_BEGIN_END */
+    float hit_speed;    /**< approach that makes a hit event [m/s], [0, 1e4]. Default 1 */
 } taut_world_def;
 
 /** What taut_world_advance did. */
@@ -71,10 +74,14 @@ TAUT_API taut_result taut_world_step(taut_world world);
  */
 TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
 
-/** The def as checked at creation, with the gravity of now. */
+/** The def as checked at creation, with what was set since. */
 TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
+/** Contact events of all pairs from the next step on: sum of TAUT_CONTACT_EVENTS_ bits. */
+TAUT_API taut_result taut_world_set_contact_events(taut_world world, uint32_t contact_events);
+/** Approach speed that makes a hit event [m/s], [0, 1e4]. */
+TAUT_API taut_result taut_world_set_hit_speed(taut_world world, float hit_speed);
 /** Live bodies and particles, shapes and joints; any pointer may be null. */
 TAUT_API taut_result taut_world_get_counts(taut_world world, uint32_t* bodies, uint32_t* shapes, uint32_t* joints);
 /** Bytes that the world holds from its allocator. */

@@ -43,6 +43,7 @@ Check& check_def(Check& check, const taut_body_def& def) {
         .number("density", def.density, kDensity)
         .zero_or("mass", def.mass, kBodyMass)
         .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
+    check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
     check_inertia(check, def.inertia).number("gravity_scale", def.gravity_scale, kGravityScale);
     if (def.collider_count > 0) check.pointer("colliders", def.colliders);
     if (!check) return check;
@@ -101,6 +102,8 @@ taut_collider_def own_collider(const Def& def, float density) {
     own.material = def.material;
     own.filter = def.filter;
     own.user_data = def.user_data;
+    own.flags = def.collider_flags;
+    own.contact_events = def.contact_events;
     return own;
 }
 
@@ -204,6 +207,7 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         .number("gravity_scale", def->gravity_scale, kGravityScale);
     check_material(check, "material.friction", "material.restitution", def->material)
         .zero("filter.reserved", def->filter.reserved);
+    check_asks(check, "collider_flags", def->collider_flags, def->contact_events);
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         const bool has_shape = def->shape.bits != 0;
@@ -297,6 +301,16 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         for_colliders(world.nodes, world.colliders, node,
                       [&](uint32_t c) { world.colliders.record[c].material = *material; });
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_contact_events(taut_body handle, uint32_t contact_events) {
+    Check check(__func__);
+    if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        for_colliders(world.nodes, world.colliders, node,
+                      [&](uint32_t c) { ask_for(world.colliders.record[c], TAUT_CONTACT_EVENTS_ALL, contact_events); });
         return TAUT_OK;
     });
 }

@@ -21,6 +21,17 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 size(world.quarantined),
                 world.broken.data(),
                 size(world.broken),
+                0,
+                world.contact_persist.data(),
+                world.hits.data(),
+                world.contact_points.data(),
+                world.sensors.enter.data(),
+                world.sensors.leave.data(),
+                size(world.contact_persist),
+                size(world.hits),
+                size(world.contact_points),
+                size(world.sensors.enter),
+                size(world.sensors.leave),
                 0};
         return TAUT_OK;
     });

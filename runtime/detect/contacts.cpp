@@ -66,7 +66,8 @@ void adopt(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, c
            const Impulse* before, Pair& pair) {
     const uint32_t a = pair.collider_a();
     move_to_node(nodes, colliders.record[a], pairs.placement[a], pair.manifold);
-    combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
+    if (!pair.answered) combine_surfaces(colliders.record[a], colliders.record[pair.collider_b()], pair);
+    pair.asks = pairs.asks | colliders.record[a].asks | colliders.record[pair.collider_b()].asks;
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
         return;
@@ -144,6 +145,10 @@ void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colli
     }
 }
 
+ActivePair active_of(const Pair& pair, uint32_t index) {
+    return {pair.a, pair.b, index, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks};
+}
+
 // The fresh parts in place of the old ones, and the active pairs anew.
 void replace_parts(Pairs& pairs) {
     pairs.scratch.clear();
@@ -157,8 +162,7 @@ void replace_parts(Pairs& pairs) {
     pairs.active.clear();
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         const Pair& pair = pairs.list[i];
-        if (!pair.filtered && pair.manifold.count > 0)
-            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
+        if (!pair.filtered && pair.manifold.count > 0) pairs.active.push_back(active_of(pair, i));
     }
 }
 
@@ -205,6 +209,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
         for (uint32_t i = begin; i < end; ++i) {
             Pair& pair = pairs.list[i];
             if (pair.filtered || pair.part != 0) continue;
+            pair.answered = false;
             const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
             pair.on_surface = shaped.has_parts();
             if (!pair.on_surface) find_points(shaped, nodes, colliders, pairs, pair);
@@ -225,7 +230,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                        std::span(pairs.list).subspan(i, end - i));
         }
         if (pair.manifold.count > 0) {
-            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
+            pairs.active.push_back(active_of(pair, i));
         } else if (pairs.fresh.size() == fresh && pair.touching) {
             report_end(pairs, nodes, colliders, pair);
             pair.touching = false;
