@@ -93,16 +93,17 @@ void sense(Team& team, const Nodes& nodes, const Colliders& colliders, const Sha
             sensors.meets[i] = meet(nodes, colliders, shapes, static_cast<uint32_t>(candidates[i] >> 32),
                                     static_cast<uint32_t>(candidates[i]));
     });
-    sensors.before.swap(sensors.inside);
-    sensors.inside.clear();
+    Array<taut_sensor_event>& found = sensors.before;  // those of the step before are told
+    found.clear();
     for (size_t i = 0; i < candidates.size(); ++i)
-        if (sensors.meets[i]) sensors.inside.push_back(visit_of(nodes, colliders, world, candidates[i]));
+        if (sensors.meets[i]) found.push_back(visit_of(nodes, colliders, world, candidates[i]));
     const auto difference = [](const Array<taut_sensor_event>& of, const Array<taut_sensor_event>& without,
                                Array<taut_sensor_event>& out) {
         std::set_difference(of.begin(), of.end(), without.begin(), without.end(), std::back_inserter(out), earlier);
     };
-    difference(sensors.inside, sensors.before, sensors.enter);
-    difference(sensors.before, sensors.inside, sensors.leave);
+    difference(found, sensors.inside, sensors.enter);
+    difference(sensors.inside, found, sensors.leave);
+    sensors.inside.swap(found);  // last, for memory may run out above
 }
 
 }  // namespace taut
