@@ -130,6 +130,7 @@ void publish_contacts(World& world) {
             now = now || part.touching;
         }
         pair.touching = now;
+        pair.asks = static_cast<uint8_t>(active[i].asks);  // where parts alone have points; for its end
         if (now || before) publisher.tell({pair, i, next}, before);
     }
     sort_by_slots(world.contact_end);
