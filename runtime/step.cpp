@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "check/quarantine.h"
 #include "detect/detect.h"
+#include "detect/sensors.h"
 #include "integrate/integrate.h"
 #include "models/cable.h"
 #include "publish/publish.h"
@@ -32,6 +33,9 @@ void detect(World& w, Stopwatch& watch) {
         recall_pairs(w);
         find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     }
+    const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
+    if (refused > 0)
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
     w.profile.narrowphase_us = watch.lap();
 }
 
@@ -44,6 +48,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
     system.h = frame / group.substeps;
     build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
     if (solver.wide_contacts) build_lanes(w.team, system, group, w.pairs, w.nodes, *settings.kernels);
+    watch_group(group, system, w.pairs, w.watch);
     w.profile.predict_us += watch.lap();
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
@@ -72,6 +77,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         w.profile.sweep_us += watch.lap();
         store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
         store_contact_rows(system);
+        gather_impulses(system, w.pairs, w.watch);
         w.profile.commit_us += watch.lap();
     }
     if (solver.wide_contacts) store_lanes(w.team, system, w.pairs);
@@ -120,12 +126,14 @@ void step(World& w) {
     reel_cables(w);
     remember_poses(w.nodes);
     detect(w, watch);
+    watch_contacts(w.nodes, w.pairs, w.watch);
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.nodes);
     w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
+    sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.sensors);
     std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});
     publish_contacts(w);
     publish_motion(w, w.frozen);

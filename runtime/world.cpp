@@ -15,11 +15,16 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       broadphase(memory),
       pairs(memory),
       sleep(memory),
+      sensors(memory),
       partition(memory),
       system(memory),
       scratch(memory),
+      watch(memory),
       contact_begin(memory),
+      contact_persist(memory),
       contact_end(memory),
+      contact_points(memory),
+      hits(memory),
       moved(memory),
       quarantined(memory),
       broken(memory),
@@ -27,6 +32,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       woke(memory),
       frozen(memory) {
     pairs.world = id;
+    pairs.asks = static_cast<uint8_t>(def.contact_events);
 }
 
 taut_body World::body_handle(uint32_t node) const {

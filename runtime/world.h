@@ -4,7 +4,9 @@
 #include <taut/taut.h>
 
 #include "collision/collide.h"
+#include "detect/pre_solve.h"
 #include "partition/partition.h"
+#include "publish/contact_watch.h"
 #include "solvers/solver.h"
 #include "state/cables.h"
 #include "state/colliders.h"
@@ -12,6 +14,7 @@
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
+#include "state/sensors.h"
 #include "state/shapes.h"
 #include "state/sleep.h"
 #include "system/system.h"
@@ -36,15 +39,20 @@ struct World {
     collision::Broadphase broadphase;
     Pairs pairs;
     Sleep sleep;
+    Sensors sensors;
+    PreSolve pre_solve;
     double accumulator = 0;  // frame time not yet stepped [s]
 
     // derived: rebuilt by each step from the state, kept for its memory and for what blocks remember
     Partition partition;
     System system;
     SolverScratch scratch;
+    ContactWatch watch;
 
     // results of the last step
-    Array<taut_contact_event> contact_begin, contact_end;
+    Array<taut_contact_event> contact_begin, contact_persist, contact_end;
+    Array<taut_contact_point> contact_points;
+    Array<taut_hit_event> hits;
     Array<taut_moved_event> moved;
     Array<taut_quarantine_event> quarantined;
     Array<taut_joint_break_event> broken;

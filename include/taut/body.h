@@ -43,6 +43,8 @@ typedef struct taut_body_def {
     uint32_t collider_count;    /**< of colliders. Default 0 */
     uint64_t user_data;
     const taut_collider_def* colliders; /**< collider_count of them, copied; null if there are none */
+    uint32_t collider_flags;            /**< of shape: sum of TAUT_COLLIDER_ bits. Default 0 */
+    uint32_t contact_events;            /**< of shape: sum of TAUT_CONTACT_EVENTS_ bits. Default 0 */
 } taut_body_def;
 
 /** A particle: a point mass that joints connect to particles, rigid bodies and the world; a grain, with a shape. */
@@ -53,9 +55,11 @@ typedef struct taut_particle_def {
     taut_vec3 velocity;  /**< [m/s] */
     float gravity_scale; /**< [-1000, 1000]. Default 1 */
     uint64_t user_data;
-    taut_shape shape;       /**< a sphere about the particle, which gives it contacts; null: none. Default null */
-    taut_material material; /**< of shape */
-    taut_filter filter;     /**< of shape */
+    taut_shape shape;        /**< a sphere about the particle, which gives it contacts; null: none. Default null */
+    taut_material material;  /**< of shape */
+    taut_filter filter;      /**< of shape */
+    uint32_t collider_flags; /**< of shape: sum of TAUT_COLLIDER_ bits. Default 0 */
+    uint32_t contact_events; /**< of shape: sum of TAUT_CONTACT_EVENTS_ bits. Default 0 */
 } taut_particle_def;
 
 /** Position of the body's origin and rotation of its frame. */
@@ -93,6 +97,8 @@ TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* 
 TAUT_API taut_result taut_body_get_material(taut_body body, taut_material* out);
 /** Material of all colliders of the body. */
 TAUT_API taut_result taut_body_set_material(taut_body body, const taut_material* material);
+/** Contact events of all colliders of the body, see taut_collider_set_contact_events. */
+TAUT_API taut_result taut_body_set_contact_events(taut_body body, uint32_t contact_events);
 
 /** Pose after the last step. */
 TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose* out);
@@ -120,6 +126,16 @@ TAUT_API taut_result taut_body_set_velocity(taut_body body, taut_vec3 linear, ta
 /** Gives a kinematic body the velocity that brings it to the pose in one step; it keeps that velocity until changed. At
  * most 1e4 m/s and rad/s. */
 TAUT_API taut_result taut_body_move_kinematic(taut_body body, const taut_pose* target);
+
+/**
+ * Whether the body's colliders are looked for along their way where they move past their own thickness in a step
+ * (1, the default, but 0 for all in a world whose def says so) or meet only what they are near at a step's beginning,
+ * by at most 0.5 m of motion (0). One such moving body in a pair is enough to leave it out.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT unless 0 or 1, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_body_set_continuous(taut_body body, uint32_t continuous);
+/** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_continuous(taut_body body, uint32_t* out);
 
 /** Force [N] at the centre of mass and torque [N m], world axes, during the next step only; calls add up. Dynamic
  * bodies and (force) particles; each component within 1e24. */

@@ -56,6 +56,19 @@ typedef struct taut_filter {
     uint32_t reserved; /**< zero */
 } taut_filter;
 
+/** Bits of taut_collider_def.flags. */
+#define TAUT_COLLIDER_SENSOR 1u        /**< detects what overlaps it and collides with nothing; see sensor.h */
+#define TAUT_COLLIDER_SENSES_STATIC 2u /**< a sensor that detects colliders of static bodies too */
+#define TAUT_COLLIDER_PRE_SOLVE 4u /**< the world's pre-solve function is asked about its contacts; see pre_solve.h */
+
+/** Bits of contact_events: what taut_events tells of a pair's contact. A pair gives what one of its colliders or the
+ * world's def asks for. */
+#define TAUT_CONTACT_EVENTS_BEGIN_END 1u /**< that it began or ended */
+#define TAUT_CONTACT_EVENTS_PERSIST 2u   /**< that it goes on, in each step */
+#define TAUT_CONTACT_EVENTS_POINTS 4u    /**< the points of those that began or go on */
+#define TAUT_CONTACT_EVENTS_HIT 8u       /**< that it closed faster than the world's hit_speed */
+#define TAUT_CONTACT_EVENTS_ALL 15u
+
 /** A shape on a body. */
 typedef struct taut_collider_def {
     uint32_t struct_size;
@@ -66,6 +79,13 @@ typedef struct taut_collider_def {
     taut_material material;
     taut_filter filter;
     uint64_t user_data;
+    uint32_t flags;          /**< sum of TAUT_COLLIDER_ bits. Default 0 */
+    uint32_t contact_events; /**< sum of TAUT_CONTACT_EVENTS_ bits, beside the world's. Default 0 */
+    /** Other colliders touch it only from the side that this direction of the collider's frame points to, as a platform
+     * that is jumped through from below: see taut_collider_set_one_way. Each component within 1e4, the length does not
+     * matter; 0: it is touched from everywhere. Default 0 */
+    taut_vec3 one_way;
+    uint32_t reserved; /**< zero */
 } taut_collider_def;
 
 TAUT_API void taut_collider_def_init(taut_collider_def* def);
@@ -128,6 +148,22 @@ TAUT_API taut_result taut_collider_set_density(taut_collider collider, float den
 TAUT_API taut_result taut_collider_set_surface_velocity(taut_collider collider, taut_vec3 velocity, taut_vec3 spin);
 /** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_collider_get_surface_velocity(taut_collider collider, taut_vec3* velocity, taut_vec3* spin);
+
+/**
+ * Which contact events its pairs give beside those that the world or the other collider asks for, from the next step
+ * on.
+ * @param contact_events sum of TAUT_CONTACT_EVENTS_ bits.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_collider_set_contact_events(taut_collider collider, uint32_t contact_events);
+/** Whether the world's pre-solve function is asked about its contacts: 1 or 0. @return as above. */
+TAUT_API taut_result taut_collider_set_pre_solve(taut_collider collider, int32_t pre_solve);
+/**
+ * Sets the one-way direction (collider_def.one_way); 0: none. A contact is solved if its normal, out of this collider,
+ * is within 60 degrees of the direction, and the other collider touched it in the last step or is no deeper than 5 mm.
+ * Decided once a step. @return as above.
+ */
+TAUT_API taut_result taut_collider_set_one_way(taut_collider collider, taut_vec3 direction);
 
 #ifdef __cplusplus
 }

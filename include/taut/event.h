@@ -1,7 +1,8 @@
 /**
  * @file event.h
  * What the last step did, as arrays: read them after the step. A view's pointer is valid until the next
- * step or the end of the world; handles inside may have become stale since.
+ * step or the end of the world; handles inside may have become stale since. taut_world_advance may take several steps,
+ * of which the last one's events remain, or none: who must miss nothing steps by taut_world_step.
  * Each function here: thread safety: any thread between steps while no other changes the world.
  */
 #ifndef TAUT_EVENT_H
@@ -15,13 +16,51 @@
 extern "C" {
 #endif
 
-/** Two colliders began or stopped touching in the last step. */
+/** Two colliders began or stopped touching in the last step, or touch as they did before it. */
 typedef struct taut_contact_event {
     taut_body body_a;
     taut_body body_b;
     taut_collider collider_a; /**< of body_a */
     taut_collider collider_b; /**< of body_b */
+    uint32_t first_point;     /**< of its points in taut_events.points */
+    uint32_t point_count;     /**< 0 where they end, and where nobody asks for points */
 } taut_contact_event;
+
+/** A point of a contact event: where it was found before the bodies moved, and what the step did there. */
+typedef struct taut_contact_point {
+    taut_pos position;      /**< midway between the two surfaces, carried along with body a [m] */
+    taut_vec3 normal;       /**< unit, from a to b */
+    float separation;       /**< [m], negative when overlapping */
+    float normal_impulse;   /**< sum over the substeps [N s]; what points gave that were gone before the step's end is
+                                 with the nearest that is left */
+    float friction_impulse; /**< magnitude of the vector sum over the substeps [N s] */
+    float approach_speed; /**< at which a and b closed along the normal before the step [m/s]; negative: they parted */
+    uint32_t reserved;    /**< zero */
+} taut_contact_point;
+
+/**
+ * A touch that closed faster than the world's hit_speed, at its fastest point. A blow may be spread over two steps: a
+ * pair that hit in one step does not hit in the next.
+ */
+typedef struct taut_hit_event {
+    taut_body body_a;
+    taut_body body_b;
+    taut_collider collider_a;
+    taut_collider collider_b;
+    taut_pos position;    /**< as of a contact point [m] */
+    taut_vec3 normal;     /**< unit, from a to b */
+    float approach_speed; /**< along the normal before the step [m/s] */
+    float normal_impulse; /**< of all points of the pair, sum over the substeps [N s] */
+    uint32_t reserved;    /**< zero */
+} taut_hit_event;
+
+/** A collider came into a sensor or left it; see sensor.h. */
+typedef struct taut_sensor_event {
+    taut_collider sensor;
+    taut_collider visitor;
+    taut_body sensor_body;
+    taut_body visitor_body;
+} taut_sensor_event;
 
 /** A dynamic, kinematic or particle body that the last step moved. */
 typedef struct taut_moved_event {
@@ -50,7 +89,10 @@ typedef struct taut_sleep_event {
     uint64_t user_data;
 } taut_sleep_event;
 
-/** The events of the last step. */
+/**
+ * The events of the last step. Contacts and hits are sorted by collider_a and then collider_b, those of sensors by
+ * sensor and then visitor, all in the order of their slots: that of creation as long as none is removed.
+ */
 typedef struct taut_events {
     const taut_contact_event* begin;
     const taut_contact_event* end;
@@ -62,7 +104,18 @@ typedef struct taut_events {
     uint32_t quarantined_count;
     const taut_joint_break_event* broken; /**< in the order of the joints' slots */
     uint32_t broken_count;
-    uint32_t reserved;                   /**< zero */
+    uint32_t reserved;                     /**< zero */
+    const taut_contact_event* persist;     /**< pairs that touched before and still do */
+    const taut_hit_event* hit;             /**< of pairs that began or go on */
+    const taut_contact_point* points;      /**< of begin and persist */
+    const taut_sensor_event* sensor_enter; /**< into sensors; for each there comes one of sensor_leave */
+    const taut_sensor_event* sensor_leave;
+    uint32_t persist_count;
+    uint32_t hit_count;
+    uint32_t point_count;
+    uint32_t sensor_enter_count;
+    uint32_t sensor_leave_count;
+    uint32_t reserved_events;            /**< zero */
     const taut_sleep_event* fell_asleep; /**< asleep now, awake by the events before; in the order of the slots */
     const taut_sleep_event* woke;        /**< the other way round */
     uint32_t fell_asleep_count;

@@ -22,12 +22,14 @@
 extern "C" {
 #endif
 
-/** Bits of taut_query_filter.kinds: of whose bodies' colliders a query sees; bit n is taut_body_kind n. */
+/** Bits of taut_query_filter.kinds: of whose bodies' colliders a query sees; bit n is taut_body_kind n. Sensors are
+ * seen with TAUT_QUERY_SENSOR only, by the kind of their bodies. */
 #define TAUT_QUERY_STATIC 1u
 #define TAUT_QUERY_KINEMATIC 2u
 #define TAUT_QUERY_DYNAMIC 4u
 #define TAUT_QUERY_PARTICLE 8u
 #define TAUT_QUERY_ALL_KINDS 15u
+#define TAUT_QUERY_SENSOR 16u
 
 /** Most bodies, and most colliders, that a filter can ignore. */
 #define TAUT_QUERY_MAX_IGNORED 64

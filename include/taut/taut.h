@@ -13,8 +13,10 @@
 #include <taut/joint.h>
 #include <taut/lint.h>
 #include <taut/math.h>
+#include <taut/pre_solve.h>
 #include <taut/profile.h>
 #include <taut/query.h>
+#include <taut/sensor.h>
 #include <taut/shape.h>
 #include <taut/sleep.h>
 #include <taut/world.h>

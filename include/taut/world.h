@@ -46,7 +46,11 @@ typedef struct taut_world_def {
     float sleep_speed;            /**< a body is quiet while no point of it is faster [m/s], [0, 10]. Default 0.03 */
     float sleep_time;             /**< an island falls asleep after all of it was quiet for so long [s], [0, 1e3].
                                        Default 0.5 */
-    uint32_t reserved;            /**< zero */
+    uint32_t contact_events;      /**< of all pairs: sum of TAUT_CONTACT_EVENTS_ bits. Default
+                                       TAUT_CONTACT_EVENTS_BEGIN_END */
+    float hit_speed;              /**< approach that makes a hit event [m/s], [0, 1e4]. Default 1 */
+    uint32_t continuous;          /**< 1: what moves past its own thickness in a step is looked for along its way, so
+                                       that nothing tunnels; 0: for no body. See taut_body_set_continuous. Default 1 */
 } taut_world_def;
 
 /** What taut_world_advance did. */
@@ -77,10 +81,14 @@ TAUT_API taut_result taut_world_step(taut_world world);
  */
 TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
 
-/** The def as checked at creation, with the gravity of now. */
+/** The def as checked at creation, with what was set since. */
 TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
+/** Contact events of all pairs from the next step on: sum of TAUT_CONTACT_EVENTS_ bits. */
+TAUT_API taut_result taut_world_set_contact_events(taut_world world, uint32_t contact_events);
+/** Approach speed that makes a hit event [m/s], [0, 1e4]. */
+TAUT_API taut_result taut_world_set_hit_speed(taut_world world, float hit_speed);
 /** Live bodies and particles, shapes and joints; any pointer may be null. */
 TAUT_API taut_result taut_world_get_counts(taut_world world, uint32_t* bodies, uint32_t* shapes, uint32_t* joints);
 /** Bytes that the world holds from its allocator. */

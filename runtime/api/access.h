@@ -45,6 +45,8 @@ constexpr Range kSwing{0, 3.1415927410125732, true};                          //
 constexpr Range kJointForce{0, 1e24};                                         // [N, N m], stiffness and damping too
 constexpr Range kFrequency{1e-3, 1e3};                                        // [Hz]
 constexpr Range kDampingRatio{0, 1000};
+constexpr Range kOneWay{-1e4, 1e4};       // a direction of which the length does not matter
+constexpr Range kHitSpeed{0, 1e4};        // [m/s]
 constexpr Range kDirection{-1e30, 1e30};  // of which the length does not matter
 constexpr Range kAdvance{0, 1e3};         // [s]
 constexpr Range kQueryDistance{0, 1e7};   // [m]

@@ -44,6 +44,7 @@ Check& check_def(Check& check, const taut_body_def& def) {
         .number("density", def.density, kDensity)
         .zero_or("mass", def.mass, kBodyMass)
         .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
+    check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
     check_inertia(check, def.inertia).number("gravity_scale", def.gravity_scale, kGravityScale);
     if (def.collider_count > 0) check.pointer("colliders", def.colliders);
     if (!check) return check;
@@ -102,7 +103,9 @@ taut_result add_body(Check& check, World& world, const NodeInfo& info, const Nod
     check.require(world.nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT);
     check.require(world.colliders.ids.slots() + colliders.size() < kMaxSlots, "too many colliders", TAUT_LIMIT);
     if (!check) return check.result();
-    *out = world.body_handle(add_node(world, info, motion, mass, colliders));
+    NodeInfo own = info;
+    own.continuous = world.def.continuous != 0;
+    *out = world.body_handle(add_node(world, own, motion, mass, colliders));
     return TAUT_OK;
 }
 
@@ -116,6 +119,8 @@ taut_collider_def own_collider(const Def& def, float density) {
     own.material = def.material;
     own.filter = def.filter;
     own.user_data = def.user_data;
+    own.flags = def.collider_flags;
+    own.contact_events = def.contact_events;
     return own;
 }
 
@@ -219,6 +224,7 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         .bounded("velocity", def->velocity, kSpeed)
         .number("gravity_scale", def->gravity_scale, kGravityScale);
     check_material(check, kMaterialInDef, def->material).zero("filter.reserved", def->filter.reserved);
+    check_asks(check, "collider_flags", def->collider_flags, def->contact_events);
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         const bool has_shape = def->shape.bits != 0;
@@ -313,6 +319,34 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
         wake(world, node);
         for_colliders(world.nodes, world.colliders, node,
                       [&](uint32_t c) { world.colliders.record[c].material = *material; });
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_contact_events(taut_body handle, uint32_t contact_events) {
+    Check check(__func__);
+    if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        for_colliders(world.nodes, world.colliders, node,
+                      [&](uint32_t c) { ask_for(world.colliders.record[c], TAUT_CONTACT_EVENTS_ALL, contact_events); });
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_continuous(taut_body handle, uint32_t continuous) {
+    Check check(__func__);
+    if (!check.boolean("continuous", continuous)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        world.nodes.info[node].continuous = continuous != 0;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_continuous(taut_body handle, uint32_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = world.nodes.info[node].continuous ? 1 : 0;
         return TAUT_OK;
     });
 }

@@ -11,6 +11,15 @@
 
 using namespace taut;
 
+namespace {
+
+void set_one_way(Collider& collider, const taut_vec3& direction) {
+    collider.one_way = to_vec(direction).stableNormalized().cast<float>();  // 0 stays 0
+    ask_for(collider, kAsksOneWay, collider.one_way == Vec3f::Zero() ? 0 : kAsksOneWay);
+}
+
+}  // namespace
+
 namespace taut {
 
 Check& check_material(Check& check, const MaterialNames& names, const taut_material& material) {
@@ -22,12 +31,21 @@ Check& check_material(Check& check, const MaterialNames& names, const taut_mater
         .number(names.spinning_friction, material.spinning_friction, kFrictionArm);
 }
 
+Check& check_asks(Check& check, const char* flags_field, uint32_t flags, uint32_t contact_events) {
+    constexpr uint32_t kFlags = TAUT_COLLIDER_SENSOR | TAUT_COLLIDER_SENSES_STATIC | TAUT_COLLIDER_PRE_SOLVE;
+    return check.count(flags_field, flags, 0, kFlags)
+        .count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL);
+}
+
 Check& check_collider_def(Check& check, const taut_collider_def& def) {
     check.struct_size(def.struct_size, sizeof def)
         .zero_or("density", def.density, kDensity)
         .vector("position", def.position, kShapeCoordinate)
         .rotation("rotation", def.rotation);
-    return check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
+    check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
+    return check_asks(check, "flags", def.flags, def.contact_events)
+        .vector("one_way", def.one_way, kOneWay)
+        .zero("reserved", def.reserved);
 }
 
 taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def,
@@ -48,6 +66,10 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
     out.material = def.material;
     out.filter = def.filter;
     out.user_data = def.user_data;
+    out.sensor = (def.flags & TAUT_COLLIDER_SENSOR) != 0;
+    out.senses_static = (def.flags & TAUT_COLLIDER_SENSES_STATIC) != 0;
+    out.asks = static_cast<uint8_t>(def.contact_events | (def.flags & TAUT_COLLIDER_PRE_SOLVE ? kAsksPreSolve : 0));
+    set_one_way(out, def.one_way);
     return check.result();
 }
 
@@ -70,6 +92,11 @@ taut_collider_def def_of(const World& world, const Collider& collider) {
     def.material = collider.material;
     def.filter = collider.filter;
     def.user_data = collider.user_data;
+    def.flags = (collider.sensor ? TAUT_COLLIDER_SENSOR : 0) |
+                (collider.senses_static ? TAUT_COLLIDER_SENSES_STATIC : 0) |
+                (collider.asks & kAsksPreSolve ? TAUT_COLLIDER_PRE_SOLVE : 0);
+    def.contact_events = collider.asks & TAUT_CONTACT_EVENTS_ALL;
+    def.one_way = to_vec3(collider.one_way.cast<double>());
     return def;
 }
 
@@ -255,6 +282,7 @@ taut_result taut_collider_set_surface_velocity(taut_collider handle, taut_vec3 v
         collider.surface_velocity = to_vec(velocity).cast<float>();
         collider.surface_spin = to_vec(spin).cast<float>();
         collider.driven = collider.surface_velocity != Vec3f::Zero() || collider.surface_spin != Vec3f::Zero();
+        wake(world, collider.node);
         return TAUT_OK;
     });
 }
@@ -266,6 +294,33 @@ taut_result taut_collider_get_surface_velocity(taut_collider handle, taut_vec3* 
         const Collider& collider = world.colliders.record[index];
         *velocity = to_vec3(collider.surface_velocity.cast<double>());
         *spin = to_vec3(collider.surface_spin.cast<double>());
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_contact_events(taut_collider handle, uint32_t contact_events) {
+    Check check(__func__);
+    if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        ask_for(world.colliders.record[collider], TAUT_CONTACT_EVENTS_ALL, contact_events);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_pre_solve(taut_collider handle, int32_t pre_solve) {
+    Check check(__func__);
+    if (!check.boolean("pre_solve", static_cast<uint32_t>(pre_solve))) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        ask_for(world.colliders.record[collider], kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_one_way(taut_collider handle, taut_vec3 direction) {
+    Check check(__func__);
+    if (!check.vector("direction", direction, kOneWay)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        set_one_way(world.colliders.record[collider], direction);
         return TAUT_OK;
     });
 }

@@ -19,6 +19,8 @@ constexpr MaterialNames kMaterialInDef{"material.friction",         "material.re
                                        "material.rolling_friction", "material.spinning_friction"};
 
 Check& check_material(Check& check, const MaterialNames& names, const taut_material& material);
+// Flags and contact events of a collider, in the def that holds them.
+Check& check_asks(Check& check, const char* flags_field, uint32_t flags, uint32_t contact_events);
 Check& check_collider_def(Check& check, const taut_collider_def& def);
 
 // The collider that a checked def asks for on a body of this kind, but for its node; its shape is looked up.

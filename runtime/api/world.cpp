@@ -42,7 +42,9 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .boolean("sleeping", def.sleeping)
         .number("sleep_speed", def.sleep_speed, kSleepSpeed)
         .number("sleep_time", def.sleep_time, kSleepTime)
-        .zero("reserved", def.reserved);
+        .count("contact_events", def.contact_events, 0, TAUT_CONTACT_EVENTS_ALL)
+        .number("hit_speed", def.hit_speed, kHitSpeed)
+        .boolean("continuous", def.continuous);
     return check_hooks(check, def.hooks);
 }
 
@@ -63,6 +65,9 @@ void taut_world_def_init(taut_world_def* def) {
     def->threads = 1;
     def->sleep_speed = 0.03f;
     def->sleep_time = 0.5f;
+    def->contact_events = TAUT_CONTACT_EVENTS_BEGIN_END;
+    def->hit_speed = 1;
+    def->continuous = 1;
 }
 
 taut_result taut_world_create(const taut_world_def* def, taut_world* out) {
@@ -155,6 +160,32 @@ taut_result taut_world_set_gravity(taut_world handle, taut_vec3 gravity) {
         const taut_vec3 old = world.def.gravity;
         if (gravity.x != old.x || gravity.y != old.y || gravity.z != old.z) wake_all(world);
         world.def.gravity = gravity;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_contact_events(taut_world handle, uint32_t contact_events) {
+    Check check(__func__);
+    if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        world.def.contact_events = contact_events;
+        world.pairs.asks = static_cast<uint8_t>(contact_events);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_hit_speed(taut_world handle, float hit_speed) {
+    Check check(__func__);
+    if (!check.number("hit_speed", hit_speed, kHitSpeed)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        world.def.hit_speed = hit_speed;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_pre_solve(taut_world handle, taut_pre_solve_fn pre_solve, void* user_data) {
+    return with_world(__func__, handle, Use::write, [&](World& world) {
+        world.pre_solve = {pre_solve, user_data};
         return TAUT_OK;
     });
 }

@@ -119,14 +119,17 @@ Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placemen
 }
 
 // A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
-void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const collision::Manifold& old,
-           const Pair& before, Pair& pair) {
+void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs,
+           const collision::Manifold& old, const Pair& before, Pair& pair) {
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
     const Vec3f from_a = offset_of(nodes, a, shaped.at_a());
     for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
     pair.apart.setZero();
     shaped.bring_to_present(pair);
+    const float friction = pair.friction, restitution = pair.restitution;
     combine_surfaces(nodes, a, b, shaped.at_a(), shaped.at_b(), from_a, pair);
+    if (pair.answered) pair.friction = friction, pair.restitution = restitution;  // as the host said
+    pair.asks = pairs.asks | a.asks | b.asks;
     if (old.count == 0) {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
         pair.turning = {};
@@ -140,10 +143,10 @@ void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders,
 }
 
 // Manifold of one pair, with the impulses of the last one.
-void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pair& pair) {
+void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     shaped.find_points(pair.cache, pair.manifold);
-    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair, pair);
+    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, pairs, old, pair, pair);
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -184,8 +187,13 @@ void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colli
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        adopt(shaped, nodes, colliders, before ? before->manifold : first.manifold, before ? *before : first, pair);
+        adopt(shaped, nodes, colliders, pairs, before ? before->manifold : first.manifold, before ? *before : first,
+              pair);
     }
+}
+
+ActivePair active_of(const Pair& pair, uint32_t index) {
+    return {pair.a, pair.b, index, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks};
 }
 
 // The fresh parts in place of the old ones, and the active pairs anew.
@@ -201,8 +209,7 @@ void replace_parts(Pairs& pairs) {
     pairs.active.clear();
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         const Pair& pair = pairs.list[i];
-        if (!pair.filtered && pair.manifold.count > 0)
-            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
+        if (!pair.filtered && pair.manifold.count > 0) pairs.active.push_back(active_of(pair, i));
     }
 }
 
@@ -213,7 +220,7 @@ void refresh_part(const Shaped& shaped, const Nodes& nodes, const Colliders& col
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, old, pair, pair);
+    if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, pairs, old, pair, pair);
 }
 
 }  // namespace
@@ -228,7 +235,7 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
         const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
         if (pair.part == 0) {
-            find_points(shaped, nodes, colliders, pair);
+            find_points(shaped, nodes, colliders, pairs, pair);
         } else {
             if (pair.key != found) shaped.find_parts(pairs.parts);
             found = pair.key;
@@ -253,9 +260,10 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
         for (uint32_t i = begin; i < end; ++i) {
             Pair& pair = pairs.list[i];
             if (pair.filtered || pair.part != 0) continue;
+            pair.answered = false;
             const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
             pair.on_surface = shaped.has_parts();
-            if (!pair.on_surface) find_points(shaped, nodes, colliders, pair);
+            if (!pair.on_surface) find_points(shaped, nodes, colliders, pairs, pair);
         }
     });
     pairs.active.clear();
@@ -273,7 +281,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                        std::span(pairs.list).subspan(i, end - i));
         }
         if (pair.manifold.count > 0) {
-            pairs.active.push_back({pair.a, pair.b, i, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2});
+            pairs.active.push_back(active_of(pair, i));
         } else if (pairs.fresh.size() == fresh && pair.touching) {
             report_end(pairs, nodes, colliders, pair);
             pair.touching = false;

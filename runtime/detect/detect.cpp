@@ -9,11 +9,6 @@ namespace {
 
 constexpr uint32_t kGrain = 64;  // colliders that a thread takes at a time
 
-bool filters_agree(const taut_filter& a, const taut_filter& b) {
-    if (a.group != 0 && a.group == b.group) return a.group > 0;
-    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
-}
-
 bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const Pair& pair) {
     bool moves = false, tied = false;
     for_sides(pair, [&](uint32_t a, uint32_t b) {
@@ -21,7 +16,7 @@ bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pa
         tied = tied || a == b || std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(a, b));
     });
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    return moves && !tied && filters_agree(a.filter, b.filter);
+    return moves && !tied && !a.sensor && !b.sensor && filters_agree(a.filter, b.filter);
 }
 
 // Keys of nodes that a joint forbids to collide, sorted.

@@ -36,7 +36,9 @@ struct Way {
 }  // namespace
 
 Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time) {
-    if (collider.node_b != kNone) return {std::numeric_limits<double>::infinity(), 0};
+    const NodeInfo& info = nodes.info[collider.node];
+    const bool looked_for = collider.node_b == kNone && (info.continuous || info.kind == NodeKind::fixed);
+    if (!looked_for) return {std::numeric_limits<double>::infinity(), 0};
     const double lever = (collider.position - nodes.mass[collider.node].centre).norm();
     const double spin = nodes.motion[collider.node].w.norm();
     return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0};

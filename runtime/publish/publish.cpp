@@ -7,18 +7,6 @@
 namespace taut {
 namespace {
 
-bool touches(const Pair& pair) {
-    for (int k = 0; k < pair.manifold.count; ++k)
-        if (pair.manifold.points[k].separation <= 0 || pair.impulse[k].normal > 0) return true;
-    return false;
-}
-
-// The record of part 0, which stands before those of the others.
-Pair& first_of(Pairs& pairs, uint32_t index) {
-    while (pairs.list[index].part != 0) --index;
-    return pairs.list[index];
-}
-
 taut_pose public_pose(const Vec3& position, const Quat& q) {
     taut_pose pose{};
     pose.position = {position.x(), position.y(), position.z()};
@@ -28,29 +16,6 @@ taut_pose public_pose(const Vec3& position, const Quat& q) {
 }
 
 }  // namespace
-
-void publish_contacts(World& world) {
-    world.contact_begin.clear();
-    world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
-    world.pairs.ended.clear();
-    const Array<ActivePair>& active = world.pairs.active;
-    for (size_t i = 0, next = 0; i < active.size(); i = next) {
-        Pair& pair = first_of(world.pairs, active[i].pair);
-        const bool before = pair.touching;
-        bool now = false;  // by any of the pair's parts
-        for (; next < active.size() && world.pairs.list[active[next].pair].key == pair.key; ++next) {
-            Pair& part = world.pairs.list[active[next].pair];
-            part.touching = touches(part);
-            now = now || part.touching;
-        }
-        pair.touching = now;
-        if (now == before) continue;
-        const taut_contact_event event{world.body_handle(pair.a), world.body_handle(pair.b),
-                                       world.collider_handle(pair.collider_a()),
-                                       world.collider_handle(pair.collider_b())};
-        (pair.touching ? world.contact_begin : world.contact_end).push_back(event);
-    }
-}
 
 void publish_motion(World& world, const Array<uint32_t>& frozen) {
     const Nodes& nodes = world.nodes;

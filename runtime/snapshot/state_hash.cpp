@@ -15,6 +15,7 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
         hash.add(m.q);
         hash.add(nodes.mass[i].mass);
         hash.add(nodes.mass[i].gravity_scale);
+        if (!nodes.info[i].continuous) hash.add(uint64_t{1});
         hash.add(nodes.load[i].force);
         hash.add(nodes.load[i].torque);
     }
@@ -57,6 +58,10 @@ void add_colliders(Hash& hash, const Colliders& colliders) {
         hash.add(collider.filter.category);
         hash.add(collider.filter.mask);
         hash.add(static_cast<uint64_t>(static_cast<uint32_t>(collider.filter.group)));
+        const uint64_t filters = collider.asks & (kAsksPreSolve | kAsksOneWay);
+        if (!collider.sensor && filters == 0) continue;
+        hash.add(filters << 2 | static_cast<uint64_t>(collider.sensor) << 1 | collider.senses_static);
+        hash.add(collider.one_way.cast<double>().eval());
     }
 }
 
@@ -124,6 +129,7 @@ void add_pairs(Hash& hash, const Pairs& pairs) {
         if (pair.manifold.count == 0) return;
         hash.add(pair.key);
         if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
+        if (pair.asks & (kAsksPreSolve | kAsksOneWay)) hash.add(static_cast<uint64_t>(pair.touching));
         for (uint32_t word : pair.cache.words) hash.add(static_cast<uint64_t>(word));
         for (int k = 0; k < pair.manifold.count; ++k) {
             hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));

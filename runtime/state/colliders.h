@@ -5,11 +5,17 @@
 
 #include <taut/body.h>
 
+#include <algorithm>
+
 #include "base/id_pool.h"
 #include "base/math.h"
 #include "state/nodes.h"
 
 namespace taut {
+
+// What a pair asks of a step: public bits of contact events, and two of its own.
+constexpr uint8_t kAsksPreSolve = 16, kAsksOneWay = 32;
+static_assert((TAUT_CONTACT_EVENTS_ALL & (kAsksPreSolve | kAsksOneWay)) == 0);
 
 struct Collider {
     uint32_t node = kNone;             // kNone: a dead slot
@@ -25,33 +31,62 @@ struct Collider {
     uint64_t user_data = 0;
     // Of its surface against the body, in the shape's frame: surface_velocity + surface_spin x p [m/s], [rad/s].
     Vec3f surface_velocity = Vec3f::Zero(), surface_spin = Vec3f::Zero();
+    Vec3f one_way = Vec3f::Zero();  // unit, in the shape's frame: it is touched from this side only; 0: from all
+    uint8_t asks = 0;               // bits of contact events, kAsks
+    bool sensor = false;            // detects, never collides
+    bool senses_static = false;
 
     bool at_origin() const { return position == Vec3::Zero() && rotation.coeffs() == Quat::Identity().coeffs(); }
 };
 
+// Sets some of the bits that a collider asks for.
+inline void ask_for(Collider& collider, uint32_t which, uint32_t bits) {
+    collider.asks = static_cast<uint8_t>((collider.asks & ~which) | bits);
+}
+
 struct Colliders {
-    explicit Colliders(Memory& memory) : ids(memory), record(memory) {}
+    explicit Colliders(Memory& memory) : ids(memory), record(memory), sensors(memory) {}
 
     // Throws std::bad_alloc before anything changes.
     void reserve_one() {
         ids.reserve_one();
         if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
+        reserve_sensor();
+    }
+    void reserve_sensor() {
+        if (sensors.capacity() == sensors.size()) sensors.reserve(2 * sensors.size() + 16);
     }
     // reserve_one() went before.
     uint32_t add(const Collider& collider) {
         const uint32_t index = ids.create();
         if (index == record.size()) record.emplace_back();
         record[index] = collider;
+        list_sensor(index, collider.sensor);
         return index;
     }
     void remove(uint32_t index) {
+        list_sensor(index, false);
         record[index] = {};
         ids.destroy(index);
     }
 
+    // Brings the list of sensors up to date; reserve_sensor() went before.
+    void list_sensor(uint32_t index, bool sensor) {
+        const auto at = std::lower_bound(sensors.begin(), sensors.end(), index);
+        const bool listed = at != sensors.end() && *at == index;
+        if (sensor && !listed) sensors.insert(at, index);
+        if (!sensor && listed) sensors.erase(at);
+    }
+
     IdPool ids;
     Array<Collider> record;
+    Array<uint32_t> sensors;  // slots, sorted
 };
+
+inline bool filters_agree(const taut_filter& a, const taut_filter& b) {
+    if (a.group != 0 && a.group == b.group) return a.group > 0;
+    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
 
 // Calls act(collider) for each collider of a node; act may not remove it.
 template <class Act>

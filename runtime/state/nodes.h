@@ -44,6 +44,7 @@ struct NodeInfo {
     NodeKind kind = NodeKind::dead;
     uint32_t collider = kNone;  // the first of its colliders
     uint32_t cable = kNone;     // that it is part of
+    bool continuous = true;     // what moves past its own thickness is looked for along its way; detect/impact.h
     uint64_t user_data = 0;
 };
 

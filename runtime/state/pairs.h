@@ -43,6 +43,9 @@ struct Pair {
     bool on_surface = false;  // a shape has parts; of records with part 0
     bool filtered = false;    // never collides (filter, joint); kept to remember the answer
     bool touching = false;    // had a point at the end of the last step; part 0: or another part had
+    bool answered = false;    // the host gave this step's friction and restitution
+    bool hit = false;         // gave a hit event in the last step; part 0
+    uint8_t asks = 0;         // bits of contact events, kAsks: of the world and the two colliders
 
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
@@ -76,6 +79,7 @@ struct ActivePair {
     uint32_t pair;  // index into Pairs::list
     uint32_t points;
     uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
+    uint32_t asks = 0;                // as the pair
 
     bool spans() const { return a2 != kNone || b2 != kNone; }
     std::array<uint32_t, 2> sides() const { return {a, b}; }
@@ -116,6 +120,7 @@ struct Pairs {
     Array<ActivePair> active;               // sorted as list is; find_contacts()
     Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;                     // id of the world, for the handles in ended
+    uint8_t asks = 0;                       // of all pairs: the world's contact events
     Array<uint64_t> joined;                 // keys of nodes whose joint forbids contacts, sorted
     uint64_t joined_version = 0;            // of the joints that they were taken from
     Array<Reach> reach;                     // by collider; update_bounds()
@@ -124,7 +129,13 @@ struct Pairs {
     collision::Parts parts;                 // of the pair looked at last
 };
 
-// Notes that a touching pair ended.
+// The record of part 0, which stands before those of the others.
+inline Pair& first_of(Pairs& pairs, uint32_t index) {
+    while (pairs.list[index].part != 0) --index;
+    return pairs.list[index];
+}
+
+// Notes that a touching pair ended, if anybody asks.
 void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const Pair& pair);
 
 // Calls act(pair) for all pairs, resting ones too, in the order of key and part.

@@ -58,6 +58,9 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              taut_events out;
              return taut_world_get_events(w, &out);
          }},
+        {"taut_world_set_contact_events", [](taut_world w) { return taut_world_set_contact_events(w, 1); }},
+        {"taut_world_set_hit_speed", [](taut_world w) { return taut_world_set_hit_speed(w, 2); }},
+        {"taut_world_set_pre_solve", [](taut_world w) { return taut_world_set_pre_solve(w, nullptr, nullptr); }},
         {"taut_world_get_contacts",
          [](taut_world w) {
              taut_contact out[64];
@@ -318,6 +321,12 @@ inline std::vector<Call<taut_body>> body_calls() {
              return taut_body_get_can_sleep(b, &out);
          }},
         {"taut_body_set_can_sleep", [](taut_body b) { return taut_body_set_can_sleep(b, 1); }},
+        {"taut_body_set_continuous", [](taut_body b) { return taut_body_set_continuous(b, 1); }},
+        {"taut_body_get_continuous",
+         [](taut_body b) {
+             uint32_t out = 0;
+             return taut_body_get_continuous(b, &out);
+         }},
         {"taut_body_get_kind",
          [](taut_body b) {
              taut_body_kind out;
@@ -347,6 +356,7 @@ inline std::vector<Call<taut_body>> body_calls() {
              material.friction = 0.5f;
              return taut_body_set_material(b, &material);
          }},
+        {"taut_body_set_contact_events", [](taut_body b) { return taut_body_set_contact_events(b, 3); }},
         {"taut_body_get_pose",
          [](taut_body b) {
              taut_pose out;
@@ -483,6 +493,19 @@ inline std::vector<Call<taut_collider>> collider_calls(const Populated& p) {
          [](taut_collider c) {
              const taut_filter filter = {1, 1, 0, 0};
              return taut_collider_set_filter(c, &filter);
+         }},
+        {"taut_collider_set_contact_events", [](taut_collider c) { return taut_collider_set_contact_events(c, 15); }},
+        {"taut_collider_set_pre_solve", [](taut_collider c) { return taut_collider_set_pre_solve(c, 1); }},
+        {"taut_collider_set_one_way",
+         [](taut_collider c) {
+             return taut_collider_set_one_way(c, {0, 1, 0});
+         }},
+        {"taut_collider_set_sensor", [](taut_collider c) { return taut_collider_set_sensor(c, 1); }},
+        {"taut_collider_get_overlaps",
+         [](taut_collider c) {
+             taut_collider out[16];
+             uint32_t count;
+             return taut_collider_get_overlaps(c, out, 16, &count);
          }},
         {"taut_collider_set_density", [](taut_collider c) { return taut_collider_set_density(c, 10); }},
         {"taut_collider_set_surface_velocity",

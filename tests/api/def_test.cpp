@@ -260,7 +260,7 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         {"max_catch_up", &Def::max_catch_up, 1, 1000},
         {"threads", &Def::threads, 1, 64},
         {"sleeping", &Def::sleeping, 0, 1},
-        {"reserved", &Def::reserved, 0, 0},
+        {"continuous", &Def::continuous, 0, 1},
     };
     for (const auto& count : counts) {
         changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });

@@ -344,6 +344,9 @@ private:
         def.rotation = quat();
         def.density = real(0, 5000);
         def.material = material(2);
+        if (one_in(4)) def.flags = byte() % (one_in(16) ? 16 : 8);
+        if (one_in(4)) def.contact_events = byte() % (one_in(16) ? 32 : 16);
+        if (one_in(8)) def.one_way = vec(1);
         return def;
     }
 
@@ -369,6 +372,8 @@ private:
             def.inertia = {real(0.1, 10), real(0.1, 10), real(0.1, 10), real(-1, 1), real(-1, 1), real(-1, 1)};
         if (one_in(8)) def.centre_of_mass = vec(1);
         if (one_in(8)) def.filter = {word(), word(), static_cast<int32_t>(byte() % 5) - 2, one_in(32) ? 1u : 0u};
+        if (one_in(8)) def.collider_flags = byte() % (one_in(16) ? 16 : 8);
+        if (one_in(8)) def.contact_events = byte() % (one_in(16) ? 32 : 16);
         def.gravity_scale = real(-2, 2);
         taut_collider_def colliders[2];
         for (taut_collider_def& collider : colliders) collider = collider_def(w);
@@ -681,6 +686,13 @@ private:
             for (uint32_t i = 0; i < events.moved_count; ++i) expect_finite(events.moved[i].pose);
             for (uint32_t i = 0; i < events.broken_count; ++i)
                 expect(!taut_joint_is_valid(events.broken[i].joint), "a broken joint that lives");
+            for (uint32_t i = 0; i < events.point_count; ++i) {
+                const taut_contact_point& point = events.points[i];
+                expect(finite(point.position) && std::isfinite(point.approach_speed), "a point that is not finite");
+                expect(point.normal_impulse >= 0 && point.friction_impulse >= 0, "impulses that are none");
+            }
+            for (uint32_t i = 0; i < events.hit_count; ++i)
+                expect(finite(events.hit[i].position) && events.hit[i].approach_speed > 0, "a hit that is none");
         }
         read_all(world);
         std::vector<taut_contact> contacts(byte());
@@ -845,6 +857,19 @@ private:
         const taut_world world = worlds_[pick_world()];
         const taut_vec3 gravity = vec(20);
         run("taut_world_set_gravity", [&] { return taut_world_set_gravity(world, gravity); });
+        const uint32_t asked = byte() % (one_in(16) ? 32 : 16);
+        run("taut_world_set_contact_events", [&] { return taut_world_set_contact_events(world, asked); });
+        const float speed = real(0, 10);
+        run("taut_world_set_hit_speed", [&] { return taut_world_set_hit_speed(world, speed); });
+        const taut_pre_solve_fn filter = one_in(2) ? judge : nullptr;
+        run("taut_world_set_pre_solve", [&] { return taut_world_set_pre_solve(world, filter, this); });
+    }
+
+    // A host's filter that answers anything.
+    static int32_t judge(const taut_pre_solve*, taut_pre_solve_answer* answer, void* self) {
+        Driver& driver = *static_cast<Driver*>(self);
+        *answer = {driver.real(0, 2), driver.real(0, 1)};
+        return driver.byte() % (driver.one_in(16) ? 3 : 2);
     }
 
     void step() {

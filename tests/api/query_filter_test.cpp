@@ -156,7 +156,7 @@ TEST_F(QueryRefusals, Filters) {
         refuse_ray(kDown, code, word);
     };
     refuse(TAUT_STRUCT_SIZE, "filter.struct_size", [](taut_query_filter& f) { f.struct_size = 0; });
-    refuse(TAUT_INVALID_ARGUMENT, "filter.kinds", [](taut_query_filter& f) { f.kinds = 16; });
+    refuse(TAUT_INVALID_ARGUMENT, "filter.kinds", [](taut_query_filter& f) { f.kinds = 32; });
     refuse(TAUT_INVALID_ARGUMENT, "ignored_body_count", [](taut_query_filter& f) { f.ignored_body_count = 65; });
     refuse(TAUT_NULL_POINTER, "ignored_bodies", [](taut_query_filter& f) { f.ignored_body_count = 1; });
     refuse(TAUT_NULL_POINTER, "ignored_colliders", [](taut_query_filter& f) { f.ignored_collider_count = 1; });

@@ -1,0 +1,36 @@
+// How two bodies of a pair move against each other at their contact points.
+#pragma once
+
+#include "state/nodes.h"
+#include "state/pairs.h"
+
+namespace taut {
+
+// Velocity of b's points as seen from a's, at r from the origin of node a: v = apart + turning x r [m/s], [rad/s].
+struct RelativeMotion {
+    Vec3f apart, turning;
+
+    // Along a normal from a to b; positive: they close [m/s].
+    float approach(const Vec3f& r, const Vec3f& normal) const { return -(apart + turning.cross(r)).dot(normal); }
+};
+
+// The motion of a side of two particles is that of the line between them, without its stretch.
+inline RelativeMotion relative_motion(const Nodes& nodes, const Pair& pair) {
+    const Vec3 origin = nodes.origin(pair.a);
+    Vec3 apart = Vec3::Zero(), turning = Vec3::Zero();
+    const auto add = [&](double sign, uint32_t node, uint32_t other) {
+        const NodeMotion& m = nodes.motion[node];
+        Vec3 w = m.w;
+        if (other != kNone) {
+            const Vec3 along = nodes.motion[other].x - m.x;
+            w = along.cross(nodes.motion[other].v - m.v) / std::max(along.squaredNorm(), 1e-24);
+        }
+        apart += sign * (m.v + w.cross(origin - m.x));
+        turning += sign * w;
+    };
+    add(-1, pair.a, pair.a2);
+    add(1, pair.b, pair.b2);
+    return {apart.cast<float>(), turning.cast<float>()};
+}
+
+}  // namespace taut

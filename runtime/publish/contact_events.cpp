@@ -1,0 +1,139 @@
+// Begin, persist, end and hit: pair by pair in the order of the list, which is that of the keys.
+#include <algorithm>
+
+#include "publish/publish.h"
+
+namespace taut {
+namespace {
+
+bool touches(const Pair& pair) {
+    for (int k = 0; k < pair.manifold.count; ++k)
+        if (pair.manifold.points[k].separation <= 0 || pair.impulse[k].normal > 0) return true;
+    return false;
+}
+
+// Active pairs with one key: a pair, or the parts of one with a surface.
+struct Touch {
+    Pair& pair;  // part 0
+    size_t begin, end;
+};
+
+class Publisher {
+public:
+    explicit Publisher(World& world) : world_(world) {}
+
+    // Sums of a body in quarantine may be no numbers.
+    static float finite(float x) { return std::isfinite(x) ? x : 0.0f; }
+
+    void tell(const Touch& touch, bool before) {
+        const Pair& pair = touch.pair;
+        const uint32_t asks = world_.pairs.active[touch.begin].asks;
+        taut_contact_event event{world_.body_handle(pair.a),
+                                 world_.body_handle(pair.b),
+                                 world_.collider_handle(pair.collider_a()),
+                                 world_.collider_handle(pair.collider_b()),
+                                 static_cast<uint32_t>(world_.contact_points.size()),
+                                 0};
+        Array<taut_contact_event>* list = nullptr;
+        if (pair.touching != before && (asks & TAUT_CONTACT_EVENTS_BEGIN_END))
+            list = pair.touching ? &world_.contact_begin : &world_.contact_end;
+        else if (pair.touching && before && (asks & TAUT_CONTACT_EVENTS_PERSIST))
+            list = &world_.contact_persist;
+        if (list) {
+            if (pair.touching && (asks & TAUT_CONTACT_EVENTS_POINTS)) add_points(touch);
+            event.point_count = static_cast<uint32_t>(world_.contact_points.size()) - event.first_point;
+            list->push_back(event);
+        }
+        const bool hit_before = touch.pair.hit;
+        touch.pair.hit = false;
+        if (pair.touching && !hit_before && (asks & TAUT_CONTACT_EVENTS_HIT)) tell_hit(touch, event);
+    }
+
+private:
+    // act(pair, watched, point) for the points of the parts that touch.
+    template <class Act>
+    void for_points(const Touch& touch, Act&& act) {
+        for (size_t i = touch.begin; i < touch.end; ++i) {
+            const uint32_t index = world_.pairs.active[i].pair;
+            const Pair& part = world_.pairs.list[index];
+            const WatchedPair* watched = find_watched(world_.watch, index);
+            if (!part.touching || !watched) continue;
+            for (int k = 0; k < part.manifold.count; ++k) act(part, *watched, k);
+        }
+    }
+
+    taut_pos place_of(const Pair& pair, int k) const {
+        const Vec3 at = world_.nodes.origin(pair.a) + pair.manifold.points[k].position.cast<double>();
+        return {at.x(), at.y(), at.z()};
+    }
+
+    static float approach_of(const Pair& pair, const WatchedPair& watched, int k) {
+        return watched.before.approach(pair.manifold.points[k].position, pair.manifold.normal);
+    }
+
+    void add_points(const Touch& touch) {
+        for_points(touch, [&](const Pair& pair, const WatchedPair& watched, int k) {
+            const Vec3f& n = pair.manifold.normal;
+            world_.contact_points.push_back({place_of(pair, k),
+                                             {n.x(), n.y(), n.z()},
+                                             pair.manifold.points[k].separation,
+                                             finite(watched.normal[k]),
+                                             finite(watched.friction[k].norm()),
+                                             approach_of(pair, watched, k),
+                                             0});
+        });
+    }
+
+    void tell_hit(const Touch& touch, const taut_contact_event& event) {
+        taut_hit_event hit{event.body_a, event.body_b, event.collider_a, event.collider_b, {}, {}, 0, 0, 0};
+        hit.approach_speed = world_.def.hit_speed;
+        for_points(touch, [&](const Pair& pair, const WatchedPair& watched, int k) {
+            hit.normal_impulse += finite(watched.normal[k]);
+            const float approach = approach_of(pair, watched, k);
+            if (!(watched.normal[k] > 0 && approach > hit.approach_speed)) return;
+            const Vec3f& n = pair.manifold.normal;
+            hit.position = place_of(pair, k);
+            hit.normal = {n.x(), n.y(), n.z()};
+            hit.approach_speed = approach;
+            touch.pair.hit = true;
+        });
+        if (touch.pair.hit) world_.hits.push_back(hit);
+    }
+
+    World& world_;
+};
+
+void sort_by_slots(Array<taut_contact_event>& events) {
+    std::sort(events.begin(), events.end(), [](const taut_contact_event& a, const taut_contact_event& b) {
+        return a.collider_a.bits != b.collider_a.bits ? a.collider_a.bits < b.collider_a.bits
+                                                      : a.collider_b.bits < b.collider_b.bits;
+    });
+}
+
+}  // namespace
+
+void publish_contacts(World& world) {
+    for (auto* events : {&world.contact_begin, &world.contact_persist}) events->clear();
+    world.contact_points.clear();
+    world.hits.clear();
+    world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
+    world.pairs.ended.clear();
+    const Array<ActivePair>& active = world.pairs.active;
+    Publisher publisher(world);
+    for (size_t i = 0, next = 0; i < active.size(); i = next) {
+        Pair& pair = first_of(world.pairs, active[i].pair);
+        const bool before = pair.touching;
+        bool now = false;  // by any of the pair's parts
+        for (; next < active.size() && world.pairs.list[active[next].pair].key == pair.key; ++next) {
+            Pair& part = world.pairs.list[active[next].pair];
+            part.touching = touches(part);
+            now = now || part.touching;
+        }
+        pair.touching = now;
+        pair.asks = static_cast<uint8_t>(active[i].asks);  // where parts alone have points; for its end
+        if (now || before) publisher.tell({pair, i, next}, before);
+    }
+    sort_by_slots(world.contact_end);
+}
+
+}  // namespace taut

@@ -1,0 +1,44 @@
+// What events with points and hits tell beyond the last substep: how pairs closed before the step, and their impulses
+// summed over it. Only pairs whose events ask for it are watched.
+#pragma once
+
+#include <taut/collider.h>
+
+#include "detect/approach.h"
+#include "partition/partition.h"
+#include "system/system.h"
+
+namespace taut {
+
+constexpr uint32_t kAsksWatch = TAUT_CONTACT_EVENTS_POINTS | TAUT_CONTACT_EVENTS_HIT;
+
+struct WatchedPair {
+    uint32_t pair = 0;                      // index into Pairs::list
+    RelativeMotion before;                  // the step
+    uint32_t lane_group = kNone, lane = 0;  // where it is swept, in System::contacts; kNone: as rows
+
+    // Points as seen last, with the sums so far [N s]; friction in world axes.
+    int count = 0;
+    uint32_t feature[4];
+    Vec3f position[4];
+    float normal[4];
+    Vec3f friction[4];
+};
+
+struct ContactWatch {
+    explicit ContactWatch(Memory& memory) : pairs(memory), current(memory) {}
+
+    Array<WatchedPair> pairs;  // in the order of Pairs::list
+    Array<uint32_t> current;   // of them, those of the group being solved
+};
+
+// Once a step, before anything moves.
+void watch_contacts(const Nodes& nodes, const Pairs& pairs, ContactWatch& watch);
+// Once a step and group, when its lanes are built.
+void watch_group(const Group& group, const System& system, const Pairs& pairs, ContactWatch& watch);
+// After each substep: adds the impulses of the group's pairs.
+void gather_impulses(const System& system, const Pairs& pairs, ContactWatch& watch);
+// The watched pair of an index into Pairs::list, or null.
+WatchedPair* find_watched(ContactWatch& watch, uint32_t pair);
+
+}  // namespace taut
