@@ -244,6 +244,12 @@ struct Motion {
 // from the shape's origin [m].
 double spin_radius(const Shape& shape, double lever);
 
+// Radius of the ball that grows the core to the shape [m]: what of the shape does not turn with it.
+double ball_radius(const Shape& shape);
+
+// About where that ball, and the one inside the shape, have their middle, in the shape's frame.
+Vec3 middle(const Shape& shape);
+
 // Radius of a ball inside the shape [m]; 0 of planes and surfaces, which a body that touches them from behind is past.
 double thickness(const Shape& shape);
 

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "check/quarantine.h"
 #include "detect/detect.h"
+#include "detect/impact.h"
 #include "detect/sensors.h"
 #include "integrate/integrate.h"
 #include "models/cable.h"
@@ -57,6 +58,7 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
             find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(w.team, system, group, w.nodes, gravity);
+        if (solver.wide_contacts && i > 0) turn_lanes(w.team, system, *settings.kernels);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         w.profile.predict_us += watch.lap();
         evaluate_rows(system, 1 - (i + 1.0) / group.substeps, frame);
@@ -132,6 +134,7 @@ void step(World& w) {
     w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
+    hold_back(w.colliders, w.shapes, w.joints, w.pairs, w.nodes);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.sensors);
     std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});

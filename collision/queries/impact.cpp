@@ -82,12 +82,18 @@ Placement Motion::after(double time) const {
     return {centre + time * velocity + lever, (turn * at.rotation.cast<double>()).cast<float>()};
 }
 
+double ball_radius(const Shape& shape) { return is_convex(shape) ? core_radius(shape) : 0.0; }
+
+Vec3 middle(const Shape& shape) {
+    return is_convex(shape) ? Vec3(centre_line(shape).at(0.5f).cast<double>()) : Vec3(Vec3::Zero());
+}
+
 double thickness(const Shape& shape) { return is_convex(shape) ? double(inner_radius(shape)) : 0.0; }
 
 double spin_radius(const Shape& shape, double lever) {
     const Box box = bounds(shape, {Vec3::Zero(), Mat3f::Identity()});
     Vec3 corner = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).cast<double>();
-    if (is_convex(shape)) corner.array() -= core_radius(shape);
+    corner.array() -= ball_radius(shape);
     return lever + corner.norm();
 }
 

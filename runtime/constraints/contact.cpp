@@ -1,7 +1,7 @@
 // Contact point with the normal and tangents of its detection.
-// C = basis (p_b - p_a) + offset: separation and slip [m], p = x + R s;  J = basis of the ball joint's J;
-// K: the force basis^T lambda at the two levers.
-// Row 0 pushes only, rows 1 and 2 stay within friction * row 0; their C is not enforced, only J v = 0 on the cone.
+// C = basis (p_b - p_a) + offset: separation and slip [m], p = x + R s + skin;  J = basis of the ball joint's J with
+// the levers R s + skin;  K: the force basis^T lambda at the levers R s, as the skin does not turn. Row 0 pushes only,
+// rows 1 and 2 stay within friction * row 0; their C is not enforced, only J v = 0 on the cone.
 #include "constraints/contact.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
     const auto& point = *static_cast<const ContactData*>(data);
-    const Vec3 ra = x[0].R * point.anchor_a, rb = x[1].R * point.anchor_b;
+    const Vec3 ra = x[0].R * point.anchor_a + point.skin_a, rb = x[1].R * point.anchor_b + point.skin_b;
     Vec3::Map(error) = point.basis * ((x[1].x - x[0].x) + (rb - ra)) + point.offset;
     if (!jacobian) return;
     set_block(jacobian, 3, 0, 0, -point.basis);
@@ -35,7 +35,10 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
 void sample(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& point = *static_cast<ContactData*>(data);
-    point = {random.vector(), random.vector(), random.vector(), random.rotation().toRotationMatrix()};
+    point.anchor_a = random.vector();
+    point.anchor_b = random.vector();
+    point.offset = random.vector();
+    point.basis = random.rotation().toRotationMatrix();
     random.poses(x, 2);
 }
 

@@ -30,9 +30,13 @@ struct alignas(32) LaneGroup {
     uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
     float normal[3][kLanes], tangent[3][kLanes];
     float friction[kLanes];
+    float round[2][kLanes];           // of a and b: how far from their surfaces what turns ends [m]; is_round
+    float turns[kLanes];              // 1: a body has turned its levers in this frame, so that it bounces as it is hit
     uint32_t first_point;             // in LanePoint, one for each of `points`
     uint32_t points;                  // most points of a lane
     uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no surface of a lane moves
+    uint32_t any_turns = 0;           // 1: some turns is 1
+    uint32_t is_round = 0;            // 1: some round is not 0
     uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has rolling or spinning friction
 };
 
@@ -106,7 +110,8 @@ struct ContactKernels {
     // Same rows without bias or softness: removes the push from the velocity that is kept.
     void (*sweep_relaxed)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepTerms&);
     // Points that closed faster than threshold [m/s] leave with restitution times that speed.
-    void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, float threshold);
+    void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, float threshold,
+                      bool last);
 };
 
 extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2;

@@ -275,10 +275,12 @@ struct ContactSweep {
             a.gather(g.a, velocities, masses);
             b.gather(g.b, velocities, masses);
             const ShiftLanes at_a(g.a, shifts), at_b(g.b, shifts);
+            const V round_a = F::load(g.round[0]) * f.n, round_b = F::load(g.round[1]) * f.n;
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint& p = contacts.point[g.first_point + k];
                 const V ra = load(p.ra), rb = load(p.rb);
-                const F gap = F::load(p.gap0) + dot(at_b.motion(rb) - at_a.motion(ra), f.n);
+                const V core_a = g.is_round ? ra - round_a : ra, core_b = g.is_round ? rb + round_b : rb;
+                const F gap = F::load(p.gap0) + dot(at_b.motion(core_b) - at_a.motion(core_a), f.n);
                 gap.store(p.gap);
                 // open: reach the surface within the substep, no sooner; overlapping: soft push
                 const F bias = F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least));
@@ -314,22 +316,26 @@ struct ContactSweep {
         }
     }
 
+    // Once the frame is over; what turns has left the pose in which it was hit by then, and bounces at once.
     static void restitute(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                          const SweepMass* masses, float threshold) {
+                          const SweepMass* masses, float threshold, bool last) {
         const F zero = F::all(0), one = F::all(1), slow = F::all(-threshold);
         for (uint32_t i = begin; i < end; ++i) {
             const LaneGroup& g = contacts.group[i];
+            if (!last && !g.any_turns) continue;
             const Frame f(g);
             Side a, b;
             a.gather(g.a, velocities, masses);
             b.gather(g.b, velocities, masses);
+            const F due = last ? one : F::load(g.turns);
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint& p = contacts.point[g.first_point + k];
                 const F approach = F::load(p.approach);
                 // bounces: closed fast, and was pushed during the frame
                 const F wanted = F::if_greater(slow, approach, F::load(p.restitution) * approach, zero);
-                const F active = F::if_greater(F::load(p.peak), zero, F::if_greater(zero, wanted, one, zero), zero);
+                const F active = F::if_greater(F::load(p.peak), zero, F::if_greater(zero, wanted, due, zero), zero);
                 normal_row(p, f.n, load(p.ra), load(p.rb), a, b, wanted, active, zero);
+                F::if_greater(active, zero, zero, approach).store(p.approach);  // once
             }
             a.scatter(g.a, velocities);
             b.scatter(g.b, velocities);

@@ -76,7 +76,6 @@ public:
 
     const collision::Placement& at_a() const { return *at_a_; }
     const collision::Placement& at_b() const { return *at_b_; }
-    bool has_parts() const { return collision::has_parts(a_) || collision::has_parts(b_); }
 
     void find_points(collision::PairCache& cache, collision::Manifold& manifold) const {
         manifold.count = 0;
@@ -87,8 +86,9 @@ public:
         if (std::isfinite(then_)) collision::collide_parts(a_, *at_a_, b_, *at_b_, margin_, parts);
     }
 
+    float then() const { return static_cast<float>(then_); }
     void bring_to_present(Pair& pair) const {
-        if (then_ > 0) encounter_->bring_to_present(then_, pair);
+        if (pair.then > 0) encounter_->bring_to_present(pair);
     }
 
 private:
@@ -110,6 +110,13 @@ private:
     collision::Placement met_[2];         // where they meet
 };
 
+bool has_parts(const Colliders& colliders, const Shapes& shapes, const Pair& pair) {
+    const auto of = [&](uint32_t collider) {
+        return collision::has_parts(shapes.record[colliders.record[collider].shape].shape);
+    };
+    return of(pair.collider_a()) || of(pair.collider_b());
+}
+
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
 Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at) {
     if (a.node_b != kNone) return (at.position - nodes.motion[a.node].x).cast<float>();
@@ -124,7 +131,9 @@ void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders,
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
     const Vec3f from_a = offset_of(nodes, a, shaped.at_a());
     for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
-    pair.apart.setZero();
+    pair.round_a = pairs.pace[pair.collider_a()].round;
+    pair.round_b = pairs.pace[pair.collider_b()].round;
+    pair.then = shaped.then();
     shaped.bring_to_present(pair);
     const float friction = pair.friction, restitution = pair.restitution;
     combine_surfaces(nodes, a, b, shaped.at_a(), shaped.at_b(), from_a, pair);
@@ -261,18 +270,20 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
             Pair& pair = pairs.list[i];
             if (pair.filtered || pair.part != 0) continue;
             pair.answered = false;
-            const Shaped shaped(nodes, colliders, shapes, pairs, pair, time_step);
-            pair.on_surface = shaped.has_parts();
-            if (!pair.on_surface) find_points(shaped, nodes, colliders, pairs, pair);
+            pair.on_surface = has_parts(colliders, shapes, pair);
+            if (!pair.on_surface)
+                find_points(Shaped(nodes, colliders, shapes, pairs, pair, time_step), nodes, colliders, pairs, pair);
         }
     });
     pairs.active.clear();
     pairs.fresh.clear();
+    pairs.fast.clear();
     bool parts = false;
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         Pair& pair = pairs.list[i];
         parts = parts || pair.part != 0;
         if (pair.filtered || pair.part != 0) continue;
+        if (fast(nodes, pairs, pair, time_step)) pairs.fast.push_back(pair.key);
         const size_t fresh = pairs.fresh.size();
         if (pair.on_surface) {
             size_t end = i + 1;

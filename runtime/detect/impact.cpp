@@ -1,5 +1,7 @@
 #include "detect/impact.h"
 
+#include "state/levers.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -22,26 +24,16 @@ collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const 
     return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w};
 }
 
-// Displacement of a centre, and the turning of levers about it, from now to then.
-struct Way {
-    Way(const collision::Motion& motion, double then)
-        : dx(then * motion.velocity), turn(rotation_from_vector(then * motion.spin)) {}
-    // Of a point at the lever now.
-    Vec3 moved(const Vec3& lever) const { return dx + turn * lever - lever; }
-
-    Vec3 dx;
-    Quat turn;
-};
-
 }  // namespace
 
 Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time) {
     const NodeInfo& info = nodes.info[collider.node];
     const bool looked_for = collider.node_b == kNone && (info.continuous || info.kind == NodeKind::fixed);
-    if (!looked_for) return {std::numeric_limits<double>::infinity(), 0};
+    const auto round = static_cast<float>(collision::ball_radius(shape));
+    if (!looked_for) return {std::numeric_limits<double>::infinity(), 0, round};
     const double lever = (collider.position - nodes.mass[collider.node].centre).norm();
     const double spin = nodes.motion[collider.node].w.norm();
-    return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0};
+    return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0, round};
 }
 
 bool fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {
@@ -65,18 +57,14 @@ double Encounter::meeting(double time) const {
     return collision::find_impact(a_, motion_a_, b_, motion_b_, reach, kDepth * thinner, kAhead * time);
 }
 
-// Levers stay as they are then, when they matter.
-void Encounter::bring_to_present(double then, Pair& pair) const {
-    const Way way_a(motion_a_, then), way_b(motion_b_, then);
-    const Vec3 n = pair.manifold.normal.cast<double>();
-    const Vec3 between = motion_b_.centre + way_b.dx - motion_a_.centre - way_a.dx;  // then
+void Encounter::bring_to_present(Pair& pair) const {
+    const Movement a = {motion_a_.centre, motion_a_.velocity, motion_a_.spin},
+                   b = {motion_b_.centre, motion_b_.velocity, motion_b_.spin};
     for (int k = 0; k < pair.manifold.count; ++k) {
-        collision::ContactPoint& point = pair.manifold.points[k];
-        const Vec3 lever_a = point.position.cast<double>() - way_a.turn * arm_a_, lever_b = lever_a - between;
-        point.position = (arm_a_ + lever_a).cast<float>();
-        point.separation -= static_cast<float>(n.dot(way_b.moved(lever_b) - way_a.moved(lever_a)));
+        float& separation = pair.manifold.points[k].separation;
+        const Levers levers = levers_of(pair, k, static_cast<double>(separation), arm_a_, a, b);
+        separation -= static_cast<float>(growth_of(pair, levers, a, b));
     }
-    pair.apart = (way_a.dx - way_b.dx).cast<float>();
 }
 
 }  // namespace taut

@@ -7,6 +7,7 @@
 
 #include "collision/collide.h"
 #include "state/colliders.h"
+#include "state/joints.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
 
@@ -20,6 +21,13 @@ Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shap
 // Whether two colliders move further against each other in time [s] than they are thick.
 bool fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time);
 
+// After the solve: contacts are found once a frame, and what they turn or turn aside may pass a wall in the rest of it.
+// Of the fast pairs, the way of the smaller one's core (half the ball inside) against the other ends where it meets it;
+// what is too much is taken back by shares of inverse mass. Velocities stay: the next frame finds the contact. Nodes
+// that joints hold are not moved.
+void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, const Pairs& pairs,
+               Nodes& nodes);
+
 // Two colliders under way.
 class Encounter {
 public:
@@ -30,8 +38,8 @@ public:
     double meeting(double time) const;
     collision::Placement a_after(double time) const { return motion_a_.after(time); }
     collision::Placement b_after(double time) const { return motion_b_.after(time); }
-    // A pair's points from the moment `then` [s] to the present: separations, Pair::apart, and positions at side a.
-    void bring_to_present(double then, Pair& pair) const;
+    // Separations of a manifold found at the moment Pair::then as they are now; its positions stay as they are then.
+    void bring_to_present(Pair& pair) const;
 
 private:
     const collision::Shape &a_, &b_;

@@ -64,6 +64,21 @@ void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const
     set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
 }
 
+// Contacts, found once a frame, turn their levers and masses with bodies that turned by more than this since they last
+// did [rad]. With levers of the frame's beginning and masses of now thin bodies gain energy without bound.
+constexpr double kTurn = 0.05;
+
+void note_turn(System& system, uint32_t node, const Quat& q) {
+    System::Found& found = system.found[node + 1];
+    const Quat turn = q * found.q.conjugate();
+    system.turned[node + 1] = turn.vec().norm() > 0.5 * kTurn;
+    if (!system.turned[node + 1]) return;
+    system.turn[node + 1] = turn;
+    found.q = q;
+    std::fill_n(system.shift[node + 1].dq, 3, 0.0f);
+    system.shift[node + 1].dq[3] = 1;
+}
+
 constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
 
 template <class Act>
@@ -88,6 +103,8 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
     system.shift.assign(slots + 1, SweepShift{});
+    system.turned.assign(slots + 1, 0);
+    system.turn.resize(slots + 1);
     system.in_block.assign(slots + 1, 0);
     system.place.assign(slots + 1, kNone);
     system.kinematic.clear();
@@ -121,9 +138,11 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
         if (nodes.info[node].kind == NodeKind::dynamic) {
             pose.R = m.q.toRotationMatrix();
             const Mat3& R = pose.R;
+            note_turn(system, node, m.q);
             if (!mass.isotropic) {
                 u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia.matrix(), h, system.in_block[node + 1] != 0);
-                set_inverse_mass(system.inverse_mass[node + 1], mass, R);
+                if (system.turned[node + 1] || system.in_block[node + 1])
+                    set_inverse_mass(system.inverse_mass[node + 1], mass, R);
             }
             if (load.torque != Vec3::Zero())
                 u.w += h * (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));

@@ -276,10 +276,10 @@ void sweep_relaxed(Substep& s) {
                                               s.system.inverse_mass.data(), soft);
         });
     }
-    if (s.last && lanes.bounces)
+    if (lanes.bounces)
         for_colours(s, [&](uint32_t begin, uint32_t end) {
             s.settings.kernels->restitute(lanes.view(), begin, end, s.system.velocity.data(),
-                                          s.system.inverse_mass.data(), kBounceSpeed);
+                                          s.system.inverse_mass.data(), kBounceSpeed, s.last);
         });
     store_forces(s, swept);
     publish(s);

@@ -29,9 +29,11 @@ struct Pair {
     uint32_t part = 0;                // of a surface, see collision::PartManifold; else 0
     collision::PairCache cache;
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
-    Vec3f apart = Vec3f::Zero();   // of two that meet later in the frame: points on b against those on a [m]; impact.h
-    Impulse impulse[4];            // by point: carried in, updated by the solver
-    float friction = 0;            // of the two surfaces together
+    float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
+    float round_a = 0,
+          round_b = 0;   // radii of the balls that grow the two cores to their shapes [m]; see state/levers.h
+    Impulse impulse[4];  // by point: carried in, updated by the solver
+    float friction = 0;  // of the two surfaces together
     float restitution = 0;
     float spinning = 0, rolling = 0;  // arms of the friction torques [m]
     Impulse turning;                  // of these torques [N m s]; slip: of rolling [rad^2/(kg m^2)]
@@ -96,6 +98,7 @@ struct Reach {
 struct Pace {
     double thickness = 0;  // [m]; infinite: not to be looked for
     double turning = 0;    // way of its furthest point about the centre of mass [m]
+    float round = 0;       // collision::ball_radius() [m]
 };
 
 struct Pairs {
@@ -109,6 +112,7 @@ struct Pairs {
           joined(memory),
           reach(memory),
           pace(memory),
+          fast(memory),
           placement(memory),
           parts(memory) {}
 
@@ -125,6 +129,7 @@ struct Pairs {
     uint64_t joined_version = 0;            // of the joints that they were taken from
     Array<Reach> reach;                     // by collider; update_bounds()
     Array<Pace> pace;                       // by collider; update_bounds()
+    Array<uint64_t> fast;                   // keys of pairs to look after once they moved; find_contacts()
     Array<collision::Placement> placement;  // by collider; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };

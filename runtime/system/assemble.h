@@ -24,6 +24,8 @@ void store_contact_rows(const System& system);
 // Once a frame and group: contacts by colour into lanes, with effective masses.
 void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels);
+// Once a substep: levers and effective masses of contacts on bodies that turned.
+void turn_lanes(Team& team, System& system, const ContactKernels& kernels);
 void store_lanes(Team& team, const System& system, Pairs& pairs);
 
 }  // namespace taut

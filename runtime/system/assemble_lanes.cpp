@@ -1,5 +1,6 @@
 #include <span>
 
+#include "state/levers.h"
 #include "system/assemble.h"
 
 namespace taut {
@@ -10,13 +11,13 @@ void clear_lane(LanePoint& p, int lane) {
     p.gap0[lane] = p.gap[lane] = p.normal_mass[lane] = p.peak[lane] = p.restitution[lane] = 0;
 }
 
-void fill_lane(LanePoint& p, int lane, const collision::ContactPoint& point, const Vec3f& com_a, const Vec3f& com_b,
-               const Impulse& impulse, float restitution) {
+void fill_lane(LanePoint& p, int lane, const Levers& levers, float separation, const Impulse& impulse,
+               float restitution) {
     for (int i = 0; i < 3; ++i) {
-        p.ra[i][lane] = point.position[i] - com_a[i];
-        p.rb[i][lane] = point.position[i] - com_b[i];
+        p.ra[i][lane] = static_cast<float>(levers.a[i]);
+        p.rb[i][lane] = static_cast<float>(levers.b[i]);
     }
-    p.gap0[lane] = p.gap[lane] = point.separation;
+    p.gap0[lane] = p.gap[lane] = separation;
     p.normal_mass[lane] = 1;  // in use; the kernel puts the mass here
     p.impulse[0][lane] = impulse.normal;
     p.impulse[1][lane] = impulse.tangent1;
@@ -46,22 +47,29 @@ void fill_rolling(LaneRolling& rolling, int lane, const Pair* pair) {
     rolling.impulse[2][lane] = turns ? pair->turning.tangent2 : 0;
 }
 
+Movement movement_of(const Nodes& nodes, uint32_t node) {
+    const NodeMotion& m = nodes.motion[node];
+    return {m.x, m.v, m.w};
+}
+
 // One pair into one lane of a group; its points into the group's first points.
 void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.a[lane] = pair.a + 1;
     g.b[lane] = pair.b + 1;
     g.friction[lane] = pair.friction;
+    g.turns[lane] = 0;
+    g.round[0][lane] = pair.round_a;
+    g.round[1][lane] = pair.round_b;
     for (int i = 0; i < 3; ++i) {
         g.normal[i][lane] = n[i];
         g.tangent[i][lane] = t1[i];
     }
-    const Vec3 origin = nodes.origin(pair.a);  // points are relative to it
-    const Vec3f com_a = (nodes.motion[pair.a].x - origin).cast<float>();
-    const Vec3f com_b = (nodes.motion[pair.b].x - origin).cast<float>() - pair.apart;
+    const Movement a = movement_of(nodes, pair.a), b = movement_of(nodes, pair.b);
+    const Vec3 arm_a = a.x - nodes.origin(pair.a);
     for (int k = 0; k < pair.manifold.count; ++k)
-        fill_lane(lanes.point[g.first_point + static_cast<uint32_t>(k)], lane, pair.manifold.points[k], com_a, com_b,
-                  pair.impulse[k], pair.restitution);
+        fill_lane(lanes.point[g.first_point + static_cast<uint32_t>(k)], lane, levers_of(pair, k, arm_a, a, b),
+                  pair.manifold.points[k].separation, pair.impulse[k], pair.restitution);
 }
 
 // The pairs that add_group chose, into their lanes.
@@ -74,7 +82,7 @@ void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nod
             filled = static_cast<uint32_t>(pair.manifold.count);
         } else {
             g.a[lane] = g.b[lane] = 0;
-            g.friction[lane] = 0;
+            g.friction[lane] = g.turns[lane] = g.round[0][lane] = g.round[1][lane] = 0;
             for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
         }
         for (uint32_t k = filled; k < g.points; ++k) clear_lane(lanes.point[g.first_point + k], lane);
@@ -90,7 +98,7 @@ void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, u
     g.first_point = static_cast<uint32_t>(lanes.point.size());
     g.points = pairs.active[items[0]].points;
     lanes.point.resize(lanes.point.size() + g.points);
-    bool driven = false, turns = false;
+    bool driven = false, turns = false, round = false;
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
         g.pair[lane] = lane < count ? pairs.active[items[lane]].pair : kNone;
         if (lane >= count) continue;
@@ -98,7 +106,9 @@ void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, u
         lanes.bounces = lanes.bounces || pair.restitution > 0;
         driven = driven || pair.driven;
         turns = turns || pair.turns();
+        round = round || pair.round_a > 0 || pair.round_b > 0;
     }
+    g.is_round = round;
     if (driven) {
         g.first_drive = static_cast<uint32_t>(lanes.drive.size());
         lanes.drive.resize(lanes.drive.size() + g.points);
@@ -146,6 +156,64 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t g = begin; g < end; ++g) fill_group(lanes, lanes.group[g], pairs, nodes);
         kernels.prepare(lanes.view(), begin, end, system.velocity.data(), system.inverse_mass.data());
+    });
+}
+
+namespace {
+
+// One side's levers with its body: what turns is the core; the gap since detection goes on from the new lever.
+void turn_side(const Quat& turn, const Vec3f& skin, float (&r)[3][kLanes], int lane, const Vec3f& normal, float sign,
+               LanePoint& p) {
+    const Vec3f core = Vec3f(r[0][lane], r[1][lane], r[2][lane]) - skin;
+    const Vec3f turned = turn.cast<float>() * core;
+    for (int i = 0; i < 3; ++i) r[i][lane] = turned[i] + skin[i];
+    p.gap0[lane] += sign * normal.dot(turned - core);
+}
+
+// What was hit already keeps the approach speed that it had.
+void renew_masses(ContactLanes& lanes, uint32_t group, const System& system, const ContactKernels& kernels) {
+    const LaneGroup& g = lanes.group[group];
+    float approach[4][kLanes];
+    for (uint32_t k = 0; k < g.points; ++k) {
+        LanePoint& p = lanes.point[g.first_point + k];
+        for (int lane = 0; lane < kLanes; ++lane) {
+            approach[k][lane] = p.approach[lane];
+            p.normal_mass[lane] = p.normal_mass[lane] > 0 ? 1 : 0;  // in use
+        }
+    }
+    kernels.prepare(lanes.view(), group, group + 1, system.velocity.data(), system.inverse_mass.data());
+    for (uint32_t k = 0; k < g.points; ++k) {
+        LanePoint& p = lanes.point[g.first_point + k];
+        for (int lane = 0; lane < kLanes; ++lane)
+            if (p.peak[lane] > 0) p.approach[lane] = approach[k][lane];
+    }
+}
+
+bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system) {
+    bool any = false;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const uint32_t a = g.a[lane], b = g.b[lane];
+        if (!system.turned[a] && !system.turned[b]) continue;
+        any = true;
+        g.turns[lane] = 1;
+        g.any_turns = 1;
+        const Vec3f n(g.normal[0][lane], g.normal[1][lane], g.normal[2][lane]);
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LanePoint& p = lanes.point[g.first_point + k];
+            if (system.turned[a]) turn_side(system.turn[a], g.round[0][lane] * n, p.ra, lane, n, -1, p);
+            if (system.turned[b]) turn_side(system.turn[b], -g.round[1][lane] * n, p.rb, lane, n, 1, p);
+        }
+    }
+    return any;
+}
+
+}  // namespace
+
+void turn_lanes(Team& team, System& system, const ContactKernels& kernels) {
+    ContactLanes& lanes = system.contacts;
+    team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t g = begin; g < end; ++g)
+            if (turn_group(lanes, lanes.group[g], system)) renew_masses(lanes, g, system, kernels);
     });
 }
 

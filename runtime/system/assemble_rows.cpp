@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "state/levers.h"
 #include "system/assemble.h"
 #include "system/row_algebra.h"
 #include "system/soft_contact.h"
@@ -56,11 +57,16 @@ Mat3 basis_of(const Pair& pair) {
 ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
     const Pose& a = system.pose[pair.a + 1];
     const Pose& b = system.pose[pair.b + 1];
-    const Vec3 at = position_of(system, nodes, pair, k), apart = pair.apart.cast<double>();
+    const NodeMotion &ma = nodes.motion[pair.a], &mb = nodes.motion[pair.b];
+    const Levers levers = levers_of(pair, k, a.R * nodes.mass[pair.a].centre, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w});
+    const Levers cores = cores_of(pair, levers);
     ContactData data;
-    data.anchor_a = a.R.transpose() * (at - a.x);
-    data.anchor_b = b.R.transpose() * (at + apart - b.x);
+    data.anchor_a = a.R.transpose() * cores.a;
+    data.anchor_b = b.R.transpose() * cores.b;
+    data.skin_a = levers.a - cores.a;
+    data.skin_b = levers.b - cores.b;
     data.basis = basis_of(pair);
+    const Vec3 apart = b.x + levers.b - a.x - levers.a;  // of the point on b against that on a
     data.offset = Vec3(pair.manifold.points[k].separation, 0, 0) - data.basis * apart;
     return data;
 }

@@ -86,7 +86,7 @@ struct Rows {
 };
 
 struct System {
-    struct Found {  // pose at which contacts were found
+    struct Found {  // place at which contacts were found, rotation that their levers belong to
         Vec3 x = Vec3::Zero();
         Quat q = Quat::Identity();
     };
@@ -100,6 +100,8 @@ struct System {
           start(memory),
           inertia(memory),
           found(memory),
+          turned(memory),
+          turn(memory),
           kinematic(memory),
           in_block(memory),
           place(memory),
@@ -120,7 +122,9 @@ struct System {
     Array<Velocity> correction;     // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
     Array<Velocity> start;          // v before forces, for energy balances; predict()
     Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
-    Array<Found> found;             // begin_frame()
+    Array<Found> found;             // begin_frame(), predict()
+    Array<uint8_t> turned;          // 1: so far that levers turn in this substep; predict()
+    Array<Quat> turn;               // of those that turned: from their levers' old rotation to the new one; predict()
     Array<uint32_t> kinematic;      // nodes; begin_frame()
     Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; build_rows()
     Array<uint32_t> place;          // in the nodes of its block, or kNone; build_rows()

@@ -115,7 +115,7 @@ struct Data {
         for (int i = 0; i < 4; ++i)
             kernels.sweep_biased(view, 0, kGroups, velocity.data(), mass.data(), shift.data(), terms);
         for (int i = 0; i < 2; ++i) kernels.sweep_relaxed(view, 0, kGroups, velocity.data(), mass.data(), terms);
-        kernels.restitute(view, 0, kGroups, velocity.data(), mass.data(), 1.0f);
+        kernels.restitute(view, 0, kGroups, velocity.data(), mass.data(), 1.0f, true);
     }
 };
 
