@@ -118,6 +118,7 @@ double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, co
 
 double find_impact(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                    double depth, double horizon) {
+    if (!is_convex(a) && !is_convex(b)) return kNever;  // planes and surfaces do not meet one another
     if (!is_convex(a)) return find_impact(b, motion_b, a, motion_a, reach, depth, horizon);
     const double met = kMeetings[size_t(b.kind)](a, motion_a, b, motion_b, reach, horizon);
     if (met == 0) return 0;

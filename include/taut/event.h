@@ -91,7 +91,8 @@ typedef struct taut_sleep_event {
 
 /**
  * The events of the last step. Contacts and hits are sorted by collider_a and then collider_b, those of sensors by
- * sensor and then visitor, all in the order of their slots: that of creation as long as none is removed.
+ * sensor and then visitor, all in the order of their slots: that of creation as long as none is removed. Read ends
+ * before beginnings, and leaves before enters: where a call changed a collider, both may come in one step.
  */
 typedef struct taut_events {
     const taut_contact_event* begin;

@@ -43,7 +43,8 @@ typedef struct taut_lint_entry {
 /**
  * Looks at joints, masses, contacts and forces as they are now; contacts and forces are those of the last step.
  * Entries come in the order of their kinds, within a kind in that of slots. Changes nothing. Takes memory of the world
- * while it runs, and time that grows with the square of a looped mechanism's rows.
+ * while it runs, and time that grows with the cube of a looped mechanism's rows, seconds for a thousand; of more than
+ * 1200 it does not look for redundant ones.
  * @param entries null if capacity is 0.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED,
  *         TAUT_OUT_OF_MEMORY. Thread safety: one thread at a time per world, not inside a step.

@@ -22,6 +22,6 @@ TEST_P(RandomHost, BreaksNothing) {
     EXPECT_GT(driver.refused, 300u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomHost, testing::Range<uint64_t>(1, 21));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomHost, testing::Range<uint64_t>(1, 41));
 
 }  // namespace

@@ -1,5 +1,7 @@
 // libFuzzer's entry: its bytes are the decisions of the random host.
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 #include "../driver.h"
 

@@ -1,0 +1,175 @@
+// Calls of world.h, event.h, pre_solve.h, profile.h and lint.h.
+#pragma once
+
+#include "event_watch.h"
+
+namespace taut_test {
+
+class WorldCalls : protected virtual Host {
+protected:
+    void create(size_t w) {
+        taut_world_def def;
+        taut_world_def_init(&def);
+        def.solver = static_cast<taut_solver>(byte() % 3);
+        def.substeps = 1 + byte() % 4;
+        def.fixed_substeps = byte() & 1;
+        def.sweeps = 1 + byte() % 4;
+        def.sleeping = byte() & 1;
+        def.sleep_time = 0.05f;
+        def.continuous = byte() & 1;
+        taut_world out = {0};
+        call_ = "taut_world_create";
+        if (taut_world_create(&def, &out) != TAUT_OK) expect(false, taut_last_error());
+        worlds_[w] = out;
+        watch_[w] = {};
+    }
+
+    void replace_world() {
+        if (!one_in(32)) return;
+        const size_t w = pick_world();
+        run("taut_world_destroy", [&] { return taut_world_destroy(worlds_[w]); });
+        expect(!taut_world_is_valid(worlds_[w]), "a destroyed world that lives");
+        create(w);
+    }
+
+    void write_world() {
+        const size_t w = pick_world();
+        const taut_world world = worlds_[w];
+        const taut_vec3 gravity = vec(20);
+        run("taut_world_set_gravity", [&] { return taut_world_set_gravity(world, gravity); });
+        // World 0 always tells of beginnings and ends, so that its books can be kept.
+        const uint32_t asked = byte() % (one_in(16) ? 32 : 16) | (w == 0 ? TAUT_CONTACT_EVENTS_BEGIN_END : 0);
+        run("taut_world_set_contact_events", [&] { return taut_world_set_contact_events(world, asked); });
+        const float speed = real(0, 10);
+        run("taut_world_set_hit_speed", [&] { return taut_world_set_hit_speed(world, speed); });
+        const taut_pre_solve_fn filter = one_in(2) ? judge : nullptr;
+        run("taut_world_set_pre_solve", [&] { return taut_world_set_pre_solve(world, filter, this); });
+    }
+
+    void step() {
+        const size_t w = pick_world();
+        run("taut_world_step", [&] { return taut_world_step(worlds_[w]); });
+        expect_all_finite();
+        watch_step(w);
+    }
+
+    void advance() {
+        const size_t w = pick_world();
+        const double seconds = number(0, one_in(8) ? 0.05 : 1.0 / 60);
+        taut_advance out;
+        if (!run("taut_world_advance", [&] { return taut_world_advance(worlds_[w], seconds, &out); })) return;
+        expect(out.fraction >= 0 && out.fraction < 1, "a fraction that is none");
+        expect(out.steps <= 4 && out.dropped >= 0, "steps beyond the limit");
+        expect_all_finite();
+        if (out.steps == 1) watch_step(w);
+        if (out.steps > 1) watch_[w].miss(bodies_of(w));
+    }
+
+    void read_events() {
+        const taut_world world = worlds_[pick_world()];
+        taut_events events;
+        if (!ask("taut_world_get_events", [&] { return taut_world_get_events(world, &events); })) return;
+        for (uint32_t i = 0; i < events.moved_count; ++i) expect_finite(events.moved[i].pose);
+        for (uint32_t i = 0; i < events.broken_count; ++i)
+            expect(!taut_joint_is_valid(events.broken[i].joint), "a broken joint that lives");
+        for (uint32_t i = 0; i < events.point_count; ++i) {
+            const taut_contact_point& point = events.points[i];
+            expect(finite(point.position) && std::isfinite(point.approach_speed), "a point that is not finite");
+            expect(point.normal_impulse >= 0 && point.friction_impulse >= 0, "impulses that are none");
+        }
+        for (uint32_t i = 0; i < events.hit_count; ++i)
+            expect(finite(events.hit[i].position) && events.hit[i].approach_speed > 0, "a hit that is none");
+    }
+
+    void read_world() {
+        const taut_world world = worlds_[pick_world()];
+        std::vector<taut_contact> contacts(byte());
+        uint32_t count = 0;
+        if (ask("taut_world_get_contacts", [&] {
+                return taut_world_get_contacts(world, contacts.data(), static_cast<uint32_t>(contacts.size()), &count);
+            })) {
+            for (uint32_t i = 0; i < count; ++i) {
+                expect(taut_body_is_valid(contacts[i].body_a) && taut_body_is_valid(contacts[i].body_b),
+                       "a contact of a dead body");
+                expect(finite(contacts[i].position) && finite(contacts[i].normal), "a contact that is not finite");
+            }
+        }
+        taut_profile profile;
+        profile.struct_size = sizeof profile;
+        spoil(profile.struct_size);
+        ask("taut_world_get_profile", [&] { return taut_world_get_profile(world, &profile); });
+        taut_world_def def;
+        if (ask("taut_world_get_def", [&] { return taut_world_get_def(world, &def); }))
+            expect(def.struct_size == sizeof def, "a def that is none");
+    }
+
+    void read_lint() {
+        std::vector<taut_lint_entry> entries(byte());
+        uint32_t count = 0;
+        if (!ask("taut_world_lint", [&] {
+                return taut_world_lint(worlds_[pick_world()], entries.data(), static_cast<uint32_t>(entries.size()),
+                                       &count);
+            }))
+            return;
+        for (uint32_t i = 0; i < count; ++i) {
+            expect(entries[i].body.bits == 0 || taut_body_is_valid(entries[i].body), "lint of a dead body");
+            expect(entries[i].joint.bits == 0 || taut_joint_is_valid(entries[i].joint), "lint of a dead joint");
+            expect(std::strcmp(taut_lint_text(entries[i].kind), "unknown") != 0, "lint of no kind");
+        }
+    }
+
+    // The counts of a world are those of the handles that live.
+    void check_counts() {
+        call_ = "taut_world_get_counts";
+        for (size_t w = 0; w < 2; ++w) {
+            uint32_t bodies, shapes, joints;
+            taut_world_get_counts(worlds_[w], &bodies, &shapes, &joints);
+            expect(bodies == live(bodies_, taut_body_is_valid, w) + count_cable_bodies(w),
+                   "bodies that are not counted");
+            // Cables bring shapes and joints of their own.
+            const bool alone = live(cables_, taut_cable_is_valid, w) == 0;
+            const size_t shapes_known = live(shapes_, taut_shape_is_valid, w);
+            expect(alone ? shapes == shapes_known : shapes >= shapes_known, "shapes that are not counted");
+            const size_t joints_known = live(joints_, taut_joint_is_valid, w);
+            expect(alone ? joints == joints_known : joints >= joints_known, "joints that are not counted");
+        }
+    }
+
+private:
+    // A host's filter that answers anything and calls into the world that is stepping.
+    static int32_t judge(const taut_pre_solve* contact, taut_pre_solve_answer* answer, void* self) {
+        WorldCalls& host = *static_cast<WorldCalls*>(self);
+        host.expect(contact->point_count >= 1 && contact->point_count <= 4, "a contact without points");
+        host.expect(finite(contact->normal), "a normal that is not finite");
+        if (host.one_in(8)) {
+            taut_pose at;
+            const taut_vec3 push = {1, 2, 3};
+            host.expect(taut_body_get_pose(contact->body_a, &at) == TAUT_LOCKED, "a read within the step");
+            host.expect(taut_body_apply_impulse(contact->body_b, push, push) == TAUT_LOCKED, "a push within the step");
+            host.expect(taut_collider_remove(contact->collider_a) == TAUT_LOCKED, "a removal within the step");
+        }
+        *answer = {host.real(0, 2), host.real(0, 1)};
+        return host.byte() % (host.one_in(16) ? 3 : 2);
+    }
+
+    std::vector<taut_body> bodies_of(size_t w) const {
+        std::vector<taut_body> out;
+        for (const auto* known : {&bodies_, &cable_bodies_})
+            for (const Known<taut_body>& body : *known)
+                if (body.world == w) out.push_back(body.handle);
+        return out;
+    }
+    void watch_step(size_t w) {
+        taut_events events;
+        if (taut_world_get_events(worlds_[w], &events) != TAUT_OK) return expect(false, "no events");
+        std::vector<taut_collider> colliders;
+        for (const Known<taut_collider>& known : colliders_)
+            if (known.world == w) colliders.push_back(known.handle);
+        watch_[w].check(events, bodies_of(w), colliders, w == 0,
+                        [this](bool condition, const char* what) { expect(condition, what); });
+    }
+
+    EventWatch watch_[2];
+};
+
+}  // namespace taut_test

@@ -1,0 +1,108 @@
+// Half an hour in which things come and go and are asked for: nothing bursts, falls through, leaks or slows down.
+#include <ctime>
+
+#include <cstdio>
+#include <thread>
+
+#include "soak/allocation_counter.h"
+#include "soak/playground.h"
+
+namespace {
+
+using namespace lab;
+
+#if defined(NDEBUG)
+constexpr bool kTimed = true;
+#else
+constexpr bool kTimed = false;  // checked and sanitized builds are slow by design
+#endif
+constexpr double kBudget = 1000.0 / 60;  // of a frame [ms]
+
+// Of this thread: what others do to the machine must not fail a soak.
+double processor_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+struct Record {
+    std::vector<double> ms;
+    uint64_t warm_bytes = 0, end_bytes = 0, takes = 0;  // takes: steps that took memory from the world's allocator
+    double joint_error = 0;                             // [m]
+    size_t fallen = 0;
+    uint64_t found_beside = 0;  // by queries of a second thread
+};
+
+void step(soak::Playground& ground, Record& record, bool warm) {
+    const double start = processor_ms();
+    ok(taut_world_step(ground.handle()));
+    record.ms.push_back(processor_ms() - start);
+    taut_profile profile{};
+    profile.struct_size = sizeof profile;
+    ok(taut_world_get_profile(ground.handle(), &profile));
+    if (warm) record.takes += profile.allocations > 0;
+    record.joint_error = std::max(record.joint_error, static_cast<double>(profile.joint_error));
+    ground.take_events();
+}
+
+Record run(soak::Playground& ground, int frames) {
+    Record record;
+    const int warm_up = frames / 2;
+    for (int frame = 0; frame < frames; ++frame) {
+        if (frame % 3 == 0) ground.change();
+        if (frame == warm_up) record.warm_bytes = ground.live_bytes();
+        step(ground, record, frame >= warm_up);
+        if (frame % 16 == 0) {
+            std::thread beside([&] { record.found_beside += ground.search(static_cast<uint64_t>(frame)); });
+            ground.queries();
+            beside.join();
+        } else {
+            ground.queries();
+        }
+        if (frame % 60 == 59) {
+            EXPECT_TRUE(ground.sound()) << "frame " << frame;
+            record.fallen += ground.below_terrain();
+        }
+        if (testing::Test::HasFailure()) break;
+    }
+    record.end_bytes = ground.live_bytes();
+    return record;
+}
+
+void soak_for(int frames) {
+    soak::Playground ground(11);
+    Record record = run(ground, frames);
+    std::sort(record.ms.begin(), record.ms.end());
+    const size_t n = record.ms.size();
+    const double median = record.ms[n / 2], p99 = record.ms[n * 99 / 100], worst = record.ms.back();
+    const auto& tally = ground.tally;
+    std::printf(
+        "playground: %zu frames, %zu bodies, %llu made, %llu removed, step median %.2f ms, p99 %.2f ms, worst %.2f ms, "
+        "memory %.2f MiB after warm-up, %.2f MiB at the end, %llu steps that took memory after it, worst joint error "
+        "%.1f mm, %llu touches, %llu visits, fell asleep %llu times, queries found %llu and %llu beside\n",
+        n, ground.population(), static_cast<unsigned long long>(tally.made),
+        static_cast<unsigned long long>(tally.removed), median, p99, worst,
+        static_cast<double>(record.warm_bytes) / (1 << 20), static_cast<double>(record.end_bytes) / (1 << 20),
+        static_cast<unsigned long long>(record.takes), 1e3 * record.joint_error,
+        static_cast<unsigned long long>(tally.begun), static_cast<unsigned long long>(tally.entered),
+        static_cast<unsigned long long>(tally.slept), static_cast<unsigned long long>(tally.found),
+        static_cast<unsigned long long>(record.found_beside));
+    EXPECT_EQ(tally.quarantined, 0u);
+    EXPECT_EQ(record.fallen, 0u);
+    EXPECT_LE(record.joint_error, 0.05);
+    EXPECT_LE(record.end_bytes, record.warm_bytes + record.warm_bytes / 4);
+    EXPECT_LE(record.takes, n / 10);
+    EXPECT_GT(tally.found, 0u);
+    EXPECT_GT(record.found_beside, 0u);
+    EXPECT_GT(tally.entered, 0u);
+    EXPECT_LE(tally.left, tally.entered);
+    if (kTimed) {
+        EXPECT_LT(p99, kBudget);
+        EXPECT_LT(worst, std::max(kBudget, 20 * median));
+    }
+}
+
+TEST(PlaygroundShort, HoldsForTenSeconds) { soak_for(600); }
+TEST(Playground, HoldsForHalfAnHour) { soak_for(108000); }
+
+}  // namespace
