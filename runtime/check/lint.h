@@ -11,6 +11,6 @@ namespace taut {
 Array<taut_lint_entry> lint(World& world);
 
 // Those about cables (lint_cables.cpp), at most one of a kind each, appended.
-void lint_cables(const World& world, Array<taut_lint_entry>& found);
+void lint_cables(World& world, Array<taut_lint_entry>& found);
 
 }  // namespace taut

@@ -26,7 +26,7 @@ double bend_at_point(const World& world, const Cable& cable, uint32_t point) {
 
 class CableLint {
 public:
-    CableLint(const World& world, Array<taut_lint_entry>& found)
+    CableLint(World& world, Array<taut_lint_entry>& found)
         : world_(world), found_(found), on_round_(world.nodes.slots(), uint8_t{0}, world.memory) {}
 
     void run() {
@@ -95,6 +95,6 @@ private:
 
 }  // namespace
 
-void lint_cables(const World& world, Array<taut_lint_entry>& found) { CableLint(world, found).run(); }
+void lint_cables(World& world, Array<taut_lint_entry>& found) { CableLint(world, found).run(); }
 
 }  // namespace taut
