@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRadius = 0.5, kHalfLength = 0.45, kHeight = 5.5;  // of the drums [m]
 constexpr double kDiameter = 0.05;                                  // of the cables [m]
-constexpr int kChords = 12;                                         // in half a turn
+constexpr int kChords = 8;                                          // in half a turn
 
 // Its axis along z.
 Body drum(Scene& scene, double x, double friction) {
@@ -88,7 +88,9 @@ void reel_over_fixed_drum(Scene& scene, double x) {
     Body fixed = drum(scene, x, kFriction);
     fixed.kind = TAUT_BODY_STATIC;
     scene.add_body(fixed);
-    const auto path = path_over(x, 3, 5, 2.2);
+    const auto path = path_over(x, 3, 2.4, 2.2);
+    const taut_pos foot = path.front();
+    scene.decorations.push_back({{foot.x, foot.y / 2, foot.z}, {0.12f, static_cast<float>(foot.y / 2), 0.12f}});
     const int load = hang(scene, path.back(), kLoad, 0.7, Look::steel);
     Cable cable = cable_over(scene, TAUT_CABLE_PARTICLES, path, kWorld, load, kFriction);
     double length_of_path = 0;
@@ -96,7 +98,7 @@ void reel_over_fixed_drum(Scene& scene, double x) {
     cable.def.mass_per_metre = static_cast<float>(0.01 * kLoad / length_of_path);
     scene.roles.load = load;
     const int index = scene.add_cable(cable);
-    scene.motions.push_back({-1, -1, 0, {}, {{{1, 0, 0}, {6, kOut, 0}, {7, kOut, 0}, {12, 0, 0}}, {}}, index});
+    scene.motions.push_back({-1, -1, 0, {}, {{{1, 0, 0}, {6, kOut, 0}, {8, kOut, 0}, {13, 0, 0}}, {}}, index});
 }
 
 }  // namespace
@@ -110,7 +112,7 @@ Scene build_cable_drum(double, double, const Options& options) {
     reel_over_fixed_drum(scene, kApart);
     scene.forces = ForceScale{2, 5};
     perturb(scene, options.seed);
-    scene.camera = {{2.2, 4.6, 12.5}, {0, 3.4, 0}, 38};
+    scene.camera = {{2.2, 4.8, 13.5}, {0, 3.9, 0}, 38};
     scene.stage = {{-5, 0, -3}, {5, 7, 3}};
     return scene;
 }

@@ -69,7 +69,7 @@ const std::vector<Family>& families() {
         {"swing_rR", "swing_r100", "ten 1 kg links and R kg swing freely from 30 degrees", 1800, false, build_swing, 0},
         {"crane", "crane", "a derrick lifts 5 t on 10 m and 500 kg of cable that it hauls in", 1200, false, build_crane,
          0},
-        {"cable_drum", "cable_drum", "cables over a fixed drum, on a driven one and wound up by a winch", 900, false,
+        {"cable_drum", "cable_drum", "cables over a fixed drum, a driven one, and reeled round a third", 900, false,
          build_cable_drum, 0},
         {"bridge", "bridge", "a truck of 8 t drives over a suspension bridge", 720, false, build_bridge, 0},
         {"bridge_breaking", "bridge_breaking", "the same truck on a bridge that is too weak", 720, false,
