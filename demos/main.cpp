@@ -67,7 +67,7 @@ public:
         joint_error_ = world_.joint_error();
         worst_ = std::fmax(worst_, joint_error_);
     }
-    const SceneView& view() const { return view_; }
+    SceneView& view() { return view_; }
     double joint_error() const { return joint_error_; }
     nlohmann::ordered_json json() const {
         return {{"worst_joint_error_mm", 1e3 * worst_}, {"quarantined", world_.quarantined}};
@@ -131,10 +131,11 @@ private:
         renderer_->set_stage({stage.low - reach, stage.high + reach, stage.ground_height});
     }
 
-    void add_scene(const SceneView& view, bool tension, render::Vec3 offset) {
+    void add_scene(SceneView& view, bool tension, render::Vec3 offset) {
         const size_t first = list_.instances.size();
         view.add_bodies(list_, tension);
         view.add_joints(list_, tension);
+        view.add_cables(list_, tension);
         for (size_t i = first; i < list_.instances.size(); ++i)
             list_.instances[i].position = list_.instances[i].position + offset;
     }
@@ -157,12 +158,12 @@ private:
     void draw(uint32_t frame) {
         auto begin = Clock::now();
         list_.clear();
-        bool tension = options_.tension.value_or(!scene_.joints.empty());
+        bool tension = options_.tension.value_or(has_forces());
         add_scene(*view_, tension, aside_ * -1.0f);
         if (twin_) add_scene(twin_->view(), tension, aside_);
         if (options_.contacts && !twin_) view_->add_contacts(list_);
         if (options_.hud) add_figures(frame);
-        if (options_.hud && tension && !scene_.joints.empty())
+        if (options_.hud && tension && has_forces())
             add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
         if (options_.hud && twin_) add_captions();
         const render::Picture& picture = renderer_->draw(list_);
@@ -191,8 +192,9 @@ private:
         hud.budget_ms = 1000.0 / 60.0;
         hud.joint_error = joint_error_;
         hud.worst_joint_error = figures_.joint_error;
-        hud.has_joints = std::any_of(scene_.joints.begin(), scene_.joints.end(),
-                                     [](const scenes::Joint& joint) { return joint.compliance <= 0; });
+        hud.has_joints =
+            !scene_.cables.empty() || std::any_of(scene_.joints.begin(), scene_.joints.end(),
+                                                  [](const scenes::Joint& joint) { return joint.compliance <= 0; });
         hud.bodies = profile_.bodies;
         hud.joints = profile_.joints;
         hud.broken = world_.broken.size();
@@ -200,6 +202,8 @@ private:
         hud.points = profile_.points;
         add_hud(list_, hud);
     }
+
+    bool has_forces() const { return !scene_.joints.empty() || !scene_.cables.empty(); }
 
     std::string frame_path(uint32_t frame) const {
         char number[16];

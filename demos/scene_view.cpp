@@ -330,6 +330,26 @@ void SceneView::add_joints(render::DrawList& list, bool tension) const {
     }
 }
 
+// A tube a segment, round where they meet.
+void SceneView::add_cables(render::DrawList& list, bool tension) {
+    for (size_t i = 0; i < scene_.cables.size(); ++i) {
+        const taut_cable cable = world_.cables[i];
+        uint32_t count = 0;
+        taut_cable_get_points(cable, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+        points_.resize(count);
+        tensions_.resize(count);
+        scenes::check(taut_cable_get_points(cable, points_.data(), count, &count), "reading a cable's points");
+        scenes::check(taut_cable_get_tensions(cable, tensions_.data(), count, &count), "reading a cable's tensions");
+        const float radius = 0.5f * scene_.cables[i].def.diameter;
+        for (uint32_t segment = 0; segment < count; ++segment) {
+            const Colour colour = tension ? scale_.colour(std::fabs(tensions_[segment])) : kLinkGrey;
+            const Vec3 a = vec(points_[segment]), b = vec(points_[segment + 1]);
+            list.instances.push_back(rod(a, b, radius, colour));
+            list.instances.push_back(ball(b, radius, colour, 0.22f));
+        }
+    }
+}
+
 void SceneView::add_contacts(render::DrawList& list) {
     uint32_t count = 0;
     taut_result result =

@@ -31,6 +31,7 @@ public:
     render::Stage stage() const;
     void add_bodies(render::DrawList& list, bool tension) const;
     void add_joints(render::DrawList& list, bool tension) const;
+    void add_cables(render::DrawList& list, bool tension);
     void add_contacts(render::DrawList& list);
     const TensionScale& tension_scale() const { return scale_; }
 
@@ -45,6 +46,8 @@ private:
     TensionScale scale_;
     std::vector<uint32_t> meshes_;  // of each shape
     std::vector<taut_contact> contacts_;
+    std::vector<taut_pos> points_;  // of a cable
+    std::vector<float> tensions_;
 };
 
 }  // namespace demo

@@ -27,6 +27,7 @@ Scene build_cable(double n, double r, const Options& options);
 Scene build_falling_cable(double n, double r, const Options& options);
 
 Scene build_crane(double n, double r, const Options& options);
+Scene build_cable_drum(double n, double r, const Options& options);
 Scene build_bridge(double n, double r, const Options& options);
 Scene build_bridge_breaking(double n, double r, const Options& options);
 Scene build_hinges(double n, double r, const Options& options);

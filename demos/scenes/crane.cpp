@@ -1,4 +1,4 @@
-// A derrick: mast and boom on driven hinges, a cable of links, a load on the ground.
+// A derrick: mast and boom on driven hinges, a cable that is hauled in at the boom's tip, a load on the ground.
 #include "builders.h"
 #include "parts.h"
 #include "pose.h"
@@ -9,20 +9,12 @@ namespace {
 
 constexpr int32_t kMachineGroup = -1;
 
-// A motor that follows its plan however much hangs on it.
-taut_axis_def strong_motor() {
-    taut_axis_def axis = free_axis();
-    axis.drive.stiffness = 1e9f;
-    axis.drive.damping = 1e8f;
-    return axis;
-}
-
 }  // namespace
 
 Scene build_crane(double, double, const Options& options) {
     constexpr double kPivot = 3.2, kBoom = 12, kStart = degrees(38), kLuff = degrees(26), kSlew = -degrees(55);
     constexpr int kLinks = 20;
-    constexpr double kCable = 10, kCableMass = 500, kRadius = 0.06, kLoad = 5000, kHalf = 0.7;
+    constexpr double kCable = 10, kCableMass = 500, kDiameter = 0.12, kLoad = 5000, kHalf = 0.7, kHaul = 3;
     Scene scene = empty_scene();
     add_ground(scene);
 
@@ -38,24 +30,20 @@ Scene build_crane(double, double, const Options& options) {
     const int luffing_joint = scene.add_joint(luffing);
 
     // The cable hangs straight, the load stands below it.
-    int last = boom;
-    const double link = kCable / kLinks;
-    for (int i = 0; i < kLinks; ++i) {
-        const taut_pos top = plus(tip, 0, -i * link, 0);
-        const int body =
-            add_capsule(scene, top, plus(top, 0, -link, 0), kRadius, kCableMass / kLinks, Look::link, kMachineGroup);
-        scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, last, body, top));
-        last = body;
-    }
     const taut_pos hook = plus(tip, 0, -kCable, 0);
     const double height = hook.y / 2;  // of the load's half, up to the hook
     Body load = crate(box_shape(scene, kHalf, height, kHalf), {hook.x, height, 0}, kLoad, Look::steel);
     load.group = kMachineGroup;
     scene.roles.load = scene.add_body(load);
-    scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, last, scene.roles.load, hook));
+    Cable cable =
+        cable_along(scene, TAUT_CABLE_LINKS, {tip, hook}, boom, scene.roles.load, kDiameter, kCableMass / kCable);
+    cable.def.segment_count = kLinks;
+    cable.def.filter.group = kMachineGroup;
+    const int cable_index = scene.add_cable(cable);
 
     scene.motions.push_back({-1, luffing_joint, 0, {}, {{{0.5, 0, 0}, {9, kLuff, 0}}, {}}});
     scene.motions.push_back({-1, slewing_joint, 0, {}, {{{6, 0, 0}, {18.5, kSlew, 0}}, {}}});
+    scene.motions.push_back({-1, -1, 0, {}, {{{9.5, 0, 0}, {18, -kHaul, 0}}, {}}, cable_index});
     scene.forces = ForceScale{3, 5};
     perturb(scene, options.seed);
     scene.camera = {{-4, 8.5, 25.5}, {3.4, 6.9, 0}, 40};

@@ -113,9 +113,33 @@ Joint rod_at(const Scene& scene, int body_a, taut_pos point_a, int body_b, taut_
     return joint;
 }
 
+Cable cable_along(const Scene& scene, taut_cable_kind kind, std::vector<taut_pos> path, int body_0, int body_1,
+                  double diameter, double mass_per_metre) {
+    Cable cable;
+    taut_cable_def_init(&cable.def);
+    cable.def.kind = kind;
+    cable.def.diameter = static_cast<float>(diameter);
+    cable.def.mass_per_metre = static_cast<float>(mass_per_metre);
+    cable.end_body[0] = body_0;
+    cable.end_body[1] = body_1;
+    for (int e = 0; e < 2; ++e) {
+        cable.def.end[e].attached = 1;
+        cable.def.end[e].anchor = in_body(scene, cable.end_body[e], e == 0 ? path.front() : path.back());
+    }
+    cable.path = std::move(path);
+    return cable;
+}
+
 taut_axis_def free_axis() {
     taut_axis_def axis;
     taut_axis_def_init(&axis);
+    return axis;
+}
+
+taut_axis_def strong_motor() {
+    taut_axis_def axis = free_axis();
+    axis.drive.stiffness = 1e9f;
+    axis.drive.damping = 1e8f;
     return axis;
 }
 
@@ -212,6 +236,9 @@ void perturb(Scene& scene, uint64_t seed, ChainStart start) {
     std::vector<bool> jointed(scene.bodies.size(), false);
     for (const Joint& joint : scene.joints)
         for (int end : {joint.body_a, joint.body_b})
+            if (end != kWorld) jointed[static_cast<size_t>(end)] = true;
+    for (const Cable& cable : scene.cables)
+        for (int end : cable.end_body)
             if (end != kWorld) jointed[static_cast<size_t>(end)] = true;
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
         Body& body = scene.bodies[i];

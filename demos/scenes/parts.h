@@ -47,7 +47,12 @@ Joint joint_at(const Scene& scene, taut_joint_kind kind, int body_a, int body_b,
 // A rod of the length that the two world points are apart.
 Joint rod_at(const Scene& scene, int body_a, taut_pos point_a, int body_b, taut_pos point_b);
 
+// A cable along a path, its ends attached to two bodies as they lie now, or to the world.
+Cable cable_along(const Scene& scene, taut_cable_kind kind, std::vector<taut_pos> path, int body_0, int body_1,
+                  double diameter, double mass_per_metre);
+
 taut_axis_def free_axis();
+taut_axis_def strong_motor();  // follows its plan however much hangs on it
 taut_axis_def limited_axis(double lower, double upper);
 constexpr double degrees(double angle) { return angle * 0.017453292519943295; }
 

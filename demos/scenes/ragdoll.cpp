@@ -1,4 +1,4 @@
-// Ragdolls of twelve bodies and 75 kg: a heap of them, and one that holds on to a liana with both hands.
+// Ragdolls of twelve bodies and 75 kg: a heap of them, and one that hangs by both hands from a bar on a liana.
 #include "builders.h"
 #include "parts.h"
 #include "pose.h"
@@ -106,22 +106,21 @@ Scene build_ragdoll_liana(double, double, const Options& options) {
 
     Body branch = crate(box_shape(scene, 0.25, 0.08, 0.25), {0, kTop + 0.08, 0}, 0, Look::wood);
     branch.kind = TAUT_BODY_KINEMATIC;
-    int last = scene.add_body(branch);
-    scene.motions.push_back({last, -1, 0, {1, 0.35f, 0.3f}, {{}, {kShake, 0.9, 1, 7}}});
-    for (int i = 0; i < kLinks; ++i) {
-        const taut_pos top = {0, kTop - i * kLink, 0};
-        const int link = add_capsule(scene, top, plus(top, 0, -kLink, 0), 0.035, 2, Look::link, -1);
-        scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, last, link, top));
-        last = link;
-    }
+    const int top = scene.add_body(branch);
+    scene.motions.push_back({top, -1, 0, {1, 0.35f, 0.3f}, {{}, {kShake, 0.9, 1, 7}}});
+    const taut_pos end = {0, kTop - kLinks * kLink, 0};
+    const int bar = add_capsule(scene, plus(end, -0.3, 0, 0), plus(end, 0.3, 0, 0), 0.025, 2, Look::wood);
+    Cable liana = cable_along(scene, TAUT_CABLE_LINKS, {{0, kTop, 0}, end}, top, bar, 0.07, 4);
+    liana.def.segment_count = kLinks;
+    scene.add_cable(liana);
 
-    const Doll doll{scene, {0, kTop - kLinks * kLink - 0.98, 0}};
+    const Doll doll{scene, plus(end, 0, -0.98, 0)};
     const auto [pelvis, chest] = doll.trunk();
     for (double side : {-1.0, 1.0}) {
         doll.leg(pelvis, side);
-        const taut_pos grip = doll.at(0.07 * side, 0.98);
+        const taut_pos grip = doll.at(0.2 * side, 0.98);
         const int fore = doll.arm(chest, side, grip);
-        scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, last, fore, grip));
+        scene.add_joint(joint_at(scene, TAUT_JOINT_BALL, bar, fore, grip));
     }
     scene.roles.load = chest;
     scene.forces = ForceScale{2, 4};

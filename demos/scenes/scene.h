@@ -89,6 +89,13 @@ struct Joint {
     float break_force = 0, break_torque = 0;  // 0: never [N, N m]
 };
 
+// A cable of the library's own. The ends' bodies and the path are put into the def by TautWorld.
+struct Cable {
+    taut_cable_def def{};                // initialised
+    int end_body[2] = {kWorld, kWorld};  // of attached ends
+    std::vector<taut_pos> path;          // def.points [m]
+};
+
 // A number over time: cubic between its keys, on at the last one's rate after it.
 struct Track {
     struct Key {
@@ -101,13 +108,14 @@ struct Track {
     Shake shake;
 };
 
-// What moves by plan: a kinematic body, by its track along a direction from its start; or the drive of a joint, whose
-// target and speed follow the track.
+// What moves by plan: a kinematic body, by its track along a direction from its start; the drive of a joint, whose
+// target and speed follow the track; or a cable's end that is reeled: what is paid out [m] follows it.
 struct Motion {
     int body = -1, joint = -1;
-    uint32_t axis = 0;  // of the joint
+    uint32_t axis = 0;  // of the joint; the cable's end
     taut_vec3 along{};  // of the body, [m] a unit of the track
     Track track;
+    int cable = -1;
 };
 
 // A chain or cable, from its held end to its weight.
@@ -156,6 +164,7 @@ struct Scene {
     std::vector<Shape> shapes;
     std::vector<Body> bodies;
     std::vector<Joint> joints;
+    std::vector<Cable> cables;
     std::vector<Motion> motions;
     std::vector<Decoration> decorations;
     Roles roles;
@@ -174,6 +183,10 @@ struct Scene {
     int add_joint(const Joint& joint) {
         joints.push_back(joint);
         return static_cast<int>(joints.size()) - 1;
+    }
+    int add_cable(const Cable& cable) {
+        cables.push_back(cable);
+        return static_cast<int>(cables.size()) - 1;
     }
 };
 

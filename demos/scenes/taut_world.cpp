@@ -180,7 +180,18 @@ void TautWorld::build() {
         check(add_joint(world, joint, end(joint.body_a), end(joint.body_b), joints.size(), &handle), "adding a joint");
         joints.push_back(handle);
     }
+    for (const Cable& cable : scene_.cables) cables.push_back(add(cable, cables.size()));
     broken.reserve(joints.size());
+}
+
+taut_cable TautWorld::add(Cable plan, uint64_t index) const {
+    plan.def.points = plan.path.data();
+    plan.def.point_count = static_cast<uint32_t>(plan.path.size());
+    for (int e = 0; e < 2; ++e) plan.def.end[e].body = end(plan.end_body[e]);
+    plan.def.user_data = index;
+    taut_cable handle{};
+    check(taut_world_add_cable(world, &plan.def, &handle), "adding a cable");
+    return handle;
 }
 
 // Where everything with a plan is to be at the end of the step.
@@ -188,23 +199,34 @@ void TautWorld::follow_plans() {
     const double time = static_cast<double>(steps_ + 1) * static_cast<double>(scene_.world.time_step);
     for (const Motion& motion : scene_.motions) {
         const TrackPoint point = at(motion.track, time);
-        if (motion.body >= 0) {
-            const Body& start = scene_.bodies[static_cast<size_t>(motion.body)];
-            taut_pose pose{};
-            pose.position = {start.position.x + point.value * static_cast<double>(motion.along.x),
-                             start.position.y + point.value * static_cast<double>(motion.along.y),
-                             start.position.z + point.value * static_cast<double>(motion.along.z)};
-            pose.rotation = start.rotation;
-            check(taut_body_move_kinematic(bodies[static_cast<size_t>(motion.body)], &pose), "moving a body");
-        } else if (is_whole(static_cast<size_t>(motion.joint))) {
-            // A motor that holds a speed alone takes no target, which grows beyond a turn.
-            const auto joint = static_cast<size_t>(motion.joint);
-            const bool aims = scene_.joints[joint].axes[motion.axis].drive.stiffness > 0;
-            check(taut_joint_set_target(joints[joint], motion.axis, aims ? static_cast<float>(point.value) : 0.0f,
-                                        static_cast<float>(point.rate)),
-                  "driving a joint");
-        }
+        if (motion.body >= 0)
+            move(motion, point.value);
+        else if (motion.cable >= 0)
+            check(taut_cable_set_reel_speed(cables[static_cast<size_t>(motion.cable)], motion.axis,
+                                            static_cast<float>(point.rate), 0),
+                  "reeling a cable");
+        else if (is_whole(static_cast<size_t>(motion.joint)))
+            drive(motion, point.value, point.rate);
     }
+}
+
+void TautWorld::move(const Motion& motion, double value) const {
+    const Body& start = scene_.bodies[static_cast<size_t>(motion.body)];
+    taut_pose pose{};
+    pose.position = {start.position.x + value * static_cast<double>(motion.along.x),
+                     start.position.y + value * static_cast<double>(motion.along.y),
+                     start.position.z + value * static_cast<double>(motion.along.z)};
+    pose.rotation = start.rotation;
+    check(taut_body_move_kinematic(bodies[static_cast<size_t>(motion.body)], &pose), "moving a body");
+}
+
+// A motor that holds a speed alone takes no target, which grows beyond a turn.
+void TautWorld::drive(const Motion& motion, double value, double rate) const {
+    const auto joint = static_cast<size_t>(motion.joint);
+    const bool aims = scene_.joints[joint].axes[motion.axis].drive.stiffness > 0;
+    check(taut_joint_set_target(joints[joint], motion.axis, aims ? static_cast<float>(value) : 0.0f,
+                                static_cast<float>(rate)),
+          "driving a joint");
 }
 
 void TautWorld::step() {
@@ -224,7 +246,7 @@ taut_pose TautWorld::pose(size_t body) const {
 }
 
 double TautWorld::joint_error() const {
-    float most = 0;
+    float most = cables.empty() ? 0 : profile().joint_error;
     for (size_t i = 0; i < joints.size(); ++i) {
         if (scene_.joints[i].compliance > 0 || !is_whole(i)) continue;
         float error = 0;

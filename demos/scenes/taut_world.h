@@ -26,8 +26,8 @@ void check(taut_result result, const char* what);
 
 class TautWorld {
 public:
-    // Bodies, joints and shapes get their indices in the scene as user data and as places in these lists. The scene is
-    // kept.
+    // Bodies, joints, cables and shapes get their indices in the scene as user data and as places in these lists. The
+    // scene is kept.
     explicit TautWorld(const Scene& scene);
     ~TautWorld();
     TautWorld(const TautWorld&) = delete;
@@ -37,18 +37,22 @@ public:
     bool is_whole(size_t joint) const { return taut_joint_is_valid(joints[joint]) != 0; }
     taut_pose pose(size_t body) const;
     taut_profile profile() const;
-    double joint_error() const;  // largest of the rigid joints that are whole [m]
+    double joint_error() const;  // largest of the rigid joints that are whole, those of rigid cables among them [m]
 
     taut_world world{};
     std::vector<taut_shape> shapes;
     std::vector<taut_body> bodies;
     std::vector<taut_joint> joints;
+    std::vector<taut_cable> cables;
     std::vector<int> broken;   // joints of the scene, in the order in which they broke
     uint32_t quarantined = 0;  // bodies
 
 private:
     void build();
+    taut_cable add(Cable plan, uint64_t index) const;
     void follow_plans();
+    void move(const Motion& motion, double value) const;
+    void drive(const Motion& motion, double value, double rate) const;
     taut_body end(int index) const { return index == kWorld ? taut_body{} : bodies[static_cast<size_t>(index)]; }
 
     Scene scene_;

@@ -22,11 +22,15 @@ typedef enum taut_lint_kind {
     TAUT_LINT_SOFT_COMPLIANCE = 6,     /**< compliance of a swept joint, over h^2 J W J^T [1]: acts as rigid */
     TAUT_LINT_REDUNDANT_ROWS = 7, /**< rows of a joint that other joints hold already: internal forces are arbitrary */
     TAUT_LINT_JOINT_APART = 8,    /**< gap of a rigid joint [m]: closes with a jump */
-    TAUT_LINT_JOINT_MISALIGNED = 9,    /**< angle of a rigid joint that is off [rad]: closes with a jump */
-    TAUT_LINT_STOP_OVERRUN = 10,       /**< coordinate beyond a rigid stop [m]: is pushed back */
-    TAUT_LINT_STOP_OVERRUN_ANGLE = 11, /**< the same of an angle [rad] */
-    TAUT_LINT_NARROW_STOPS = 12,       /**< room between two stops [m]: trembles; lock the axis instead */
-    TAUT_LINT_NARROW_STOPS_ANGLE = 13, /**< the same of an angle [rad] */
+    TAUT_LINT_JOINT_MISALIGNED = 9,      /**< angle of a rigid joint that is off [rad]: closes with a jump */
+    TAUT_LINT_STOP_OVERRUN = 10,         /**< coordinate beyond a rigid stop [m]: is pushed back */
+    TAUT_LINT_STOP_OVERRUN_ANGLE = 11,   /**< the same of an angle [rad] */
+    TAUT_LINT_NARROW_STOPS = 12,         /**< room between two stops [m]: trembles; lock the axis instead */
+    TAUT_LINT_NARROW_STOPS_ANGLE = 13,   /**< the same of an angle [rad] */
+    TAUT_LINT_CABLE_COARSE = 14,         /**< angle between two segments on a sphere, capsule or cylinder in the last
+                                              step [rad]; body: of the segment behind the bend */
+    TAUT_LINT_CABLE_SHORT_SEGMENTS = 15, /**< mean segment over the diameter; body: the cable's first */
+    TAUT_LINT_CABLE_STRAIN = 16, /**< of the most stretched segment in the last step [1]; body: of the segment */
     TAUT_LINT_KIND_MAX = 0x7fffffff
 } taut_lint_kind;
 
@@ -42,9 +46,10 @@ typedef struct taut_lint_entry {
 
 /**
  * Looks at joints, masses, contacts and forces as they are now; contacts and forces are those of the last step.
- * Entries come in the order of their kinds, within a kind in that of slots. Changes nothing. Takes memory of the world
- * while it runs, and time that grows with the cube of a looped mechanism's rows, seconds for a thousand; of more than
- * 1200 it does not look for redundant ones.
+ * Entries come in the order of their kinds, within a kind in that of slots. Of a cable's finding taut_body_get_cable
+ * names the cable; loads and stiffness that its joints do not hold are findings of bodies and joints as everywhere.
+ * Changes nothing. Takes memory of the world while it runs, and time that grows with the cube of a looped mechanism's
+ * rows, seconds for a thousand; of more than 1200 it does not look for redundant ones.
  * @param entries null if capacity is 0.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED,
  *         TAUT_OUT_OF_MEMORY. Thread safety: one thread at a time per world, not inside a step.

@@ -25,6 +25,9 @@ constexpr const char* kText[] = {
     "a joint is turned far beyond a stop and will be pushed back: place it within, or give the stop compliance",
     "two stops leave so little room that the joint trembles between them: lock the axis",
     "two stops leave so little angle that the joint trembles between them: lock the axis",
+    "a cable turns a corner at each segment on something round: cut it into more segments",
+    "a cable's segments are shorter than it is thick and act as balls: cut it into fewer",
+    "a cable is pulled so hard that it stretches visibly: lower its compliance or the load",
 };
 
 }  // namespace

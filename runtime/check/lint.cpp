@@ -44,6 +44,7 @@ public:
         for_joints([&](uint32_t j, const Joint& joint) { softness_of(j, joint); });
         redundant_rows();
         for_joints([&](uint32_t j, const Joint& joint) { fit_of(j, joint); });
+        lint_cables(world_, found_);
         std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
         return std::move(found_);
     }

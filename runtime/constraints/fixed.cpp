@@ -23,15 +23,9 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
     out.finish();
 }
 
-void sample(uint64_t seed, void* data, Pose* x) {
-    Random random(seed);
-    const double swing = random.between(0.2, 1.5), direction = random.between(-3, 3), twist = random.between(-2.7, 2.7);
-    sample_frames(random, swing_after_twist(swing, direction, twist), data, x);
-}
-
 }  // namespace
 
-const ConstraintType kFixed{"fixed",   6,       2,     sizeof(JointFrames), Bound::free, true, 0b111000, evaluate,
-                            stiffness, nullptr, sample};
+const ConstraintType kFixed{"fixed",  6,         2,       sizeof(JointFrames),  Bound::free, true, 0b111000,
+                            evaluate, stiffness, nullptr, sample_aligned_frames};
 
 }  // namespace taut

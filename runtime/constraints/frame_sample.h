@@ -25,4 +25,11 @@ inline void sample_frames(Random& random, const Mat3& a_from_b, void* data, Pose
     x[1].R = x[0].R * joint.frame_a.toRotationMatrix() * a_from_b * joint.frame_b.toRotationMatrix().transpose();
 }
 
+// The same where the x axes are held together: less than a right angle apart, and short of half a turn of twist.
+inline void sample_aligned_frames(uint64_t seed, void* data, Pose* x) {
+    Random random(seed);
+    const double swing = random.between(0.2, 1.5), direction = random.between(-3, 3), twist = random.between(-2.7, 2.7);
+    sample_frames(random, swing_after_twist(swing, direction, twist), data, x);
+}
+
 }  // namespace taut

@@ -16,6 +16,10 @@ constexpr double kAxisSoftness = 1e-6;   // of stops, rigid drives and friction
 constexpr double kSpeculative = 5e-4;    // [m] wider gaps are not resting contacts
 constexpr double kClosing = 1e-9;        // [m]
 constexpr double kAtLimit = 1e-5;        // a box this close to its limit begins there
+// Share by which a sliding contact's c may miss |v| / (friction * push) after a round. The push on a light link of a
+// loaded cable changes tenfold from substep to substep; with c of the last one, cables slide at a third of
+// Coulomb's force.
+constexpr double kSlipMiss = 0.1;
 // Of a tower: share of all impulses that may be of the wrong sign, and what may close unseen [m]. Tighter refuses the
 // substeps of an impact, and the change to sweeps is what kicks a tower (measured: of 72 hit by a heavy box 0 fall, 27
 // with 0.1 and 1 mm).
@@ -119,7 +123,8 @@ void ActiveSet::begin_slip(BoundedRow& lead) {
 }
 
 // Makes a row and those after it the tangents of one friction.
-void ActiveSet::gather_tangents(BoundedRow& first, uint32_t width, uint32_t load, uint32_t loads, double limit, float& slip) {
+void ActiveSet::gather_tangents(BoundedRow& first, uint32_t width, uint32_t load, uint32_t loads, double limit,
+                                float& slip) {
     first.width = width;
     first.load = load;
     first.loads = loads;
@@ -239,6 +244,9 @@ bool ActiveSet::revise() {
         }
     }
     follow_loads();
+    if (b_.tower) return changed;
+    for (BoundedRow& r : rows())
+        if (r.width > 0 && r.on) changed = revise_slip(r) || changed;
     return changed;
 }
 
@@ -272,13 +280,36 @@ bool ActiveSet::acceptable() const {
     return pull <= kAcceptedPull * total && excess <= kAcceptedPull * total && closing <= kAcceptedClosing;
 }
 
+// The impulse that a friction is bound by, and the one that it has.
+double ActiveSet::bound_of(const BoundedRow& lead) const {
+    double push = 0;
+    for (uint32_t k = 0; k < lead.loads; ++k) push += rows()[lead.load + kContactRows * k].mu;
+    return lead.limit * push;
+}
+
+double ActiveSet::size_of(const BoundedRow& lead) {
+    double squared = 0;
+    for (const BoundedRow* r = &lead; r < &lead + lead.width; ++r) squared += r->mu * r->mu;
+    return std::sqrt(squared);
+}
+
+// c of a friction that slides, or begins to, at the push of this round. True if it was far from that. Half of the way
+// a round, on a logarithmic scale: push and friction of a light link depend on each other (measured: without, two
+// crossing cables of links burst).
+bool ActiveSet::revise_slip(BoundedRow& lead) const {
+    const double bound = bound_of(lead), excess = std::max(0.0, size_of(lead) - bound);
+    const bool slides = lead.c > lead.least;
+    if (!(bound > 0) || (!slides && excess < kSlipMiss * bound)) return false;
+    const double slip = slide(lead, sys_.exact) + (slides ? 0 : excess * lead.k);
+    const double next = std::sqrt(lead.c * std::max(lead.least, slip / bound));
+    if (std::abs(next - lead.c) < kSlipMiss * lead.c) return false;
+    for (BoundedRow* r = &lead; r < &lead + lead.width; ++r) r->c = std::max(r->least, next);
+    return true;
+}
+
 // c of a friction in the next substep, and its impulse within its bound.
 void ActiveSet::follow_slip(BoundedRow& lead) const {
-    double bound = 0, squared = 0;
-    for (uint32_t k = 0; k < lead.loads; ++k) bound += rows()[lead.load + kContactRows * k].mu;
-    bound *= lead.limit;
-    for (const BoundedRow* r = &lead; r < &lead + lead.width; ++r) squared += r->mu * r->mu;
-    const double size = std::sqrt(squared), excess = std::max(0.0, size - bound);
+    const double bound = bound_of(lead), size = size_of(lead), excess = std::max(0.0, size - bound);
     const bool slid = lead.c > lead.least;
     double next = 0;
     if (slid || excess > 1e-6 * bound) {

@@ -3,8 +3,8 @@
 //   round     solve with the rows that are on; drop those that pull, add those that would close; at most a few times
 //   box       a drive or friction whose impulse passes its limit is that limit, until it no longer lags behind
 //   tangents  secant: a sliding contact aims at no slip and has c = |v| / (friction * push), which gives that impulse
-//             against the slip v, implicitly; c follows with one substep of lag, at most halved. Rolling and spinning
-//             friction likewise, with angular velocities and an arm in the place of friction
+//             against the slip v, implicitly; c follows in each round. From substep to substep it is at most halved.
+//             Rolling and spinning friction likewise, with angular velocities and an arm in the place of friction
 //   relaxed   solved again on the same factor: rows that rest want velocity 0 with the impulse they have, so that the
 //             push that undoes overlaps moves positions and is not kept
 // Rules and their evidence: measured on chains over edges and towers, the tests of scenes hold them.
@@ -28,7 +28,7 @@ public:
     void aim_relaxed(bool with_reference);  // of the one whose velocities are kept
     // Impulses of the rows that are on, from System::exact.
     void take_impulses();
-    // After a biased solve: true if a row came, went or left its box.
+    // After a biased solve: true if a row came, went or left its box, or slides by another force than its loads give.
     bool revise();
     // After a relaxed solve of a tower: true if a row that is on pulls.
     bool drop_pulling();
@@ -54,6 +54,9 @@ private:
     double slide(const BoundedRow& lead, const Array<Velocity>& velocity) const;
     void begin_slip(BoundedRow& lead);
     void follow_slip(BoundedRow& lead) const;
+    bool revise_slip(BoundedRow& lead) const;
+    double bound_of(const BoundedRow& lead) const;
+    static double size_of(const BoundedRow& lead);
     bool revise_box(BoundedRow& row) const;
 
     Substep& s_;

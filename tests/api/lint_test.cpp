@@ -291,6 +291,96 @@ TEST(Lint, JointsAndStopsThatJump) {
     EXPECT_EQ(kinds(boxes.world), std::set<int>{TAUT_LINT_NARROW_STOPS});
 }
 
+// Hung from the world over a drum to a load; a point of it lies on the drum's top.
+struct LintCable : LintWorld, testing::WithParamInterface<taut_cable_kind> {
+    LintCable() {
+        taut_cylinder_def round;
+        taut_cylinder_def_init(&round);
+        round.radius = 0.3f;
+        taut_shape drum = {0};
+        EXPECT_OK(taut_world_add_cylinder(world, &round, &drum));
+        taut_body_def def = body_def(TAUT_BODY_STATIC, drum);
+        def.rotation = {0.70710678f, 0, 0, 0.70710678f};
+        add_body(world, def);
+        taut_cable_def_init(&plan);
+        plan.kind = GetParam();
+        plan.point_count = 3;
+        plan.points = path;
+        plan.segment_count = 24;
+        plan.end[0].attached = 1;
+        plan.end[0].anchor = path[0];
+    }
+    taut_cable add() const {
+        taut_cable out = {0};
+        EXPECT_OK(taut_world_add_cable(world, &plan, &out));
+        return out;
+    }
+    // The only finding is of this kind, about this cable.
+    void expect_of(taut_cable cable, taut_lint_kind kind, double least, double most) const {
+        const std::vector<taut_lint_entry> found = lint(world);
+        ASSERT_EQ(found.size(), 1u) << testing::PrintToString(kinds(world));
+        EXPECT_EQ(found[0].kind, kind);
+        EXPECT_GE(found[0].value, least);
+        EXPECT_LE(found[0].value, most);
+        taut_cable about = {0};
+        EXPECT_OK(taut_body_get_cable(found[0].body, &about));
+        EXPECT_EQ(about.bits, cable.bits);
+    }
+
+    taut_pos path[3] = {{-1, 0, 0}, {0, 0.31, 0}, {1, 0, 0}};
+    taut_cable_def plan;
+};
+
+INSTANTIATE_TEST_SUITE_P(Of, LintCable, testing::Values(TAUT_CABLE_PARTICLES, TAUT_CABLE_LINKS),
+                         [](const auto& tested) { return tested.param == TAUT_CABLE_LINKS ? "links" : "particles"; });
+
+TEST_P(LintCable, FindsNothingInOneWellMade) {
+    add();
+    steps(120);
+    EXPECT_TRUE(kinds(world).empty()) << testing::PrintToString(kinds(world));
+}
+
+TEST_P(LintCable, TooFewSegmentsForTheDrum) {
+    plan.segment_count = 4;
+    plan.diameter = 0.1f;  // long links of 2 cm would be thin bodies
+    path[1].y = 0.36;
+    const taut_cable cable = add();
+    EXPECT_TRUE(kinds(world).empty());  // it does not touch yet
+    steps(120);
+    expect_of(cable, TAUT_LINT_CABLE_COARSE, 0.5236, 2);
+}
+
+TEST_P(LintCable, SegmentsShorterThanThick) {
+    plan.diameter = 0.2f;
+    path[0].y = path[1].y = path[2].y = 5;  // in the air
+    plan.end[0].anchor = path[0];
+    const taut_cable cable = add();
+    expect_of(cable, TAUT_LINT_CABLE_SHORT_SEGMENTS, 2.0 / 24 / 0.2 - 1e-4, 2.0 / 24 / 0.2 + 1e-4);
+}
+
+TEST_P(LintCable, StretchesUnderItsLoad) {
+    const taut_body load = body(100, 3, 2);
+    plan.point_count = 0;
+    plan.end[0].anchor = {3, 6, 0};
+    plan.end[1] = {1, 0, load, {0, 0.5, 0}};
+    plan.stretch_compliance = 2e-4f;
+    plan.stretch_damping = 2000;
+    const taut_cable cable = add();
+    EXPECT_TRUE(kinds(world).empty());  // nothing is carried yet
+    steps(300);
+    // The first segment carries the load and nearly all of the cable, 1 kg/m.
+    expect_of(cable, TAUT_LINT_CABLE_STRAIN, 2e-4 * 9.81 * 103.2, 2e-4 * 9.81 * 103.6);
+}
+
+// What its joints do not hold is found as of any joints.
+TEST_P(LintCable, HeavierLoadThanABlockHolds) {
+    plan.point_count = 0;
+    plan.end[0].anchor = {3, 6, 0};
+    plan.end[1] = {1, 0, body(3000, 3, 2), {0, 0.5, 0}};
+    const taut_cable cable = add();
+    expect_of(cable, TAUT_LINT_BLOCK_MASS_RATIO, 1e4, 1e5);
+}
+
 TEST_F(LintWorld, ArgumentsAndTexts) {
     ball(body(1, 0, 0), body(2e4f, 0, 3));
     uint32_t count = 7;
@@ -301,9 +391,9 @@ TEST_F(LintWorld, ArgumentsAndTexts) {
     EXPECT_EQ(taut_world_lint(world, nullptr, 0, &count), TAUT_TOO_SMALL);
     EXPECT_EQ(count, 1u);
     std::set<std::string> texts;
-    for (int kind = 0; kind <= TAUT_LINT_NARROW_STOPS_ANGLE; ++kind)
+    for (int kind = 0; kind <= TAUT_LINT_CABLE_STRAIN; ++kind)
         texts.insert(taut_lint_text(static_cast<taut_lint_kind>(kind)));
-    EXPECT_EQ(texts.size(), static_cast<size_t>(TAUT_LINT_NARROW_STOPS_ANGLE) + 1);
+    EXPECT_EQ(texts.size(), static_cast<size_t>(TAUT_LINT_CABLE_STRAIN) + 1);
     EXPECT_FALSE(texts.contains("unknown"));
     EXPECT_STREQ(taut_lint_text(TAUT_LINT_KIND_MAX), "unknown");
 }

@@ -54,6 +54,8 @@ class BulletEngine : public Engine {
 public:
     BulletEngine(const scenes::Scene& scene, uint32_t substeps)
         : substeps_(substeps), step_(scene.world.time_step / static_cast<float>(substeps)) {
+        if (!scene.cables.empty())
+            throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' has cables, which Bullet lacks");
         dispatcher_ = std::make_unique<btCollisionDispatcher>(&configuration_);
         world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_, &configuration_);
         world_->setGravity(vec(scene.world.gravity));

@@ -37,6 +37,8 @@ class OdeEngine : public Engine {
 public:
     OdeEngine(const scenes::Scene& scene, uint32_t substeps, OdeSolver solver)
         : solver_(solver), substeps_(substeps), step_(real(scene.world.time_step) / substeps) {
+        if (!scene.cables.empty())
+            throw scenes::BadScene("--engine ode: scene '" + scene.name + "' has cables, which ODE lacks");
         start_library();
         world_ = dWorldCreate();
         space_ = dHashSpaceCreate(nullptr);

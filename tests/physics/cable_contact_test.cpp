@@ -145,30 +145,33 @@ TEST_P(OverADrum, SlidesOrHolds) {
         depth = std::max(depth, deepest(lab));
     }
     const double sunk = settled - position(heavy).y;
-    const double free = 0.5 * kG * (c.ratio - 1) / (c.ratio + 1) * (1.5 * 1.5 - 0.5 * 0.5);  // without friction
+    const auto sinks = [&](double limit) {  // where friction takes a ratio of so much
+        return 0.5 * kG * (c.ratio - limit) / (c.ratio + limit) * (1.5 * 1.5 - 0.5 * 0.5);
+    };
+    const double coulomb = sinks(std::exp(c.friction * kPi)), free = sinks(1);
     RecordProperty("sunk_mm", std::to_string(1e3 * sunk));
     EXPECT_LT(gap, 1e-3);
     EXPECT_LT(depth, 3e-3);
-    EXPECT_LT(sunk, c.holds ? 1e-3 : free);
-    EXPECT_GT(sunk, c.holds ? -1e-3 : (c.friction == 0 ? 0.95 : 0.5) * free);
+    if (c.holds) {
+        EXPECT_NEAR(sunk, 0, 1e-3);
+    } else {
+        EXPECT_LT(sunk, std::min(free, 2 * coulomb));
+        EXPECT_GT(sunk, 0.9 * coulomb);
+    }
 }
 
-// What holds does so with room to spare: once a light cable slides, its friction is less than Coulomb's.
+// Near the limit of 3.5 for a friction of 0.4 a light cable creeps: of particles at 3, of links at 2.5.
 INSTANTIATE_TEST_SUITE_P(
     Of, OverADrum,
     testing::Combine(testing::Values(TAUT_CABLE_PARTICLES, TAUT_CABLE_LINKS),
                      testing::Values(Capstan{"smooth", 0, 1.5, false}, Capstan{"slides", 0.1, 2, false},
-                                     Capstan{"holds_a_tenth", 0.4, 1.1, true}, Capstan{"holds_a_fifth", 0.6, 1.2, true},
-                                     Capstan{"holds_twice", 1, 2, true})),
+                                     Capstan{"holds_a_tenth", 0.4, 1.1, true},
+                                     Capstan{"holds_twice_of_three_and_a_half", 0.4, 2, true},
+                                     Capstan{"slides_beyond_three_and_a_half", 0.4, 4.5, false},
+                                     Capstan{"holds_a_fifth", 0.6, 1.2, true}, Capstan{"holds_twice", 1, 2, true})),
     [](const auto& tested) {
         return name_of(std::get<0>(tested.param)) + std::string(std::get<1>(tested.param).name);
     });
-
-// Segments between particles do not roll, and creep less.
-INSTANTIATE_TEST_SUITE_P(OfParticles, OverADrum,
-                         testing::Combine(testing::Values(TAUT_CABLE_PARTICLES),
-                                          testing::Values(Capstan{"holds_twice_of_three", 0.4, 2, true})),
-                         [](const auto& tested) { return std::string(std::get<1>(tested.param).name); });
 
 class TouchedCable : public testing::TestWithParam<taut_cable_kind> {};
 

@@ -46,13 +46,16 @@ INSTANTIATE_TEST_SUITE_P(Scene, EveryMachine,
                          testing::Values(Machine{"crane", 0.02, 0.01}, Machine{"bridge", 0.2, 0.02},
                                          Machine{"bridge_breaking", 5, 0.1}, Machine{"hinges50", 0.5, 0.1},
                                          Machine{"ragdoll_liana", 2, 2}, Machine{"ferris_wheel10", 0.02, 0.01},
-                                         Machine{"ferris_wheel24", 0.05, 0.02}, Machine{"tensegrity", 0, 0}),
+                                         Machine{"ferris_wheel24", 0.05, 0.02}, Machine{"tensegrity", 0, 0},
+                                         Machine{"cable_drum", 0.5, 0.01}),
                          [](const auto& tested) { return tested.param.scene; });
 
 TEST(Crane, LiftsItsLoadThatSwingsLittle) {
     RunningScene run("crane");
     const auto load = static_cast<size_t>(run.scene.roles.load);
-    const taut_joint top = run.world.joints[2];  // of the cable, at the boom
+    const taut_cable cable = run.world.cables.front();
+    taut_joint top{};  // of the cable, at the boom
+    ok(taut_cable_get_end_joint(cable, 0, &top));
     double swing = 0;
     for (uint32_t frame = 0; frame < run.scene.steps; ++frame) {
         run.step();
@@ -67,8 +70,32 @@ TEST(Crane, LiftsItsLoadThatSwingsLittle) {
     EXPECT_LT(norm(run.body(load).velocity), 0.5);
     taut_vec3 force{};
     ok(taut_joint_get_force(top, &force));
-    EXPECT_NEAR(norm(force), 5500 * kG, 0.02 * 5500 * kG) << "the cable carries load and itself";
+    const double hanging = 5000 + 50 * length_of(cable);  // [kg]
+    EXPECT_NEAR(norm(force), hanging * kG, 0.02 * hanging * kG) << "the cable carries load and itself";
+    EXPECT_NEAR(length_of(cable), 7, 0.01) << "3 m of it are hauled in";
     RecordProperty("swing_m", std::to_string(swing));
+}
+
+TEST(CableDrum, HoldsCarriesAndReels) {
+    constexpr double kAround = 0.525 * 2.4;  // of the cable that the driven drum takes along [m]
+    RunningScene run("cable_drum");
+    const auto held = static_cast<size_t>(run.scene.roles.pile[0]),
+               carried = static_cast<size_t>(run.scene.roles.pile[1]);
+    const auto reeled = static_cast<size_t>(run.scene.roles.load);
+    const auto sunk = [&](size_t i) { return run.start[i].position.y - run.body(i).position.y; };
+    double down = 0, out = 0, up = 0;
+    for (uint32_t frame = 0; frame < run.scene.steps; ++frame) {
+        run.step();
+        if (frame != 450) continue;  // all are at their turning points
+        down = sunk(held), up = -sunk(carried), out = sunk(reeled);
+    }
+    ASSERT_TRUE(run.sound());
+    EXPECT_NEAR(down, 0, 0.02);
+    EXPECT_NEAR(up, kAround, 0.05 * kAround);
+    EXPECT_NEAR(out, 1.2, 0.02);
+    EXPECT_NEAR(sunk(held), 0, 0.02);
+    EXPECT_NEAR(sunk(carried), 0, 0.05 * kAround);
+    EXPECT_NEAR(sunk(reeled), 0, 0.02);
 }
 
 TEST(Bridge, CarriesTheTruckAcross) {

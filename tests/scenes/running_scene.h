@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/lab.h"
+#include "physics/cable_lab.h"
 #include "scenes/catalogue.h"
 #include "scenes/taut_world.h"
 
@@ -48,7 +48,17 @@ public:
     BodyState body(size_t i) const { return state(world.bodies[i]); }
     bool sound() const {
         if (world.quarantined > 0) return false;
-        return std::all_of(world.bodies.begin(), world.bodies.end(), [](taut_body b) { return finite(b); });
+        const auto all = everything();
+        return std::all_of(all.begin(), all.end(), [](taut_body b) { return finite(b); });
+    }
+    // The scene's bodies and those that its cables are made of.
+    std::vector<taut_body> everything() const {
+        std::vector<taut_body> all = world.bodies;
+        for (taut_cable cable : world.cables) {
+            const auto own = bodies_of(cable);
+            all.insert(all.end(), own.begin(), own.end());
+        }
+        return all;
     }
     double pile_speed() const {  // fastest
         double most = 0;
@@ -77,8 +87,11 @@ public:
     }
     double energy() const {  // kinetic and of height [J]
         std::vector<taut_body> moving;
-        for (size_t i = 0; i < scene.bodies.size(); ++i)
-            if (scene.bodies[i].kind == TAUT_BODY_DYNAMIC) moving.push_back(world.bodies[i]);
+        for (taut_body body : everything()) {
+            taut_body_kind kind{};
+            ok(taut_body_get_kind(body, &kind));
+            if (kind == TAUT_BODY_DYNAMIC) moving.push_back(body);
+        }
         const Totals sum = totals(moving);
         return sum.kinetic + kG * sum.height;
     }

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "check/lint.h"
+#include "models/cable.h"
+
+namespace taut {
+namespace {
+
+constexpr double kMostBend = 0.5236;  // between two segments on something round: above 30 degrees it is a corner [rad]
+constexpr double kLeastSlimness = 1;  // length of a segment over the cable's diameter: below, it is a ball
+constexpr double kMostStrain = 0.1;   // a cable that gives more is not one that hardly stretches
+
+bool is_round(collision::ShapeKind kind) {
+    using collision::ShapeKind;
+    return kind == ShapeKind::sphere || kind == ShapeKind::capsule || kind == ShapeKind::cylinder;
+}
+
+// Angle between the segments before and after an inner point [rad].
+double bend_at_point(const World& world, const Cable& cable, uint32_t point) {
+    const Vec3 a = cable_point(world, cable, point) - cable_point(world, cable, point - 1);
+    const Vec3 b = cable_point(world, cable, point + 1) - cable_point(world, cable, point);
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+class CableLint {
+public:
+    CableLint(World& world, Array<taut_lint_entry>& found)
+        : world_(world), found_(found), on_round_(world.nodes.slots(), uint8_t{0}, world.memory) {}
+
+    void run() {
+        mark_what_is_on_round();
+        for (uint32_t index = 0; index < world_.cables.ids.slots(); ++index) {
+            if (!world_.cables.ids.live(index)) continue;
+            const Cable& cable = world_.cables.record[index];
+            sharpest_bend(cable);
+            shortest_segment(cable);
+            largest_strain(cable);
+        }
+    }
+
+private:
+    // Nodes whose segment touched a sphere, a capsule or a cylinder in the last step, other than a cable's.
+    void mark_what_is_on_round() {
+        for (const Pair& pair : world_.pairs.list) {
+            if (!pair.touching) continue;
+            for (const auto& [mine, other] :
+                 {std::pair(pair.a, pair.collider_b()), std::pair(pair.b, pair.collider_a())}) {
+                const Collider& collider = world_.colliders.record[other];
+                if (world_.nodes.info[mine].cable == kNone || world_.nodes.info[collider.node].cable != kNone) continue;
+                if (is_round(world_.shapes.record[collider.shape].shape.kind)) on_round_[mine] = 1;
+            }
+        }
+    }
+
+    void add(taut_lint_kind kind, const Cable& cable, uint32_t segment, double value, double limit) {
+        found_.push_back({kind, 0, world_.body_handle(cable.node[segment]), taut_joint{0}, static_cast<float>(value),
+                          static_cast<float>(limit)});
+    }
+
+    // Between two segments, one of which lies on something round.
+    void sharpest_bend(const Cable& cable) {
+        double most = 0;
+        uint32_t at = 0;
+        for (uint32_t point = 1; point < cable.segments(); ++point) {
+            if (!on_round_[cable.node[point - 1]] && !on_round_[cable.node[point]]) continue;
+            if (!find(world_.joints, cable.joint[point - 1])) continue;
+            const double bend = bend_at_point(world_, cable, point);
+            if (bend > most) most = bend, at = point;
+        }
+        if (most > kMostBend) add(TAUT_LINT_CABLE_COARSE, cable, at, most, kMostBend);
+    }
+
+    // The nominal one: those at the ends are short while they are reeled.
+    void shortest_segment(const Cable& cable) {
+        const double slimness = cable.nominal / (2 * cable.radius);
+        if (slimness < kLeastSlimness) add(TAUT_LINT_CABLE_SHORT_SEGMENTS, cable, 0, slimness, kLeastSlimness);
+    }
+
+    void largest_strain(const Cable& cable) {
+        double most = 0;
+        uint32_t at = 0;
+        for (uint32_t segment = 0; segment < cable.segments(); ++segment) {
+            const double strain = cable.stretch_compliance * cable_tension(world_, cable, segment);
+            if (strain > most) most = strain, at = segment;
+        }
+        if (most > kMostStrain) add(TAUT_LINT_CABLE_STRAIN, cable, at, most, kMostStrain);
+    }
+
+    const World& world_;
+    Array<taut_lint_entry>& found_;
+    Array<uint8_t> on_round_;  // of nodes
+};
+
+}  // namespace
+
+void lint_cables(World& world, Array<taut_lint_entry>& found) { CableLint(world, found).run(); }
+
+}  // namespace taut
