@@ -3,6 +3,7 @@
 
 #include <taut/taut.h>
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,7 +29,8 @@ class TautWorld {
 public:
     // Bodies, joints and shapes get their indices in the scene as user data and as places in these lists. The scene is
     // kept.
-    explicit TautWorld(const Scene& scene);
+    // history: what the world goes through before the scene is built in it.
+    explicit TautWorld(const Scene& scene, const std::function<void(taut_world)>& history = nullptr);
     ~TautWorld();
     TautWorld(const TautWorld&) = delete;
     TautWorld& operator=(const TautWorld&) = delete;
