@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "check/quarantine.h"
+#include "detect/contact_limit.h"
 #include "detect/detect.h"
 #include "detect/sensors.h"
 #include "integrate/integrate.h"
@@ -42,6 +43,9 @@ void detect(World& w, Stopwatch& watch) {
     const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
     if (refused > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
+    w.profile.dropped_contacts = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
+    if (const uint32_t dropped = w.profile.dropped_contacts; dropped > 0)
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u contacts dropped: max_contacts is %u", dropped, w.def.max_contacts);
     tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();
 }

@@ -105,6 +105,7 @@ struct Pairs {
           scratch(memory),
           fresh(memory),
           active(memory),
+          by_depth(memory),
           ended(memory),
           joined(memory),
           reach(memory),
@@ -118,6 +119,7 @@ struct Pairs {
     Array<Pair> scratch;                    // for merges into the list
     Array<Pair> fresh;                      // parts touched in this frame, sorted; find_contacts()
     Array<ActivePair> active;               // sorted as list is; find_contacts()
+    Array<uint32_t> by_depth;               // in active, in the order of depth; limit_contacts()
     Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;                     // id of the world, for the handles in ended
     uint8_t asks = 0;                       // of all pairs: the world's contact events
