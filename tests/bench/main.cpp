@@ -116,9 +116,10 @@ int run(const Options& options) {
     SolveTime solve;
     for (uint32_t step = 0; step < steps; ++step) {
         auto begin = std::chrono::steady_clock::now();
+        const double worked = thread_ms();
         engine->step();
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-        times.add(took.count(), engine->stage_times());
+        times.add(took.count(), thread_ms() - worked, engine->stage_times());
         SolveTime last = engine->solve_time();
         solve.microseconds += last.microseconds;
         solve.solves += last.solves;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 namespace bench {
@@ -27,8 +28,15 @@ void Spike::report(nlohmann::ordered_json& json) const {
     json["worst_stage"] = stage;
 }
 
-void StepTimes::add(double milliseconds, std::vector<StageTime> stages) {
+double thread_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+void StepTimes::add(double milliseconds, double thread_milliseconds, std::vector<StageTime> stages) {
     whole_.push_back(milliseconds);
+    thread_.push_back(thread_milliseconds);
     stages_.push_back(std::move(stages));
 }
 
@@ -44,10 +52,10 @@ void StepTimes::report(nlohmann::ordered_json& json) const {
 }
 
 Spike StepTimes::worst_after(size_t warm_up) const {
-    if (whole_.size() <= warm_up) return {};
-    const auto worst = std::max_element(whole_.begin() + static_cast<std::ptrdiff_t>(warm_up), whole_.end());
-    const auto step = static_cast<size_t>(worst - whole_.begin());
-    return {step, *worst / part_of(from(whole_, warm_up), 0.5), slow_stage(step, warm_up)};
+    if (thread_.size() <= warm_up) return {};
+    const auto worst = std::max_element(thread_.begin() + static_cast<std::ptrdiff_t>(warm_up), thread_.end());
+    const auto step = static_cast<size_t>(worst - thread_.begin());
+    return {step, *worst / part_of(from(thread_, warm_up), 0.5), slow_stage(step, warm_up)};
 }
 
 const char* StepTimes::slow_stage(size_t step, size_t warm_up) const {
