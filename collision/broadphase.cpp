@@ -1,6 +1,7 @@
 // Bullet's dynamic tree of boxes under a pair list of our own: only leaves that left their fat box are moved and
 // asked again, and pairs are sorted, so that nothing depends on the tree's shape. The tree's nodes are Bullet's memory.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -14,8 +15,13 @@ namespace {
 // A fat box reaches this much further than the tight one on every side [m].
 constexpr float kFat = 0.05f;
 
-// Bodies that fall side by side would all leave their boxes in the same step: some reach less far ahead.
-float reach_ahead(uint32_t id) { return 0.625f + 0.125f * float(id & 3); }
+// Bodies that fall side by side would all leave their boxes in the same step: some reach less far ahead. Their places
+// tell which, not their ids, which depend on what lived before them.
+float reach_ahead(const Box& tight) {
+    uint32_t mixed = 0;
+    for (const float x : tight.lo) mixed = (mixed ^ std::bit_cast<uint32_t>(x)) * 0x9e3779b1u;
+    return 0.625f + 0.125f * float(mixed >> 30);
+}
 
 btVector3 vector(const Vec3f& v) { return btVector3(v.x(), v.y(), v.z()); }
 
@@ -174,7 +180,7 @@ void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement
     }
     s.mark(id);
     s.leaves[id].stray = false;
-    btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(id));
+    btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
     s.tree.update(node, volume);
 }
 

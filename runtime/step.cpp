@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "check/quarantine.h"
+#include "detect/contact_limit.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
 #include "detect/sensors.h"
@@ -17,6 +18,10 @@
 namespace taut {
 namespace {
 
+void tell(World& w, const StageEnd& end) {
+    if (w.observer) w.observer->after(w, end);
+}
+
 void remember_poses(Nodes& nodes) {
     for (uint32_t node = 0; node < nodes.slots(); ++node)
         if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
@@ -26,8 +31,10 @@ void remember_poses(Nodes& nodes) {
 void detect(World& w, Stopwatch& watch) {
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
+    tell(w, {Stage::bounds});
     update_pairs(w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
     retire_pairs(w);
+    tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     if (wake_touched(w)) {
@@ -37,13 +44,18 @@ void detect(World& w, Stopwatch& watch) {
     const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
     if (refused > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
+    w.profile.dropped_contacts = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
+    if (const uint32_t dropped = w.profile.dropped_contacts; dropped > 0)
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u contacts dropped: max_contacts is %u", dropped, w.def.max_contacts);
+    tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();
 }
 
 // All substeps of a group of islands, which no other group touches.
-void solve_group(World& w, Group& group, const Solver& solver, const SolverSettings& settings, SolverReport& report,
+void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSettings& settings, SolverReport& report,
                  Stopwatch& watch) {
     System& system = w.system;
+    Group& group = w.partition.groups[index];
     const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
     const double frame = w.def.time_step;
     system.h = frame / group.substeps;
@@ -60,13 +72,16 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
         predict(w.team, system, group, w.nodes, gravity);
         if (solver.wide_contacts && i > 0) turn_lanes(w.team, system, *settings.kernels);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
+        tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();
         evaluate_rows(system, 1 - (i + 1.0) / group.substeps, frame);
+        tell(w, {Stage::assemble, index, i});
         w.profile.assemble_us += watch.lap();
         Substep substep{w.team,   system, group,     w.partition.blocks,     w.nodes,
                         settings, report, w.scratch, i + 1 == group.substeps};
         solver.solve(substep);
         if (substep.last) report.residual = std::max(report.residual, row_residual(system));
+        tell(w, {Stage::solve, index, i});
         w.profile.sweep_us += watch.lap();
         commit(w.team, system, group, w.nodes);
         shift_kinematic(system, w.nodes, (i + 1) * system.h);
@@ -74,12 +89,14 @@ void solve_group(World& w, Group& group, const Solver& solver, const SolverSetti
             solver.settle(substep);
             correct(system, group, w.partition.blocks, w.nodes);
         }
+        tell(w, {Stage::commit, index, i});
         w.profile.commit_us += watch.lap();
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();
         store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
         store_contact_rows(system);
         gather_impulses(system, w.pairs, w.watch);
+        tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
     }
     if (solver.wide_contacts) store_lanes(w.team, system, w.pairs);
@@ -94,9 +111,8 @@ void solve(World& w, Stopwatch& watch) {
     begin_frame(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) {
-        Group& group = w.partition.groups[i];
-        solve_group(w, group, solver, settings, report, watch);
-        w.profile.substeps = std::max(w.profile.substeps, group.substeps);
+        solve_group(w, i, solver, settings, report, watch);
+        w.profile.substeps = std::max(w.profile.substeps, w.partition.groups[i].substeps);
     }
     for (uint32_t i = 0; i < w.partition.group_count; ++i) quarantine(w.nodes, w.partition.groups[i].nodes, w.frozen);
     if (const uint32_t failures = report.failures; failures > 0)
@@ -132,6 +148,7 @@ void step(World& w) {
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.nodes);
     w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
+    tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
     hold_back(w.colliders, w.shapes, w.joints, w.pairs, w.nodes);
@@ -142,7 +159,9 @@ void step(World& w) {
     publish_motion(w, w.frozen);
     publish_profile(w);
     break_joints(w);
+    tell(w, {Stage::publish});
     update_sleep(w);
+    tell(w, {Stage::sleep});
     w.profile.publish_us = watch.lap();
     w.profile.allocations = w.memory.calls() - calls;
     w.profile.step_us = whole.lap();

@@ -8,6 +8,7 @@
 #include "partition/partition.h"
 #include "publish/contact_watch.h"
 #include "solvers/solver.h"
+#include "stages.h"
 #include "state/cables.h"
 #include "state/colliders.h"
 #include "state/handle.h"
@@ -59,6 +60,8 @@ struct World {
     Array<taut_sleep_event> fell_asleep, woke;
     Array<uint32_t> frozen;  // nodes quarantined by the last step
     taut_profile profile{};
+
+    StageObserver* observer = nullptr;  // of tests; null: nobody looks on
 
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;

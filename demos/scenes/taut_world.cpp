@@ -150,9 +150,10 @@ void check(taut_result result, const char* what) {
     throw TautError(std::string(what) + ": " + taut_result_name(result) + ": " + taut_last_error());
 }
 
-TautWorld::TautWorld(const Scene& scene) : scene_(scene) {
+TautWorld::TautWorld(const Scene& scene, const std::function<void(taut_world)>& history) : scene_(scene) {
     check(taut_world_create(&scene.world, &world), "creating the world");
     try {
+        if (history) history(world);
         build();
     } catch (...) {
         taut_world_destroy(world);

@@ -3,6 +3,7 @@
 
 #include <taut/taut.h>
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -27,8 +28,8 @@ void check(taut_result result, const char* what);
 class TautWorld {
 public:
     // Bodies, joints, cables and shapes get their indices in the scene as user data and as places in these lists. The
-    // scene is kept.
-    explicit TautWorld(const Scene& scene);
+    // scene is kept. history: what the world goes through before the scene is built in it.
+    explicit TautWorld(const Scene& scene, const std::function<void(taut_world)>& history = nullptr);
     ~TautWorld();
     TautWorld(const TautWorld&) = delete;
     TautWorld& operator=(const TautWorld&) = delete;

@@ -42,7 +42,7 @@ typedef enum taut_result {
     TAUT_TOO_SMALL = 7,        /**< the array is too small; *count holds the number needed */
     TAUT_OUT_OF_MEMORY = 8,
     TAUT_IN_USE = 9,       /**< a shape that bodies still use, or a body of a cable, cannot be removed */
-    TAUT_LIMIT = 10,       /**< a stated limit is reached (worlds, vertices of a hull) */
+    TAUT_LIMIT = 10,       /**< a stated limit is reached (worlds, their contents, vertices of a hull) */
     TAUT_UNSUPPORTED = 11, /**< this machine or build lacks what is needed; the text says what */
     TAUT_RESULT_MAX = 0x7fffffff
 } taut_result;

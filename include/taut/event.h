@@ -121,6 +121,8 @@ typedef struct taut_events {
     const taut_sleep_event* woke;        /**< the other way round */
     uint32_t fell_asleep_count;
     uint32_t woke_count;
+    uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved */
+    uint32_t reserved_limits;  /**< zero */
 } taut_events;
 
 /** One point of a touching pair. */

@@ -46,6 +46,8 @@ typedef struct taut_profile {
     uint64_t allocations; /**< calls of the allocator during the step */
     uint32_t awake;       /**< of the bodies; counts and quality above, but for bodies and joints, are theirs alone */
     uint32_t sleeping_islands;
+    uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved */
+    uint32_t reserved;         /**< zero */
 } taut_profile;
 
 /** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_STALE_HANDLE, TAUT_LOCKED. Thread safety: as event.h. */

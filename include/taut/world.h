@@ -51,6 +51,15 @@ typedef struct taut_world_def {
     float hit_speed;              /**< approach that makes a hit event [m/s], [0, 1e4]. Default 1 */
     uint32_t continuous;          /**< 1: what moves past its own thickness in a step is looked for along its way, so
                                        that nothing tunnels; 0: for no body. See taut_body_set_continuous. Default 1 */
+    uint32_t max_bodies;          /**< bodies and particles, static ones and those of cables included; with one more a
+                                       call returns TAUT_LIMIT. Points that a cable's reel adds within a step count and
+                                       are not refused. 0: no limit. Default 0 */
+    uint32_t max_colliders;       /**< likewise of colliders */
+    uint32_t max_joints;          /**< likewise of joints, those inside cables included */
+    uint32_t max_contacts;        /**< contacts (manifolds of up to four points; of a surface one for each part that is
+                                       touched) that a step solves. Of more, the deepest are kept, and of equal ones
+                                       the first by colliders; the rest are as if the two did not touch, and counted by
+                                       taut_events and taut_profile. 0: no limit. Default 0 */
 } taut_world_def;
 
 /** What taut_world_advance did. */

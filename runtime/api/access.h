@@ -111,6 +111,11 @@ private:
     taut_result result_ = TAUT_OK;
 };
 
+// Whether more of them fit: below the limit of the world's def, and into the slots.
+taut_result room_for_bodies(const char* call, const World& world, size_t more);
+taut_result room_for_colliders(const char* call, const World& world, size_t more);
+taut_result room_for_joints(const char* call, const World& world, size_t more);
+
 // ---------------------------------------------------------------- find
 
 // Readers share a world; a writer holds it alone. Whoever comes in between is refused, not kept waiting: he is a

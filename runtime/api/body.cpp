@@ -100,9 +100,9 @@ void add_load(World& world, uint32_t node, const Vec3& force, const Vec3& torque
 
 taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                      std::span<const Collider> colliders, taut_body* out) {
-    check.require(world.nodes.slots() < kMaxSlots, "too many bodies", TAUT_LIMIT);
-    check.require(world.colliders.ids.slots() + colliders.size() < kMaxSlots, "too many colliders", TAUT_LIMIT);
-    if (!check) return check.result();
+    taut_result room = room_for_bodies(check.call(), world, 1);
+    if (room == TAUT_OK) room = room_for_colliders(check.call(), world, colliders.size());
+    if (room != TAUT_OK) return room;
     NodeInfo own = info;
     own.continuous = world.def.continuous != 0;
     *out = world.body_handle(add_node(world, own, motion, mass, colliders));

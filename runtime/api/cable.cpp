@@ -206,10 +206,13 @@ taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* def, t
         if (tie[1].attached) path.back() = at[1];
         lay(check, world, *def, path, points);
         if (!check) return check.result();
-        const size_t slots = 2 * points.size() + std::max(world.nodes.slots(), world.joints.ids.slots());
-        if (!check.require(slots < kMaxSlots, "too many bodies or joints", TAUT_LIMIT)) return check.result();
 
         Cable plan = plan_of(world, *def);
+        const CableParts parts = parts_of(plan, static_cast<uint32_t>(points.size()) - 1, tie);
+        taut_result room = room_for_bodies(check.call(), world, parts.nodes);
+        if (room == TAUT_OK) room = room_for_colliders(check.call(), world, parts.colliders);
+        if (room == TAUT_OK) room = room_for_joints(check.call(), world, parts.joints);
+        if (room != TAUT_OK) return room;
         const uint32_t index = add_cable(world, plan, points, tie);
         *out = world.cable_handle(index);
         return TAUT_OK;

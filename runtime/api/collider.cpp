@@ -124,8 +124,8 @@ taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* de
         collider.node = node;
         const taut_result made = make_collider(check, world, kind, *def, collider);
         if (made != TAUT_OK) return made;
-        if (!check.require(world.colliders.ids.slots() < kMaxSlots, "too many colliders", TAUT_LIMIT))
-            return check.result();
+        const taut_result room = room_for_colliders(check.call(), world, 1);
+        if (room != TAUT_OK) return room;
         *out = world.collider_handle(add_collider(world, collider));
         wake(world, node);
         return TAUT_OK;

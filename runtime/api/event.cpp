@@ -36,7 +36,9 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 world.fell_asleep.data(),
                 world.woke.data(),
                 size(world.fell_asleep),
-                size(world.woke)};
+                size(world.woke),
+                world.profile.dropped_contacts,
+                0};
         return TAUT_OK;
     });
 }

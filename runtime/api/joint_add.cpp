@@ -176,7 +176,8 @@ void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, 
 }
 
 taut_result add_joint(Check& check, World& world, const Joint& joint, taut_joint* out) {
-    if (!check.require(world.joints.ids.slots() < kMaxSlots, "too many joints", TAUT_LIMIT)) return check.result();
+    const taut_result room = room_for_joints(check.call(), world, 1);
+    if (room != TAUT_OK) return room;
     reserve_pair_of_ends(world, joint);
     const uint32_t index = world.joints.add(joint);
     if (!joint.collide_connected) forget_pair_of_ends(world, joint);

@@ -1,8 +1,11 @@
-// Slots with generations: the index half of a handle. Slots are reused last-freed first; a slot whose
+// Slots with generations: the index half of a handle. The smallest free slot is taken first, so that what is created
+// stands in the order of creation whatever was destroyed before, in whatever order: steps go by slots. A slot whose
 // generations are used up is retired, so that a stale handle can never come back to life.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 
 #include "base/memory.h"
 
@@ -24,32 +27,35 @@ public:
     uint32_t create() {
         if (free_.empty()) {
             generation_.push_back(1);
+            ++live_;
             return static_cast<uint32_t>(generation_.size() - 1);
         }
+        std::pop_heap(free_.begin(), free_.end(), std::greater<>());
         const uint32_t index = free_.back();
         free_.pop_back();
+        ++live_;
         ++generation_[index];  // even: free, odd: live
         return index;
     }
     void destroy(uint32_t index) {
+        --live_;
         ++generation_[index];
-        if (generation_[index] < kMaxGeneration - 1) free_.push_back(index);
+        if (generation_[index] >= kMaxGeneration - 1) return;
+        free_.push_back(index);
+        std::push_heap(free_.begin(), free_.end(), std::greater<>());
     }
     bool live(uint32_t index) const { return index < generation_.size() && (generation_[index] & 1); }
     bool live(uint32_t index, uint32_t generation) const { return live(index) && generation_[index] == generation; }
     uint32_t generation(uint32_t index) const { return generation_[index]; }
     uint32_t slots() const { return static_cast<uint32_t>(generation_.size()); }
-    uint32_t count() const {
-        uint32_t n = 0;
-        for (uint32_t g : generation_) n += g & 1;
-        return n;
-    }
+    uint32_t count() const { return live_; }
 
 private:
     static size_t grown(size_t size, size_t capacity) { return size < capacity ? capacity : 2 * capacity + 16; }
 
+    uint32_t live_ = 0;
     Array<uint32_t> generation_;  // per slot; odd while live
-    Array<uint32_t> free_;        // capacity kept at least the number of slots
+    Array<uint32_t> free_;        // a heap, the smallest first; capacity kept at least the number of slots
 };
 
 }  // namespace taut

@@ -1,11 +1,12 @@
 // Run-time choice of the contact sweep's build.
 #include "constraints/contact_lanes.h"
+#include "simd/width.h"
 
 namespace taut {
 
 const ContactKernels& contact_kernels() {
-    static const bool wide = __builtin_cpu_supports("avx2");
-    return wide ? kContactKernelsAvx2 : kContactKernelsSse2;
+    static const ContactKernels* const kBuilds[] = {&kContactKernelsScalar, &kContactKernelsSse2, &kContactKernelsAvx2};
+    return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 
 }  // namespace taut

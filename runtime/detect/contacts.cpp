@@ -207,14 +207,15 @@ ActivePair active_of(const Pair& pair, uint32_t index) {
 
 // The fresh parts in place of the old ones, and the active pairs anew.
 void replace_parts(Pairs& pairs) {
-    pairs.scratch.clear();
-    auto next = pairs.fresh.begin();
-    for (const Pair& pair : pairs.list) {
-        if (pair.part != 0) continue;
-        pairs.scratch.push_back(pair);
-        while (next != pairs.fresh.end() && next->key == pair.key) pairs.scratch.push_back(*next++);
-    }
-    pairs.list.swap(pairs.scratch);
+    reserve_pairs(pairs.list, pairs.fresh.size());
+    std::erase_if(pairs.list, [](const Pair& pair) { return pair.part != 0; });
+    merge_pairs(
+        pairs.list, pairs.fresh.size(), [&] { return pairs.fresh.back().key; },
+        [&] {
+            const Pair pair = pairs.fresh.back();
+            pairs.fresh.pop_back();
+            return pair;
+        });
     pairs.active.clear();
     for (uint32_t i = 0; i < pairs.list.size(); ++i) {
         const Pair& pair = pairs.list[i];

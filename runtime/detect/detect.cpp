@@ -77,6 +77,45 @@ bool stays_within(const Nodes& nodes, const Collider& collider, const collision:
     return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin);
 }
 
+// Keys of the broadphase of which there is no record.
+void find_arrived(std::span<const uint64_t> keys, Pairs& pairs) {
+    const auto has = [](const Array<Pair>& list, size_t& at, uint64_t key) {
+        while (at < list.size() && list[at].key < key) ++at;
+        return at < list.size() && list[at].key == key;
+    };
+    size_t listed = 0, resting = 0;
+    pairs.arrived.clear();
+    for (const uint64_t key : keys)
+        if (!has(pairs.list, listed, key) && !has(pairs.resting, resting, key)) pairs.arrived.push_back(key);
+}
+
+// Records whose keys have left the broadphase leave the list.
+void drop_departed(const Nodes& nodes, const Colliders& colliders, std::span<const uint64_t> keys, Pairs& pairs) {
+    reserve_ended(pairs, [&](const Pair& pair) { return !std::binary_search(keys.begin(), keys.end(), pair.key); });
+    auto key = keys.begin();
+    size_t kept = 0;
+    for (const Pair& pair : pairs.list) {
+        while (key != keys.end() && *key < pair.key) ++key;
+        if (key != keys.end() && *key == pair.key)
+            pairs.list[kept++] = pair;
+        else if (pair.touching && pair.part == 0)
+            report_end(pairs, nodes, colliders, pair);
+    }
+    pairs.list.resize(kept);
+}
+
+Pair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
+    Pair pair;
+    pair.key = key;
+    const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
+    pair.a = a.node;
+    pair.b = b.node;
+    pair.a2 = a.node_b;
+    pair.b2 = b.node_b;
+    pair.filtered = !may_collide(nodes, colliders, pairs, pair);
+    return pair;
+}
+
 }  // namespace
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
@@ -155,29 +194,17 @@ void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& 
     refresh_joined(joints, pairs);
     if (broadphase.refresh_pairs()) pairs.complete = false;
     if (pairs.complete) return;
-    pairs.scratch.clear();
-    size_t old = 0, resting = 0;
-    const auto drop = [&](const Pair& pair) {  // it left the broadphase
-        if (pair.touching && pair.part == 0) report_end(pairs, nodes, colliders, pair);
-    };
-    for (uint64_t key : broadphase.pairs()) {
-        while (old < pairs.list.size() && pairs.list[old].key < key) drop(pairs.list[old++]);
-        if (old < pairs.list.size() && pairs.list[old].key == key) {
-            while (old < pairs.list.size() && pairs.list[old].key == key) pairs.scratch.push_back(pairs.list[old++]);
-            continue;
-        }
-        while (resting < pairs.resting.size() && pairs.resting[resting].key < key) ++resting;
-        if (resting < pairs.resting.size() && pairs.resting[resting].key == key) continue;
-        Pair& pair = pairs.scratch.emplace_back();
-        pair.key = key;
-        pair.a = colliders.record[pair.collider_a()].node;
-        pair.b = colliders.record[pair.collider_b()].node;
-        pair.a2 = colliders.record[pair.collider_a()].node_b;
-        pair.b2 = colliders.record[pair.collider_b()].node_b;
-        pair.filtered = !may_collide(nodes, colliders, pairs, pair);
-    }
-    while (old < pairs.list.size()) drop(pairs.list[old++]);
-    pairs.list.swap(pairs.scratch);
+    const std::span<const uint64_t> keys = broadphase.pairs();
+    find_arrived(keys, pairs);
+    reserve_pairs(pairs.list, pairs.arrived.size());
+    drop_departed(nodes, colliders, keys, pairs);
+    merge_pairs(
+        pairs.list, pairs.arrived.size(), [&] { return pairs.arrived.back(); },
+        [&] {
+            const Pair pair = new_pair(nodes, colliders, pairs, pairs.arrived.back());
+            pairs.arrived.pop_back();
+            return pair;
+        });
     pairs.complete = true;
 }
 

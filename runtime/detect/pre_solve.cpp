@@ -1,5 +1,7 @@
 #include "detect/pre_solve.h"
 
+#include "detect/drop_contacts.h"
+
 #include <algorithm>
 
 #include "detect/approach.h"
@@ -68,37 +70,20 @@ Verdict ask_host(const PreSolve& pre_solve, const taut_pre_solve& question, Pair
 }  // namespace
 
 uint32_t filter_contacts(const Nodes& nodes, const Colliders& colliders, const PreSolve& pre_solve, Pairs& pairs) {
-    Array<ActivePair>& active = pairs.active;
     const uint32_t filters = kAsksOneWay | (pre_solve.ask ? kAsksPreSolve : 0);
     const auto is_filtered = [&](const ActivePair& pair) { return (pair.asks & filters) != 0; };
     uint32_t refused = 0;
-    const auto is_ignored = [&](const ActivePair& item, bool touching) {
+    const auto is_ignored = [&](const ActivePair& item, const Pair& first) {
+        if (!is_filtered(item)) return false;
         Pair& pair = pairs.list[item.pair];
-        if ((item.asks & kAsksOneWay) && !from_open_side(colliders, pairs, pair, touching)) return true;
+        if ((item.asks & kAsksOneWay) && !from_open_side(colliders, pairs, pair, first.touching)) return true;
         if (!(item.asks & filters & kAsksPreSolve)) return false;
-        const Verdict verdict = ask_host(pre_solve, question_of(nodes, colliders, pairs, pair, touching), pair);
+        const Verdict verdict = ask_host(pre_solve, question_of(nodes, colliders, pairs, pair, first.touching), pair);
         refused += verdict == Verdict::refused;
         return verdict == Verdict::ignored;
     };
-    auto kept = std::find_if(active.begin(), active.end(), is_filtered);
-    for (auto item = kept; item != active.end();) {
-        Pair& first = first_of(pairs, item->pair);
-        const auto before = kept;
-        // The parts of a pair, which ask alike.
-        for (; item != active.end() && pairs.list[item->pair].key == first.key; ++item) {
-            if (is_filtered(*item) && is_ignored(*item, first.touching)) {
-                Pair& pair = pairs.list[item->pair];
-                pair.manifold.count = 0;
-                if (pair.part != 0) pair.touching = false;
-            } else {
-                *kept++ = *item;
-            }
-        }
-        if (kept != before || !first.touching) continue;
-        report_end(pairs, nodes, colliders, first);
-        first.touching = false;
-    }
-    active.erase(kept, active.end());
+    if (std::any_of(pairs.active.begin(), pairs.active.end(), is_filtered))
+        drop_contacts(nodes, colliders, pairs, is_ignored);
     return refused;
 }
 

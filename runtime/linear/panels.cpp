@@ -1,11 +1,9 @@
 // Run-time choice of the panels' build.
 #include "linear/panels.h"
+#include "simd/width.h"
 
 namespace taut {
 
-const PanelKernels& panel_kernels() {
-    static const bool wide = __builtin_cpu_supports("avx2");
-    return wide ? kPanelKernelsAvx2 : kPanelKernelsBase;
-}
+const PanelKernels& panel_kernels() { return kernel_width() == Width::avx2 ? kPanelKernelsAvx2 : kPanelKernelsBase; }
 
 }  // namespace taut

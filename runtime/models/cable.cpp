@@ -278,6 +278,14 @@ void drop_cable_node(World& world, uint32_t node) {
     world.nodes.remove(node);
 }
 
+CableParts parts_of(const Cable& plan, uint32_t segments, const CableTie (&tie)[2]) {
+    const size_t held = size_t{tie[0].attached} + size_t{tie[1].attached};
+    if (links(plan)) return {segments, segments, segments - 1 + held};
+    const size_t clamps = size_t{tie[0].clamped} + size_t{tie[1].clamped};
+    const size_t bends = plan.bending_stiffness > 0 ? segments - 1 + clamps : 0;
+    return {segments + 1, segments, segments + held + bends};
+}
+
 uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points, const CableTie (&tie)[2]) {
     world.cables.reserve_one();
     const uint32_t index = world.cables.add(Cable(plan));

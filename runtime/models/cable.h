@@ -26,6 +26,12 @@ struct CableTie {
     Vec3 anchor = Vec3::Zero();  // relative to the centre of mass, or in the world
 };
 
+// What a cable of so many segments consists of.
+struct CableParts {
+    size_t nodes, colliders, joints;
+};
+CableParts parts_of(const Cable& plan, uint32_t segments, const CableTie (&tie)[2]);
+
 // Adds a cable whose properties are in `plan`, whose own node, joint and length are ignored. Throws std::bad_alloc with
 // nothing changed.
 uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points, const CableTie (&tie)[2]);

@@ -25,20 +25,22 @@ bool rests(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.re
 
 // The pairs that meet a condition from one sorted list to another.
 template <class Condition>
-void transfer(Array<Pair>& from, Array<Pair>& to, Array<Pair>& scratch, Condition&& condition) {
-    if (std::none_of(from.begin(), from.end(), condition)) return;
-    scratch.clear();
-    const size_t all = from.size() + to.size();  // each of the three takes another's place in time
-    for (Array<Pair>* list : {&from, &to, &scratch})
-        if (list->capacity() < all) list->reserve(all + all / 2);
-    auto stays = to.begin();
-    for (const Pair& pair : from) {
-        if (!condition(pair)) continue;
-        while (stays != to.end() && stays->key < pair.key) scratch.push_back(*stays++);
-        scratch.push_back(pair);
-    }
-    scratch.insert(scratch.end(), stays, to.end());
-    to.swap(scratch);
+void transfer(Array<Pair>& from, Array<Pair>& to, Condition&& condition) {
+    const auto count = static_cast<size_t>(std::count_if(from.begin(), from.end(), condition));
+    if (count == 0) return;
+    reserve_pairs(to, count);
+    size_t left = from.size();  // of which the last that meets the condition is the next to go
+    const auto last = [&]() -> const Pair& {
+        while (!condition(from[left - 1])) --left;
+        return from[left - 1];
+    };
+    merge_pairs(
+        to, count, [&] { return last().key; },
+        [&] {
+            const Pair pair = last();
+            --left;
+            return pair;
+        });
     std::erase_if(from, condition);
 }
 
@@ -77,15 +79,14 @@ bool touches_closely(const Pair& pair) {
 void recall_pairs(World& world) {
     if (!world.sleep.recall) return;
     Pairs& pairs = world.pairs;
-    transfer(pairs.resting, pairs.list, pairs.scratch,
-             [&](const Pair& pair) { return some_side(pair, moves, world.nodes); });
+    transfer(pairs.resting, pairs.list, [&](const Pair& pair) { return some_side(pair, moves, world.nodes); });
     world.sleep.recall = false;
 }
 
 void retire_pairs(World& world) {
     if (world.sleep.bodies == 0) return;
     Pairs& pairs = world.pairs;
-    transfer(pairs.list, pairs.resting, pairs.scratch, [&](const Pair& pair) {
+    transfer(pairs.list, pairs.resting, [&](const Pair& pair) {
         return some_side(pair, rests, world.nodes) && !some_side(pair, moves, world.nodes);
     });
 }

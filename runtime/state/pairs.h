@@ -105,9 +105,10 @@ struct Pairs {
     explicit Pairs(Memory& memory)
         : list(memory),
           resting(memory),
-          scratch(memory),
+          arrived(memory),
           fresh(memory),
           active(memory),
+          by_depth(memory),
           ended(memory),
           joined(memory),
           reach(memory),
@@ -119,9 +120,10 @@ struct Pairs {
     Array<Pair> list;                       // sorted by key and part
     Array<Pair> resting;                    // sorted likewise: pairs of which no side moves and one is asleep
     bool complete = false;                  // all pairs of the broadphase are listed
-    Array<Pair> scratch;                    // for merges into the list
+    Array<uint64_t> arrived;                // keys that the list does not hold yet, sorted; update_pairs()
     Array<Pair> fresh;                      // parts touched in this frame, sorted; find_contacts()
     Array<ActivePair> active;               // sorted as list is; find_contacts()
+    Array<uint32_t> by_depth;               // in active, in the order of depth; limit_contacts()
     Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;                     // id of the world, for the handles in ended
     uint8_t asks = 0;                       // of all pairs: the world's contact events
@@ -133,6 +135,26 @@ struct Pairs {
     Array<collision::Placement> placement;  // by collider; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };
+
+// Room for more records. By a quarter, not by doubling: most of a pile's memory is here.
+inline void reserve_pairs(Array<Pair>& list, size_t more) {
+    const size_t needed = list.size() + more;
+    if (needed > list.capacity()) list.reserve(needed + needed / 4);
+}
+
+// Merges `count` records into a list, both sorted by key, in place, from the last to the first: last_key() is the key
+// of the last that is left, take() gives it away. Of equal keys the list's own come first. Room was reserved before.
+template <class LastKey, class Take>
+void merge_pairs(Array<Pair>& list, size_t count, LastKey&& last_key, Take&& take) {
+    size_t from = list.size();
+    list.resize(from + count);
+    for (size_t to = list.size(); to > from;) {
+        if (from > 0 && list[from - 1].key > last_key())
+            list[--to] = list[--from];
+        else
+            list[--to] = take();
+    }
+}
 
 // The record of part 0, which stands before those of the others.
 inline Pair& first_of(Pairs& pairs, uint32_t index) {

@@ -22,7 +22,7 @@ _Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
 _Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 32, "plain values");
 _Static_assert(sizeof(taut_ball_joint_def) == 96 && sizeof(taut_distance_joint_def) == 152, "no hidden padding");
 _Static_assert(sizeof(taut_fixed_joint_def) == 144 && sizeof(taut_hinge_joint_def) == 200, "no hidden padding");
-_Static_assert(sizeof(taut_joint_break_event) == 40 && sizeof(taut_events) == 152, "no hidden padding");
+_Static_assert(sizeof(taut_joint_break_event) == 40 && sizeof(taut_events) == 160, "no hidden padding");
 _Static_assert(sizeof(taut_contact_event) == 40 && sizeof(taut_contact_point) == 56, "likewise");
 _Static_assert(sizeof(taut_hit_event) == 80 && sizeof(taut_sensor_event) == 32, "likewise");
 _Static_assert(sizeof(taut_pre_solve) == 184 && sizeof(taut_pre_solve_answer) == 8, "likewise");

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "scenes/scene.h"
 
@@ -26,6 +27,12 @@ struct SolveTime {
     uint32_t solves = 0;
 };
 
+// How long a stage of the last step took.
+struct StageTime {
+    const char* name;
+    double milliseconds;
+};
+
 class Engine {
 public:
     virtual ~Engine() = default;
@@ -37,7 +44,8 @@ public:
     virtual Mass mass(size_t body) const = 0;
     virtual uint64_t state_hash() const = 0;
     virtual SolveTime solve_time() const { return {}; }
-    virtual uint32_t asleep() const { return 0; }       // bodies
+    virtual std::vector<StageTime> stage_times() const { return {}; }  // the same stages after every step
+    virtual uint32_t asleep() const { return 0; }                      // bodies
     virtual uint32_t quarantined() const { return 0; }  // bodies frozen by the last step because they became non-finite
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "metrics.h"
 #include "scenes/catalogue.h"
 #include "scenes/taut_world.h"
+#include "step_times.h"
 
 namespace bench {
 
@@ -25,6 +27,8 @@ struct Options {
     uint64_t seed = 0;
     bool geometric_stiffness = true;
     bool sleep = false;
+    uint32_t warm_up = 0;
+    double spike_limit = 0;
 };
 
 void print_scenes() {
@@ -55,6 +59,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
     app.add_flag("--sleep", options.sleep, "let what came to rest sleep; not for the peers");
+    app.add_option("--warm-up", options.warm_up, "steps before the worst one is looked for");
+    app.add_option("--spike-limit", options.spike_limit, "fail if the worst step takes so many times the median");
     app.add_flag("--list", list, "print all scenes");
     app.footer(kFieldHelp);
     try {
@@ -96,25 +102,6 @@ std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene&
 #endif
 }
 
-double part_of(const std::vector<double>& sorted, double share) {
-    auto index = static_cast<size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-    return sorted[std::clamp<size_t>(index, 1, sorted.size()) - 1];
-}
-
-void report_times(nlohmann::ordered_json& json, std::vector<double> times) {
-    constexpr size_t kLate = 60;
-    std::vector<double> late(times.end() - static_cast<std::ptrdiff_t>(std::min(kLate, times.size())), times.end());
-    std::sort(late.begin(), late.end());
-    double sum = 0;
-    for (double t : times) sum += t;
-    std::sort(times.begin(), times.end());
-    json["mean_ms"] = sum / static_cast<double>(times.size());
-    json["median_ms"] = part_of(times, 0.5);
-    json["p99_ms"] = part_of(times, 0.99);
-    json["max_ms"] = times.back();
-    json["late_ms"] = part_of(late, 0.5);
-}
-
 int run(const Options& options) {
     scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""});
     if (options.substeps) scene.world.substeps = *options.substeps;
@@ -125,12 +112,14 @@ int run(const Options& options) {
     uint32_t steps = options.steps.value_or(scene.steps);
     std::unique_ptr<Engine> engine = make_engine(options, scene);
     Metrics metrics(scene, *engine, steps);
-    std::vector<double> times;
+    StepTimes times;
     SolveTime solve;
     for (uint32_t step = 0; step < steps; ++step) {
         auto begin = std::chrono::steady_clock::now();
+        const double worked = thread_ms();
         engine->step();
-        times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+        times.add(took.count(), thread_ms() - worked, engine->stage_times());
         SolveTime last = engine->solve_time();
         solve.microseconds += last.microseconds;
         solve.solves += last.solves;
@@ -145,7 +134,9 @@ int run(const Options& options) {
     json["bodies"] = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                    [](const scenes::Body& body) { return body.kind != TAUT_BODY_STATIC; });
     json["steps"] = steps;
-    report_times(json, times);
+    times.report(json);
+    const Spike spike = times.worst_after(options.warm_up);
+    spike.report(json);
     json["finite"] = metrics.finite() ? 1 : 0;
     json["state_hash"] = hash;
     metrics.report(json);
@@ -156,6 +147,11 @@ int run(const Options& options) {
     json["geometric_stiffness"] = options.geometric_stiffness ? 1 : 0;
     if (options.sleep) json["asleep"] = engine->asleep();
     std::printf("%s\n", json.dump().c_str());
+    if (options.spike_limit > 0 && spike.ratio > options.spike_limit) {
+        std::fprintf(stderr, "taut-bench: step %zu took %.2f times the median, most of it in stage %s\n", spike.step,
+                     spike.ratio, spike.stage);
+        return kRunFailed;
+    }
     return kFine;
 }
 

@@ -44,6 +44,16 @@ public:
         return {static_cast<double>(profile.assemble_us) + static_cast<double>(profile.factor_us), profile.solves};
     }
 
+    std::vector<StageTime> stage_times() const override {
+        const taut_profile p = world_.profile();
+        const auto ms = [](float us) { return 1e-3 * static_cast<double>(us); };
+        return {{"broadphase", ms(p.broadphase_us)}, {"narrowphase", ms(p.narrowphase_us)},
+                {"partition", ms(p.partition_us)},   {"predict", ms(p.predict_us)},
+                {"assemble", ms(p.assemble_us)},     {"factor", ms(p.factor_us)},
+                {"sweep", ms(p.sweep_us)},           {"commit", ms(p.commit_us)},
+                {"publish", ms(p.publish_us)}};
+    }
+
     uint32_t asleep() const override {
         const taut_profile profile = world_.profile();
         return profile.bodies - profile.awake;

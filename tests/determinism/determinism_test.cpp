@@ -2,11 +2,12 @@
 #include <memory>
 #include <thread>
 
-#include "scenes/running_scene.h"
+#include "determinism/step_trace.h"
 
 namespace {
 
 using namespace lab;
+using namespace determinism;
 
 uint64_t hash_of(const RunningScene& run) {
     uint64_t hash = 0;
@@ -71,12 +72,22 @@ class SameBitsOnTeams : public testing::TestWithParam<const char*> {};
 TEST_P(SameBitsOnTeams, OfAnySize) {
     constexpr int kSteps = 40;
     scenes::Scene scene = scenes::make_scene(GetParam());
-    const auto alone = hashes(scene, kSteps);
+    TracedScene alone(scene);
+    std::vector<std::unique_ptr<TracedScene>> teams;
     for (uint32_t threads : {2u, 3u, 5u, 8u}) {
         scene.world.threads = threads;
-        const auto together = hashes(scene, kSteps);
-        for (size_t step = 0; step < alone.size(); ++step)
-            ASSERT_EQ(together[step], alone[step]) << threads << " threads differ first in step " << step;
+        teams.push_back(std::make_unique<TracedScene>(scene));
+    }
+    for (int step = 0; step < kSteps; ++step) {
+        alone.step();
+        const uint64_t hash = alone.hash();
+        for (const auto& team : teams) {
+            team->step();
+            const auto difference = StepTrace::first_difference(alone.trace, team->trace);
+            ASSERT_FALSE(difference) << team->scene.world.threads << " threads differ first in step " << step << ", "
+                                     << *difference;
+            ASSERT_EQ(team->hash(), hash) << team->scene.world.threads << " threads, step " << step;
+        }
     }
 }
 

@@ -1,13 +1,16 @@
-// Hashes after 120 steps, which every build must reproduce (compiler, optimisation, machine). A change of the physics
-// changes them: golden_hashes.inc then takes the lines that this test prints.
+// Hashes after 120 steps, which every build must reproduce (compiler, optimisation, machine), with any number of
+// workers and lanes of any width. A change of the physics changes them: golden_hashes.inc then takes the lines that
+// this test prints.
 #include <cinttypes>
 #include <cstdio>
 
 #include "scenes/running_scene.h"
+#include "simd/width.h"
 
 namespace {
 
 using namespace lab;
+using taut::Width;
 
 struct Golden {
     const char* scene;
@@ -18,15 +21,42 @@ constexpr Golden kGolden[] = {
 #include "determinism/golden_hashes.inc"
 };
 
+void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.scene; }
+
+uint64_t hash_of(const char* scene, uint32_t threads) {
+    scenes::Scene plan = scenes::make_scene(scene);
+    plan.world.threads = threads;
+    RunningScene run(std::move(plan));
+    for (int i = 0; i < 120; ++i) run.step();
+    uint64_t hash = 0;
+    ok(taut_world_get_state_hash(run.world.world, &hash));
+    return hash;
+}
+
 TEST(Golden, HashesAfter120Steps) {
     for (const Golden& golden : kGolden) {
-        RunningScene run(golden.scene);
-        for (int i = 0; i < 120; ++i) run.step();
-        uint64_t hash = 0;
-        ok(taut_world_get_state_hash(run.world.world, &hash));
+        const uint64_t hash = hash_of(golden.scene, 1);
         std::printf("{\"%s\", 0x%016" PRIx64 "},\n", golden.scene, hash);
         EXPECT_EQ(hash, golden.hash) << golden.scene;
     }
 }
+
+class GoldenMatrix : public testing::TestWithParam<Golden> {
+protected:
+    void TearDown() override { taut::set_kernel_width(taut::widest()); }
+};
+
+TEST_P(GoldenMatrix, HoldsWithAnyWorkersAndLanes) {
+    for (const Width width : {Width::scalar, Width::sse2, Width::avx2}) {
+        if (width > taut::widest()) continue;
+        taut::set_kernel_width(width);
+        for (const uint32_t threads : {1u, 2u, 3u, 5u, 8u})
+            EXPECT_EQ(hash_of(GetParam().scene, threads), GetParam().hash)
+                << threads << " threads, width " << static_cast<int>(width);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GoldenMatrix, testing::ValuesIn(kGolden),
+                         [](const auto& tested) -> std::string { return tested.param.scene; });
 
 }  // namespace

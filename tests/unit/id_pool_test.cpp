@@ -23,7 +23,7 @@ struct PoolTest : testing::Test {
 
 using IdPoolTest = PoolTest;
 
-TEST_F(IdPoolTest, CountsUpAndReusesTheLastFreed) {
+TEST_F(IdPoolTest, CountsUpAndReusesTheSmallestFree) {
     EXPECT_EQ(create(), 0u);
     EXPECT_EQ(create(), 1u);
     EXPECT_EQ(create(), 2u);
@@ -31,8 +31,8 @@ TEST_F(IdPoolTest, CountsUpAndReusesTheLastFreed) {
     pool.destroy(2);
     EXPECT_EQ(pool.count(), 1u);
     EXPECT_EQ(pool.slots(), 3u);
-    EXPECT_EQ(create(), 2u);
     EXPECT_EQ(create(), 0u);
+    EXPECT_EQ(create(), 2u);
     EXPECT_EQ(create(), 3u);
     EXPECT_EQ(pool.count(), 4u);
 }

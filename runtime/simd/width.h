@@ -1,0 +1,15 @@
+// How wide the kernels work that are built several times with the same bits.
+#pragma once
+
+#include <cstdint>
+
+namespace taut {
+
+enum class Width : uint8_t { scalar, sse2, avx2 };
+
+Width widest();        // that this processor runs
+Width kernel_width();  // that kernels use: the widest, unless a test asked for less
+// For tests that compare builds; at most widest(), and in effect from the next step of any world on.
+void set_kernel_width(Width width);
+
+}  // namespace taut
