@@ -247,6 +247,9 @@ double spin_radius(const Shape& shape, double lever);
 // Radius of the ball that grows the core to the shape [m]: what of the shape does not turn with it.
 double ball_radius(const Shape& shape);
 
+// Whether contacts stay in place while the shape rolls about its y axis, and are no longer of its core: of cylinders and
+// cones.
+bool rolls(const Shape& shape);
 // About where that ball, and the one inside the shape, have their middle, in the shape's frame.
 Vec3 middle(const Shape& shape);
 

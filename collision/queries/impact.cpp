@@ -84,6 +84,11 @@ Placement Motion::after(double time) const {
 
 double ball_radius(const Shape& shape) { return is_convex(shape) ? core_radius(shape) : 0.0; }
 
+bool rolls(const Shape& shape) {
+    return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone ||
+           shape.kind == ShapeKind::tapered_capsule;
+}
+
 Vec3 middle(const Shape& shape) {
     return is_convex(shape) ? Vec3(centre_line(shape).at(0.5f).cast<double>()) : Vec3(Vec3::Zero());
 }

@@ -38,6 +38,7 @@ struct alignas(32) LaneGroup {
     uint32_t any_turns = 0;           // 1: some turns is 1
     uint32_t is_round = 0;            // 1: some round is not 0
     uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has rolling or spinning friction
+    uint8_t rolls[2][kLanes];         // of a and b, 1: levers stay as they are while the body turns
 };
 
 struct alignas(32) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move

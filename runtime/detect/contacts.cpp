@@ -131,6 +131,8 @@ void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders,
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
     const Vec3f from_a = offset_of(nodes, a, shaped.at_a());
     for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
+    pair.rolls_a = pairs.pace[pair.collider_a()].rolls;
+    pair.rolls_b = pairs.pace[pair.collider_b()].rolls;
     pair.round_a = pairs.pace[pair.collider_a()].round;
     pair.round_b = pairs.pace[pair.collider_b()].round;
     pair.then = shaped.then();

@@ -30,10 +30,12 @@ Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shap
     const NodeInfo& info = nodes.info[collider.node];
     const bool looked_for = collider.node_b == kNone && (info.continuous || info.kind == NodeKind::fixed);
     const auto round = static_cast<float>(collision::ball_radius(shape));
-    if (!looked_for) return {std::numeric_limits<double>::infinity(), 0, round};
+    const bool rolls = collision::rolls(shape);
+    if (!looked_for) return {std::numeric_limits<double>::infinity(), 0, round, rolls};
     const double lever = (collider.position - nodes.mass[collider.node].centre).norm();
     const double spin = nodes.motion[collider.node].w.norm();
-    return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0, round};
+    return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0, round,
+            rolls};
 }
 
 bool fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {

@@ -30,8 +30,9 @@ struct Pair {
     collision::PairCache cache;
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
     float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
-    float round_a = 0,
-          round_b = 0;   // radii of the balls that grow the two cores to their shapes [m]; see state/levers.h
+    bool rolls_a = false, rolls_b = false;  // contact levers stay while the shape turns: collision::rolls()
+    // Radii of the balls that grow the two cores to their shapes [m]; see state/levers.h.
+    float round_a = 0, round_b = 0;
     Impulse impulse[4];  // by point: carried in, updated by the solver
     float friction = 0;  // of the two surfaces together
     float restitution = 0;
@@ -99,6 +100,7 @@ struct Pace {
     double thickness = 0;  // [m]; infinite: not to be looked for
     double turning = 0;    // way of its furthest point about the centre of mass [m]
     float round = 0;       // collision::ball_radius() [m]
+    bool rolls = false;    // collision::rolls()
 };
 
 struct Pairs {

@@ -59,6 +59,8 @@ void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, co
     g.b[lane] = pair.b + 1;
     g.friction[lane] = pair.friction;
     g.turns[lane] = 0;
+    g.rolls[0][lane] = pair.rolls_a;
+    g.rolls[1][lane] = pair.rolls_b;
     g.round[0][lane] = pair.round_a;
     g.round[1][lane] = pair.round_b;
     for (int i = 0; i < 3; ++i) {
@@ -82,6 +84,7 @@ void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nod
             filled = static_cast<uint32_t>(pair.manifold.count);
         } else {
             g.a[lane] = g.b[lane] = 0;
+            g.rolls[0][lane] = g.rolls[1][lane] = 0;
             g.friction[lane] = g.turns[lane] = g.round[0][lane] = g.round[1][lane] = 0;
             for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
         }
@@ -162,11 +165,11 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
 namespace {
 
 // One side's levers with its body: what turns is the core; the gap since detection goes on from the new lever.
-void turn_side(const Quat& turn, const Vec3f& skin, float (&r)[3][kLanes], int lane, const Vec3f& normal, float sign,
-               LanePoint& p) {
+void turn_side(const Quat& turn, const Vec3f& skin, bool rolls, float (&r)[3][kLanes], int lane, const Vec3f& normal,
+               float sign, LanePoint& p) {
     const Vec3f core = Vec3f(r[0][lane], r[1][lane], r[2][lane]) - skin;
     const Vec3f turned = turn.cast<float>() * core;
-    for (int i = 0; i < 3; ++i) r[i][lane] = turned[i] + skin[i];
+    for (int i = 0; i < 3 && !rolls; ++i) r[i][lane] = turned[i] + skin[i];
     p.gap0[lane] += sign * normal.dot(turned - core);
 }
 
@@ -200,8 +203,10 @@ bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system) {
         const Vec3f n(g.normal[0][lane], g.normal[1][lane], g.normal[2][lane]);
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = lanes.point[g.first_point + k];
-            if (system.turned[a]) turn_side(system.turn[a], g.round[0][lane] * n, p.ra, lane, n, -1, p);
-            if (system.turned[b]) turn_side(system.turn[b], -g.round[1][lane] * n, p.rb, lane, n, 1, p);
+            if (system.turned[a])
+                turn_side(system.turn[a], g.round[0][lane] * n, g.rolls[0][lane] != 0, p.ra, lane, n, -1, p);
+            if (system.turned[b])
+                turn_side(system.turn[b], -g.round[1][lane] * n, g.rolls[1][lane] != 0, p.rb, lane, n, 1, p);
         }
     }
     return any;

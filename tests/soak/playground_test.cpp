@@ -69,7 +69,8 @@ Record run(soak::Playground& ground, int frames) {
     return record;
 }
 
-void soak_for(int frames) {
+// growth: of memory after the first half, in parts of it.
+void soak_for(int frames, double growth) {
     soak::Playground ground(11);
     Record record = run(ground, frames);
     std::sort(record.ms.begin(), record.ms.end());
@@ -90,7 +91,7 @@ void soak_for(int frames) {
     EXPECT_EQ(tally.quarantined, 0u);
     EXPECT_EQ(record.fallen, 0u);
     EXPECT_LE(record.joint_error, 0.05);
-    EXPECT_LE(record.end_bytes, record.warm_bytes + record.warm_bytes / 4);
+    EXPECT_LE(static_cast<double>(record.end_bytes), (1 + growth) * static_cast<double>(record.warm_bytes));
     EXPECT_LE(record.takes, n / 10);
     EXPECT_GT(tally.found, 0u);
     EXPECT_GT(record.found_beside, 0u);
@@ -102,7 +103,7 @@ void soak_for(int frames) {
     }
 }
 
-TEST(PlaygroundShort, HoldsForTenSeconds) { soak_for(600); }
-TEST(Playground, HoldsForHalfAnHour) { soak_for(108000); }
+TEST(PlaygroundShort, HoldsForTenSeconds) { soak_for(600, 0.6); }  // more things come until two thirds of it
+TEST(Playground, HoldsForHalfAnHour) { soak_for(108000, 0.1); }
 
 }  // namespace

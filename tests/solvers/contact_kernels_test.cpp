@@ -283,7 +283,7 @@ TEST_P(FusedSweep, HasTheImpulsesOfTheGenericRows) {
     expect_same(lanes, rows);
 }
 
-// Between detections the anchors turn with their bodies: gap0 + n . (shift of b - shift of a) is C at the new poses.
+// Between detections the anchors, each on its own surface, turn with their bodies: gap0 + n . (shift of b - shift of a) is C at the new poses.
 TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
     for (int substep = 0; substep < 3; ++substep) {
         for (Rig* rig : {&lanes, &rows}) {
@@ -309,7 +309,8 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
                     const uint32_t node = end == 0 ? pair.a : pair.b;
                     const System::Found& found = rig.w.system.found[node + 1];
                     const System::Found& of_a = rig.w.system.found[pair.a + 1];  // its centre is its origin here
-                    const Vec3 at = of_a.x + point.position.cast<double>();
+                    const Vec3 half = (0.5f * point.separation * pair.manifold.normal).cast<double>();
+                    const Vec3 at = of_a.x + point.position.cast<double>() + (end == 0 ? -half : half);
                     const NodeMotion& m = rig.w.nodes.motion[node];
                     const Vec3 now = m.x + m.q * (found.q.conjugate() * (at - found.x));
                     moved[end] = pair.manifold.normal.cast<double>().dot(now - at);
