@@ -67,7 +67,7 @@ public:
           at_a_(&pairs.placement[pair.collider_a()]),
           at_b_(&pairs.placement[pair.collider_b()]),
           margin_(margin_of(nodes, pair, time)) {
-        if (!fast(nodes, pairs, pair, time)) return;
+        if (!pair.fast) return;
         encounter_.emplace(nodes, colliders, shapes, pairs, pair);
         look_ahead(time);
     }
@@ -245,6 +245,7 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
         Pair& pair = pairs.list[active.pair];
         for (uint32_t c : {pair.collider_a(), pair.collider_b()})
             pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
+        pair.fast = is_fast(nodes, pairs, pair, substep);
         const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
         if (pair.part == 0) {
             find_points(shaped, nodes, colliders, pairs, pair);
@@ -273,6 +274,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
             Pair& pair = pairs.list[i];
             if (pair.filtered || pair.part != 0) continue;
             pair.answered = false;
+            pair.fast = is_fast(nodes, pairs, pair, time_step);
             pair.on_surface = has_parts(colliders, shapes, pair);
             if (!pair.on_surface)
                 find_points(Shaped(nodes, colliders, shapes, pairs, pair, time_step), nodes, colliders, pairs, pair);
@@ -286,7 +288,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
         Pair& pair = pairs.list[i];
         parts = parts || pair.part != 0;
         if (pair.filtered || pair.part != 0) continue;
-        if (fast(nodes, pairs, pair, time_step)) pairs.fast.push_back(pair.key);
+        if (pair.fast) pairs.fast.push_back(pair.key);
         const size_t fresh = pairs.fresh.size();
         if (pair.on_surface) {
             size_t end = i + 1;

@@ -38,7 +38,7 @@ Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shap
             rolls};
 }
 
-bool fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {
+bool is_fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {
     const Pace &a = pairs.pace[pair.collider_a()], &b = pairs.pace[pair.collider_b()];
     const double linear = time * (nodes.motion[pair.a].v - nodes.motion[pair.b].v).norm();
     return linear + a.turning + b.turning > a.thickness + b.thickness;

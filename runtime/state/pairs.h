@@ -44,6 +44,7 @@ struct Pair {
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
     bool driven = false;      // else these two mean nothing
     bool on_surface = false;  // a shape has parts; of records with part 0
+    bool fast = false;        // looked for along its way in this frame; detect/impact.h
     bool filtered = false;    // never collides (filter, joint); kept to remember the answer
     bool touching = false;    // had a point at the end of the last step; part 0: or another part had
     bool answered = false;    // the host gave this step's friction and restitution

@@ -166,4 +166,24 @@ TEST_P(BallRolls, FromSlidingToFiveSeventhsOfItsSpeed) {
 
 INSTANTIATE_TEST_SUITE_P(On, BallRolls, testing::Values(Ground::static_box, Ground::plane));
 
+// A light box that carries a heavy load by a joint is solved in a block; set in motion from rest it slides all the
+// same.
+TEST(Friction, SlowsALoadedBoxByMuG) {
+    World world;
+    world.add_ground(0.1);
+    const taut_body box =
+        world.add({.shape = world.box({0.5, 0.1, 0.5}), .position = {0, 0.1, 0}, .mass = 1, .friction = 0.1});
+    const taut_body load = world.add({.position = {0, 0.1, 0}, .mass = 100, .inertia = {10, 10, 10}});
+    taut_fixed_joint_def joint;
+    taut_fixed_joint_def_init(&joint);
+    joint.body_a = box;
+    joint.body_b = load;
+    taut_joint out{};
+    ok(taut_world_add_fixed_joint(world.handle, &joint, &out));
+    world.step(30);
+    for (const taut_body body : {box, load}) ok(taut_body_set_velocity(body, {3, 0, 0}, {0, 0, 0}));
+    world.step(60);
+    EXPECT_NEAR(velocity(load).x, 3 - 0.1 * kG, 0.03 * 0.1 * kG);
+}
+
 }  // namespace
