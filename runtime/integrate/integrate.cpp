@@ -6,22 +6,19 @@ namespace taut {
 namespace {
 
 // Gyroscopic torque in body axes, where the inertia is constant; the explicit form spins thin bodies up.
-// Implicit midpoint, I (w - w0) + h m x I m = 0 with m = (w + w0)/2, keeps w.I w and |I w| as they are; at most three
-// Newton steps, of slow bodies one or two, solve it where a substep turns the body by less than a radian or so.
+// Implicit midpoint, I (w - w0) + h m x I m = 0 with m = (w + w0)/2, keeps w.I w and |I w| as they are; three Newton
+// steps solve it where a substep turns the body by less than a radian or so.
 bool gyroscopic_midpoint(const Vec3& w0, const Mat3& inertia, double h, Vec3& w) {
-    constexpr double kSolved = 1e-10, kGood = 1e-6;  // of I w0
-    const double scale = (inertia * w0).norm();
     w = w0;
-    double off = 0;
+    Vec3 residual;
     for (int i = 0; i <= 3; ++i) {
         const Vec3 m = 0.5 * (w + w0), l = inertia * m;
-        const Vec3 residual = inertia * (w - w0) + h * m.cross(l);
-        off = residual.norm();
-        if (i == 3 || off <= kSolved * scale) break;
+        residual = inertia * (w - w0) + h * m.cross(l);
+        if (i == 3) break;
         const Mat3 derivative = inertia + 0.5 * h * (hat(m) * inertia - hat(l));
         w -= derivative.inverse() * residual;
     }
-    return off <= kGood * scale;
+    return residual.norm() <= 1e-6 * (inertia * w0).norm();
 }
 
 // One Newton step of implicit Euler, I (w - w0) + h w x I w = 0: damps, and is stable at any speed.
