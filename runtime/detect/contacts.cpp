@@ -117,6 +117,12 @@ bool has_parts(const Colliders& colliders, const Shapes& shapes, const Pair& pai
     return of(pair.collider_a()) || of(pair.collider_b());
 }
 
+// By the host's function or a one-way direction: what goes through on purpose is not held back.
+bool may_be_ignored(const Colliders& colliders, const Pair& pair) {
+    const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
+    return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
+}
+
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
 Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at) {
     if (a.node_b != kNone) return (at.position - nodes.motion[a.node].x).cast<float>();
@@ -288,7 +294,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
         Pair& pair = pairs.list[i];
         parts = parts || pair.part != 0;
         if (pair.filtered || pair.part != 0) continue;
-        if (pair.fast) pairs.fast.push_back(pair.key);
+        if (pair.fast && !may_be_ignored(colliders, pair)) pairs.fast.push_back(pair.key);
         const size_t fresh = pairs.fresh.size();
         if (pair.on_surface) {
             size_t end = i + 1;

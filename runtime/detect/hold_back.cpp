@@ -43,8 +43,9 @@ Vec3 excess(const Passage& a, const Passage& b) {
     return (1 - hit.fraction) * along;
 }
 
-// Of inverse mass, where nothing holds the node [1/kg].
+// Of inverse mass, where nothing holds the node [1/kg]: no joint, no sleep, no quarantine.
 double ease(const Nodes& nodes, const Joints& joints, uint32_t node) {
+    if (!nodes.solved(node)) return 0;
     const bool held = std::any_of(joints.record.begin(), joints.record.end(),
                                   [&](const Joint& joint) { return joint.type && ends_on(joint, node); });
     return held ? 0 : nodes.mass[node].inv_mass;

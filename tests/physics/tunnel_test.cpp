@@ -151,6 +151,27 @@ TEST(Continuous, ABulletTakesAThinPlateAlong) {
     }
 }
 
+TEST(Continuous, AOneWayPlatformLetsABulletThroughFromBehindOnly) {
+    for (double side : {-1.0, 1.0}) {
+        World world(weightless);
+        const taut_body platform = world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({1, 0.01, 1})});
+        taut_collider collider{};
+        uint32_t count = 0;
+        ok(taut_body_get_colliders(platform, &collider, 1, &count));
+        ok(taut_collider_set_one_way(collider, {0, 1, 0}));
+        const taut_body ball = world.add({.shape = world.sphere(0.02),
+                                          .position = {0, side * 4.1, 0},
+                                          .velocity = {0, -side * 200, 0},
+                                          .mass = 0.1});
+        world.step(10);
+        if (side < 0)
+            EXPECT_NEAR(velocity(ball).y, 200, 0.01);
+        else
+            EXPECT_NEAR(position(ball).y, 0.03, 0.01);
+        EXPECT_NEAR(position(ball).y, side < 0 ? -4.1 + 200 * 10 * world.frame() : 0.03, 0.01);
+    }
+}
+
 // A rod about a pivot sweeps through more than a right angle in a step; the post stands in its way.
 TEST(Continuous, ASpinningRodStopsAtAPost) {
     for (double spin : {20.0, 60.0, 150.0}) {
