@@ -46,9 +46,11 @@ struct ContactSweep {
             for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
             F::transpose(row, velocity);
         }
-        void scatter(const uint32_t node[kLanes], SweepVelocity* velocities) const {
+        // What no impulse moves is not written: groups on other threads read it.
+        void scatter(const uint32_t node[kLanes], SweepVelocity* velocities, const SweepMass* masses) const {
+            alignas(32) float nowhere[8];
             float* row[kLanes];
-            for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
+            for (int i = 0; i < kLanes; ++i) row[i] = masses[node[i]].inv_mass > 0 ? velocities[node[i]].v : nowhere;
             F::transpose_back(velocity, row);
         }
         V turn(const V& l) const {  // I^-1 l
@@ -258,8 +260,8 @@ struct ContactSweep {
                 a.add(zero_minus(push), load(p.ra));
             }
             if (g.rolling != kNoLanes) warm_start_rolling(contacts.rolling[g.rolling], f, a, b);
-            a.scatter(g.a, velocities);
-            b.scatter(g.b, velocities);
+            a.scatter(g.a, velocities, masses);
+            b.scatter(g.b, velocities, masses);
         }
     }
 
@@ -289,8 +291,8 @@ struct ContactSweep {
                 friction_rows(p, drive_of(contacts, g, k), f, ra, rb, a, b);
             }
             if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
-            a.scatter(g.a, velocities);
-            b.scatter(g.b, velocities);
+            a.scatter(g.a, velocities, masses);
+            b.scatter(g.b, velocities, masses);
         }
     }
 
@@ -311,8 +313,8 @@ struct ContactSweep {
                 friction_rows(p, drive_of(contacts, g, k), f, ra, rb, a, b);
             }
             if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
-            a.scatter(g.a, velocities);
-            b.scatter(g.b, velocities);
+            a.scatter(g.a, velocities, masses);
+            b.scatter(g.b, velocities, masses);
         }
     }
 
@@ -337,8 +339,8 @@ struct ContactSweep {
                 normal_row(p, f.n, load(p.ra), load(p.rb), a, b, wanted, active, zero);
                 F::if_greater(active, zero, zero, approach).store(p.approach);  // once
             }
-            a.scatter(g.a, velocities);
-            b.scatter(g.b, velocities);
+            a.scatter(g.a, velocities, masses);
+            b.scatter(g.b, velocities, masses);
         }
     }
 
