@@ -59,8 +59,11 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
     const double frame = w.def.time_step;
     system.h = frame / group.substeps;
-    build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
-    if (solver.wide_contacts) build_lanes(w.team, system, group, w.pairs, w.nodes, *settings.kernels);
+    build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
+    if (solver.lanes) {
+        build_lanes(w.team, system, group, w.pairs, w.nodes, *settings.kernels);
+        build_joint_lanes(system, group);
+    }
     watch_group(group, system, w.pairs, w.watch);
     w.profile.predict_us += watch.lap();
 
@@ -70,11 +73,12 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
             find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(w.team, system, group, w.nodes, gravity);
-        if (solver.wide_contacts && i > 0) turn_lanes(w.team, system, *settings.kernels);
+        if (solver.lanes && i > 0) turn_lanes(w.team, system, *settings.kernels);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();
-        evaluate_rows(system, 1 - (i + 1.0) / group.substeps, frame);
+        evaluate_rows(w.team, system, 1 - (i + 1.0) / group.substeps, frame);
+        if (solver.lanes) load_joint_lanes(w.team, system, *settings.joint_kernels);
         tell(w, {Stage::assemble, index, i});
         w.profile.assemble_us += watch.lap();
         Substep substep{w.team,   system, group,     w.partition.blocks,     w.nodes,
@@ -99,14 +103,15 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
     }
-    if (solver.wide_contacts) store_lanes(w.team, system, w.pairs);
+    if (solver.lanes) store_lanes(w.team, system, w.pairs);
 }
 
 void solve(World& w, Stopwatch& watch) {
     const Solver& solver = *solvers()[w.def.solver];
     const taut_vec3 g = w.def.gravity;
-    const SolverSettings settings{w.def.sweeps, w.def.geometric_stiffness != 0, w.def.velocity_filter,
-                                  double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z, &contact_kernels()};
+    const SolverSettings settings{w.def.sweeps,          w.def.geometric_stiffness != 0,
+                                  w.def.velocity_filter, double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
+                                  &contact_kernels(),    &joint_kernels()};
     SolverReport report;
     begin_frame(w.system, w.nodes);
     w.profile.predict_us += watch.lap();

@@ -8,74 +8,16 @@
 // their normal impulses times an arm as the limit.
 #pragma once
 
-#include "constraints/contact_lanes.h"
-#include "simd/lanes.h"
+#include "constraints/sweep_side.inl"
 
 namespace taut {
 
 template <class F>
-struct Vec3Lanes {
-    F x, y, z;
-    friend Vec3Lanes operator+(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Vec3Lanes operator*(const F& s, const Vec3Lanes& a) { return {s * a.x, s * a.y, s * a.z}; }
-};
-
-template <class F>
 struct ContactSweep {
     using V = Vec3Lanes<F>;
+    using Side = SweepSide<F>;
 
-    static F dot(const V& a, const V& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    static V cross(const V& a, const V& b) {
-        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    }
     static V load(const float (&p)[3][kLanes]) { return {F::load(p[0]), F::load(p[1]), F::load(p[2])}; }
-
-    // One side of a lane group: velocities and inverse masses of eight nodes.
-    struct Side {
-        F velocity[8];  // v xyz, pad, w xyz, pad
-        F inv_mass, xx, yy, zz, xy, xz, yz;
-
-        void gather(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepMass* masses) {
-            const float* row[kLanes];
-            F mass[8];
-            for (int i = 0; i < kLanes; ++i) row[i] = &masses[node[i]].inv_mass;
-            F::transpose(row, mass);
-            inv_mass = mass[0];
-            xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
-            for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
-            F::transpose(row, velocity);
-        }
-        // What no impulse moves is not written: groups on other threads read it.
-        void scatter(const uint32_t node[kLanes], SweepVelocity* velocities, const SweepMass* masses) const {
-            alignas(32) float nowhere[8];
-            float* row[kLanes];
-            for (int i = 0; i < kLanes; ++i) row[i] = masses[node[i]].inv_mass > 0 ? velocities[node[i]].v : nowhere;
-            F::transpose_back(velocity, row);
-        }
-        V turn(const V& l) const {  // I^-1 l
-            return {xx * l.x + xy * l.y + xz * l.z, xy * l.x + yy * l.y + yz * l.z, xz * l.x + yz * l.y + zz * l.z};
-        }
-        V at(const V& r) const {  // v + w x r
-            return V{velocity[0], velocity[1], velocity[2]} + cross(V{velocity[4], velocity[5], velocity[6]}, r);
-        }
-        V spin() const { return {velocity[4], velocity[5], velocity[6]}; }
-        void add_spin(const V& l) {
-            const V change = turn(l);
-            velocity[4] = velocity[4] + change.x;
-            velocity[5] = velocity[5] + change.y;
-            velocity[6] = velocity[6] + change.z;
-        }
-        void add(const V& p, const V& r) {
-            velocity[0] = velocity[0] + inv_mass * p.x;
-            velocity[1] = velocity[1] + inv_mass * p.y;
-            velocity[2] = velocity[2] + inv_mass * p.z;
-            const V spin = turn(cross(r, p));
-            velocity[4] = velocity[4] + spin.x;
-            velocity[5] = velocity[5] + spin.y;
-            velocity[6] = velocity[6] + spin.z;
-        }
-    };
 
     struct Frame {  // of a lane group
         V n, t1, t2;

@@ -1,11 +1,10 @@
-// Projected Gauss-Seidel by colour: contacts in lanes where the group has them, all else as rows.
-// Row blocks are solved as blocks: dp = -(S + c)^-1 (J v - target + c p), S = J W J^T, then the bound.
+// Projected Gauss-Seidel by colour: joints and contacts in lanes, what is neither as rows.
 #include "solvers/projected_gauss_seidel.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "system/axis_rows.h"
+#include "system/assemble.h"
 #include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
@@ -48,56 +47,6 @@ public:
     void move_to(const RowVector& next) {
         apply(next - impulse());
         Eigen::Map<RowVector>(&system_.rows.impulse[block_.row], rows_) = next;
-    }
-
-    void solve_joint(const SweepTerms& soft, bool biased) {
-        solve_locked(soft, biased);
-        for (int r = 0; block_.axis && r < rows_; ++r)
-            for_each_axis_row(block_, r, system_.rows.error[block_.row + static_cast<uint32_t>(r)], system_.h,
-                              [&](const AxisRow& axis) { solve_axis(axis, r, soft, biased); });
-    }
-
-    // The locked rows as one block; the others are left out by an identity in their place.
-    void solve_locked(const SweepTerms& soft, bool biased) {
-        RowMatrix s = effective();
-        RowVector residual = velocity();
-        const RowMatrix c = compliance_of(block_, system_.h);
-        const RowVector rate = error_rate_of(system_, block_), p = impulse();
-        RowVector keep = RowVector::Ones(rows_);
-        for (int r = 0; r < rows_; ++r) {
-            if (!block_.locked(r)) continue;
-            if (block_.elastic(r)) {  // physical softness: the same row in both phases
-                residual[r] += rate[r] + c.row(r) * p;
-                s.row(r) += c.row(r);
-            } else if (biased) {
-                residual[r] =
-                    soft.mass_scale *
-                    (residual[r] + soft.bias_rate * system_.rows.error[block_.row + static_cast<uint32_t>(r)]);
-                keep[r] = 1 - soft.impulse_scale;
-            }
-        }
-        for (int r = 0; r < rows_; ++r) {
-            if (block_.locked(r)) continue;
-            s.row(r).setZero();
-            s.col(r).setZero();
-            s(r, r) = 1;
-            residual[r] = 0;
-        }
-        move_to(RowVector(keep.cwiseProduct(p) - s.inverse() * residual));
-    }
-
-    // A stop, drive or friction, with its own part of the row's impulse.
-    void solve_axis(const AxisRow& axis, int r, const SweepTerms& soft, bool biased) {
-        const double k = effective()(r, r), before = system_.h * *axis.force;
-        double target = biased ? axis.target : axis.relaxed_target;
-        if (axis.stop && !axis.physical && axis.gap <= 0 && biased)
-            target = std::min<double>(soft.push, -soft.bias_rate * axis.gap);
-        const double step = (target - axis.sign * velocity()[r] - axis.compliance * before) / (k + axis.compliance);
-        const double mu = std::clamp(before + step, axis.stop ? 0.0 : -axis.limit, axis.limit);
-        *axis.force = static_cast<float>(mu / system_.h);
-        RowVector p = impulse();
-        p[r] += axis.sign * (mu - before);
-        move_to(p);
     }
 
     // Normal row first, then the tangents on the cone; as in the fused sweep (constraints/contact_sweep.inl).
@@ -154,24 +103,11 @@ private:
     int rows_;
 };
 
-struct Range {
-    uint32_t first = 0, count = 0;
-};
-
-// Rows of blocks are the direct solver's, those of their joints first and those of their contacts last.
-Range swept_rows(const Substep& s) {
-    Range swept;
-    for (uint32_t b : s.group.blocks) swept.first += static_cast<uint32_t>(s.blocks[b].joints.size());
-    swept.count = s.system.rows.lasting - swept.first;
-    return swept;
-}
-
 // run(begin, end) over the lane groups of colour after colour. Those of one colour share no moving node, so that
 // threads may take them side by side; the overflow colour, the last, goes one by one.
-template <class Run>
-void for_colours(Substep& s, Run&& run) {
+template <class Lanes, class Run>
+void for_colours(Substep& s, const Lanes& lanes, Run&& run) {
     constexpr uint32_t kGrain = 16;  // lane groups, about 3 us
-    const ContactLanes& lanes = s.system.contacts;
     const uint32_t all = static_cast<uint32_t>(lanes.group.size());
     if (s.team.size() == 1 || all < 2 * kGrain) {
         run(0u, all);
@@ -201,18 +137,9 @@ void publish(Substep& s) {
     });
 }
 
-void store_forces(Substep& s, Range range) {
-    for (uint32_t i = range.first; i < range.first + range.count; ++i) {
-        const RowBlock& block = s.system.rows.block[i];
-        for (int r = 0; block.force && r < block.type->rows; ++r)
-            block.force[r] = s.system.rows.impulse[block.row + static_cast<uint32_t>(r)] / s.system.h;
-    }
-}
-
 void solve(Substep& s) {
     warm_start_sweeps(s);
     sweep_biased(s);
-    store_forces(s, swept_rows(s));
 }
 
 void relax(Substep& s) { sweep_relaxed(s); }
@@ -233,55 +160,68 @@ void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
         RowSweep row(s.system, blocks[i]);
         if (blocks[i].type->bound == Bound::cone)
             row.solve_cone(soft, biased);
-        else if (blocks[i].type->bound == Bound::load)
-            row.solve_load();
         else
-            row.solve_joint(soft, biased);
+            row.solve_load();
     }
 }
 
 void warm_start_sweeps(Substep& s) {
-    ContactLanes& lanes = s.system.contacts;
-    for_colours(s, [&](uint32_t begin, uint32_t end) {
-        s.settings.kernels->warm_start(lanes.view(), begin, end, s.system.velocity.data(),
-                                       s.system.inverse_mass.data());
+    const auto velocity = s.system.velocity.data();
+    const auto mass = s.system.inverse_mass.data();
+    JointLanes& joints = s.system.joints;
+    ContactLanes& contacts = s.system.contacts;
+    for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
+        s.settings.kernels->warm_start(contacts.view(), begin, end, velocity, mass);
     });
-    const Range swept = swept_rows(s);
-    warm_start_rows(s, swept.first, swept.count);
+    for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
+        s.settings.joint_kernels->warm_start(joints.view(), begin, end, velocity, mass);
+    });
+    const Rows& rows = s.system.rows;
+    warm_start_rows(s, rows.joints, rows.lasting - rows.joints);
 }
 
 void sweep_biased(Substep& s) {
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
-    ContactLanes& lanes = s.system.contacts;
+    const auto velocity = s.system.velocity.data();
+    const auto mass = s.system.inverse_mass.data();
+    JointLanes& joints = s.system.joints;
+    ContactLanes& contacts = s.system.contacts;
+    const Rows& rows = s.system.rows;
     const SweepTerms soft = soft_terms(s.system.h);
-    const Range swept = swept_rows(s);
     for (uint32_t i = 0; i < sweeps; ++i) {
-        sweep_rows(s, swept.first, swept.count, true);
-        for_colours(s, [&](uint32_t begin, uint32_t end) {
-            s.settings.kernels->sweep_biased(lanes.view(), begin, end, s.system.velocity.data(),
-                                             s.system.inverse_mass.data(), s.system.shift.data(), soft);
+        for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
+            s.settings.joint_kernels->sweep_biased(joints.view(), begin, end, velocity, mass, soft);
+        });
+        sweep_rows(s, rows.joints, rows.lasting - rows.joints, true);
+        for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
+            s.settings.kernels->sweep_biased(contacts.view(), begin, end, velocity, mass, s.system.shift.data(), soft);
         });
     }
+    store_joint_lanes(s.team, s.system);
     publish(s);
 }
 
 void sweep_relaxed(Substep& s) {
-    ContactLanes& lanes = s.system.contacts;
+    const auto velocity = s.system.velocity.data();
+    const auto mass = s.system.inverse_mass.data();
+    JointLanes& joints = s.system.joints;
+    ContactLanes& contacts = s.system.contacts;
+    const Rows& rows = s.system.rows;
     const SweepTerms soft = soft_terms(s.system.h);
-    const Range swept = swept_rows(s);
     for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
-        sweep_rows(s, swept.first, swept.count, false);
-        for_colours(s, [&](uint32_t begin, uint32_t end) {
-            s.settings.kernels->sweep_relaxed(lanes.view(), begin, end, s.system.velocity.data(),
-                                              s.system.inverse_mass.data(), soft);
+        for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
+            s.settings.joint_kernels->sweep_relaxed(joints.view(), begin, end, velocity, mass);
+        });
+        sweep_rows(s, rows.joints, rows.lasting - rows.joints, false);
+        for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
+            s.settings.kernels->sweep_relaxed(contacts.view(), begin, end, velocity, mass, soft);
         });
     }
-    if (lanes.bounces)
-        for_colours(s, [&](uint32_t begin, uint32_t end) {
-            s.settings.kernels->restitute(lanes.view(), begin, end, s.system.velocity.data(),
-                                          s.system.inverse_mass.data(), kBounceSpeed, s.last);
+    if (contacts.bounces)
+        for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
+            s.settings.kernels->restitute(contacts.view(), begin, end, velocity, mass, kBounceSpeed, s.last);
         });
-    store_forces(s, swept);
+    store_joint_lanes(s.team, s.system);
     publish(s);
 }
 

@@ -18,6 +18,7 @@ struct SolverSettings {
     double velocity_filter;  // kappa; 0: the slow velocity is taken as zero
     double gravity_squared;  // |g|^2 [m^2/s^4], scale of the energy guard
     const ContactKernels* kernels;
+    const JointKernels* joint_kernels;
 };
 
 struct SolverReport {
@@ -51,8 +52,8 @@ struct Substep {
 
 struct Solver {
     const char* name;
-    bool direct;         // joints and towers form blocks; else they come as rows to sweep, by colour
-    bool wide_contacts;  // contacts come in lanes; else as rows after those of the joints
+    bool direct;  // joints and towers form blocks; else they come as rows to sweep, by colour
+    bool lanes;   // contacts and swept joints come in lanes; else contacts are rows after those of the joints
     // From system.exact = v* to the velocity that moves the positions, with the push of overlapping contacts.
     void (*solve)(Substep&);
     // After the positions moved, may be null: what the linearisation left of the position error, as displacements in

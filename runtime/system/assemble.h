@@ -1,4 +1,4 @@
-// State to system: rows of joints (and of contacts, for solvers without lanes) and contact lanes.
+// State to system: rows of joints (and of contacts, for solvers without lanes), lanes of contacts and swept joints.
 #pragma once
 
 #include "partition/partition.h"
@@ -15,7 +15,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
 void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes);
 // Once a substep: C and J at system.pose; impulses from the forces of the last substep. frame_left: share of the
 // frame [s] that is left after this substep, of which the drift of C is still to come.
-void evaluate_rows(System& system, double frame_left, double frame);
+void evaluate_rows(Team& team, System& system, double frame_left, double frame);
 // Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
 double row_residual(const System& system);
 // After a substep: impulses of contact rows back into the pairs.
@@ -27,5 +27,12 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
 // Once a substep: levers and effective masses of contacts on bodies that turned.
 void turn_lanes(Team& team, System& system, const ContactKernels& kernels);
 void store_lanes(Team& team, const System& system, Pairs& pairs);
+
+// Once a frame and group: swept joints by colour into lanes.
+void build_joint_lanes(System& system, const Group& group);
+// Once a substep, after evaluate_rows(): their rows, stops, drives and friction.
+void load_joint_lanes(Team& team, System& system, const JointKernels& kernels);
+// Their impulses back into the rows and the joints.
+void store_joint_lanes(Team& team, System& system);
 
 }  // namespace taut

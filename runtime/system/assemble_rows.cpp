@@ -190,6 +190,10 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
     }
 }
 
+void poses_of(const System& system, const RowBlock& block, Pose* poses) {
+    for (int i = 0; i < block.type->nodes; ++i) poses[i] = system.pose[block.node[i]];
+}
+
 // Addresses of contact data must not move while rows are added.
 template <class Data>
 void reserve_room(Array<Data>& data, size_t most) {
@@ -215,7 +219,9 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         }
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
     }
+    rows.direct = static_cast<uint32_t>(rows.block.size());
     for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
+    rows.joints = static_cast<uint32_t>(rows.block.size());
     constexpr size_t kPoints = 4;
     const size_t whole = (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size();
     reserve_room(rows.data, kPoints * whole);
@@ -245,22 +251,40 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
     }
 }
 
-void evaluate_rows(System& system, double frame_left, double frame) {
+namespace {
+
+void evaluate(System& system, const RowBlock& block, const Pose* poses) {
+    block.type->evaluate(block.data, poses, &system.rows.error[block.row], &system.rows.jacobian[block.jacobian]);
+}
+
+void evaluate_joint(System& system, const RowBlock& block, double frame_left, double frame) {
+    Pose poses[kMaxNodes];
+    poses_of(system, block, poses);
+    evaluate(system, block, poses);
+    for (int r = 0; r < block.type->rows; ++r) {
+        const uint32_t row = block.row + static_cast<uint32_t>(r);
+        system.rows.impulse[row] = system.h * block.force[r];
+        // Damping acts on how fast C changes, drift included.
+        const double damped = block.relaxation[block.compliance_block ? 0 : block.angular(r)] / frame;
+        system.rows.error[row] += (damped - frame_left) * block.drift[r];
+    }
+}
+
+}  // namespace
+
+void evaluate_rows(Team& team, System& system, double frame_left, double frame) {
+    constexpr uint32_t kGrain = 64;  // joints, about 10 us
     system.frame_left = frame_left;
     Rows& rows = system.rows;
+    team.for_ranges(rows.joints, kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) evaluate_joint(system, rows.block[i], frame_left, frame);
+    });
     size_t next_rolling = 0;  // their data are in the order of their blocks
-    for (const RowBlock& block : rows.block) {
+    for (size_t i = rows.joints; i < rows.block.size(); ++i) {
         Pose poses[kMaxNodes];
-        for (int i = 0; i < block.type->nodes; ++i) poses[i] = system.pose[block.node[i]];
-        if (block.type->bound == Bound::load) rows.rolling_data[next_rolling++].align(poses);
-        block.type->evaluate(block.data, poses, &rows.error[block.row], &rows.jacobian[block.jacobian]);
-        if (!block.force) continue;
-        for (int r = 0; r < block.type->rows; ++r) {
-            rows.impulse[block.row + r] = system.h * block.force[r];
-            // Damping acts on how fast C changes, drift included.
-            const double damped = block.relaxation[block.compliance_block ? 0 : block.angular(r)] / frame;
-            rows.error[block.row + r] += (damped - frame_left) * block.drift[r];
-        }
+        poses_of(system, rows.block[i], poses);
+        if (rows.block[i].type->bound == Bound::load) rows.rolling_data[next_rolling++].align(poses);
+        evaluate(system, rows.block[i], poses);
     }
 }
 

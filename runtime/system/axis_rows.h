@@ -14,6 +14,7 @@ constexpr double kStopRate = 0.2;  // share of an overlap that a stop or contact
 constexpr double kStopPush = 3;    // and the most of it [m/s or rad/s]
 
 struct AxisRow {
+    uint32_t part;          // in AxisMemory: 0 lower, 1 upper, 2 drive, 3 friction
     double sign;            // of J
     bool stop;              // pushes only
     bool physical;          // c and target are meant as they are: not to be relaxed
@@ -33,7 +34,7 @@ inline double unwrapped(const RowBlock& block, int r, double c, double near) {
 }
 
 inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, float* force) {
-    AxisRow row{sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force};
+    AxisRow row{sign > 0 ? 0u : 1u, sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force};
     const double d = double(axis.limit_compliance) * axis.limit_damping;
     row.compliance = axis.limit_compliance / (h * (h + d));
     row.target = row.relaxed_target = -gap / h;
@@ -44,7 +45,7 @@ inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, flo
 }
 
 inline AxisRow drive_row(double c, const Axis& axis, double h, AxisMemory& memory) {
-    AxisRow row{1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive};
+    AxisRow row{2, 1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive};
     if (!std::isfinite(axis.damping)) return row;
     const double rate = h * axis.stiffness + axis.damping;
     row.compliance = 1 / (h * rate);
@@ -66,7 +67,7 @@ void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit v
     if (axis.mode == AxisMode::locked) return;
     const bool springs = axis.stiffness > 0 || axis.damping > 0;
     if (axis.max_force > 0 && springs) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
-    if (axis.friction > 0) visit(AxisRow{1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
+    if (axis.friction > 0) visit(AxisRow{3, 1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
 }
 
 }  // namespace taut

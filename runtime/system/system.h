@@ -16,6 +16,7 @@
 #include "constraints/constraint.h"
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
+#include "constraints/joint_lanes.h"
 #include "constraints/rolling.h"
 #include "constraints/span_contact.h"
 #include "state/nodes.h"
@@ -72,10 +73,10 @@ struct Rows {
           span_data(memory),
           rolling_data(memory) {}
 
-    // First the rows that stay for the frame: those of joints, then those of swept contacts that come as rows. After
-    // them the contacts of blocks, new in each substep.
-    uint32_t lasting = 0;        // in block
-    uint32_t lasting_spans = 0;  // in span_data
+    // First the rows that stay for the frame: those of joints, of blocks before swept ones, then those of swept
+    // contacts that come as rows. After them the contacts of blocks, new in each substep.
+    uint32_t direct = 0, joints = 0, lasting = 0;  // in block: where each of these ends
+    uint32_t lasting_spans = 0;                    // in span_data
     Array<RowBlock> block;
     Array<double> error;               // C(x) [m or rad]           rows; assemble()
     Array<double> jacobian;            // dC/dx                     assemble()
@@ -109,6 +110,7 @@ struct System {
           inverse_mass(memory),
           shift(memory),
           rows(memory),
+          joints(memory),
           contacts(memory) {}
 
     double h = 0;           // substep [s]
@@ -133,6 +135,7 @@ struct System {
     Array<SweepShift> shift;        // motion since contacts were found; commit()
 
     Rows rows;              // of the group being solved
+    JointLanes joints;      // swept ones of the group being solved
     ContactLanes contacts;  // of the group being solved
 };
 

@@ -253,7 +253,7 @@ protected:
     // The same pile, in lanes and as rows.
     void SetUp() override {
         Solver by_rows = kProjectedGaussSeidel;
-        by_rows.wide_contacts = false;
+        by_rows.lanes = false;
         for (Rig* rig : {&lanes, &rows}) {
             build_pile(*rig, GetParam());
             rig->settings.sweeps = 3;

@@ -95,15 +95,18 @@ public:
         begin_frame(w.system, w.nodes);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
-        build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.wide_contacts);
-        if (solver.wide_contacts) build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
+        build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
+        if (!solver.lanes) return;
+        build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
+        build_joint_lanes(w.system, group());
     }
     // Unconstrained velocities and rows of a substep.
     void predict() {
         shift_kinematic(w.system, w.nodes, 0);
         taut::predict(w.team, w.system, group(), w.nodes, gravity);
         build_block_contacts(w.system, group(), w.partition.blocks, w.pairs, w.nodes);
-        evaluate_rows(w.system, 0, h);
+        evaluate_rows(w.team, w.system, 0, h);
+        if (solver.lanes) load_joint_lanes(w.team, w.system, *settings.joint_kernels);
     }
     void solve() {
         Substep s = substep();
@@ -117,7 +120,7 @@ public:
     }
     void store_contacts() {
         store_contact_rows(w.system);
-        if (solver.wide_contacts) store_lanes(w.team, w.system, w.pairs);
+        if (solver.lanes) store_lanes(w.team, w.system, w.pairs);
     }
     Group& group() { return w.partition.groups[0]; }
     Substep substep() {
@@ -128,7 +131,7 @@ public:
     double h;
     Vec3 gravity{0, -9.81, 0};
     Solver solver = kBlockLdlt;
-    SolverSettings settings{0, true, 0.25, 9.81 * 9.81, &kContactKernelsSse2};
+    SolverSettings settings{0, true, 0.25, 9.81 * 9.81, &kContactKernelsSse2, &kJointKernelsSse2};
     SolverReport report;
 
 private:

@@ -1,0 +1,73 @@
+// Vectors in lanes, and one side of a lane group; for the sweeps that are templates over the lanes (simd/lanes.h).
+#pragma once
+
+#include "constraints/contact_lanes.h"
+#include "simd/lanes.h"
+
+namespace taut {
+
+template <class F>
+struct Vec3Lanes {
+    F x, y, z;
+    friend Vec3Lanes operator+(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    friend Vec3Lanes operator*(const F& s, const Vec3Lanes& a) { return {s * a.x, s * a.y, s * a.z}; }
+    friend F dot(const Vec3Lanes& a, const Vec3Lanes& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    friend Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+};
+
+// Velocities and inverse masses of eight nodes.
+template <class F>
+struct SweepSide {
+    using V = Vec3Lanes<F>;
+
+    F velocity[8];  // v xyz, pad, w xyz, pad
+    F inv_mass, xx, yy, zz, xy, xz, yz;
+
+    void gather(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepMass* masses) {
+        gather(node, masses);
+        const float* row[kLanes];
+        for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
+        F::transpose(row, velocity);
+    }
+    void gather(const uint32_t node[kLanes], const SweepMass* masses) {
+        const float* row[kLanes];
+        F mass[8];
+        for (int i = 0; i < kLanes; ++i) row[i] = &masses[node[i]].inv_mass;
+        F::transpose(row, mass);
+        inv_mass = mass[0];
+        xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
+    }
+    // What no impulse moves is not written: groups on other threads read it.
+    void scatter(const uint32_t node[kLanes], SweepVelocity* velocities, const SweepMass* masses) const {
+        alignas(32) float nowhere[8];
+        float* row[kLanes];
+        for (int i = 0; i < kLanes; ++i) row[i] = masses[node[i]].inv_mass > 0 ? velocities[node[i]].v : nowhere;
+        F::transpose_back(velocity, row);
+    }
+    V turn(const V& l) const {  // I^-1 l
+        return {xx * l.x + xy * l.y + xz * l.z, xy * l.x + yy * l.y + yz * l.z, xz * l.x + yz * l.y + zz * l.z};
+    }
+    V move() const { return {velocity[0], velocity[1], velocity[2]}; }
+    V spin() const { return {velocity[4], velocity[5], velocity[6]}; }
+    V at(const V& r) const { return move() + cross(spin(), r); }  // v + w x r
+    void add_move(const V& p) {
+        velocity[0] = velocity[0] + inv_mass * p.x;
+        velocity[1] = velocity[1] + inv_mass * p.y;
+        velocity[2] = velocity[2] + inv_mass * p.z;
+    }
+    void add_spin(const V& l) {
+        const V change = turn(l);
+        velocity[4] = velocity[4] + change.x;
+        velocity[5] = velocity[5] + change.y;
+        velocity[6] = velocity[6] + change.z;
+    }
+    void add(const V& p, const V& r) {
+        add_move(p);
+        add_spin(cross(r, p));
+    }
+};
+
+}  // namespace taut
