@@ -82,12 +82,14 @@ Scene build_ragdolls(double n, double, const Options& options) {
         const taut_vec3 shift = random.in_cube(0.1);
         const Doll doll{scene, plus({(column - middle) * kSpacing, 1.2 + layer * kLayer, (row - middle) * kSpacing},
                                     shift.x, shift.y, shift.z)};
-        const size_t first = scene.bodies.size();
+        const size_t first = scene.bodies.size(), first_joint = scene.joints.size();
         const auto [pelvis, chest] = doll.trunk();
         for (double side : {-1.0, 1.0}) {
             doll.leg(pelvis, side);
             doll.arm(chest, side, doll.at(0.55 * side, 0.05, 0.1));
         }
+        for (size_t joint = first_joint; joint < scene.joints.size(); ++joint)
+            scene.joints[joint].solve = TAUT_JOINT_SOLVE_BY_LOAD;
         for (size_t body = first; body < scene.bodies.size(); ++body)
             scene.roles.pile.push_back(static_cast<int>(body));
     }

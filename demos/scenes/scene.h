@@ -87,6 +87,7 @@ struct Joint {
     float compliance = 0;                     // of positions, a rod or a rope [m/N]
     float damping = 0;                        // the same [N s/m]
     float break_force = 0, break_torque = 0;  // 0: never [N, N m]
+    taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT;
 };
 
 // A cable of the library's own. The ends' bodies and the path are put into the def by TautWorld.

@@ -12,6 +12,7 @@ void fill_ends(const Joint& joint, taut_body a, taut_body b, uint64_t index, Def
     def.compliance = joint.compliance;
     def.damping = joint.damping;
     def.break_force = joint.break_force;
+    def.solve = joint.solve;
     def.user_data = index;
 }
 

@@ -207,11 +207,10 @@ taut_result taut_joint_set_length(taut_joint handle, float length) {
 
 taut_result taut_joint_set_solve(taut_joint handle, taut_joint_solve solve) {
     Check check(__func__);
-    check.choice("solve", solve, TAUT_JOINT_SOLVE_SOFT);
+    check.choice("solve", solve, TAUT_JOINT_SOLVE_BY_LOAD);
     return change(check, handle, [&](World& world, Joint& joint) {
-        const bool direct = solve == TAUT_JOINT_SOLVE_DIRECT;
-        if (joint.direct == direct) return TAUT_OK;
-        joint.direct = direct;
+        if (joint.solve == static_cast<JointSolve>(solve)) return TAUT_OK;
+        joint.solve = static_cast<JointSolve>(solve);
         ++world.joints.version;  // blocks gain or lose it
         return TAUT_OK;
     });

@@ -87,7 +87,7 @@ bool check_def(Check& check, const Def* def, const taut_joint* out) {
     check.number("compliance", def->compliance, kCompliance)
         .number("damping", def->damping, kDamping)
         .number("break_force", def->break_force, kJointForce)
-        .choice("solve", def->solve, TAUT_JOINT_SOLVE_SOFT);
+        .choice("solve", def->solve, TAUT_JOINT_SOLVE_BY_LOAD);
     if constexpr (requires { def->reserved; }) check.zero("reserved", def->reserved);
     return static_cast<bool>(check);
 }
@@ -156,7 +156,7 @@ Joint make_joint(const JointKind& kind, const Def& def, const JointEnd (&ends)[2
         joint.angular_damping = def.angular_damping;
         joint.break_torque = or_never(def.break_torque);
     }
-    joint.direct = def.solve == TAUT_JOINT_SOLVE_DIRECT;
+    joint.solve = static_cast<JointSolve>(def.solve);
     joint.collide_connected = def.collide_connected != 0;
     joint.user_data = def.user_data;
     write_ends(joint, kind, ends[0], ends[1]);

@@ -52,7 +52,7 @@ public:
 private:
     bool moves(uint32_t node) const { return node != kNone && moves_by_forces(nodes_.info[node].kind); }
     double mass(uint32_t node) const { return nodes_.mass[node].mass; }
-    bool direct(const Joint& joint) const { return solvers()[world_.def.solver]->direct && joint.direct; }
+    bool direct(const Joint& joint) const { return solvers()[world_.def.solver]->direct && joint.solve != JointSolve::swept; }
     double substep() const { return static_cast<double>(world_.def.time_step) / world_.def.substeps; }
     Vec3 gravity() const { return {world_.def.gravity.x, world_.def.gravity.y, world_.def.gravity.z}; }
 

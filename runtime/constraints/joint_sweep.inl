@@ -80,7 +80,7 @@ struct JointSweep {
     // S + c of the locked rows, an identity in the place of the others, as L D L^T. A row that what it moves or the
     // rows before it leave nothing to do is left out: its pivot is no more than rounding.
     static void factor(const JointView& view, const JointGroup& g, const F (&s)[21]) {
-        const F zero = F::all(0), one = F::all(1), rounding = F::all(1e-6f);
+        const F zero = F::all(0), one = F::all(1), rounding = F::all(5e-6f);
         const LaneRow* row = view.row + g.first_row;
         LaneScalar* out = view.factor + g.first_factor;
         F l[21], d[kMaxRows];

@@ -21,6 +21,11 @@ constexpr uint32_t kMostGrown = 64;
 // ragdolls in a heap. Beyond, a light body between a heavy one and an edge sinks in.
 constexpr double kLoad = 300;             // force of a joint over the mass of its lighter body [m/s^2]
 constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses always takes them in
+
+// Beyond these, mechanisms of joints solved by load are blocks. Their contacts stay swept.
+constexpr double kSweptLoad = 1000;     // likewise [m/s^2]: such a joint yields by .4 mm at 240 substeps a second
+constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
+
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
@@ -43,7 +48,8 @@ void note_loads(Joints& joints, const Nodes& nodes) {
             if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];
         for (uint32_t node : joint.nodes())
             if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
-        if (squared > kLoad * kLoad * lighter * lighter)
+        const double most = (joint.solve == JointSolve::by_load ? kSweptLoad : kLoad) * lighter;
+        if (squared > most * most)
             joint.loaded = joint.loaded + 1 < kLoadedAfter ? joint.loaded + 1 : kLoadedAfter + kLoadedFor;
         else
             joint.loaded = joint.loaded > kLoadedAfter ? joint.loaded - 1 : 0;
@@ -102,11 +108,11 @@ void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pai
 }
 
 // Union-find of the joint graph alone.
-void Partition::connect_joints(const Nodes& nodes, const Joints& joints, bool direct_only) {
+void Partition::connect_joints(const Nodes& nodes, const Joints& joints, bool swept_too) {
     parent_.resize(nodes.slots());
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = i;
     for (const Joint& joint : joints.record)
-        if (joint.direct || !direct_only) unite(nodes, joint.nodes());
+        if (joint.solve != JointSolve::swept || swept_too) unite(nodes, joint.nodes());
 }
 
 // Islands without joints in which weight rests on what sweeps cannot hold.
@@ -135,7 +141,7 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
 // first solve.
 void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
-    connect_joints(nodes, joints, true);
+    connect_joints(nodes, joints, /*swept_too=*/false);
     core_.assign(slots, 0);
     component_.assign(slots, Component{});
     pair_in_block_.assign(pairs.active.size(), 0);
@@ -165,27 +171,30 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
     recall_blocks(nodes, joints);
 }
 
-// Joints that blocks own: those that ask for it, but for nets with too many loops.
+// Joints that blocks own, but for nets with too many loops and for mechanisms that sweeps hold as well.
 void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
     auto end = [&](const Joint& joint) { return mover(nodes, joint.nodes()); };
-    auto may = [&](const Joint& joint) { return joint.direct && end(joint) != kNone; };
-    auto too_many = [](const Component& c) { return c.joints > c.nodes + kMostLoops; };
+    auto may = [&](const Joint& joint) { return joint.solve != JointSolve::swept && end(joint) != kNone; };
+    for (const Joint& joint : joints.record) {
+        if (!may(joint)) continue;
+        Component& c = component_[find(end(joint))];
+        ++c.joints;
+        const bool loaded = joint.loaded >= kLoadedAfter, direct = joint.solve == JointSolve::direct;
+        c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
+        c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
+    }
+    auto is_block = [](const Component& c) { return c.direct && c.joints <= c.nodes + kMostLoops; };
     joint_in_block_.assign(joints.record.size(), 0);
-    for (const Joint& joint : joints.record)
-        if (may(joint)) ++component_[find(end(joint))].joints;
     for (size_t j = 0; j < joints.record.size(); ++j) {
         const Joint& joint = joints.record[j];
-        if (!may(joint) || too_many(component_[find(end(joint))])) continue;
+        if (!may(joint) || !is_block(component_[find(end(joint))])) continue;
         joint_in_block_[j] = 1;
-        Component& component = component_[find(end(joint))];
-        component.loaded =
-            component.loaded || joint.loaded >= kLoadedAfter || component.most >= kLoadedMassRatio * component.least;
         for (uint32_t node : joint.nodes())
             if (moving(nodes, node)) core_[node] = 1;
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
-    for (uint32_t i = nodes.slots(); i-- > 0;) {  // nodes of such a net stand alone; their root is smallest, so last
-        if (!too_many(component_[parent_[i]])) continue;
+    for (uint32_t i = nodes.slots(); i-- > 0;) {  // other nodes stand alone; their root is smallest, so last
+        if (is_block(component_[parent_[i]])) continue;
         parent_[i] = i;
         component_[i] = {};
     }
@@ -275,7 +284,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
 
 void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
-    connect_joints(nodes, joints, false);
+    connect_joints(nodes, joints, /*swept_too=*/true);
     for (const ActivePair& pair : pairs.active) unite(nodes, pair.nodes());
 
     island_of_.assign(slots, kNone);

@@ -115,6 +115,7 @@ private:
         uint32_t nodes = 1, joints = 0, grown = 0, block = UINT32_MAX;
         double least = 1e300, most = 0;  // mass of its nodes [kg]
         bool loaded = false;             // takes in its contacts
+        bool direct = false;             // its joints make a block
     };
 
     void find_towers();
@@ -123,7 +124,7 @@ private:
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
-    void connect_joints(const Nodes& nodes, const Joints& joints, bool direct_only);
+    void connect_joints(const Nodes& nodes, const Joints& joints, bool swept_too);
     void connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void measure_towers(const Nodes& nodes, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);

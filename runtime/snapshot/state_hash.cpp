@@ -90,7 +90,7 @@ void add_joints(Hash& hash, const Joints& joints) {
         hash.add(joint.angular_damping);
         hash.add(joint.break_force);
         hash.add(joint.break_torque);
-        hash.add(static_cast<uint64_t>(joint.direct) << 2 | static_cast<uint64_t>(joint.fresh) << 1 |
+        hash.add(static_cast<uint64_t>(joint.solve) << 2 | static_cast<uint64_t>(joint.fresh) << 1 |
                  joint.collide_connected);
         hash.add(static_cast<uint64_t>(joint.loaded));
         hash.add(joint.slow_turn);

@@ -29,7 +29,7 @@ public:
           softness_(s.scratch.softness),
           previous_(s.scratch.previous),
           next_(s.scratch.next),
-          soft_(soft_terms(sys_.h)) {
+          soft_(contact_terms(sys_.h)) {
         count_.assign(sys_.pose.size(), 0);
         inverse_.clear();
         softness_.clear();

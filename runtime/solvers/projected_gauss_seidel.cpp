@@ -154,7 +154,7 @@ void warm_start_rows(Substep& s, uint32_t first, uint32_t count) {
 }
 
 void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
-    const SweepTerms soft = soft_terms(s.system.h);
+    const SweepTerms soft = contact_terms(s.system.h);
     const auto& blocks = s.system.rows.block;
     for (uint32_t i = first; i < first + count; ++i) {
         RowSweep row(s.system, blocks[i]);
@@ -187,10 +187,10 @@ void sweep_biased(Substep& s) {
     JointLanes& joints = s.system.joints;
     ContactLanes& contacts = s.system.contacts;
     const Rows& rows = s.system.rows;
-    const SweepTerms soft = soft_terms(s.system.h);
+    const SweepTerms soft = contact_terms(s.system.h);
     for (uint32_t i = 0; i < sweeps; ++i) {
         for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
-            s.settings.joint_kernels->sweep_biased(joints.view(), begin, end, velocity, mass, soft);
+            s.settings.joint_kernels->sweep_biased(joints.view(), begin, end, velocity, mass, joint_terms(s.system.h));
         });
         sweep_rows(s, rows.joints, rows.lasting - rows.joints, true);
         for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
@@ -207,7 +207,7 @@ void sweep_relaxed(Substep& s) {
     JointLanes& joints = s.system.joints;
     ContactLanes& contacts = s.system.contacts;
     const Rows& rows = s.system.rows;
-    const SweepTerms soft = soft_terms(s.system.h);
+    const SweepTerms soft = contact_terms(s.system.h);
     for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
         for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
             s.settings.joint_kernels->sweep_relaxed(joints.view(), begin, end, velocity, mass);

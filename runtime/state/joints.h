@@ -12,6 +12,12 @@
 
 namespace taut {
 
+enum class JointSolve : uint8_t {
+    direct,   // part of a block
+    swept,    // never
+    by_load,  // part of a block while something in its mechanism is more than sweeps hold
+};
+
 struct Joint {
     static constexpr size_t kDataSize = 128;
 
@@ -27,7 +33,7 @@ struct Joint {
     double break_force = std::numeric_limits<double>::infinity();   // removed when a step ends with more [N]
     double break_torque = std::numeric_limits<double>::infinity();  // [N m]
     bool plain = true;                                              // every row is locked: axis is not read
-    bool direct = true;                                             // false: swept, not part of a block
+    JointSolve solve = JointSolve::direct;
     bool collide_connected = false;
     bool inner = false;             // of something that the host knows as a whole: no handle leads to it
     uint8_t loaded = 0;             // frames under or since a load beyond what sweeps hold; partition/partition.h

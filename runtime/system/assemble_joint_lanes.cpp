@@ -199,7 +199,7 @@ void build_joint_lanes(System& system, const Group& group) {
 
 void load_joint_lanes(Team& team, System& system, const JointKernels& kernels) {
     JointLanes& lanes = system.joints;
-    const SweepTerms soft = soft_terms(system.h);
+    const SweepTerms soft = joint_terms(system.h);
     team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = lanes.group[i];

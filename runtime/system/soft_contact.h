@@ -1,5 +1,5 @@
-// Softness of contacts and of rigid rows that are swept: a spring of frequency f = 0.25/h and damping ratio z = 10
-// on each row's own effective mass k (Frâncu 2016, section 6.8 gives the regularisation; the closed form is the
+// Softness of contacts and of rigid rows that are swept: a spring of frequency f = 0.25/h or 1/h and damping ratio
+// z = 10 on each row's own effective mass k (Frâncu 2016, section 6.8 gives the regularisation; the closed form is the
 // implicit spring):  om = 2 pi f,  a1 = 2 z + h om,  a2 = h om a1:
 //   dp = -mass_scale/k (J v + bias_rate C) - impulse_scale p
 // with mass_scale = a2/(1 + a2), impulse_scale = 1/(1 + a2), bias_rate = om/a1.
@@ -11,10 +11,11 @@ namespace taut {
 
 constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce [m/s]
 
-inline SweepTerms soft_terms(double h) {
+// cycles: f h.
+inline SweepTerms soft_terms(double h, double cycles) {
     constexpr double kPi = 3.14159265358979323846;
-    constexpr double kCycles = 0.25, kDampingRatio = 10, kPush = 3;  // f h [1], [1], [m/s]
-    const double om_h = 2 * kPi * kCycles, a1 = 2 * kDampingRatio + om_h, a2 = om_h * a1;
+    constexpr double kDampingRatio = 10, kPush = 3;  // [1], [m/s]
+    const double om_h = 2 * kPi * cycles, a1 = 2 * kDampingRatio + om_h, a2 = om_h * a1;
     SweepTerms t;
     t.inv_h = static_cast<float>(1 / h);
     t.bias_rate = static_cast<float>(om_h / (h * a1));
@@ -23,5 +24,8 @@ inline SweepTerms soft_terms(double h) {
     t.impulse_scale = static_cast<float>(1 / (1 + a2));
     return t;
 }
+inline SweepTerms contact_terms(double h) { return soft_terms(h, 0.25); }
+// A joint yields by .025 h^2 of the acceleration that its force gives its ends, a sixteenth of what a contact does.
+inline SweepTerms joint_terms(double h) { return soft_terms(h, 1); }
 
 }  // namespace taut

@@ -109,7 +109,7 @@ struct Data {
     // Everything that a step calls, over and over.
     void run(const ContactKernels& kernels) {
         const LaneView view{group.data(), point.data(), drive.data(), rolling.data()};
-        const SweepTerms terms = soft_terms(1.0 / 240);
+        const SweepTerms terms = contact_terms(1.0 / 240);
         kernels.prepare(view, 0, kGroups, velocity.data(), mass.data());
         kernels.warm_start(view, 0, kGroups, velocity.data(), mass.data());
         for (int i = 0; i < 4; ++i)

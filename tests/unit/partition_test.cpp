@@ -475,12 +475,38 @@ TEST_F(PartitionTest, BlocksGrowOnlySoFar) {
 TEST_F(PartitionTest, SoftJointsAreSwept) {
     const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic);
     join(a, b);
-    joints.record[join(b, c)].direct = false;
+    joints.record[join(b, c)].solve = JointSolve::swept;
     build();
     ASSERT_EQ(partition.blocks.size(), 1u);
     EXPECT_EQ(partition.blocks[0].nodes.size(), 2u);
     EXPECT_EQ(partition.islands, 1u);
     ASSERT_EQ(partition.groups[0].joints.size(), 1u);
+}
+
+TEST_F(PartitionTest, JointsSolvedByLoadAreABlockOnlyWhileTheyNeedIt) {
+    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic, 19);
+    const uint32_t one = join(a, b), other = join(b, c), box = add(NodeKind::dynamic);
+    touch(a, box);
+    for (uint32_t j : {one, other}) {
+        joints.record[j].solve = JointSolve::by_load;
+        joints.record[j].loaded = 0;
+    }
+    auto expect = [&](size_t blocks, size_t swept) {
+        build();
+        EXPECT_EQ(partition.blocks.size(), blocks);
+        EXPECT_EQ(partition.groups[0].joints.size(), swept);
+        EXPECT_EQ(partition.groups[0].pairs.size(), 1u) << "contacts stay swept";
+    };
+    expect(0, 2);
+    joints.record[other].loaded = kLoadedAfter;
+    expect(1, 0);
+    joints.record[other].loaded = kLoadedAfter - 1;
+    expect(0, 2);
+    nodes.mass[c].mass = 20;
+    expect(1, 0);
+    nodes.mass[c].mass = 19;
+    joints.record[one].solve = JointSolve::direct;
+    expect(1, 0);
 }
 
 // A net of n x n has (n - 1)^2 loops: 45 x 45 is solved directly, 46 x 46 is swept.

@@ -1,0 +1,313 @@
+// The sweep of joints in lanes: the same bits from its three builds, and the impulses that its equations give one by
+// one in double precision.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "constraints/instance.h"
+#include "constraints/random.h"
+#include "system/assemble.h"
+#include "system/soft_contact.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kStep = 1.0 / 240;
+constexpr uint32_t kJoints = 60;
+
+// Random joints of every type, of which no two share a body, some with compliance, stops, drives and friction.
+struct Mechanism {
+    struct Part {
+        Part(const ConstraintType& type, uint64_t seed) : instance(type, seed) {}
+        Instance instance;
+        std::array<Axis, kMaxRows> axis{};
+        std::array<AxisMemory, kMaxRows> memory{};
+        std::array<double, kMaxRows> force{}, drift{};
+        Matrix compliance;
+    };
+
+    explicit Mechanism(uint64_t seed) : team(taut_hooks{}, 1) {
+        Random random(seed);
+        system.h = kStep;
+        system.velocity.resize(1 + kMaxNodes * kJoints);
+        system.inverse_mass.resize(1 + kMaxNodes * kJoints);
+        system.pose.resize(1 + kMaxNodes * kJoints);
+        group.joint_colour_begin.assign(kMaxColours + 1, kJoints);
+        group.joint_colour_begin[0] = 0;
+        std::vector<const ConstraintType*> types;
+        for (const ConstraintType* type : constraint_types())
+            if (type->bound == Bound::free) types.push_back(type);
+        parts.reserve(kJoints);
+        for (uint32_t j = 0; j < kJoints; ++j)
+            add(*types[static_cast<size_t>(random.unit() * static_cast<double>(types.size()))], seed * 1000 + j,
+                random);
+        system.rows.joints = system.rows.lasting = kJoints;
+        build_joint_lanes(system, group);
+    }
+
+    void add(const ConstraintType& type, uint64_t seed, Random& random) {
+        Part& part = parts.emplace_back(type, seed);
+        RowBlock block{};
+        block.type = &type;
+        block.data = part.instance.data.data();
+        block.force = part.force.data();
+        block.drift = part.drift.data();
+        block.row = static_cast<uint32_t>(system.rows.error.size());
+        block.jacobian = static_cast<uint32_t>(system.rows.jacobian.size());
+        const uint32_t first = 1 + kMaxNodes * static_cast<uint32_t>(parts.size() - 1);
+        for (int n = 0; n < type.nodes; ++n) {
+            const uint32_t node = first + static_cast<uint32_t>(n);
+            const bool world = n == 0 && random.unit() < 0.2;
+            block.node[n] = world ? 0 : node;
+            if (!world) place(node, random);
+            if (!world) system.pose[node] = part.instance.pose[static_cast<size_t>(n)];
+        }
+        if (random.unit() < 0.3) {
+            block.compliance[0] = 1e-4 * random.unit();
+            block.compliance[1] = 1e-3 * random.unit();
+            block.relaxation[0] = 0.01 * random.unit();
+        }
+        if (random.unit() < 0.6) add_axes(part, block, random);
+        for (double& f : part.force) f = 3 * (2 * random.unit() - 1) / kStep;
+        const auto rows = static_cast<size_t>(type.rows);
+        system.rows.error.resize(system.rows.error.size() + rows, 0.0);
+        system.rows.impulse.resize(system.rows.error.size(), 0.0);
+        system.rows.jacobian.resize(system.rows.jacobian.size() + rows * static_cast<size_t>(type.nodes) * kDof, 0.0);
+        system.rows.block.push_back(block);
+    }
+    void place(uint32_t node, Random& random) {
+        const Vec3 v = random.vector(), w = random.vector();
+        for (int k = 0; k < 3; ++k) {
+            system.velocity[node].v[k] = static_cast<float>(v[k]);
+            system.velocity[node].w[k] = static_cast<float>(w[k]);
+        }
+        const double inv_mass = std::pow(10.0, 2 * random.unit() - 1);
+        system.inverse_mass[node].inv_mass = static_cast<float>(inv_mass);
+        for (int k = 0; k < 6; ++k)
+            system.inverse_mass[node].inv_inertia[k] =
+                static_cast<float>(inv_mass * (k < 3 ? 2 + random.unit() : 0.5 * random.unit()));
+    }
+    void add_axes(Part& part, RowBlock& block, Random& random) const {
+        for (int r = 0; r < block.type->rows; ++r) {
+            Axis& axis = part.axis[static_cast<size_t>(r)];
+            const double kind = random.unit();
+            axis.mode = kind < 0.4 ? AxisMode::locked : kind < 0.6 ? AxisMode::free : AxisMode::limited;
+            axis.lower = static_cast<float>(-0.3 * random.unit());
+            axis.upper = static_cast<float>(0.3 * random.unit());
+            if (random.unit() < 0.3) axis.limit_compliance = 1e-3f;
+            if (random.unit() < 0.5) {
+                axis.max_force = 1000;
+                axis.damping = 30;
+                axis.stiffness = 200;
+                axis.speed = 1;
+            }
+            if (random.unit() < 0.5) axis.friction = static_cast<float>(100 * random.unit());
+            part.memory[static_cast<size_t>(r)] = {static_cast<float>(100 * random.unit()), 0, 5, -3};
+        }
+        block.axis = part.axis.data();
+        block.memory = part.memory.data();
+    }
+
+    void run(const JointKernels& kernels, int biased, int relaxed) {
+        evaluate_rows(team, system, 0, kStep);
+        load_joint_lanes(team, system, kernels);
+        const JointView view = system.joints.view();
+        const auto groups = static_cast<uint32_t>(system.joints.group.size());
+        kernels.warm_start(view, 0, groups, system.velocity.data(), system.inverse_mass.data());
+        for (int i = 0; i < biased; ++i)
+            kernels.sweep_biased(view, 0, groups, system.velocity.data(), system.inverse_mass.data(),
+                                 joint_terms(kStep));
+        for (int i = 0; i < relaxed; ++i)
+            kernels.sweep_relaxed(view, 0, groups, system.velocity.data(), system.inverse_mass.data());
+        store_joint_lanes(team, system);
+    }
+
+    Memory memory{taut_hooks{}};
+    Team team;
+    System system{memory};
+    Group group{memory};
+    std::vector<Part> parts;
+};
+
+template <class T>
+bool same_bits(const Array<T>& a, const Array<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same_bits(const JointKernels& kernels) {
+    for (uint64_t seed = 1; seed <= 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << kernels.name << ", seed " << seed);
+        Mechanism scalar(seed), other(seed);
+        scalar.run(kJointKernelsScalar, 3, 2);
+        other.run(kernels, 3, 2);
+        float sum = 0;
+        for (const SweepVelocity& u : scalar.system.velocity) sum += u.v[0] + u.w[2];
+        ASSERT_TRUE(std::isfinite(sum));
+        ASSERT_TRUE(same_bits(scalar.system.velocity, other.system.velocity));
+        ASSERT_TRUE(same_bits(scalar.system.rows.impulse, other.system.rows.impulse));
+    }
+}
+
+TEST(JointKernels, Sse2HasTheBitsOfTheScalarBuild) { expect_same_bits(kJointKernelsSse2); }
+
+TEST(JointKernels, Avx2HasTheBitsOfTheScalarBuild) {
+    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
+    expect_same_bits(kJointKernelsAvx2);
+}
+
+// ---------------------------------------------------------------- equations
+
+Matrix inverse_masses(const System& system, const RowBlock& block) {
+    const int size = kDof * block.type->nodes;
+    Matrix w = Matrix::Zero(size, size);
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const SweepMass& m = system.inverse_mass[block.node[n]];
+        const float* i = m.inv_inertia;
+        w.block<3, 3>(kDof * n, kDof * n) = m.inv_mass * Mat3::Identity();
+        w.block<3, 3>(kDof * n + 3, kDof * n + 3) << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
+    }
+    return w;
+}
+
+Vector velocities_of(const System& system, const RowBlock& block) {
+    Vector u(kDof * block.type->nodes);
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const SweepVelocity& from = system.velocity[block.node[n]];
+        for (int k = 0; k < 3; ++k) {
+            u[kDof * n + k] = from.v[k];
+            u[kDof * n + 3 + k] = from.w[k];
+        }
+    }
+    return u;
+}
+
+// One joint's warm start and biased sweep, written out: joint_sweep.inl, system.h and axis.h.
+struct Written {
+    Vector u, p;
+    double condition = 1;  // of the block of locked rows, each scaled to 1
+
+    Written(const Mechanism& m, uint32_t j, const Vector& start) : u(start) {
+        const auto& part = m.parts[j];
+        const RowBlock& block = m.system.rows.block[j];
+        const int rows = block.type->rows;
+        Matrix jacobian = part.instance.jacobian();
+        Vector error = part.instance.error();
+        if (block.node[0] == 0) {  // an end on the world, which is elsewhere than the sample's node
+            std::vector<double> raw(static_cast<size_t>(rows * block.type->nodes * kDof));
+            Pose pose[kMaxNodes];
+            for (int n = 0; n < block.type->nodes; ++n) pose[n] = m.system.pose[block.node[n]];
+            block.type->evaluate(block.data, pose, error.data(), raw.data());
+            for (int n = 0; n < block.type->nodes; ++n)
+                for (int r = 0; r < rows; ++r)
+                    for (int k = 0; k < kDof; ++k)
+                        jacobian(r, n * kDof + k) = raw[static_cast<size_t>((n * rows + r) * kDof + k)];
+        }
+        const Matrix w = inverse_masses(m.system, block), s = jacobian * w * jacobian.transpose();
+        p = kStep * Vector::Map(part.force.data(), rows);
+        u += w * jacobian.transpose() * p;
+
+        const SweepTerms soft = joint_terms(kStep);
+        std::vector<int> locked;
+        for (int r = 0; r < rows; ++r)
+            if (block.locked(r)) locked.push_back(r);
+        const auto count = static_cast<Eigen::Index>(locked.size());
+        if (count > 0) {
+            const bool elastic = block.compliance[0] > 0;
+            Matrix a(count, count);
+            Vector residual(count), change(count);
+            const Vector v = jacobian * u;
+            for (Eigen::Index i = 0; i < count; ++i) {
+                const int r = locked[static_cast<size_t>(i)];
+                for (Eigen::Index k = 0; k < count; ++k) a(i, k) = s(r, locked[static_cast<size_t>(k)]);
+                const double c = block.compliance[block.angular(r)], d = block.relaxation[block.angular(r)];
+                if (elastic) a(i, i) += c / (kStep * (kStep + d));
+                residual[i] = elastic ? v[r] + error[r] / (kStep + d) + c / (kStep * (kStep + d)) * p[r]
+                                      : soft.mass_scale * (v[r] + soft.bias_rate * error[r]);
+            }
+            change = -a.inverse() * residual;
+            const Vector scale = a.diagonal().cwiseSqrt().cwiseInverse();
+            const Vector values =
+                Eigen::SelfAdjointEigenSolver<Matrix>(scale.asDiagonal() * a * scale.asDiagonal()).eigenvalues();
+            condition = values[count - 1] / values[0];
+            Vector all = Vector::Zero(rows);
+            for (Eigen::Index i = 0; i < count; ++i) {
+                const int r = locked[static_cast<size_t>(i)];
+                all[r] = change[i] - (elastic ? 0 : soft.impulse_scale * p[r]);
+            }
+            p += all;
+            u += w * jacobian.transpose() * all;
+        }
+        auto solve_row = [&](int r, double sign, double before, double c, double target, double least, double most) {
+            const double step = (target - sign * jacobian.row(r).dot(u) - c * before) / (s(r, r) + c);
+            const double change = sign * (std::clamp(before + step, least, most) - before);
+            p[r] += change;
+            u += w * jacobian.row(r).transpose() * change;
+        };
+        for (int r = 0; block.axis && r < rows; ++r) {
+            const Axis& axis = part.axis[static_cast<size_t>(r)];
+            const AxisMemory& memory = part.memory[static_cast<size_t>(r)];
+            if (axis.mode == AxisMode::locked) continue;
+            auto stop = [&](double sign, double gap, double carried) {
+                const double c = axis.limit_compliance / (kStep * kStep);
+                const double push = std::min<double>(soft.push, -soft.bias_rate * gap);
+                if (carried == 0 && gap > 50 * kStep) return;
+                solve_row(r, sign, kStep * carried, c, gap > 0 || c > 0 ? -gap / kStep : push, 0, 1e30);
+            };
+            if (axis.mode == AxisMode::limited) {
+                const double middle = 0.5 * (axis.lower + axis.upper), turn = 2 * M_PI;
+                const double at =
+                    block.angular(r) ? error[r] - turn * std::round((error[r] - middle) / turn) : error[r];
+                stop(1, at - axis.lower, memory.lower);
+                stop(-1, axis.upper - at, memory.upper);
+            }
+            if (axis.max_force > 0) {
+                const double k = axis.stiffness, d = axis.damping, rate = kStep * k + d, turn = 2 * M_PI;
+                const double at = block.angular(r) ? error[r] - turn * std::round(error[r] / turn) : error[r];
+                const double most = kStep * axis.max_force;
+                solve_row(r, 1, kStep * memory.drive, 1 / (kStep * rate), (d * axis.speed - k * at) / rate, -most,
+                          most);
+            }
+            const double most = kStep * axis.friction;
+            if (axis.friction > 0) solve_row(r, 1, kStep * memory.friction, 0, 0, -most, most);
+        }
+    }
+};
+
+TEST(JointKernels, SolveTheEquationsOfEachJoint) {
+    uint32_t compared = 0;
+    for (uint64_t seed = 101; seed <= 130; ++seed) {
+        SCOPED_TRACE(seed);
+        Mechanism m(seed);
+        std::vector<Written> written;
+        for (uint32_t j = 0; j < kJoints; ++j)
+            written.emplace_back(m, j, velocities_of(m.system, m.system.rows.block[j]));
+        m.run(kJointKernelsSse2, 1, 0);
+        for (uint32_t j = 0; j < kJoints; ++j) {
+            const RowBlock& block = m.system.rows.block[j];
+            SCOPED_TRACE(testing::Message() << block.type->name << ", joint " << j);
+            const Vector u = velocities_of(m.system, block);
+            const Vector p = Vector::Map(&m.system.rows.impulse[block.row], block.type->rows);
+            if (written[j].condition > 1e4) continue;  // beyond what floats tell apart
+            EXPECT_LE((u - written[j].u).norm(), 1e-3 * std::max(1.0, written[j].u.norm()));
+            EXPECT_LE((p - written[j].p).norm(), 1e-3 * std::max(1.0, written[j].p.norm()));
+            ++compared;
+        }
+    }
+    EXPECT_GE(compared, 29 * kJoints);
+}
+
+// Joints between what does not move, and rows that say what others said already, change nothing and stay finite.
+TEST(JointKernels, WhatCannotMoveIsLeftOut) {
+    Mechanism m(7);
+    for (SweepMass& mass : m.system.inverse_mass) mass = {};
+    const auto before = m.system.velocity;
+    m.run(kJointKernelsSse2, 2, 2);
+    EXPECT_TRUE(same_bits(before, m.system.velocity));
+    for (double impulse : m.system.rows.impulse) EXPECT_TRUE(std::isfinite(impulse));
+}
+
+}  // namespace
+}  // namespace taut::test
