@@ -78,6 +78,43 @@ TEST(HangingChain, JointForcesAreTheWeightsBelow) {
     }
 }
 
+// Five links of 1 kg whose end is pulled at: swept with a force that sweeps hold, solved directly beyond, without a jump
+// at the change.
+TEST(ByLoad, HoldsDirectlyWhatSweepsWouldNot) {
+    World world;
+    taut_body before{};
+    for (int i = 0; i < 5; ++i) {
+        const double y = 10 - 0.5 * i;
+        const taut_body link = world.add({.position = {0, y - 0.25, 0}, .mass = 1, .inertia = Vec(0.02, 0.003, 0.02)});
+        const taut_joint joint = world.ball(before, i == 0 ? Vec(0, y, 0) : Vec(0, -0.25, 0), link, {0, 0.25, 0});
+        ok(taut_joint_set_solve(joint, TAUT_JOINT_SOLVE_BY_LOAD));
+        before = link;
+    }
+    double fastest = 0;
+    auto pull = [&](float force, int frames) {
+        for (int i = 0; i < frames; ++i) {
+            ok(taut_body_apply_force(before, {0, -force, 0}, {0, 0, 0}));
+            world.step();
+            fastest = std::max(fastest, norm(state(before).velocity));
+        }
+        return world.profile();
+    };
+    const taut_profile light = pull(900, 120);
+    EXPECT_EQ(light.solves, 0u);
+    EXPECT_LE(light.joint_error, 1e-3f);
+    EXPECT_LE(fastest, 2);  // as it stretches to hold
+    fastest = 0;
+    const taut_profile heavy = pull(3000, 120);
+    EXPECT_GT(heavy.solves, 0u);
+    EXPECT_LE(heavy.joint_error, 5e-5f);
+    EXPECT_LE(fastest, 5);
+    fastest = 0;
+    const taut_profile after = pull(0, 120);
+    EXPECT_EQ(after.solves, 0u);
+    EXPECT_LE(after.joint_error, 1e-4f);
+    EXPECT_LE(fastest, 0.05);
+}
+
 // y = a cosh(x / a) with 2 a sinh(span / 2 a) = length. Arc length from the middle: a sinh(x / a).
 TEST(HangingCable, TakesTheShapeOfACatenary) {
     constexpr int kPoints = 40;

@@ -43,4 +43,28 @@ TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
     std::printf("heap: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n", 1e3 * overlap, mean, fastest);
 }
 
+// Their joints are solved by load: at rest nothing in the heap needs a direct solve, and the joints stay closed.
+TEST(Heap, OfRagdollsHoldsTogetherBySweepsAlone) {
+    for (uint64_t seed : {0u, 3u, 4u}) {
+        SCOPED_TRACE(seed);
+        scenes::Options options;
+        options.seed = seed;
+        RunningScene run(scenes::make_scene("ragdolls16", options));
+        double falling = 0, resting = 0;
+        uint32_t solves = 0;
+        for (int frame = 0; frame < 480; ++frame) {
+            run.step();
+            ASSERT_TRUE(run.sound()) << "frame " << frame;
+            (frame < 300 ? falling : resting) = std::max(frame < 300 ? falling : resting, run.joint_error());
+            if (frame >= 420) solves += run.world.profile().solves;
+        }
+        EXPECT_EQ(solves, 0u);
+        EXPECT_LE(resting, 0.004);
+        EXPECT_LE(falling, 0.1);
+        EXPECT_LE(mean_overlap(run), 0.002);
+        std::printf("ragdolls, seed %d: joints within %.2f mm at rest, %.1f mm in the fall; overlap %.2f mm\n",
+                    static_cast<int>(seed), 1e3 * resting, 1e3 * falling, 1e3 * mean_overlap(run));
+    }
+}
+
 }  // namespace
