@@ -116,7 +116,8 @@ TAUT_API taut_result taut_cable_get_end_joint(taut_cable cable, uint32_t end, ta
  * Pays out (positive) or hauls in (negative) at an attached end, from the next step on until changed.
  *
  * The segment at the end grows and shrinks; where it is 1.6 of the cable's mean segment, a new one is cut off it, and
- * below 0.4 it is joined with the next. The last one is not hauled in below 0.2 of a segment. What is paid out
+ * below 0.4 it is joined with the next; at fast hauling both a little later and earlier, so that what is left lasts the
+ * step. The last one is not hauled in below 0.2 of a segment. What is paid out
  * comes with the cable's mass per metre and the velocity of the end, without any force on what it comes from; what is
  * hauled in takes its momentum away. Where bent segments are joined the cable loses the difference to the chord; that
  * is made good by and by, with a tenth of what passes the end. A body that goes takes with it whatever else was tied to
