@@ -116,6 +116,14 @@ public:
         solve_circle(s, block_.friction * p[0]);
     }
 
+    // What was hit leaves at the speed that its restitution asks for; as in the fused sweep.
+    void bounce() {
+        RowVector p = impulse();
+        if (!(block_.bounce > 0 && p[0] > 0)) return;
+        p[0] = std::max(0.0, p[0] + (block_.bounce - velocity()[0]) / effective()(0, 0));
+        move_to(p);
+    }
+
     // Spinning first, then rolling on its circle.
     void solve_load() {
         const RowMatrix s = effective();
@@ -201,6 +209,13 @@ void publish(Substep& s) {
     });
 }
 
+void bounce_rows(Substep& s, Range range) {
+    for (uint32_t i = range.first; i < range.first + range.count; ++i) {
+        const RowBlock& block = s.system.rows.block[i];
+        if (block.type->bound == Bound::cone) RowSweep(s.system, block).bounce();
+    }
+}
+
 void store_forces(Substep& s, Range range) {
     for (uint32_t i = range.first; i < range.first + range.count; ++i) {
         const RowBlock& block = s.system.rows.block[i];
@@ -281,6 +296,7 @@ void sweep_relaxed(Substep& s) {
             s.settings.kernels->restitute(lanes.view(), begin, end, s.system.velocity.data(),
                                           s.system.inverse_mass.data(), kBounceSpeed, s.last);
         });
+    if (s.last) bounce_rows(s, swept);
     store_forces(s, swept);
     publish(s);
 }
