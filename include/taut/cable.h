@@ -21,7 +21,9 @@ extern "C" {
 /** What a cable is made of. */
 typedef enum taut_cable_kind {
     TAUT_CABLE_PARTICLES = 0, /**< n + 1 points at the distances of n segments, which collide as capsules between their
-                                   points: the cheaper one. No twist. A segment holds against pull and push */
+                                   points: the cheaper one. No twist. A segment holds against pull and push.
+                                   Looked for along its way as taut_body_set_continuous of both points says; what
+                                   hits a wall by an end, at 20 m/s and more, may push itself through */
     TAUT_CABLE_LINKS = 1,     /**< n capsules tied end to end: bodies that turn, and roll on what they touch */
     TAUT_CABLE_KIND_MAX = 0x7fffffff
 } taut_cable_kind;
@@ -116,7 +118,8 @@ TAUT_API taut_result taut_cable_get_end_joint(taut_cable cable, uint32_t end, ta
  * Pays out (positive) or hauls in (negative) at an attached end, from the next step on until changed.
  *
  * The segment at the end grows and shrinks; where it is 1.6 of the cable's mean segment, a new one is cut off it, and
- * below 0.4 it is joined with the next. The last one is not hauled in below 0.2 of a segment. What is paid out
+ * below 0.4 it is joined with the next; at fast hauling both a little later and earlier, so that what is left lasts the
+ * step. The last one is not hauled in below 0.2 of a segment. What is paid out
  * comes with the cable's mass per metre and the velocity of the end, without any force on what it comes from; what is
  * hauled in takes its momentum away. Where bent segments are joined the cable loses the difference to the chord; that
  * is made good by and by, with a tenth of what passes the end. A body that goes takes with it whatever else was tied to

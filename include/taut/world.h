@@ -18,8 +18,7 @@ extern "C" {
 typedef enum taut_solver {
     TAUT_SOLVER_BLOCK_LDLT = 0,             /**< joints directly, contacts by sweeps: the default */
     TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL = 1, /**< everything by coloured sweeps */
-    TAUT_SOLVER_ACCELERATED_JACOBI = 2,     /**< everything by accelerated Jacobi; knows no stops, drives and friction
-                                                   of joints' axes */
+    TAUT_SOLVER_ACCELERATED_JACOBI = 2,     /**< everything by accelerated Jacobi */
     TAUT_SOLVER_MAX = 0x7fffffff
 } taut_solver;
 

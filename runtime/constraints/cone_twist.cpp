@@ -2,28 +2,19 @@
 //   0-2  p_b - p_a, world axes                   [m]    locked
 //   3    swing: angle between X_a and X_b        [rad]  in [0, pi]; its direction at 0 is Y_a
 //   4    twist from A to B about X               [rad]  in (-pi, pi]; swing-twist decomposition
-#include "constraints/frame_sample.h"
-#include "constraints/frame_stiffness.h"
+#include "constraints/frame_joint.h"
 
 namespace taut {
 namespace {
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
-    const FramePair f(data, x);
-    RowWriter rows(5, error, jacobian);
-    rows.anchors(f);
-    rows.turn(3, swing(f.xa(), f.xb(), f.ya()));
-    rows.turn(4, twist(f));
-}
-
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
-    const FramePair f(data, x);
-    StiffnessWriter out(k, part);
-    out.anchors(f, lambda);
-    out.swing(f.xa(), f.xb(), f.ya(), lambda[3]);
-    out.twist(f, lambda[4]);
-    out.finish();
-}
+struct ConeTwist {
+    template <class Writer>
+    static void rows(Writer& out, const FramePair& f) {
+        out.anchors();
+        out.swing(3, f.xa(), f.xb(), f.ya());
+        out.twist(4);
+    }
+};
 
 void sample(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
@@ -33,7 +24,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kConeTwist{"cone_twist", 5,       2,     sizeof(JointFrames), Bound::free, true, 0b11000, evaluate,
-                                stiffness,    nullptr, sample};
+const ConstraintType kConeTwist = frame_joint<ConeTwist, 5>("cone_twist", sample);
 
 }  // namespace taut

@@ -94,34 +94,67 @@ struct OuterTurns {
     Vec3 first, last;  // g
 };
 
-// Writes rows of error and Jacobian; no Jacobian where that is null.
+struct Ratio {
+    double over, under;
+};
+
+// Writes rows of error and Jacobian; no Jacobian where that is null. StiffnessWriter has the same functions, so that a
+// joint type says once which rows it has (frame_joint.h). r: the first row.
 class RowWriter {
 public:
-    RowWriter(int rows, double* error, double* jacobian) : rows_(rows), error_(error), jacobian_(jacobian) {}
+    RowWriter(const FramePair& f, int rows, double* error, double* jacobian)
+        : f_(f), rows_(rows), error_(error), jacobian_(jacobian) {}
 
     // Rows 0-2, as the ball's.  C = p_b - p_a in world axes [m];  J_b = (I, -hat r_b) = -J_a with r_a
-    void anchors(const FramePair& f) {
-        Vec3::Map(error_) = f.d;
+    void anchors() {
+        Vec3::Map(error_) = f_.d;
         if (!jacobian_) return;
         set_block(jacobian_, rows_, 0, 0, -Mat3::Identity());
-        set_block(jacobian_, rows_, 0, 3, hat(f.ra));
+        set_block(jacobian_, rows_, 0, 3, hat(f_.ra));
         set_block(jacobian_, rows_, 1, 0, Mat3::Identity());
-        set_block(jacobian_, rows_, 1, 3, -hat(f.rb));
+        set_block(jacobian_, rows_, 1, 3, -hat(f_.rb));
     }
 
     // Rows 0-2.  C = A^T (p_b - p_a) [m];  A turns with a, whose lever is therefore that of b's anchor:
     //   J_b = A^T (I, -hat r_b),  J_a = -A^T (I, -hat l),  l = p_b - x_a
-    void slides(const FramePair& f) {
-        Vec3::Map(error_) = f.a.transpose() * f.d;
+    void slides() {
+        Vec3::Map(error_) = f_.a.transpose() * f_.d;
         if (!jacobian_) return;
-        const Vec3 l = f.ra + f.d;
-        for (int r = 0; r < 3; ++r) {
-            const Vec3 axis = f.a.col(r);
-            row(0, r) << -axis, -l.cross(axis);
-            row(1, r) << axis, f.rb.cross(axis);
+        const Vec3 l = f_.ra + f_.d;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 axis = f_.a.col(k);
+            row(0, k) << -axis, -l.cross(axis);
+            row(1, k) << axis, f_.rb.cross(axis);
         }
     }
 
+    // Rows r to r+2: the frames coincide.
+    void alignment(int r) {
+        for (int k = 0; k < 3; ++k) turn(r + k, frame_misalignment(f_, k));
+    }
+
+    // Rows r and r+1: X_b along X_a.
+    void axis_alignment(int r) {
+        misalignment(r, f_.ya(), f_.xb());
+        misalignment(r + 1, f_.za(), f_.xb());
+    }
+
+    void misalignment(int r, const Vec3& a, const Vec3& b) { turn(r, taut::misalignment(a, b)); }
+    void twist(int r) { turn(r, taut::twist(f_)); }
+    void swing(int r, const Vec3& a, const Vec3& b, const Vec3& across) { turn(r, taut::swing(a, b, across)); }
+
+    // pi/2 - swing
+    void rise(int r, const Vec3& a, const Vec3& b, const Vec3& across) {
+        turn(r, {angle_of(a.dot(b), a.cross(b).norm()), -swing_axis(a, b, across)});
+    }
+
+    // Angles whose tangents are given as what they are the quotient of.
+    void outer_turns(const OuterTurns& t, int first, const Ratio& tan_first, int last, const Ratio& tan_last) {
+        turn(first, {angle_of(tan_first.over, tan_first.under), t.first});
+        turn(last, {angle_of(tan_last.over, tan_last.under), t.last});
+    }
+
+private:
     void turn(int r, const Turn& t) {
         error_[r] = t.value;
         if (!jacobian_) return;
@@ -129,22 +162,11 @@ public:
         row(1, r) << Vec3::Zero(), t.gradient;
     }
 
-    // Rows r to r+2: the frames coincide.
-    void alignment(int r, const FramePair& f) {
-        for (int k = 0; k < 3; ++k) turn(r + k, frame_misalignment(f, k));
-    }
-
-    // Rows r and r+1: X_b along X_a.
-    void axis_alignment(int r, const FramePair& f) {
-        turn(r, misalignment(f.ya(), f.xb()));
-        turn(r + 1, misalignment(f.za(), f.xb()));
-    }
-
-private:
     Eigen::Map<Eigen::Matrix<double, kDof, 1>> row(int node, int r) {
         return Eigen::Map<Eigen::Matrix<double, kDof, 1>>(jacobian_ + (node * rows_ + r) * kDof);
     }
 
+    const FramePair& f_;
     int rows_;
     double *error_, *jacobian_;
 };

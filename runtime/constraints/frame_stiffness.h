@@ -26,38 +26,40 @@ inline Mat3 dyad(const Vec3& u, const Vec3& v, Curvature part) {
 
 class StiffnessWriter {
 public:
-    // k: 12 x 12; complete once finish() has run.
-    StiffnessWriter(double* k, Curvature part) : k_(k), part_(part) { std::fill(k, k + 12 * 12, 0.0); }
+    // lambda: of all rows; k: 12 x 12, complete once finish() has run.
+    StiffnessWriter(const FramePair& f, const double* lambda, double* k, Curvature part)
+        : f_(f), lambda_(lambda), k_(k), part_(part) {
+        std::fill(k, k + 12 * 12, 0.0);
+    }
 
     // The ball's: a force at each lever.
-    void anchors(const FramePair& f, const double* lambda) {
-        const Vec3 force = Vec3::Map(lambda);
-        add_block(k_, 3, 3, lever_stiffness(-force, f.ra, part_));
-        add_block(k_, 9, 9, lever_stiffness(force, f.rb, part_));
+    void anchors() {
+        const Vec3 force = Vec3::Map(lambda_);
+        add_block(k_, 3, 3, lever_stiffness(-force, f_.ra, part_));
+        add_block(k_, 9, 9, lever_stiffness(force, f_.rb, part_));
     }
 
     // The force f = A lambda turns with a. With l = p_b - x_a and y = dx_b - dx_a - hat(r_b) w_b + hat(l) w_a, which is
     // A dC: the ball's form with lever l at a, and a coupling of slide and rotation,
     //   w^T K w = w_a^T lever(-f, l) w_a + w_b^T lever(f, r_b) w_b - 2 (w_a x f) . y
-    void slides(const FramePair& f, const double* lambda) {
-        const Vec3 force = f.a * Vec3::Map(lambda), l = f.ra + f.d;
+    void slides() {
+        const Vec3 force = f_.a * Vec3::Map(lambda_), l = f_.ra + f_.d;
         if (part_ == Curvature::raw)
-            turning_force(force, l, f.rb);
+            turning_force(force, l, f_.rb);
         else
-            turning_force_bound(force, l, f.rb);
+            turning_force_bound(force, l, f_.rb);
     }
 
     // C = a . b: the force lambda a at the lever b.
-    void misalignment(const Vec3& a, const Vec3& b, double lambda) { bilinear(lambda * a, b); }
+    void misalignment(int r, const Vec3& a, const Vec3& b) { bilinear(lambda_[r] * a, b); }
 
-    // lambda: three rows.
     // sum lambda C = tr M, M = sum lambda b a^T = -B hat(lambda) A^T / 2;  S = tr(M) I - sym M, t from M - M^T = -hat
     // t. For B A^T a turn by c about n and u = A lambda this is
     //   S = ((n . z) I + sym(n z^T))/2,  z = sin c u + (1 - cos c) n x u:  zero where the frames coincide,
     // with eigenvalues n . z / 2 and (3 n . z +- |z|)/4; trace 2 n . z and squares' sum (11 (n . z)^2 + |z|^2)/8 give
     // the largest, which bounds S in every direction.
-    void alignment(const FramePair& f, const double* lambda) {
-        const Mat3 m = -0.5 * f.b * hat(Vec3::Map(lambda)) * f.a.transpose();
+    void alignment(int r) {
+        const Mat3 m = -0.5 * f_.b * hat(Vec3::Map(lambda_ + r)) * f_.a.transpose();
         const Mat3 s = m.trace() * Mat3::Identity() - 0.5 * (m + m.transpose());
         torque_ -= Vec3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
         if (part_ == Curvature::raw) {
@@ -68,37 +70,23 @@ public:
         s_ += std::max(0.0, 0.75 * nz + 0.25 * std::sqrt(zz)) * Mat3::Identity();
     }
 
-    // lambda: two rows.
-    void axis_alignment(const FramePair& f, const double* lambda) {
-        bilinear(lambda[0] * f.ya() + lambda[1] * f.za(), f.xb());
-    }
+    void axis_alignment(int r) { bilinear(lambda_[r] * f_.ya() + lambda_[r + 1] * f_.za(), f_.xb()); }
 
     // sym(dg/dw_b) = sym(g v^T)/n,  v = X_a x X_b,  n = 1 + X_a . X_b
-    void twist(const FramePair& f, double lambda) {
-        const Vec3 g = twist_axis(f), v = f.xa().cross(f.xb());
-        const double n = std::max(1 + f.xa().dot(f.xb()), kReversed);
+    void twist(int r) {
+        const Vec3 g = twist_axis(f_), v = f_.xa().cross(f_.xb());
+        const double n = std::max(1 + f_.xa().dot(f_.xb()), kReversed), lambda = lambda_[r];
         torque_ += lambda * g;
         s_ += dyad(-lambda / n * g, v, part_);
     }
 
-    // Over the swing c, with m halfway from a to b and p = e x m:
-    //   sym(dg/dw_b) = (cot(c/2) p p^T - tan(c/2) m m^T)/2
-    void swing(const Vec3& a, const Vec3& b, const Vec3& across, double lambda) {
-        constexpr double kSmall = 1e-12;
-        const Vec3 e = swing_axis(a, b, across), t = e.cross(a);
-        const double cosine = 0.5 * (a + b).norm(), sine = 0.5 * (b - a).norm();  // of c/2
-        const Vec3 m = cosine * a + sine * t, p = cosine * t - sine * a;
-        double along_m = 0.5 * lambda * sine / std::max(cosine, kSmall);
-        double along_p = -0.5 * lambda * cosine / std::max(sine, kSmall);
-        if (part_ == Curvature::positive) along_m = std::max(along_m, 0.0), along_p = std::max(along_p, 0.0);
-        torque_ += lambda * e;
-        s_ += along_m * m * m.transpose() + along_p * p * p.transpose();
-    }
+    void swing(int r, const Vec3& a, const Vec3& b, const Vec3& across) { bend(a, b, across, lambda_[r]); }
+    void rise(int r, const Vec3& a, const Vec3& b, const Vec3& across) { bend(a, b, across, -lambda_[r]); }
 
     // With m = q x p:  sym(dg/dw_b) = sym((2 s g - q) m^T)/k of the first, sym((2 s g - p) m^T)/k of the last
-    void outer_turns(const OuterTurns& t, double first, double last) {
-        const Vec3 u = first * (2 * t.s * t.first - t.q) + last * (2 * t.s * t.last - t.p);
-        torque_ += first * t.first + last * t.last;
+    void outer_turns(const OuterTurns& t, int first, const Ratio&, int last, const Ratio&) {
+        const Vec3 u = lambda_[first] * (2 * t.s * t.first - t.q) + lambda_[last] * (2 * t.s * t.last - t.p);
+        torque_ += lambda_[first] * t.first + lambda_[last] * t.last;
         s_ += dyad(-u / t.k, t.q.cross(t.p), part_);
     }
 
@@ -117,6 +105,20 @@ public:
     }
 
 private:
+    // Over the swing c, with m halfway from a to b and p = e x m:
+    //   sym(dg/dw_b) = (cot(c/2) p p^T - tan(c/2) m m^T)/2
+    void bend(const Vec3& a, const Vec3& b, const Vec3& across, double lambda) {
+        constexpr double kSmall = 1e-12;
+        const Vec3 e = swing_axis(a, b, across), t = e.cross(a);
+        const double cosine = 0.5 * (a + b).norm(), sine = 0.5 * (b - a).norm();  // of c/2
+        const Vec3 m = cosine * a + sine * t, p = cosine * t - sine * a;
+        double along_m = 0.5 * lambda * sine / std::max(cosine, kSmall);
+        double along_p = -0.5 * lambda * cosine / std::max(sine, kSmall);
+        if (part_ == Curvature::positive) along_m = std::max(along_m, 0.0), along_p = std::max(along_p, 0.0);
+        torque_ += lambda * e;
+        s_ += along_m * m * m.transpose() + along_p * p * p.transpose();
+    }
+
     // f . r with f of body a and r of body b: S = sym of the lever's.
     void bilinear(const Vec3& f, const Vec3& r) {
         const Mat3 lever = lever_stiffness(f, r, part_);
@@ -170,6 +172,8 @@ private:
         add_block(k_, column, row, block.transpose());
     }
 
+    const FramePair& f_;
+    const double* lambda_;
     double* k_;
     Curvature part_;
     Vec3 torque_ = Vec3::Zero();

@@ -6,31 +6,30 @@
 // normal force (Coulomb's rolling resistance; Johnson, Contact Mechanics, 1985, section 9.1).
 #include "constraints/rolling.h"
 
-#include "constraints/frame_sample.h"
-#include "constraints/frame_stiffness.h"
+#include "constraints/frame_joint.h"
 
 namespace taut {
 namespace {
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
-    RowWriter(3, error, jacobian).alignment(0, FramePair(data, x));
-}
-
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
-    StiffnessWriter out(k, part);
-    out.alignment(FramePair(data, x), lambda);
-    out.finish();
-}
-
-void sample(uint64_t seed, void* data, Pose* x) {
-    Random random(seed);
-    const double swing = random.between(0.2, 1.5), direction = random.between(-3, 3), twist = random.between(-2.7, 2.7);
-    sample_frames(random, swing_after_twist(swing, direction, twist), data, x);
-}
+struct Rolling {
+    template <class Writer>
+    static void rows(Writer& out, const FramePair&) {
+        out.alignment(0);
+    }
+};
 
 }  // namespace
 
-const ConstraintType kRolling{"rolling", 3,       2,     sizeof(JointFrames), Bound::load, true, 0b111, evaluate,
-                              stiffness, nullptr, sample};
+const ConstraintType kRolling{"rolling",
+                              3,
+                              2,
+                              sizeof(JointFrames),
+                              Bound::load,
+                              true,
+                              0b111,
+                              evaluate_frames<Rolling, 3>,
+                              stiffness_of_frames<Rolling>,
+                              nullptr,
+                              sample_aligned_frames};
 
 }  // namespace taut

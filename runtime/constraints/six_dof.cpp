@@ -5,31 +5,20 @@
 //          4 = asin(X_a . Z_b) = pi/2 - swing from X_a to Z_b          [rad]  in [-pi/2, pi/2]
 //          5 = atan2(-X_a . Y_b, X_a . X_b)                            [rad]  in (-pi, pi]
 // At 4 = +-pi/2 rows 3 and 5 are about one axis; their values are arbitrary there, all stays finite.
-#include "constraints/frame_sample.h"
-#include "constraints/frame_stiffness.h"
+#include "constraints/frame_joint.h"
 
 namespace taut {
 namespace {
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
-    const FramePair f(data, x);
-    RowWriter rows(6, error, jacobian);
-    rows.slides(f);
-    const OuterTurns turns(f.xa(), f.zb());
-    const double sine = f.xa().dot(f.zb()), cosine = f.xa().cross(f.zb()).norm();
-    rows.turn(3, {angle_of(-f.ya().dot(f.zb()), f.za().dot(f.zb())), turns.first});
-    rows.turn(4, {angle_of(sine, cosine), -swing_axis(f.xa(), f.zb(), -f.ya())});
-    rows.turn(5, {angle_of(-f.xa().dot(f.yb()), f.xa().dot(f.xb())), turns.last});
-}
-
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
-    const FramePair f(data, x);
-    StiffnessWriter out(k, part);
-    out.slides(f, lambda);
-    out.swing(f.xa(), f.zb(), -f.ya(), -lambda[4]);
-    out.outer_turns(OuterTurns(f.xa(), f.zb()), lambda[3], lambda[5]);
-    out.finish();
-}
+struct SixDof {
+    template <class Writer>
+    static void rows(Writer& out, const FramePair& f) {
+        out.slides();
+        out.rise(4, f.xa(), f.zb(), -f.ya());
+        out.outer_turns(OuterTurns(f.xa(), f.zb()), 3, {-f.ya().dot(f.zb()), f.za().dot(f.zb())}, 5,
+                        {-f.xa().dot(f.yb()), f.xa().dot(f.xb())});
+    }
+};
 
 void sample(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
@@ -40,7 +29,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kSixDof{"six_dof", 6,       2,     sizeof(JointFrames), Bound::free, true, 0b111000, evaluate,
-                             stiffness, nullptr, sample};
+const ConstraintType kSixDof = frame_joint<SixDof, 6>("six_dof", sample);
 
 }  // namespace taut

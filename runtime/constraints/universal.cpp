@@ -3,30 +3,20 @@
 //   3    X_a . Y_b = -sin c                           [1]    locked: the arms of the cross stay perpendicular
 //   4    about X_a: atan2(Z_a . Y_b, Y_a . Y_b)       [rad]  in (-pi, pi]
 //   5    about Y_b: atan2(X_a . Z_b, X_a . X_b)       [rad]  in (-pi, pi]
-#include "constraints/frame_sample.h"
-#include "constraints/frame_stiffness.h"
+#include "constraints/frame_joint.h"
 
 namespace taut {
 namespace {
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
-    const FramePair f(data, x);
-    RowWriter rows(6, error, jacobian);
-    rows.anchors(f);
-    rows.turn(3, misalignment(f.xa(), f.yb()));
-    const OuterTurns turns(f.xa(), f.yb());
-    rows.turn(4, {angle_of(f.za().dot(f.yb()), f.ya().dot(f.yb())), turns.first});
-    rows.turn(5, {angle_of(f.xa().dot(f.zb()), f.xa().dot(f.xb())), turns.last});
-}
-
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
-    const FramePair f(data, x);
-    StiffnessWriter out(k, part);
-    out.anchors(f, lambda);
-    out.misalignment(f.xa(), f.yb(), lambda[3]);
-    out.outer_turns(OuterTurns(f.xa(), f.yb()), lambda[4], lambda[5]);
-    out.finish();
-}
+struct Universal {
+    template <class Writer>
+    static void rows(Writer& out, const FramePair& f) {
+        out.anchors();
+        out.misalignment(3, f.xa(), f.yb());
+        out.outer_turns(OuterTurns(f.xa(), f.yb()), 4, {f.za().dot(f.yb()), f.ya().dot(f.yb())}, 5,
+                        {f.xa().dot(f.zb()), f.xa().dot(f.xb())});
+    }
+};
 
 void sample(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
@@ -36,7 +26,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kUniversal{"universal", 6,       2,     sizeof(JointFrames), Bound::free, true, 0b111000, evaluate,
-                                stiffness,   nullptr, sample};
+const ConstraintType kUniversal = frame_joint<Universal, 6>("universal", sample);
 
 }  // namespace taut

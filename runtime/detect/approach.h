@@ -1,8 +1,8 @@
 // How two bodies of a pair move against each other at their contact points.
 #pragma once
 
+#include "state/levers.h"
 #include "state/nodes.h"
-#include "state/pairs.h"
 
 namespace taut {
 
@@ -20,11 +20,7 @@ inline RelativeMotion relative_motion(const Nodes& nodes, const Pair& pair) {
     Vec3 apart = Vec3::Zero(), turning = Vec3::Zero();
     const auto add = [&](double sign, uint32_t node, uint32_t other) {
         const NodeMotion& m = nodes.motion[node];
-        Vec3 w = m.w;
-        if (other != kNone) {
-            const Vec3 along = nodes.motion[other].x - m.x;
-            w = along.cross(nodes.motion[other].v - m.v) / std::max(along.squaredNorm(), 1e-24);
-        }
+        const Vec3 w = spin_of(nodes, node, other);
         apart += sign * (m.v + w.cross(origin - m.x));
         turning += sign * w;
     };

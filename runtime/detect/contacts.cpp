@@ -69,7 +69,7 @@ public:
           margin_(margin_of(nodes, pair, time)) {
         if (!pair.fast) return;
         encounter_.emplace(nodes, colliders, shapes, pairs, pair);
-        look_ahead(time);
+        look_ahead(time, pair.a2 != kNone || pair.b2 != kNone);
     }
     Shaped(const Shaped&) = delete;
     Shaped& operator=(const Shaped&) = delete;
@@ -92,14 +92,15 @@ public:
     }
 
 private:
-    void look_ahead(double time) {
+    // The far end of a side that spans two nodes goes on when the near one is stopped: it gets its point too.
+    void look_ahead(double time, bool spans) {
         then_ = encounter_->meeting(time);
         if (then_ == 0 || !std::isfinite(then_)) return;
         met_[0] = encounter_->a_after(then_);
         met_[1] = encounter_->b_after(then_);
         at_a_ = &met_[0];
         at_b_ = &met_[1];
-        margin_ = kContactMargin;
+        if (!spans) margin_ = kContactMargin;
     }
 
     const collision::Shape &a_, &b_;
@@ -124,8 +125,12 @@ bool may_be_ignored(const Colliders& colliders, const Pair& pair) {
 }
 
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
-Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at) {
-    if (a.node_b != kNone) return (at.position - nodes.motion[a.node].x).cast<float>();
+Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at, float then) {
+    if (a.node_b != kNone) {
+        const Vec3& x = nodes.motion[a.node].x;
+        if (then == 0) return (at.position - x).cast<float>();
+        return static_cast<float>(0.5 * (nodes.motion[a.node_b].x - x).norm()) * at.rotation.col(1);
+    }
     if (a.position == Vec3::Zero()) return Vec3f::Zero();
     const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
     return body_rotation * a.position.cast<float>();
@@ -135,7 +140,7 @@ Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placemen
 void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs,
            const collision::Manifold& old, const Pair& before, Pair& pair) {
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    const Vec3f from_a = offset_of(nodes, a, shaped.at_a());
+    const Vec3f from_a = offset_of(nodes, a, shaped.at_a(), shaped.then());
     for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
     pair.rolls_a = pairs.pace[pair.collider_a()].rolls;
     pair.rolls_b = pairs.pace[pair.collider_b()].rolls;

@@ -34,15 +34,6 @@ void refresh_joined(const Joints& joints, Pairs& pairs) {
     pairs.joined_version = joints.version;
 }
 
-// A capsule's y axis from one of its nodes to the other.
-collision::Placement place_between(const Nodes& nodes, const Collider& collider) {
-    const Vec3 &a = nodes.motion[collider.node].x, &b = nodes.motion[collider.node_b].x;
-    const Vec3 along = b - a;
-    const double length = along.norm();
-    const Quat q = length > 0 ? turn_between(Vec3::UnitY(), along / length) : Quat::Identity();
-    return {0.5 * (a + b), q.toRotationMatrix().cast<float>()};
-}
-
 bool moves(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.info[node].kind != NodeKind::fixed; }
 bool moves(const Nodes& nodes, const Collider& collider) {
     if (collider.node == kNone || nodes.rest[collider.node] == Rest::asleep) return false;
@@ -118,8 +109,15 @@ Pair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs
 
 }  // namespace
 
+collision::Placement place_between(const Vec3& from, const Vec3& to) {
+    const Vec3 along = to - from;
+    const double length = along.norm();
+    const Quat q = length > 0 ? turn_between(Vec3::UnitY(), along / length) : Quat::Identity();
+    return {0.5 * (from + to), q.toRotationMatrix().cast<float>()};
+}
+
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
-    if (collider.node_b != kNone) return place_between(nodes, collider);
+    if (collider.node_b != kNone) return place_between(nodes.motion[collider.node].x, nodes.motion[collider.node_b].x);
     const NodeMotion& m = nodes.motion[collider.node];
     const bool ahead = nodes.info[collider.node].kind == NodeKind::kinematic && elapsed > 0;
     const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
@@ -161,7 +159,7 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
             collision::Box box = contact_box(nodes, shapes, collider);
             box.lo += least;
             box.hi += most;
-            grow_turning(pairs.pace[c], box);
+            if (collider.node_b == kNone) grow_turning(pairs.pace[c], box);  // else its ends tell
             pairs.reach[c] = {box, ahead};
         }
     });

@@ -12,6 +12,8 @@
 
 namespace taut {
 
+// A capsule's y axis from one point to another.
+collision::Placement place_between(const Vec3& from, const Vec3& to);
 // Where a collider's shape is, `elapsed` after the start of the frame: kinematic bodies move at its end.
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed = 0);
 // The shape's box at the node's pose, grown by the contact margin.

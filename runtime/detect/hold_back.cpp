@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "detect/detect.h"
 #include "detect/impact.h"
 
 namespace taut {
@@ -11,13 +12,18 @@ constexpr double kCore = 0.5;  // of the ball inside a shape
 struct Passage {
     Passage(const Nodes& nodes, const Collider& collider, const collision::Shape& s)
         : shape(s), node(collider.node), at(placed(nodes, collider)) {
-        const NodePose& before = nodes.before[node];
-        const Vec3 centre = nodes.mass[node].centre;
-        along = nodes.motion[node].x - before.position - before.rotation * centre;
+        along = way_of(nodes, node);
+        if (collider.node_b != kNone) along = 0.5 * (along + way_of(nodes, collider.node_b));
+    }
+
+    static Vec3 way_of(const Nodes& nodes, uint32_t of) {
+        const NodePose& before = nodes.before[of];
+        return nodes.motion[of].x - before.position - before.rotation * nodes.mass[of].centre;
     }
 
     static collision::Placement placed(const Nodes& nodes, const Collider& collider) {
         const NodePose& before = nodes.before[collider.node];
+        if (collider.node_b != kNone) return place_between(before.position, nodes.before[collider.node_b].position);
         return {before.position + before.rotation * collider.position,
                 (before.rotation * collider.rotation).toRotationMatrix().cast<float>()};
     }

@@ -17,30 +17,41 @@ Mat3 rotation_of(const Collider& collider, const collision::Placement& at) {
     return at.rotation.cast<double>() * collider.rotation.conjugate().toRotationMatrix();
 }
 
-// The node's motion from where its collider is placed now.
+// From where its collider is placed now.
 collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const collision::Placement& at) {
-    const NodeMotion& m = nodes.motion[collider.node];
+    const Movement m = movement_of(nodes, collider.node, collider.node_b);
+    if (collider.node_b != kNone) return {at, m.x, m.v, m.w};
     const Vec3 lever = nodes.mass[collider.node].centre - collider.position;
     return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w};
+}
+
+// From the origin of a collider's node to the centre that it turns about.
+Vec3 arm_of(const Nodes& nodes, const Collider& collider, const collision::Motion& motion) {
+    if (collider.node_b != kNone) return motion.centre - nodes.motion[collider.node].x;
+    return rotation_of(collider, motion.at) * nodes.mass[collider.node].centre;
+}
+
+bool looked_for(const Nodes& nodes, uint32_t node) {
+    return node == kNone || nodes.info[node].continuous || nodes.info[node].kind == NodeKind::fixed;
 }
 
 }  // namespace
 
 Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time) {
-    const NodeInfo& info = nodes.info[collider.node];
-    const bool looked_for = collider.node_b == kNone && (info.continuous || info.kind == NodeKind::fixed);
     const auto round = static_cast<float>(collision::ball_radius(shape));
     const bool rolls = collision::rolls(shape);
-    if (!looked_for) return {std::numeric_limits<double>::infinity(), 0, round, rolls};
-    const double lever = (collider.position - nodes.mass[collider.node].centre).norm();
-    const double spin = nodes.motion[collider.node].w.norm();
+    if (!looked_for(nodes, collider.node) || !looked_for(nodes, collider.node_b))
+        return {std::numeric_limits<double>::infinity(), 0, round, rolls};
+    const bool spans = collider.node_b != kNone;
+    const double lever = spans ? 0 : (collider.position - nodes.mass[collider.node].centre).norm();
+    const double spin = spin_of(nodes, collider.node, collider.node_b).norm();
     return {collision::thickness(shape), spin > 0 ? time * spin * collision::spin_radius(shape, lever) : 0, round,
             rolls};
 }
 
 bool is_fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {
     const Pace &a = pairs.pace[pair.collider_a()], &b = pairs.pace[pair.collider_b()];
-    const double linear = time * (nodes.motion[pair.a].v - nodes.motion[pair.b].v).norm();
+    const double linear = time * (movement_of(nodes, pair.a, pair.a2).v - movement_of(nodes, pair.b, pair.b2).v).norm();
     return linear + a.turning + b.turning > a.thickness + b.thickness;
 }
 
@@ -50,7 +61,7 @@ Encounter::Encounter(const Nodes& nodes, const Colliders& colliders, const Shape
       b_(shapes.record[colliders.record[pair.collider_b()].shape].shape),
       motion_a_(motion_of(nodes, colliders.record[pair.collider_a()], pairs.placement[pair.collider_a()])),
       motion_b_(motion_of(nodes, colliders.record[pair.collider_b()], pairs.placement[pair.collider_b()])),
-      arm_a_(rotation_of(colliders.record[pair.collider_a()], motion_a_.at) * nodes.mass[pair.a].centre) {}
+      arm_a_(arm_of(nodes, colliders.record[pair.collider_a()], motion_a_)) {}
 
 double Encounter::meeting(double time) const {
     const double one = collision::thickness(a_), other = collision::thickness(b_);

@@ -243,6 +243,7 @@ uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, 
     NodeInfo info;
     info.kind = links(cable) ? NodeKind::dynamic : NodeKind::particle;
     info.cable = index;
+    info.continuous = world.def.continuous != 0;
     info.user_data = cable.user_data;
     const NodeMass mass = mass_of(cable, length, info.kind);
     if (!links(cable)) return add_node(world, info, motion, mass);

@@ -57,9 +57,11 @@ void Reel::fit() {
     const double n = c_.nominal, d = plan().paid;
     while (true) {
         const double l = length();
-        if (l > kDivide * n && c_.segments() < TAUT_CABLE_MAX_SEGMENTS)
+        // What is left of a cut is not joined again: or the two would take turns for ever.
+        const auto short_for_step = [&](double left) { return left < kJoin * n || left + d < kLeastReeled * n; };
+        if (l > kDivide * n && !short_for_step(l - n) && c_.segments() < TAUT_CABLE_MAX_SEGMENTS)
             links() ? divide_link() : divide_particles();
-        else if ((l < kJoin * n || l + d < kLeastReeled * n) && can_join())
+        else if (short_for_step(l) && can_join())
             links() ? join_links() : join_particles();
         else
             return;

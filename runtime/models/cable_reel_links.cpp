@@ -6,6 +6,8 @@
 namespace taut {
 namespace {
 
+constexpr double kFolded = 1e-9;  // chord of two links against what they are joined to
+
 NodeMotion moved(const NodeMotion& m, const Vec3& offset) {
     NodeMotion out = m;
     out.x += offset;
@@ -88,14 +90,16 @@ void Reel::join_links() {
     const NodeMotion near = moved(b, -0.5 * c_.length[k] * outward(b));
     const Vec3 chord = far.x - near.x;
     const double total = c_.length[i] + c_.length[k], size = chord.norm();
-    const double joined = std::min(total, size - stretch);
-    const Vec3 out = chord / size;
+    const double joined = std::max(kLeastReeled * c_.nominal, std::min(total, size - stretch));
+    const double reach = std::max(joined, size);
+    // Folded on one another they have no direction between them: that of the link that stays.
+    const Vec3 out = size > kFolded * joined ? Vec3(chord / size) : outward(b);
     NodeMotion now = b;
     now.x = 0.5 * (far.x + near.x);
     now.q = (turn_between(outward(b), out) * b.q).normalized();
     // Ends move as they did; the spin about the axis is that of the link that stays.
     const auto spin = [&](const Vec3& v, const Vec3& w) {
-        return Vec3(chord.cross(v) / (size * size) + out.dot(w) * out);
+        return Vec3(chord.cross(v) / (reach * reach) + out.dot(w) * out);
     };
     now.v = 0.5 * (far.v + near.v);
     now.w = spin(far.v - near.v, b.w);

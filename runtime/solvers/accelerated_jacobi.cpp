@@ -4,9 +4,11 @@
 //   beta_{k+1} = theta_k (1 - theta_k) / (theta_k^2 + theta_{k+1})
 // S is the block's diagonal with each node's inverse mass multiplied by the number of blocks on it: the mass
 // splitting bound, under which the plain iteration (omega = 1) cannot diverge. The momentum restarts where it
-// points against the descent. Of joints with axes it solves what is locked: stops, drives and friction are left out.
+// points against the descent. Stops, drives and friction of a joint's axis are scalar rows of their own beside the
+// block of what is locked.
 #include <Eigen/LU>
 #include <algorithm>
+#include <utility>
 
 #include "solvers/solver.h"
 #include "system/row_algebra.h"
@@ -29,14 +31,19 @@ public:
           softness_(s.scratch.softness),
           previous_(s.scratch.previous),
           next_(s.scratch.next),
+          axes_(s.scratch.axes),
           soft_(contact_terms(sys_.h)) {
         count_.assign(sys_.pose.size(), 0);
         inverse_.clear();
         softness_.clear();
         next_.resize(sys_.rows.impulse.size());
+        find_axes();
         for (const RowBlock& block : sys_.rows.block)
             for (int n = 0; n < block.type->nodes; ++n) ++count_[block.node[n]];
+        for (const AxisIterate& axis : axes_)
+            for (int n = 0; n < block_of(axis).type->nodes; ++n) ++count_[block_of(axis).node[n]];
         for (const RowBlock& block : sys_.rows.block) prepare(block);
+        for (AxisIterate& axis : axes_) prepare(axis);
     }
 
     void apply_all() {  // warm start: J^T mu onto v*
@@ -46,6 +53,7 @@ public:
     void run(uint32_t iterations, Phase phase) {
         double theta = 1, beta = 0;
         previous_ = sys_.rows.impulse;
+        for (AxisIterate& axis : axes_) axis.previous = axis.impulse;
         for (uint32_t k = 0; k < iterations; ++k) {
             const bool uphill = advance(beta, phase);
             const double after = 0.5 * (-theta * theta + theta * std::sqrt(theta * theta + 4));
@@ -55,7 +63,45 @@ public:
         }
     }
 
+    void store_forces() {
+        for (const RowBlock& block : sys_.rows.block)
+            for (int r = 0; block.force && r < block.type->rows; ++r)
+                block.force[r] = sys_.rows.impulse[block.row + static_cast<uint32_t>(r)] / sys_.h;
+        store_axes();
+    }
+    void store_axes() {
+        for (const AxisIterate& axis : axes_) *axis.axis.force = static_cast<float>(axis.impulse / sys_.h);
+    }
+
 private:
+    const RowBlock& block_of(const AxisIterate& axis) const { return sys_.rows.block[axis.block]; }
+
+    // Rows of axes, with the impulses that they carry: what a row of the block has is their sum.
+    void find_axes() {
+        axes_.clear();
+        for (uint32_t b = 0; b < sys_.rows.block.size(); ++b) {
+            const RowBlock& block = sys_.rows.block[b];
+            for (int r = 0; block.axis && r < block.type->rows; ++r) {
+                if (block.locked(r)) continue;
+                const size_t at = block.row + static_cast<size_t>(r);
+                double& sum = sys_.rows.impulse[at] = 0;
+                for_each_axis_row(block, r, sys_.rows.error[at], sys_.h, [&](const AxisRow& axis) {
+                    axes_.push_back({axis, b, r, 0, sys_.h * static_cast<double>(*axis.force), 0});
+                    sum += axis.sign * axes_.back().impulse;
+                });
+            }
+        }
+    }
+
+    void prepare(AxisIterate& axis) {
+        const RowBlock& block = block_of(axis);
+        double split = 0;
+        for (int n = 0; n < block.type->nodes; ++n)
+            split += count_[block.node[n]] *
+                     inverse_mass_along(sys_.inverse_mass[block.node[n]], row_of(sys_, block, n, axis.row));
+        axis.inverse = split > 0 ? 1 / (split + axis.axis.compliance) : 0;
+    }
+
     // Inverse of the split diagonal, and the compliance c that the biased phase gives the block: physical, or a soft
     // row's share of its own effective mass (see soft_contact.h).
     void prepare(const RowBlock& block) {
@@ -95,14 +141,42 @@ private:
             const RowVector r = residual(block, now, softness, phase);
             alignment += r.dot(now - before);
             RowVector next = now - inverse * r + beta * (now - before);
+            for (int row = 0; row < rows; ++row)
+                if (!block.locked(row)) next[row] = now[row];
             project(block, next);
             Eigen::Map<RowVector>(&next_[block.row], rows) = next;
         }
+        for (AxisIterate& axis : axes_) alignment += advance(axis, beta, phase);
         for (const RowBlock& block : sys_.rows.block)
             push(block, Eigen::Map<const RowVector>(&next_[block.row], block.type->rows) - impulse_of(sys_, block));
         previous_ = impulse;
         impulse = next_;
         return alignment > 0;
+    }
+
+    // Of an axis: onto what its block's row has next. The alignment of momentum and residual.
+    double advance(AxisIterate& axis, double beta, Phase phase) {
+        const double step = axis.impulse - axis.previous, r = residual(axis, phase);
+        const double next = std::clamp(axis.impulse - axis.inverse * r + beta * step,
+                                       axis.axis.stop ? 0.0 : -axis.axis.limit, axis.axis.limit);
+        next_[block_of(axis).row + static_cast<uint32_t>(axis.row)] += axis.axis.sign * (next - axis.impulse);
+        axis.previous = std::exchange(axis.impulse, next);
+        return r * step;
+    }
+
+    double residual(const AxisIterate& iterate, Phase phase) const {
+        const RowBlock& block = block_of(iterate);
+        const AxisRow& axis = iterate.axis;
+        double speed = 0;
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const Velocity& u = sys_.exact[block.node[n]];
+            const double* j = row_of(sys_, block, n, iterate.row);
+            speed += Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w);
+        }
+        double target = phase == Phase::biased ? axis.target : axis.relaxed_target;
+        if (axis.stop && !axis.physical && axis.gap <= 0 && phase == Phase::biased)
+            target = std::min<double>(soft_.push, -soft_.bias_rate * axis.gap);
+        return axis.sign * speed - target + axis.compliance * iterate.impulse;
     }
 
     void project(const RowBlock& block, RowVector& mu) const {
@@ -113,11 +187,7 @@ private:
             limit_circle(mu, block.arm[1] * load);
             return;
         }
-        if (block.type->bound != Bound::cone) {
-            for (int r = 0; r < block.type->rows; ++r)
-                if (!block.locked(r)) mu[r] = 0;
-            return;
-        }
+        if (block.type->bound != Bound::cone) return;
         mu[0] = std::max(0.0, mu[0]);
         limit_circle(mu, block.friction * mu[0]);
     }
@@ -168,6 +238,7 @@ private:
     Array<uint32_t>& count_;             // row blocks on each node
     Array<double>&inverse_, &softness_;  // rows x rows a block
     Array<double>&previous_, &next_;     // impulses
+    Array<AxisIterate>& axes_;
     SweepTerms soft_;
 };
 
@@ -177,16 +248,14 @@ void solve(Substep& s) {
     Iteration iteration(s);
     iteration.apply_all();
     iteration.run(iterations(s), Phase::biased);
-    for (const RowBlock& block : s.system.rows.block)
-        if (block.force)
-            for (int r = 0; r < block.type->rows; ++r)
-                block.force[r] = s.system.rows.impulse[block.row + r] / s.system.h;
+    iteration.store_forces();
 }
 
 void relax(Substep& s) {
     Iteration iteration(s);
     iteration.run(iterations(s), Phase::relaxed);
     if (s.last) iteration.run(iterations(s), Phase::bouncing);
+    iteration.store_axes();
 }
 
 }  // namespace

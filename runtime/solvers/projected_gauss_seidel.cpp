@@ -65,6 +65,14 @@ public:
         solve_circle(s, block_.friction * p[0]);
     }
 
+    // What was hit leaves at the speed that its restitution asks for; as in the fused sweep.
+    void bounce() {
+        RowVector p = impulse();
+        if (!(block_.bounce > 0 && p[0] > 0)) return;
+        p[0] = std::max(0.0, p[0] + (block_.bounce - velocity()[0]) / effective()(0, 0));
+        move_to(p);
+    }
+
     // Spinning first, then rolling on its circle.
     void solve_load() {
         const RowMatrix s = effective();
@@ -135,6 +143,13 @@ void publish(Substep& s) {
             }
         }
     });
+}
+
+void bounce_rows(Substep& s, uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; ++i) {
+        const RowBlock& block = s.system.rows.block[i];
+        if (block.type->bound == Bound::cone) RowSweep(s.system, block).bounce();
+    }
 }
 
 void solve(Substep& s) {
@@ -221,6 +236,7 @@ void sweep_relaxed(Substep& s) {
         for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
             s.settings.kernels->restitute(contacts.view(), begin, end, velocity, mass, kBounceSpeed, s.last);
         });
+    if (s.last) bounce_rows(s, rows.joints, rows.lasting - rows.joints);
     store_joint_lanes(s.team, s.system);
     publish(s);
 }

@@ -7,6 +7,7 @@
 
 #include "partition/partition.h"
 #include "solvers/bounded_row.h"
+#include "system/axis_rows.h"
 #include "system/system.h"
 #include "threads/team.h"
 
@@ -27,14 +28,30 @@ struct SolverReport {
     double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
 };
 
+// A scalar row of a joint's axis among others that are solved at once.
+struct AxisIterate {
+    AxisRow axis;
+    uint32_t block;                // in Rows
+    int row;                       // of the block
+    double inverse;                // of the split diagonal and c
+    double impulse, previous = 0;  // mu [N s]
+};
+
 // Memory that iterative solvers use during a substep, kept so that steady scenes allocate nothing.
 struct SolverScratch {
     explicit SolverScratch(Memory& memory)
-        : count(memory), inverse(memory), softness(memory), previous(memory), next(memory), bounded(memory) {}
+        : count(memory),
+          inverse(memory),
+          softness(memory),
+          previous(memory),
+          next(memory),
+          bounded(memory),
+          axes(memory) {}
 
     Array<uint32_t> count;
     Array<double> inverse, softness, previous, next;
     Array<BoundedRow> bounded;  // of the group's blocks
+    Array<AxisIterate> axes;
 };
 
 // One substep of one group.

@@ -12,6 +12,22 @@ struct Movement {
     Vec3 way(const Vec3& lever, double time) const { return time * v + rotation_from_vector(time * w) * lever - lever; }
 };
 
+// How fast the line between two particles turns, its stretch left out; of one node: the node itself [rad/s].
+inline Vec3 spin_of(const Nodes& nodes, uint32_t node, uint32_t other) {
+    const NodeMotion& m = nodes.motion[node];
+    if (other == kNone) return m.w;
+    const Vec3 along = nodes.motion[other].x - m.x;
+    return along.cross(nodes.motion[other].v - m.v) / std::max(along.squaredNorm(), 1e-24);
+}
+
+// Of a node, or of the line between two particles: that of a rod, for what ties them keeps their distance.
+inline Movement movement_of(const Nodes& nodes, uint32_t node, uint32_t other) {
+    const NodeMotion& m = nodes.motion[node];
+    if (other == kNone) return {m.x, m.v, m.w};
+    const NodeMotion& far = nodes.motion[other];
+    return {0.5 * (m.x + far.x), 0.5 * (m.v + far.v), spin_of(nodes, node, other)};
+}
+
 // From the centres of mass to where a contact point is on each of the two surfaces, world axes [m].
 struct Levers {
     Vec3 a, b;

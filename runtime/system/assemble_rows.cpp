@@ -77,14 +77,32 @@ double share_along(const Vec3& from, const Vec3& to, const Vec3& point) {
     return std::clamp((point - from).dot(d) / std::max(d.squaredNorm(), 1e-24), 0.0, 1.0);
 }
 
+// Where the points are now that are to meet later, on either side.
+void find_meeting_points(const System& system, const Nodes& nodes, const Pair& pair, int k, Vec3 (&point)[2]) {
+    const auto side = [&](uint32_t node, uint32_t other) {
+        Movement m = movement_of(nodes, node, other);
+        if (other == kNone) m.x = system.pose[node + 1].x;
+        return m;
+    };
+    const Movement a = side(pair.a, pair.a2), b = side(pair.b, pair.b2);
+    const Pose& first = system.pose[pair.a + 1];
+    const Vec3 arm = pair.a2 == kNone ? Vec3(first.R * nodes.mass[pair.a].centre) : Vec3(a.x - first.x);
+    const Levers levers = levers_of(pair, k, arm, a, b);
+    point[0] = a.x + levers.a;
+    point[1] = b.x + levers.b;
+}
+
 // The same where a side spans two nodes: particles, whose points are on the line between them.
 SpanContactData span_contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
-    const Vec3 at = position_of(system, nodes, pair, k);
+    Vec3 point[2];
+    point[0] = point[1] = position_of(system, nodes, pair, k);
+    if (pair.then > 0) find_meeting_points(system, nodes, pair, k, point);
     const uint32_t side[2][2] = {{pair.a, pair.a2}, {pair.b, pair.b2}};
     SpanContactData data;
     Vec3 apart = Vec3::Zero();
     for (int s = 0; s < 2; ++s) {
         const double sign = s == 0 ? -1 : 1;
+        const Vec3& at = point[s];
         const Pose& one = system.pose[side[s][0] + 1];
         if (side[s][1] == kNone) {
             data.weight[s] = sign;

@@ -16,6 +16,11 @@ inline Eigen::Map<const RowJacobian> jacobian_of(const System& system, const Row
     return {&system.rows.jacobian[block.jacobian + static_cast<uint32_t>(node * rows * kDof)], rows, kDof};
 }
 
+// One row of it [6].
+inline const double* row_of(const System& system, const RowBlock& block, int node, int row) {
+    return &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((node * block.type->rows + row) * kDof)];
+}
+
 inline RowVector impulse_of(const System& system, const RowBlock& block) {
     return Eigen::Map<const RowVector>(&system.rows.impulse[block.row], block.type->rows);
 }

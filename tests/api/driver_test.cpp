@@ -23,5 +23,7 @@ TEST_P(RandomHost, BreaksNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomHost, testing::Range<uint64_t>(1, 41));
+// Broke something once.
+INSTANTIATE_TEST_SUITE_P(Known, RandomHost, testing::Values<uint64_t>(1011));
 
 }  // namespace

@@ -237,6 +237,55 @@ TEST_P(TouchedCable, LiesOnWhatItFallsOn) {
     EXPECT_NEAR(points.back().y, 0.5 * kDiameter, 3e-3);
 }
 
+using Bounce = std::tuple<taut_solver, double>;
+class DroppedSegment : public testing::TestWithParam<Bounce> {};
+
+// A light segment that falls flat rebounds to the square of its restitution, whoever solves its contact; the bounds
+// are those of DroppedBall.
+TEST_P(DroppedSegment, ReboundsToTheSquareOfRestitution) {
+    const auto [solver, e] = GetParam();
+    constexpr double kDrop = 1, r = 0.5 * kDiameter;
+    CableLab lab([&](taut_world_def& def) { def.solver = solver, def.fixed_substeps = 1; });
+    lab.add_ground(0, 0);
+    taut_cable_def d = CableLab::plan(TAUT_CABLE_PARTICLES);
+    const taut_pos path[2] = {{-0.2, r + kDrop, 0}, {0.2, r + kDrop, 0}};
+    d.points = path;
+    d.point_count = 2;
+    d.segment_count = 1;
+    d.diameter = kDiameter;
+    d.mass_per_metre = 0.1f;
+    d.material.restitution = static_cast<float>(e);
+    const taut_cable cable = lab.cable(d);
+    const double frame = lab.frame(), substep = frame / lab.def.substeps, v = std::sqrt(2 * kG * kDrop);
+    const double slowest = v - kG * (frame + substep / 2);
+    const double least = e * e * slowest * slowest / (2 * kG) - e * v * substep / 2 - 1e-3;
+
+    double lowest = kDrop, top[2] = {0, 0};
+    for (int i = 0; i < 60; ++i) {
+        lab.step();
+        const auto points = points_of(cable);
+        lowest = std::min(lowest, points[0].y - r);
+        for (int end = 0; lowest < 0.01 && end < 2; ++end) top[end] = std::max(top[end], points[end].y - r);
+    }
+    for (double rise : top) {
+        EXPECT_LE(rise, e * e * kDrop + 1e-2);
+        EXPECT_GE(rise, least) << "expected about " << e * e * kDrop;
+    }
+    EXPECT_GT(lowest, -1e-3);
+    RecordProperty("height_mm", std::to_string(1e3 * top[0]));
+}
+
+std::string bounce_name(const testing::TestParamInfo<Bounce>& tested) {
+    const char* names[] = {"block_", "sweeps_", "jacobi_"};
+    return names[std::get<0>(tested.param)] + std::to_string(static_cast<int>(100 * std::get<1>(tested.param)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, DroppedSegment,
+                         testing::Combine(testing::Values(TAUT_SOLVER_BLOCK_LDLT, TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL,
+                                                          TAUT_SOLVER_ACCELERATED_JACOBI),
+                                          testing::Values(0.0, 0.5, 0.9)),
+                         bounce_name);
+
 // One loop of cable hangs on another.
 TEST_P(TouchedCable, HangsOnAnother) {
     CableLab lab;

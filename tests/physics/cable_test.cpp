@@ -324,6 +324,74 @@ TEST_P(EitherCable, IsHauledInToItsLastSegment) {
     EXPECT_LT(lab.profile().joint_error, 1e-3f);
 }
 
+// At any speed up to the fastest, half a segment a step, the end segment passes the lengths at which it is cut and
+// joined in another order. What was joined must not be cut for what is left to be joined again, for ever.
+TEST_P(EitherCable, IsHauledInAtAnySpeed) {
+    for (int percent : {5, 10, 20, 30, 36, 40, 43, 46, 48, 50}) {
+        CableLab lab;
+        taut_cable_def d = CableLab::plan(GetParam());
+        const taut_body load = lab.add({.position = {0, -4, 0}, .mass = 100, .inertia = {1, 1, 1}});
+        d.end[0] = to_world({0, 0, 0});
+        d.end[1] = to_body(load);
+        d.segment_length = 0.1f;
+        const taut_cable cable = lab.cable(d);
+        const double speed = 0.01 * percent * 0.1 / lab.frame();
+        ok(taut_cable_set_reel_speed(cable, 0, static_cast<float>(-speed), 0));
+        const int steps = static_cast<int>(2 / (speed * lab.frame()));
+        lab.step(steps);
+        EXPECT_NEAR(length_of(cable), 4 - steps * speed * lab.frame(), 0.01) << percent;
+        EXPECT_EQ(tensions_of(cable).size() + 1, points_of(cable).size());
+    }
+}
+
+// A path's own stretches are segments: a long one beside short ones is cut more than once when they are joined.
+TEST_P(EitherCable, HaulsInUnevenSegments) {
+    CableLab lab;
+    taut_cable_def d = CableLab::plan(GetParam());
+    std::vector<taut_pos> path = {{0, 0, 0}};
+    for (double length : {0.1, 0.02, 0.9, 0.05, 0.03, 0.7, 0.02, 1.3, 0.1})
+        path.push_back({0, path.back().y - length, 0});
+    const taut_body load = lab.add({.position = path.back(), .mass = 10, .inertia = {1, 1, 1}});
+    d.points = path.data();
+    d.point_count = static_cast<uint32_t>(path.size());
+    d.end[0] = to_world({0, 0, 0});
+    d.end[1] = to_body(load);
+    const taut_cable cable = lab.cable(d);
+    const double before = length_of(cable);
+    ok(taut_cable_set_reel_speed(cable, 0, -3, 0));
+    lab.step(30);
+    EXPECT_NEAR(length_of(cable), before - 30 * 3 * lab.frame(), 0.01);
+    lab.step(60);
+    EXPECT_EQ(tensions_of(cable).size(), 1u);
+    EXPECT_TRUE(finite(position(load)));
+}
+
+// A cable folded to and fro ends where it begins: hauled in fast all of it is joined to one segment, which has a length
+// and a direction all the same.
+TEST_P(EitherCable, JoinsFoldedSegments) {
+    for (double aside : {0.0, 1e-13, 1e-9, 1e-4}) {
+        CableLab lab([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+        taut_cable_def d = CableLab::plan(GetParam());
+        const taut_pos path[] = {{0, 0, 0}, {0.4, 0, 0}, {-0.4, 0, 0}, {0.4, 0, 0}, {aside, 0, 0}};
+        constexpr double kNominal = 0.6;  // (0.4 + 0.8 + 0.8 + 0.4) / 4
+        d.points = path;
+        d.point_count = 5;
+        d.filter.mask = 0;
+        d.end[0] = to_world({0, 0, 0});
+        const taut_cable cable = lab.cable(d);
+        ok(taut_cable_set_reel_speed(cable, 0, static_cast<float>(-0.499 * kNominal / lab.frame()), 0));
+        lab.step();
+        EXPECT_EQ(tensions_of(cable).size(), 1u);
+        EXPECT_NEAR(length_of(cable), 0.2 * kNominal, 1e-4);
+        ok(taut_cable_set_reel_speed(cable, 0, 1, 0));
+        for (int i = 0; i < 60; ++i) {
+            lab.step();
+            for (const Vec& point : points_of(cable)) ASSERT_TRUE(finite(point)) << aside << ", step " << i;
+            ASSERT_LT(norm(points_of(cable).back()), 2) << aside << ", step " << i;
+        }
+    }
+}
+
 // Twice the same bits, contacts, cuts and joins included.
 TEST_P(EitherCable, GivesTheSameBitsTwice) {
     const auto run = [&] {

@@ -1,107 +1,9 @@
 // Joints with stops, drives and friction, against what mechanics says of them.
-#include "physics/lab.h"
+#include "physics/joint_lab.h"
 
 namespace {
 
 using namespace lab;
-
-constexpr double kDegree = kPi / 180;
-
-taut_axis_def free_axis() {
-    taut_axis_def axis;
-    taut_axis_def_init(&axis);
-    return axis;
-}
-
-taut_axis_def limited(double lower, double upper) {
-    taut_axis_def axis = free_axis();
-    axis.mode = TAUT_AXIS_LIMITED;
-    axis.lower = static_cast<float>(lower);
-    axis.upper = static_cast<float>(upper);
-    return axis;
-}
-
-taut_axis_def motor(double speed, double max_force) {
-    taut_axis_def axis = free_axis();
-    axis.drive.speed = static_cast<float>(speed);
-    axis.drive.damping = INFINITY;
-    axis.drive.max_force = static_cast<float>(max_force);
-    return axis;
-}
-
-taut_axis_def with_friction(double force) {
-    taut_axis_def axis = free_axis();
-    axis.friction = static_cast<float>(force);
-    return axis;
-}
-
-// Both frames of a joint at a point and along an axis of the world.
-template <class Def>
-Def at(const World& world, void (*init)(Def*), taut_body a, taut_body b, const Vec& pivot, const Vec& axis) {
-    Def def;
-    init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    ok(taut_joint_frames_from_world(world.handle, a, b, pivot.pos(), axis.narrow(), &def.frame_a, &def.frame_b));
-    return def;
-}
-
-taut_joint hinge(const World& world, taut_body a, taut_body b, const Vec& pivot, const Vec& axis,
-                 const taut_axis_def& angle = free_axis()) {
-    auto def = at(world, taut_hinge_joint_def_init, a, b, pivot, axis);
-    def.angle = angle;
-    taut_joint out{};
-    ok(taut_world_add_hinge_joint(world.handle, &def, &out));
-    return out;
-}
-
-taut_joint slider(const World& world, taut_body a, taut_body b, const Vec& pivot, const Vec& axis,
-                  const taut_axis_def& slide = free_axis()) {
-    auto def = at(world, taut_slider_joint_def_init, a, b, pivot, axis);
-    def.slide = slide;
-    taut_joint out{};
-    ok(taut_world_add_slider_joint(world.handle, &def, &out));
-    return out;
-}
-
-struct Motion {
-    double value, rate;
-};
-
-Motion motion(taut_joint joint, uint32_t axis = 0) {
-    float value = 0, rate = 0;
-    ok(taut_joint_get_coordinates(joint, axis, &value, &rate));
-    return {static_cast<double>(value), static_cast<double>(rate)};
-}
-
-taut_axis_forces forces(taut_joint joint, uint32_t axis = 0) {
-    taut_axis_forces out;
-    ok(taut_joint_get_axis_forces(joint, axis, &out));
-    return out;
-}
-
-double error(taut_joint joint) {
-    float out = 0;
-    ok(taut_joint_get_error(joint, &out));
-    return static_cast<double>(out);
-}
-
-double angular_error(taut_joint joint) {
-    float out = 0;
-    ok(taut_joint_get_angular_error(joint, &out));
-    return static_cast<double>(out);
-}
-
-World weightless() {
-    return World([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
-}
-
-// A bar of 1 m along x with its left end in the origin.
-constexpr double kBarMass = 2, kBarInertia = 0.2;
-taut_body bar(const World& world) {
-    return world.add({.position = {0.5, 0, 0}, .mass = kBarMass, .inertia = {0.05, kBarInertia, kBarInertia}});
-}
-constexpr double kAboutEnd = kBarInertia + kBarMass * 0.25;  // its inertia about the left end
 
 // ---------------------------------------------------------------- stops
 
@@ -400,45 +302,6 @@ TEST(FourBar, MovesWithAParallelLinkTooMany) {
     EXPECT_GT(reach, 0.3);
     EXPECT_LT(gap, 1e-3);
     EXPECT_LT(tilt, 1e-3) << "the coupler stays level";
-}
-
-// ---------------------------------------------------------------- swept joints
-
-// The same stop and motor when the joint is swept instead of solved in a block.
-TEST(SoftJoint, KnowsStopsAndMotors) {
-    World world;
-    const taut_body body = bar(world);
-    auto def = at(world, taut_hinge_joint_def_init, {}, body, {0, 0, 0}, {0, 0, 1});
-    def.angle = limited(-30 * kDegree, 60 * kDegree);
-    def.solve = TAUT_JOINT_SOLVE_SOFT;
-    taut_joint joint{};
-    ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
-    world.step(300);
-    EXPECT_NEAR(motion(joint).value, -30 * kDegree, 0.5 * kDegree);
-    const taut_axis_def up = motor(1, 100);
-    ok(taut_joint_set_axis(joint, 0, &up));
-    world.step(60);
-    EXPECT_NEAR(motion(joint).rate, 1, 0.02);
-    EXPECT_LT(error(joint), 2e-3);
-}
-
-// A bar swings on its hinge from horizontal to horizontal, whatever solves it; a quarter swing takes
-// sqrt(2 I / (m g L/2)) * 1.31103 (the elliptic integral of a drop from 90 degrees over sqrt 2).
-TEST(FreeHinge, SwingsUnderEverySolver) {
-    for (const taut_solver solver :
-         {TAUT_SOLVER_BLOCK_LDLT, TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL, TAUT_SOLVER_ACCELERATED_JACOBI}) {
-        SCOPED_TRACE(static_cast<int>(solver));
-        World world([&](taut_world_def& def) { def.solver = solver; });
-        const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1});
-        const double quarter = std::sqrt(2 * kAboutEnd / (kBarMass * kG * 0.5)) * 1.31103;
-        int frames = 0;
-        while (motion(joint).value > -kPi / 2 && frames < 200) {
-            world.step();
-            ++frames;
-        }
-        EXPECT_NEAR(frames * world.frame(), quarter, 1.5 * world.frame());
-        EXPECT_LT(error(joint), 0.01);
-    }
 }
 
 // ---------------------------------------------------------------- changes in motion

@@ -1,27 +1,11 @@
 // Nothing tunnels: bodies that pass many times their own thickness in a step, against walls thinner than that.
-#include <random>
-
-#include "physics/surface_lab.h"
+#include "physics/tunnel_lab.h"
 
 using namespace lab;
 
 namespace {
 
-void weightless(taut_world_def& def) { def.gravity = {0, 0, 0}; }
-
-double between(std::mt19937& random, double lo, double hi) {
-    return std::uniform_real_distribution<double>(lo, hi)(random);
-}
-
-Vec direction(std::mt19937& random) {
-    for (;;) {
-        const Vec v(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));
-        if (norm(v) > 0.1 && norm(v) < 1) return unit(v);
-    }
-}
-
 enum class Bullet { ball, box, rod, hull };
-enum class Wall { thick, plate, sheet, mesh, plane };
 
 taut_shape shape_of(const World& world, Bullet bullet) {
     if (bullet == Bullet::ball) return world.sphere(0.02);
@@ -44,20 +28,6 @@ taut_shape shape_of(const World& world, Bullet bullet) {
     taut_shape out{};
     ok(taut_world_add_hull(world.handle, &d, &out));
     return out;
-}
-
-// Across x = 0; bodies come from the side of negative x.
-taut_shape shape_of(const World& world, Wall wall) {
-    if (wall == Wall::thick) return world.box({0.2, 6, 6});
-    if (wall == Wall::plate) return world.box({0.01, 6, 6});
-    if (wall == Wall::sheet) return world.box({0.001, 6, 6});
-    if (wall == Wall::plane) return world.plane({-1, 0, 0});
-    Triangles triangles;
-    for (int i = -6; i < 6; ++i)
-        for (int k = -6; k < 6; ++k)
-            triangles.add_quad({0, i * 1.0, k * 1.0}, {0, i * 1.0, k + 1.0}, {0, i + 1.0, k + 1.0},
-                               {0, i + 1.0, k * 1.0}, (i + k) % 2 != 0);
-    return mesh(world, triangles, true);
 }
 
 struct Row {
