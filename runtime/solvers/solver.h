@@ -18,6 +18,7 @@ struct SolverSettings {
     double velocity_filter;  // kappa; 0: the slow velocity is taken as zero
     double gravity_squared;  // |g|^2 [m^2/s^4], scale of the energy guard
     const ContactKernels* kernels;
+    bool adaptive_damping = false;  // |K| in the place of K; see adaptive_damping.h
 };
 
 struct SolverReport {
