@@ -109,9 +109,13 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
 void solve(World& w, Stopwatch& watch) {
     const Solver& solver = *solvers()[w.def.solver];
     const taut_vec3 g = w.def.gravity;
-    const SolverSettings settings{w.def.sweeps,          w.def.geometric_stiffness != 0,
-                                  w.def.velocity_filter, double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
-                                  &contact_kernels(),    &joint_kernels()};
+    const SolverSettings settings{w.def.sweeps,
+                                  w.def.geometric_stiffness != 0,
+                                  w.def.velocity_filter,
+                                  double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
+                                  &contact_kernels(),
+                                  &joint_kernels(),
+                                  w.def.adaptive_damping != 0};
     SolverReport report;
     begin_frame(w.system, w.nodes);
     w.profile.predict_us += watch.lap();

@@ -59,6 +59,13 @@ typedef struct taut_world_def {
                                        touched) that a step solves. Of more, the deepest are kept, and of equal ones
                                        the first by colliders; the rest are as if the two did not touch, and counted by
                                        taut_events and taut_profile. 0: no limit. Default 0 */
+    uint32_t adaptive_damping;    /**< 1: joints solved directly damp as much as the size of their force asks for,
+                                       whichever way it points (Andrews, Teichmann and Kry 2017): h^2 |K| [kg m^2] in the
+                                       place of h^2 K in each substep h. Weights of 1000000 links then hang from light
+                                       links in steps of up to 0.1 s without substeps (with velocity_filter 0, which is
+                                       the safest and costs most energy). Costs nothing under tension, but bodies
+                                       pushed together, and cables and ropes gone slack, move more lazily. Of no effect
+                                       without geometric_stiffness. Default 0 */
 } taut_world_def;
 
 /** What taut_world_advance did. */

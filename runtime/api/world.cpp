@@ -44,7 +44,8 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .number("sleep_time", def.sleep_time, kSleepTime)
         .count("contact_events", def.contact_events, 0, TAUT_CONTACT_EVENTS_ALL)
         .number("hit_speed", def.hit_speed, kHitSpeed)
-        .boolean("continuous", def.continuous);
+        .boolean("continuous", def.continuous)
+        .boolean("adaptive_damping", def.adaptive_damping);
     return check_hooks(check, def.hooks);
 }
 

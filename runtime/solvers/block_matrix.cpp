@@ -1,6 +1,7 @@
 // The numbers of a block's matrix: masses, joints and stiffness into its entries, bounded rows on top of them.
 #include <algorithm>
 
+#include "solvers/adaptive_damping.h"
 #include "solvers/block_solve.h"
 
 namespace taut {
@@ -107,11 +108,14 @@ void BlockSolve::add_mass(uint32_t i) {
     if (size_of(i) == 6) b_.matrix.add(b_.places[i], {sys_.inertia[node + 1].data(), 3, 3, 3, 3, 3});
 }
 
-// K of a joint's force at this substep's poses: (6 nodes) x (6 nodes).
+// K, or |K|, of a joint's force at this substep's poses: (6 nodes) x (6 nodes).
 void BlockSolve::stiffness_of(const RowBlock& block, const double* force, double* k) const {
     Pose poses[kMaxNodes];
     for (int n = 0; n < block.type->nodes; ++n) poses[n] = sys_.pose[block.node[n]];
-    block.type->stiffness(block.data, poses, force, Curvature::positive, k);
+    if (s_.settings.adaptive_damping)
+        stiffness_magnitude(*block.type, block.data, poses, force, k);
+    else
+        block.type->stiffness(block.data, poses, force, Curvature::positive, k);
 }
 
 // h^2 K into the matrix and h^2 K s onto the known side. A translation of all nodes changes no force, so K of a type

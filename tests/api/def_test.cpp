@@ -261,6 +261,7 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         {"threads", &Def::threads, 1, 64},
         {"sleeping", &Def::sleeping, 0, 1},
         {"continuous", &Def::continuous, 0, 1},
+        {"adaptive_damping", &Def::adaptive_damping, 0, 1},
     };
     for (const auto& count : counts) {
         changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });

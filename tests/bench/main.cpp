@@ -26,6 +26,7 @@ struct Options {
     uint32_t threads = 1;
     uint64_t seed = 0;
     bool geometric_stiffness = true;
+    bool adaptive_damping = false;
     bool sleep = false;
     uint32_t warm_up = 0;
     double spike_limit = 0;
@@ -58,6 +59,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
                                               "of ode: step (default with joints) or quickstep");
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
+    app.add_flag("--adaptive-damping", options.adaptive_damping, "damp by the size of the geometric stiffness");
     app.add_flag("--sleep", options.sleep, "let what came to rest sleep; not for the peers");
     app.add_option("--warm-up", options.warm_up, "steps before the worst one is looked for");
     app.add_option("--spike-limit", options.spike_limit, "fail if the worst step takes so many times the median");
@@ -107,6 +109,7 @@ int run(const Options& options) {
     if (options.substeps) scene.world.substeps = *options.substeps;
     if (options.solver && options.engine == "taut") scene.world.solver = scenes::solver_named(*options.solver);
     if (!options.geometric_stiffness) scene.world.geometric_stiffness = 0;
+    scene.world.adaptive_damping = options.adaptive_damping ? 1 : 0;
     scene.world.sleeping = options.sleep ? 1 : 0;
     scene.world.threads = options.engine == "taut" ? options.threads : 1;
     uint32_t steps = options.steps.value_or(scene.steps);
@@ -145,6 +148,7 @@ int run(const Options& options) {
     json["substeps"] = engine->substeps();
     json["seed"] = options.seed;
     json["geometric_stiffness"] = options.geometric_stiffness ? 1 : 0;
+    json["adaptive_damping"] = options.adaptive_damping ? 1 : 0;
     if (options.sleep) json["asleep"] = engine->asleep();
     std::printf("%s\n", json.dump().c_str());
     if (options.spike_limit > 0 && spike.ratio > options.spike_limit) {

@@ -71,7 +71,7 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   first_vertical_s                    when the weight first passes below the anchor (null: never)
   period_s                            of a swing, mean over the run
   solve_us                            mean of one substep's assembly and direct solve
- as run: solver substeps seed geometric_stiffness
+ as run: solver substeps seed geometric_stiffness adaptive_damping
  with --sleep: asleep                 bodies at the end)";
 
 Metrics::Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps)

@@ -40,7 +40,8 @@ TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdge) {
     EXPECT_LE(penetration(run.world.world), 3e-3);
     const auto weight = static_cast<size_t>(run.scene.roles.chain->bodies.back());
     EXPECT_GT(run.body(weight).position.y, 1) << "slid off";
-    EXPECT_LT(norm(run.body(weight).velocity), 0.3) << "swings out, undamped; heavy ones rest";
+    const bool light = std::string(GetParam().ratio) == "10";  // swings on, see below
+    EXPECT_LT(norm(run.body(weight).velocity), light ? 0.3 : 0.01);
     RecordProperty("gap_mm", std::to_string(1e3 * gap));
     RecordProperty("penetration_mm", std::to_string(1e3 * penetration(run.world.world)));
 }
@@ -52,6 +53,66 @@ INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
                          [](const auto& tested) {
                              return std::string("r") + tested.param.ratio + "_seed" + std::to_string(tested.param.seed);
                          });
+
+// Ten links' weight swings out for more than ten seconds: at that weight the links slide little on the edge, and
+// nothing else damps it. Not an error of coarse steps: with sixteen times as many substeps it swings on as well,
+// centimetres to and fro, and dies down further in the ten seconds that follow.
+class LightWeightOverEdge : public testing::TestWithParam<uint64_t> {};
+
+TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {
+    scenes::Options options;
+    options.seed = GetParam();
+    scenes::Scene scene = scenes::make_scene("chain_over_edge_r10", options);
+    scene.world.substeps = 64;
+    RunningScene run(scene);
+    const auto weight = static_cast<size_t>(run.scene.roles.chain->bodies.back());
+    const auto fastest_of_second = [&] {
+        double most = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+            run.step();
+            most = std::max(most, norm(run.body(weight).velocity));
+        }
+        return most;
+    };
+    for (int second = 0; second < 8; ++second) fastest_of_second();
+    const double tenth = std::max(fastest_of_second(), fastest_of_second());
+    EXPECT_GT(tenth, 0.03) << "at rest after all";
+    for (int second = 10; second < 19; ++second) fastest_of_second();
+    const double twentieth = fastest_of_second();
+    EXPECT_LT(twentieth, 0.5 * tenth);
+    EXPECT_LT(twentieth, 0.03);
+    RecordProperty("tenth_second_m_s", std::to_string(tenth));
+    RecordProperty("twentieth_second_m_s", std::to_string(twentieth));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seed, LightWeightOverEdge, testing::Values(1, 2));
+
+// Drag of 2 / s, applied by the host as forces.
+TEST(LightWeightInDrag, ComesToRestOnTheEdge) {
+    constexpr double kDrag = 2;  // [1/s]
+    for (uint64_t seed : {0, 1, 5, 9, 16, 19, 101, 102, 103, 104}) {
+        SCOPED_TRACE(seed);
+        scenes::Options options;
+        options.seed = seed;
+        RunningScene run(scenes::make_scene("chain_over_edge_r10", options));
+        const auto& bodies = run.scene.roles.chain->bodies;
+        double fastest = 0, gap = 0;
+        for (int frame = 0; frame < 720; ++frame) {
+            for (int body : bodies) {
+                const auto i = static_cast<size_t>(body);
+                const Vec drag = -kDrag * mass_of(run.world.bodies[i]).mass * run.body(i).velocity;
+                ok(taut_body_apply_force(run.world.bodies[i], drag.narrow(), {}));
+            }
+            run.step();
+            if (frame < 660) continue;
+            fastest = std::max(fastest, norm(run.body(static_cast<size_t>(bodies.back())).velocity));
+            gap = std::max(gap, run.joint_error());
+        }
+        EXPECT_LT(fastest, 5e-3);
+        EXPECT_LE(gap, 0.5e-3);
+        EXPECT_LE(penetration(run.world.world), 3e-3);
+    }
+}
 
 TEST(WreckingBall, HoldsTogether) {
     RunningScene run("wrecking_ball");

@@ -71,13 +71,14 @@ Outcome run(const scenes::Scene& scene, const Contender& contender) {
     return outcome;
 }
 
-bool survives(const scenes::Scene& scene, double h, bool geometric_stiffness) {
+bool survives(const scenes::Scene& scene, double h, Stiffness stiffness) {
     constexpr double kSeconds = 10, kMostEnergy = 1.05, kMostGap = 0.25;
     scenes::Scene plain = scene;
     plain.world.time_step = static_cast<float>(h);
     plain.world.substeps = plain.world.fixed_substeps = 1;
     plain.world.velocity_filter = 0;
-    plain.world.geometric_stiffness = geometric_stiffness ? 1 : 0;
+    plain.world.geometric_stiffness = stiffness == Stiffness::none ? 0 : 1;
+    plain.world.adaptive_damping = stiffness == Stiffness::adaptive ? 1 : 0;
     std::unique_ptr<Engine> engine = make_taut_engine(plain);
     auto steps = static_cast<uint32_t>(kSeconds / h);
     Metrics metrics(plain, *engine, steps);

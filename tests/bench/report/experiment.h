@@ -35,6 +35,7 @@ Outcome run(const scenes::Scene& scene, const Contender& contender);
 
 // Whether a chain comes through ten seconds of steps of h without substeps: total energy at most 1.05 of the
 // start's over hanging straight, no joint open by more than 25 % of a link. Plain scheme: velocity filter 0.
-bool survives(const scenes::Scene& scene, double h, bool geometric_stiffness);
+enum class Stiffness { none, plain, adaptive };  // geometric: left out, as shipped, with adaptive damping
+bool survives(const scenes::Scene& scene, double h, Stiffness stiffness);
 
 }  // namespace bench

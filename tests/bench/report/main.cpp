@@ -73,12 +73,12 @@ void table_1(const fs::path& folder) {
 // The largest step that all these chains survive, and with it every smaller one of a geometric series within a
 // decade: stability need not be monotonic, and a lucky large step alone does not count. Refined by bisection; 0:
 // none from 0.1 ms on, which is the least that the interface takes, as 0.1 s is the largest.
-double largest_stable_step(const std::vector<scenes::Scene>& chains, bool geometric_stiffness) {
+double largest_stable_step(const std::vector<scenes::Scene>& chains, Stiffness stiffness) {
     constexpr double kLargest = 0.1, kLeast = 0.9999e-4, kRatio = 1.25892541;  // ten steps a decade
     constexpr int kDecade = 10, kBisections = 4;
     auto all_survive = [&](double h) {
         return std::all_of(chains.begin(), chains.end(),
-                           [&](const scenes::Scene& chain) { return survives(chain, h, geometric_stiffness); });
+                           [&](const scenes::Scene& chain) { return survives(chain, h, stiffness); });
     };
     double found = 0, above = 0, last = 0;
     int in_a_row = 0;
@@ -99,16 +99,19 @@ double largest_stable_step(const std::vector<scenes::Scene>& chains, bool geomet
 // Fig. 5 of the paper: feasible constant step of a chain against the weight at its end; released at rest, and from
 // three random starts with velocities that contradict the joints.
 void stable_step(const fs::path& folder) {
-    Csv csv(folder / "stable_step.csv", "ratio,with_s,without_s,disturbed_with_s,disturbed_without_s");
+    Csv csv(folder / "stable_step.csv",
+            "ratio,with_s,without_s,disturbed_with_s,disturbed_without_s,adaptive_s,disturbed_adaptive_s");
     for (double ratio = 1; ratio <= 1e6; ratio *= 10) {
         std::vector<scenes::Scene> rest = {scene("chain10", ratio)}, disturbed;
         for (uint64_t seed : {1, 2, 3}) disturbed.push_back(scene("chain10", ratio, seed));
-        double with = largest_stable_step(rest, true), without = largest_stable_step(rest, false),
-               disturbed_with = largest_stable_step(disturbed, true),
-               disturbed_without = largest_stable_step(disturbed, false);
-        csv.row(ratio, with, without, disturbed_with, disturbed_without);
-        say("stable step: 1:%g: %.4f s with K, %.5f s without; disturbed %.4f and %.5f s\n", ratio, with, without,
-            disturbed_with, disturbed_without);
+        double with = largest_stable_step(rest, Stiffness::plain), without = largest_stable_step(rest, Stiffness::none),
+               disturbed_with = largest_stable_step(disturbed, Stiffness::plain),
+               disturbed_without = largest_stable_step(disturbed, Stiffness::none),
+               adaptive = largest_stable_step(rest, Stiffness::adaptive),
+               disturbed_adaptive = largest_stable_step(disturbed, Stiffness::adaptive);
+        csv.row(ratio, with, without, disturbed_with, disturbed_without, adaptive, disturbed_adaptive);
+        say("stable step: 1:%g: %.4f s with K, %.5f s without; disturbed %.4f and %.5f s; adaptive %.4f and %.4f s\n",
+            ratio, with, without, disturbed_with, disturbed_without, adaptive, disturbed_adaptive);
     }
 }
 

@@ -15,6 +15,8 @@ set key title "Geometric stiffness:" left
 file = "stable_step.csv"
 plot file using 1:(some($2)) every ::1 with linespoints lc rgb taut lw 3 pt 7 ps 1.1 title "with, from rest", \
     file using 1:(some($4)) every ::1 with linespoints lc rgb taut lw 2 dt 2 pt 6 ps 1.3 title "with, violent starts", \
+    file using 1:(some($6)) every ::1 with linespoints lc rgb "#2a9d5c" lw 2 pt 9 title "adaptive, from rest", \
+    file using 1:(some($7)) every ::1 with linespoints lc rgb "#2a9d5c" lw 2 dt 2 pt 8 title "adaptive, violent", \
     file using 1:(some($3)) every ::1 with linespoints lc rgb bare lw 3 pt 5 title "without, from rest", \
     file using 1:(some($5)) every ::1 with linespoints lc rgb bare lw 2 dt 2 pt 4 title "without, violent starts", \
     for [c in "3 5"] file using 1:(none(column(c + 0))) every ::1 with points lc rgb bare pt 11 ps 1.5 notitle, \
