@@ -123,9 +123,11 @@ PolytopePair::EdgePair PolytopePair::edges(Axis axis) const {
 
 bool edges_decide(const PolytopePair& pair, Axis axis, float ask) {
     if (!arcs_cross(pair, pair.a.edges[axis.i], pair.b.edges[axis.j])) return false;
+    const Vec3f normal = pair.normal(axis);
+    if (normal.squaredNorm() == 0) return false;
     const auto [on_a, on_b] = pair.edges(axis);
     const SegmentPair nearest = nearest_points(on_a, on_b);
-    const float separation = pair.normal(axis).dot(on_b.from - on_a.from);
+    const float separation = normal.dot(on_b.from - on_a.from);
     const float most = separation + ask;
     return most > 0 && (on_b.at(nearest.t) - on_a.at(nearest.s)).squaredNorm() <= most * most;
 }
