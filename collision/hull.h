@@ -12,6 +12,7 @@ struct Hull {
     std::vector<Vec3f> vertices;  // sorted by x, then y, then z [m]
     std::vector<VertexPack> packs;
     std::vector<Face> faces;  // sorted by their loops, each loop from its smallest vertex on
+    std::vector<PlanePack> planes;
     std::vector<uint8_t> loops;
     std::vector<Side> sides;
     std::vector<Edge> edges;       // sorted by (from, to), from < to
@@ -21,7 +22,9 @@ struct Hull {
 
     Polytope polytope;  // all of the above in one view, as it was when last laid out
 
-    void lay_out() { polytope = {vertices, packs, faces, loops, sides, edges, centre, inner_radius, outer_radius}; }
+    void lay_out() {
+        polytope = {vertices, packs, faces, planes, loops, sides, edges, centre, inner_radius, outer_radius};
+    }
     const Polytope& view() const { return polytope; }
 };
 

@@ -182,6 +182,21 @@ void add_face(const std::vector<int>& loop, Hull& hull) {
     hull.faces.push_back(face);
 }
 
+void pack_planes(Hull& hull) {
+    const size_t last = hull.faces.size() - 1;
+    for (size_t i = 0; i <= last; i += 4) {
+        PlanePack pack;
+        for (size_t lane = 0; lane < 4; ++lane) {
+            const Face& face = hull.faces[std::min(i + lane, last)];
+            pack.x[Eigen::Index(lane)] = face.normal.x();
+            pack.y[Eigen::Index(lane)] = face.normal.y();
+            pack.z[Eigen::Index(lane)] = face.normal.z();
+            pack.offset[Eigen::Index(lane)] = face.offset;
+        }
+        hull.planes.push_back(pack);
+    }
+}
+
 bool add_edges(const Loops& loops, Hull& hull) {
     const Adjacency adjacency(hull.vertices.size(), loops);
     const int count = int(hull.vertices.size());
@@ -207,6 +222,7 @@ std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, co
     auto hull = std::make_shared<Hull>();
     add_vertices(points, loops, *hull);
     for (const auto& loop : loops) add_face(loop, *hull);
+    pack_planes(*hull);
     if (!add_edges(loops, *hull)) return nullptr;
     hull->inner_radius = 1e30f;
     for (const Face& face : hull->faces) {

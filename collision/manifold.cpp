@@ -136,7 +136,6 @@ void reduce(Polygon& points) {
 }
 
 void add_beside(const Manifold& face, Manifold& edges) {
-    constexpr float kSamePlane = 0.9f;   // cosine between the normals
     constexpr float kSamePlace = 0.25f;  // of the way to the farthest point
     const float along = face.normal.dot(edges.normal);
     if (face.count == 0 || edges.count != 1 || along < kSamePlane) return;

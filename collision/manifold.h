@@ -45,6 +45,9 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
 // Keeps the four points that add_points would take of them, in no particular order.
 void reduce(Polygon& points);
 
+// Edges whose normal is so near to a face's cross nearly in its plane: cosine.
+constexpr float kSamePlane = 0.9f;
+
 // Two edges that cross nearly in a face's plane are one end of that face's contact: the body rolls onto the other end
 // within the step. Adds the face's points that lie away from the crossing to the edges' manifold.
 void add_beside(const Manifold& face, Manifold& edges);

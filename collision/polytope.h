@@ -1,10 +1,16 @@
 // Convex polytopes as the narrowphase sees them: one view for hulls (built once) and boxes (built on the stack).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 
 #include "base/math.h"
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 namespace taut::collision {
 
@@ -25,6 +31,12 @@ struct Face {
     uint16_t first, count;  // corners, counter-clockwise from outside, in loops and sides
 };
 
+// Four faces' planes side by side; the last pack repeats its last face.
+struct PlanePack {
+    Eigen::Array4f x, y, z, offset;
+};
+constexpr int kMaxPlanePacks = (kMaxFaces + 3) / 4;
+
 // The edge of a face that starts at the same place of loops: inside is x px + y py <= offset, (x, y) unit.
 struct Side {
     float x, y, offset;
@@ -39,8 +51,9 @@ struct Polytope {
     std::span<const Vec3f> vertices;
     std::span<const VertexPack> packs;
     std::span<const Face> faces;
-    std::span<const uint8_t> loops;  // vertex indices
-    std::span<const Side> sides;     // parallel to loops
+    std::span<const PlanePack> planes;  // of the faces
+    std::span<const uint8_t> loops;     // vertex indices
+    std::span<const Side> sides;        // parallel to loops
     std::span<const Edge> edges;
     Vec3f centre = Vec3f::Zero();
     float inner_radius = 0;  // of a ball about the centre that lies inside [m]
@@ -74,15 +87,40 @@ inline float highest(const Polytope& polytope, const Vec3f& direction) {
     return best.maxCoeff();
 }
 
+// normal . p - offset of four faces.
+inline Eigen::Array4f heights_over(const PlanePack& pack, const Vec3f& p) {
+    return pack.x * p.x() + pack.y * p.y() + pack.z * p.z() - pack.offset;
+}
+
+// Largest height of a point over a face: how far outside it is; negative inside, where it is the way to the nearest
+// face.
+inline float outside(const Polytope& polytope, const Vec3f& p) {
+    Eigen::Array4f most = heights_over(polytope.planes[0], p);
+    for (size_t i = 1; i < polytope.planes.size(); ++i) most = most.max(heights_over(polytope.planes[i], p));
+    return most.maxCoeff();
+}
+
+// Index of the first of `count` values that equals x, the last index if none does. Aligned, room for whole packs of 4.
+inline int first_equal(const float* values, int count, float x) {
+#if defined(__SSE2__)
+    const __m128 all = _mm_set1_ps(x);
+    for (int i = 0; i < count; i += 4) {
+        const int mask = _mm_movemask_ps(_mm_cmpeq_ps(_mm_load_ps(values + i), all));
+        if (mask != 0) return std::min(i + std::countr_zero(unsigned(mask)), count - 1);
+    }
+    return count - 1;
+#else
+    int i = 0;
+    while (i < count - 1 && values[i] != x) ++i;
+    return i;
+#endif
+}
+
 // Index of the vertex furthest along direction; the first of equals.
 inline int support(const Polytope& polytope, const Vec3f& direction) {
     alignas(16) float height[kMaxVertices];
     const float top = find_heights(polytope, direction, height);
-    const int last = int(polytope.vertices.size()) - 1;
-    int index = 0;
-    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): the packs cover all vertices
-    while (index < last && height[index] != top) ++index;
-    return index;
+    return first_equal(height, int(polytope.vertices.size()), top);
 }
 
 // Of the faces around the vertex deepest against the direction, the one that looks most against it.
@@ -100,6 +138,7 @@ private:
     std::array<Vec3f, 8> vertices_;
     std::array<VertexPack, 2> packs_;
     std::array<Face, 6> faces_;
+    std::array<PlanePack, 2> planes_;
     std::array<Side, 24> sides_;
     Polytope view_;
 };

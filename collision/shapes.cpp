@@ -171,8 +171,14 @@ Box hull_bounds(const Shape& shape, const Placement& at) {
     Vec3 lo, hi;
     for (int i = 0; i < 3; ++i) {
         const Vec3f axis = at.rotation.row(i);
-        lo[i] = -highest(polytope, -axis);
-        hi[i] = highest(polytope, axis);
+        Eigen::Array4f least = heights(polytope.packs[0], axis), most = least;
+        for (const VertexPack& pack : polytope.packs.subspan(1)) {
+            const Eigen::Array4f four = heights(pack, axis);
+            least = least.min(four);
+            most = most.max(four);
+        }
+        lo[i] = double(least.minCoeff());
+        hi[i] = double(most.maxCoeff());
     }
     return rounded(at.position, lo, hi);
 }

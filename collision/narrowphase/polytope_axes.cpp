@@ -36,23 +36,28 @@ struct EdgeLanes {
     }
 };
 
-// The edges that reach up to the least height along direction; returns how many.
-int edges_above(const Polytope& polytope, const Vec3f& direction, float least, uint8_t* index) {
-    alignas(16) float reach[kMaxVertices];
-    find_heights(polytope, direction, reach);
+// The vertices of one polytope along a direction of its frame.
+struct Heights {
+    alignas(16) float of[kMaxVertices];
+    float top;
+
+    Heights(const Polytope& polytope, const Vec3f& direction) : top(find_heights(polytope, direction, of)) {}
+};
+
+// The edges that reach up to the least height; returns how many.
+int edges_above(const Polytope& polytope, const Heights& heights, float least, uint8_t* index) {
     int count = 0;
     for (size_t e = 0; e < polytope.edges.size(); ++e) {
         index[count] = uint8_t(e);
-        count += std::max(reach[polytope.edges[e].from], reach[polytope.edges[e].to]) >= least;
+        count += std::max(heights.of[polytope.edges[e].from], heights.of[polytope.edges[e].to]) >= least;
     }
     return count;
 }
 
-// Those edges of b that reach down to the given height along normal.
-void gather(const PolytopePair& pair, const Vec3f& normal, float height, EdgeLanes& lanes) {
+// Those edges of b whose heights reach up to the least.
+void gather(const PolytopePair& pair, const Heights& heights, float least, EdgeLanes& lanes) {
     const Mat3f& r = pair.b_in_a.rotation;
-    const int count =
-        edges_above(pair.b, r.transpose() * -normal, normal.dot(pair.b_in_a.position) - height, lanes.index);
+    const int count = edges_above(pair.b, heights, least, lanes.index);
     lanes.count = (count + 3) / 4 * 4;
     for (int k = 0; k < count; ++k) {
         const Edge& edge = pair.b.edges[lanes.index[k]];
@@ -85,6 +90,17 @@ bool arcs_cross(const Vec3f& along, const Vec3f& left, const Vec3f& right, const
     return any != 0;
 }
 
+// The same of one pair of edges.
+bool arcs_cross(const PolytopePair& pair, const Edge& edge_a, const Edge& edge_b) {
+    const Mat3f& rotation = pair.b_in_a.rotation;
+    const Vec3f along_a = pair.a.direction(edge_a), along_b = rotation * pair.b.direction(edge_b);
+    const float c = -(rotation * pair.b.faces[edge_b.left].normal).dot(along_a);
+    const float d = -(rotation * pair.b.faces[edge_b.right].normal).dot(along_a);
+    const float l = along_b.dot(pair.a.faces[edge_a.left].normal);
+    const float r = along_b.dot(pair.a.faces[edge_a.right].normal);
+    return c * d < 0 && l * r < 0 && c * r > 0;
+}
+
 }  // namespace
 
 Vec3f PolytopePair::normal(Axis axis) const {
@@ -98,26 +114,88 @@ bool PolytopePair::valid(Axis axis) const {
     return axis.kind != AxisKind::none && axis.i < a.faces.size() && axis.j < b.faces.size();
 }
 
+PolytopePair::EdgePair PolytopePair::edges(Axis axis) const {
+    const Edge& edge_a = a.edges[axis.i];
+    const Edge& edge_b = b.edges[axis.j];
+    return {{a.vertices[edge_a.from], a.direction(edge_a)},
+            {b_in_a * b.vertices[edge_b.from], b_in_a.rotation * b.direction(edge_b)}};
+}
+
+bool edges_decide(const PolytopePair& pair, Axis axis, float ask) {
+    if (!arcs_cross(pair, pair.a.edges[axis.i], pair.b.edges[axis.j])) return false;
+    const Vec3f normal = pair.normal(axis);
+    if (normal.squaredNorm() == 0) return false;
+    const auto [on_a, on_b] = pair.edges(axis);
+    const SegmentPair nearest = nearest_points(on_a, on_b);
+    const float separation = normal.dot(on_b.from - on_a.from);
+    const float most = separation + ask;
+    return most > 0 && (on_b.at(nearest.t) - on_a.at(nearest.s)).squaredNorm() <= most * most;
+}
+
+FaceBeside face_beside(const PolytopePair& pair, Axis axis, const Vec3f& normal) {
+    const Vec3f against = pair.b_in_a.rotation.transpose() * -normal;
+    const Edge& edge_a = pair.a.edges[axis.i];
+    const Edge& edge_b = pair.b.edges[axis.j];
+    FaceBeside best;
+    const auto look = [&](Axis face, float along) {
+        if (along > best.along) best = {face, along};
+    };
+    for (const uint8_t i : {edge_a.left, edge_a.right})
+        look({AxisKind::face_a, i, 0}, pair.a.faces[i].normal.dot(normal));
+    for (const uint8_t j : {edge_b.left, edge_b.right})
+        look({AxisKind::face_b, 0, j}, pair.b.faces[j].normal.dot(against));
+    return best;
+}
+
 namespace {
 
-// The face of one that separates most, its own distance taken from ask(face); the one that looks most towards the ball
-// inside the other first, as a face can not separate by more than its distance from that ball.
-template <class Ask>
-Separation best_face(const Polytope& one, const Vec3f& centre, float radius, float margin, AxisKind kind, Ask&& ask) {
-    float most[kMaxFaces];
-    size_t first = 0;
-    for (size_t i = 0; i < one.faces.size(); ++i) {
-        most[i] = one.faces[i].normal.dot(centre) - one.faces[i].offset - radius;
-        if (most[i] > most[first]) first = i;
+// How far every face separates at most, as the other polytope is known so far: no face separates by more than its
+// distance from a point of the other.
+class FaceBounds {
+public:
+    // The other holds a ball.
+    FaceBounds(const Polytope& one, const Vec3f& centre, float radius) : one_(one) {
+        for (size_t k = 0; k < one.planes.size(); ++k) pack(k) = heights_over(one.planes[k], centre) - radius;
     }
-    const auto axis = [&](size_t i) {
-        return kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)};
+    // The other holds a point.
+    void lower(const Vec3f& point) {
+        for (size_t k = 0; k < one_.planes.size(); ++k) pack(k) = pack(k).min(heights_over(one_.planes[k], point));
+    }
+    float operator[](size_t face) const { return most_[face]; }
+    size_t largest() const {
+        size_t best = 0;
+        for (size_t i = 1; i < one_.faces.size(); ++i) {
+            if (most_[i] > most_[best]) best = i;
+        }
+        return best;
+    }
+
+private:
+    Eigen::Map<Eigen::Array4f, Eigen::Aligned16> pack(size_t k) {
+        return Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{most_ + 4 * k};
+    }
+
+    const Polytope& one_;
+    alignas(16) float most_[4 * kMaxPlanePacks];
+};
+
+// The face of one that separates most from the other, which lies at a pose; the one that looks most towards the ball
+// inside the other first.
+Separation best_face(const Polytope& one, const Polytope& other, const Pose& pose, float margin, AxisKind kind) {
+    FaceBounds bounds(one, pose * other.centre, other.inner_radius);
+    const size_t first = bounds.largest();
+    Separation best;
+    const auto ask = [&](size_t i) {
+        const Face& face = one.faces[i];
+        const Vec3f nearest = pose * other.vertices[size_t(support(other, pose.rotation.transpose() * -face.normal))];
+        const float distance = face.normal.dot(nearest) - face.offset;
+        bounds.lower(nearest);
+        if (distance <= best.distance) return;
+        best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance};
     };
-    Separation best = {axis(first), ask(one.faces[first])};
+    ask(first);
     for (size_t i = 0; i < one.faces.size() && best.distance <= margin; ++i) {
-        if (most[i] <= best.distance || i == first) continue;
-        const float distance = ask(one.faces[i]);
-        if (distance > best.distance) best = {axis(i), distance};
+        if (bounds[i] > best.distance && i != first) ask(i);
     }
     return best;
 }
@@ -125,25 +203,23 @@ Separation best_face(const Polytope& one, const Vec3f& centre, float radius, flo
 }  // namespace
 
 Separation best_face_a(const PolytopePair& pair, float margin) {
-    return best_face(pair.a, pair.b_in_a * pair.b.centre, pair.b.inner_radius, margin, AxisKind::face_a,
-                     [&](const Face& face) { return pair.face_distance_a(face); });
+    return best_face(pair.a, pair.b, pair.b_in_a, margin, AxisKind::face_a);
 }
 
 Separation best_face_b(const PolytopePair& pair, float margin) {
-    return best_face(pair.b, pair.a_in_b * pair.a.centre, pair.a.inner_radius, margin, AxisKind::face_b,
-                     [&](const Face& face) { return pair.face_distance_b(face); });
+    return best_face(pair.b, pair.a, pair.a_in_b, margin, AxisKind::face_b);
 }
 
 // If an edge pair bears the least overlap d <= depth, its nearest points lie on the edges, d apart and both within
 // the two polytopes' overlap along normal grown by d.
 Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float margin) {
-    const float top_of_a = highest(pair.a, normal);
-    const float bottom_of_b =
-        normal.dot(pair.b_in_a.position) - highest(pair.b, pair.b_in_a.rotation.transpose() * -normal);
+    const Heights up_a(pair.a, normal);
+    const Heights down_b(pair.b, pair.b_in_a.rotation.transpose() * -normal);
+    const float middle = normal.dot(pair.b_in_a.position);
     EdgeLanes lanes;
-    gather(pair, normal, top_of_a + depth, lanes);
+    gather(pair, down_b, middle - up_a.top - depth, lanes);
     uint8_t own[kMaxEdges];
-    const int count = edges_above(pair.a, normal, bottom_of_b - depth, own);
+    const int count = edges_above(pair.a, up_a, middle - down_b.top - depth, own);
     Separation best;
     int32_t hits[kLanes];
     for (int e = 0; e < count; ++e) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrowphase/kernel.h"
+#include "collision/narrowphase/segment.h"
 #include "collision/polytope.h"
 
 namespace taut::collision {
@@ -34,15 +35,24 @@ struct PolytopePair {
     // The unit axis from a to b, a's frame.
     Vec3f normal(Axis axis) const;
     bool valid(Axis axis) const;
+    // The edges of an axis between edges, a's frame.
+    struct EdgePair {
+        Segment a, b;
+    };
+    EdgePair edges(Axis axis) const;
     float size() const { return std::min(a.outer_radius, b.outer_radius); }
-
-    float face_distance_a(const Face& face) const {
-        return face.normal.dot(b_in_a.position) - highest(b, b_in_a.rotation.transpose() * -face.normal) - face.offset;
-    }
-    float face_distance_b(const Face& face) const {
-        return face.normal.dot(a_in_b.position) - highest(a, b_in_a.rotation * -face.normal) - face.offset;
-    }
 };
+
+// Whether no axis separates by ask more than a pair of edges: they meet in a face of the Minkowski difference, and none
+// separates by more than two points of the polytopes are apart.
+bool edges_decide(const PolytopePair& pair, Axis axis, float ask);
+
+// The face next to either of two edges that looks most along the edges' normal, and the cosine to it.
+struct FaceBeside {
+    Axis axis;
+    float along = -1;
+};
+FaceBeside face_beside(const PolytopePair& pair, Axis axis, const Vec3f& normal);
 
 // The face of a that separates most, and likewise of b; stops at the first beyond margin.
 Separation best_face_a(const PolytopePair& pair, float margin);

@@ -29,18 +29,16 @@ struct FaceView {
             ++polygon.count;
         }
     }
-    // Whether no edge pair separates by ask more than the face. Its deepest point is a vertex of the other polytope: no
-    // axis separates further than that vertex is from the reference, which is over the face or, inside, nearest to it.
-    bool decides(float ask, float slack) const {
-        const Vec3f vertex = other_in_reference * other.vertices[size_t(support(other, -up))];
-        const float x = face.u.dot(vertex), y = face.v.dot(vertex), z = face.normal.dot(vertex) - face.offset;
+    // The vertex of the other polytope that reaches furthest down, in the reference's frame.
+    Vec3f lowest() const { return other_in_reference * other.vertices[size_t(support(other, -up))]; }
+    // Whether no axis separates by ask more than the face: none separates further than the lowest vertex is from the
+    // reference, and that is over the face or, inside, nearest to it.
+    bool decides(const Vec3f& lowest, float ask, float slack) const {
+        const float x = face.u.dot(lowest), y = face.v.dot(lowest), z = face.normal.dot(lowest) - face.offset;
         for (const Side& side : reference.sides_of(face)) {
             if (side.x * x + side.y * y - side.offset > slack) return false;
         }
-        for (const Face& beside : reference.faces) {
-            if (beside.normal.dot(vertex) - beside.offset > z + ask) return false;
-        }
-        return true;
+        return outside(reference, lowest) <= z + ask;
     }
     float height() const { return face.normal.dot(other_in_reference.position) - face.offset; }
     // Whether one of the corners is as deep as any vertex, within tolerance [m].
@@ -73,10 +71,7 @@ void clip_faces(const FaceView& view, uint8_t& incident, bool known, bool refere
 }
 
 void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out) {
-    const Edge& edge_a = pair.a.edges[axis.i];
-    const Edge& edge_b = pair.b.edges[axis.j];
-    const Segment a = {pair.a.vertices[edge_a.from], pair.a.direction(edge_a)};
-    const Segment b = {pair.b_in_a * pair.b.vertices[edge_b.from], pair.b_in_a.rotation * pair.b.direction(edge_b)};
+    const auto [a, b] = pair.edges(axis);
     const SegmentPair nearest = nearest_points(a, b);
     const Vec3f normal = pair.normal(axis);
     const float separation = normal.dot(b.from - a.from);
@@ -94,20 +89,33 @@ void contact(const PolytopePair& pair, Axis& axis, bool kept, float margin, Mani
     if (on_b) move_to_a(pair.b_in_a, out);
 }
 
-// The contact of the best axis; returns the axis taken.
-Axis choose_contact(const PolytopePair& pair, Separation face, Separation edges, bool was_edge, float margin,
-                    Manifold& out) {
-    const Preference preference(pair.size());
+// Points of the face next to the edges, where they cross nearly in its plane.
+void add_face_beside(const PolytopePair& pair, Axis edges, float margin, Manifold& out) {
+    FaceBeside face = face_beside(pair, edges, out.normal);
+    if (face.along < kSamePlane) return;
     Manifold clipped;
     contact(pair, face.axis, false, margin, clipped);
-    if (!preference.edge_wins(edges.distance, face.distance, was_edge) &&
-        !preference.face_misses(deepest(clipped), edges.distance, face.distance)) {
-        out = clipped;
-        return face.axis;
-    }
-    contact(pair, edges.axis, false, margin, out);
     add_beside(clipped, out);
-    return edges.axis;
+}
+
+// Whether no axis separates by clearly more than the given one.
+bool decides(const PolytopePair& pair, Axis axis) {
+    const Preference preference(pair.size());
+    if (axis.kind == AxisKind::edges) return edges_decide(pair, axis, preference.slop);
+    const FaceView view = view_of(pair, axis);
+    return view.decides(view.lowest(), preference.keep, flush_slack(view.reference.inner_radius));
+}
+
+// Whether last frame's axis still gives the contact, as the pair has hardly moved or no other axis separates by more.
+bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache& cache, Manifold& out) {
+    if (!kept.touching || !pair.valid(kept.axis)) return false;
+    const bool is_still = still(kept, pair);
+    if (!is_still && !decides(pair, kept.axis)) return false;
+    contact(pair, kept.axis, true, margin, out);
+    if (out.count == 0 || is_still) return out.count > 0;
+    if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, margin, out);
+    write(kept.axis, true, pair, cache);
+    return true;
 }
 
 }  // namespace
@@ -118,10 +126,7 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
     const PolytopePair pair(storage_a.view(), storage_b.view(), shapes.b_in_a);
     const float margin = shapes.margin;
     Kept kept = read(shapes.cache);
-    if (kept.touching && pair.valid(kept.axis) && still(kept, pair)) {
-        contact(pair, kept.axis, true, margin, out);
-        if (out.count > 0) return;
-    }
+    if (keep_contact(pair, kept, margin, shapes.cache, out)) return;
 
     Separation face = best_face_a(pair, margin);
     if (face.distance <= margin) {
@@ -132,17 +137,31 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
         if (face_b.distance > margin || face_b.distance > face.distance + (b_was ? -keep : keep)) face = face_b;
     }
     if (face.distance > margin) return write(face.axis, false, pair, shapes.cache);
+    const Preference preference(pair.size());
     const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
     const FaceView view = view_of(pair, face.axis);
-    if (view.decides(Preference(pair.size()).ask(was_edge), flush_slack(view.reference.inner_radius))) {
-        contact(pair, face.axis, false, margin, out);
+    const float slack = flush_slack(view.reference.inner_radius);
+    contact(pair, face.axis, false, margin, out);
+    const float ask = preference.ask(was_edge);
+    // Where the faces lie over each other the two are at most so far apart.
+    const float most = deepest(out);
+    if (std::max(most, 0.0f) <= face.distance + slack || view.decides(view.lowest(), ask, slack))
         return write(face.axis, true, pair, shapes.cache);
+    const float depth = std::max(std::min(margin, most + slack), -face.distance);
+    Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
+    if (edges.distance > margin) {
+        out.count = 0;
+        return write(edges.axis, false, pair, shapes.cache);
     }
-    const float depth = std::max(margin, -face.distance);
-    const Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
-    if (edges.distance > margin) return write(edges.axis, false, pair, shapes.cache);
-    const Axis taken = choose_contact(pair, face, edges, was_edge, margin, out);
-    write(taken, true, pair, shapes.cache);
+    if (preference.edge_wins(edges.distance, face.distance, was_edge) ||
+        preference.face_misses(deepest(out), edges.distance, face.distance)) {
+        const Manifold clipped = out;
+        out.count = 0;
+        face.axis = edges.axis;
+        contact(pair, edges.axis, false, margin, out);
+        add_beside(clipped, out);
+    }
+    write(face.axis, true, pair, shapes.cache);
 }
 
 }  // namespace taut::collision

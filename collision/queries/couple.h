@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "collision/narrowphase/least_push.h"
 
@@ -9,6 +11,8 @@ namespace taut::collision {
 
 // Of GJK in queries: distances are good to 1e-9 of themselves.
 constexpr double kQueryGap = 1e-9;
+// Where less than the distance will do, as what a plane across the normal proves.
+constexpr double kBoundGap = 1e-3;
 
 class Couple {
 public:
@@ -23,9 +27,19 @@ public:
     Couple(const Couple&) = delete;
     Couple& operator=(const Couple&) = delete;
 
-    // Of the cores, b moved by moved [m], in a's frame. Starts from the unit vector hint.
-    Distance distance(const Vec3& moved, const Vec3& hint) const {
-        return gjk(difference_, to_a(at_b_.position + moved - at_a_.position), hint, kQueryGap);
+    // Of the cores, b moved by moved [m], in a's frame. Starts from the unit vector hint; gap as for gjk().
+    Distance distance(const Vec3& moved, const Vec3& hint, double gap = kQueryGap) const {
+        return gjk(difference_, to_a(at_b_.position + moved - at_a_.position), hint, gap);
+    }
+    // No more than the gap between the two [m], if that tells whether they are deeper in each other than depth: what
+    // still overlaps when both are smaller by shares of depth is.
+    std::optional<double> bound(double depth) const {
+        const double inner = double(inner_radius(pair_.a)) + double(inner_radius(pair_.b));
+        const Difference smaller(pair_, depth / inner);
+        const Distance distance = gjk(smaller, to_a(at_b_.position - at_a_.position), hint(), kBoundGap);
+        if (!distance.apart) return -std::numeric_limits<double>::infinity();
+        const double least = proven(Vec3::Zero(), distance.normal) - radii();
+        return least >= -depth ? std::optional(least) : std::nullopt;
     }
     // How far a plane across the normal keeps the cores apart: no more than their distance, however far GJK came.
     double proven(const Vec3& moved, const Vec3& normal) const {

@@ -61,6 +61,14 @@ constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_m
                                                         convex_meeting, convex_meeting, convex_meeting,
                                                         convex_meeting, convex_meeting, surface_meeting};
 
+// No more than the gap between two shapes [m], and less than -depth just where they are deeper in each other.
+double least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double depth) {
+    if (is_convex(b)) {
+        if (const auto bound = Couple(a, at_a, b, at_b).bound(depth)) return *bound;
+    }
+    return find_gap(a, at_a, b, at_b).distance;
+}
+
 // Whether the ways lead deeper than depth from the moment met on, where they are apart by reach. In doubt they do.
 bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
                  double reach, double depth, double until) {
@@ -68,7 +76,7 @@ bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const M
     double t = met, gap = reach;
     for (int look = 0; look < kMaxLooks && t <= until; ++look) {
         t += std::max(gap + depth, 0.5 * depth) / fastest;
-        gap = find_gap(a, motion_a.after(t), b, motion_b.after(t)).distance;
+        gap = least_gap(a, motion_a.after(t), b, motion_b.after(t), depth);
         if (gap < -depth) return true;
     }
     return t <= until;
@@ -106,13 +114,15 @@ double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, co
                       double limit) {
     const Approach approach(a, motion_a, b, motion_b);
     double t = 0;
+    std::optional<Vec3> normal;  // of the step before
     for (int step = 0; step < kMaxSteps; ++step) {
         const Placement at_a = motion_a.after(t), at_b = motion_b.after(t);
         const Couple couple(a, at_a, b, at_b);
-        const Distance cores = couple.distance(Vec3::Zero(), couple.hint());
+        const Distance cores = couple.distance(Vec3::Zero(), normal.value_or(couple.hint()), kBoundGap);
         if (!cores.apart) return t;
         const double separation = couple.proven(Vec3::Zero(), cores.normal) - couple.radii();
         if (separation <= reach) return t;
+        normal = cores.normal;
         const double speed = approach.along(couple.to_world(cores.normal));
         if (!(speed > 0)) return limit;
         t += (separation - 0.5 * reach) / speed;

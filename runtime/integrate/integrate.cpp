@@ -5,20 +5,35 @@
 namespace taut {
 namespace {
 
+// x of [c0 c1 c2] x = r, by Cramer's rule.
+Vec3 solve(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec3& r) {
+    const Vec3 across = c1.cross(c2);
+    const double scale = 1 / c0.dot(across);
+    return {scale * r.dot(across), scale * c0.dot(r.cross(c2)), scale * c0.dot(c1.cross(r))};
+}
+
 // Gyroscopic torque in body axes, where the inertia is constant; the explicit form spins thin bodies up.
-// Implicit midpoint, I (w - w0) + h m x I m = 0 with m = (w + w0)/2, keeps w.I w and |I w| as they are; three Newton
-// steps solve it where a substep turns the body by less than a radian or so.
+// Implicit midpoint, F(w) = I (w - w0) + h m x I m = 0 with m = (w + w0)/2, keeps w.I w and |I w| as they are. F is
+// quadratic: what a Newton step d leaves of it is h/4 d x I d. One step solves it for slow bodies, three where a
+// substep turns the body by less than a radian or so.
 bool gyroscopic_midpoint(const Vec3& w0, const Mat3& inertia, double h, Vec3& w) {
+    constexpr double kSolved = 1e-10, kGood = 1e-6;  // of I w0
+    const Vec3 l0 = inertia * w0;
+    const double scale = l0.squaredNorm();
     w = w0;
-    Vec3 residual;
-    for (int i = 0; i <= 3; ++i) {
-        const Vec3 m = 0.5 * (w + w0), l = inertia * m;
-        residual = inertia * (w - w0) + h * m.cross(l);
-        if (i == 3) break;
-        const Mat3 derivative = inertia + 0.5 * h * (hat(m) * inertia - hat(l));
-        w -= derivative.inverse() * residual;
+    Vec3 m = w0, l = l0, residual = h * w0.cross(l0);
+    for (int step = 0; step < 3 && residual.squaredNorm() > kSolved * kSolved * scale; ++step) {
+        const auto column = [&](int j) -> Vec3 {  // of dF/dw
+            const Vec3 own = inertia.col(j);
+            return own + 0.5 * h * (m.cross(own) + Vec3::Unit(j).cross(l));
+        };
+        const Vec3 d = solve(column(0), column(1), column(2), -residual), ld = inertia * d;
+        w += d;
+        m += 0.5 * d;
+        l += 0.5 * ld;
+        residual = 0.25 * h * d.cross(ld);
     }
-    return residual.norm() <= 1e-6 * (inertia * w0).norm();
+    return residual.squaredNorm() <= kGood * kGood * scale;
 }
 
 // One Newton step of implicit Euler, I (w - w0) + h w x I w = 0: damps, and is stable at any speed.
@@ -71,7 +86,7 @@ constexpr double kTurn = 0.05;
 void note_turn(System& system, uint32_t node, const Quat& q) {
     System::Found& found = system.found[node + 1];
     const Quat turn = q * found.q.conjugate();
-    system.turned[node + 1] = turn.vec().norm() > 0.5 * kTurn;
+    system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * kTurn * kTurn;
     if (!system.turned[node + 1]) return;
     system.turn[node + 1] = turn;
     found.q = q;
