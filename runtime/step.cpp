@@ -137,6 +137,7 @@ void solve(World& w, Stopwatch& watch) {
 void step(World& w) {
     Stopwatch whole, watch;
     const RestAfter rest(w.team);
+    const Memory::Keeping keeping(w.memory);
     const uint64_t calls = w.memory.calls();
     w.profile = {};
     w.profile.struct_size = sizeof(taut_profile);

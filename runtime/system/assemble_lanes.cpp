@@ -97,9 +97,11 @@ void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nod
 
 // Room for at most eight active pairs of a colour; the first has the most points.
 void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, uint32_t count) {
+    reserve_more(lanes.group, 1);
     LaneGroup& g = lanes.group.emplace_back();
     g.first_point = static_cast<uint32_t>(lanes.point.size());
     g.points = pairs.active[items[0]].points;
+    reserve_more(lanes.point, g.points);
     lanes.point.resize(lanes.point.size() + g.points);
     bool driven = false, turns = false, round = false;
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
