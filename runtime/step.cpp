@@ -32,7 +32,7 @@ void detect(World& w, Stopwatch& watch) {
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     tell(w, {Stage::bounds});
-    update_pairs(w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
+    update_pairs(w.team, w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
     retire_pairs(w);
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();

@@ -186,10 +186,12 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
         });
 }
 
-void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
+void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs) {
     refresh_joined(joints, pairs);
-    if (broadphase.refresh_pairs()) pairs.complete = false;
+    team.for_ranges(broadphase.start_refresh(), kGrain,
+                    [&](uint32_t begin, uint32_t end) { broadphase.find_pairs(begin, end); });
+    if (broadphase.finish_refresh()) pairs.complete = false;
     if (pairs.complete) return;
     const std::span<const uint64_t> keys = broadphase.pairs();
     find_arrived(keys, pairs);
