@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
@@ -154,6 +155,7 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
 // What find() found, those anew that found more than they had room for.
 void Broadphase::State::gather_fresh() {
     fresh.clear();
+    reserve_more(fresh, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
     for (size_t i = 0; i < stale.size(); ++i) {
         const auto add = [&](uint32_t other) { fresh.push_back(pair_key(stale[i], other)); };
         if (partner_count[i] > kRoom)

@@ -325,6 +325,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     });
     admit_arriving(team, nodes, colliders, shapes, pairs, time_step);
     pairs.active.clear();
+    reserve_more(pairs.active, pairs.list.size() - pairs.free.size());
     pairs.fast.clear();
     for (uint32_t i = 0; i < pairs.near.size(); ++i) {
         NearPair& near = pairs.near[i];

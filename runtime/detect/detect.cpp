@@ -97,7 +97,8 @@ void drop_departed(const Nodes& nodes, const Colliders& colliders, std::span<con
     for (NearPair& near : pairs.near) {
         while (key != keys.end() && *key < near.key) ++key;
         if (key != keys.end() && *key == near.key) {
-            pairs.near[kept++] = near;
+            NearPair& place = pairs.near[kept++];
+            if (&place != &near) place = near;
             continue;
         }
         if (near.touching) report_end(pairs, nodes, colliders, near);
