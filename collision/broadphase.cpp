@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
@@ -87,61 +88,106 @@ private:
 
 struct Broadphase::State {
     explicit State(Memory& memory)
-        : leaves(memory), stale(memory), strays(memory), pairs(memory), fresh(memory), merged(memory) {}
+        : leaves(memory),
+          stale(memory),
+          partners(memory),
+          partner_count(memory),
+          strays(memory),
+          pairs(memory),
+          fresh(memory),
+          gone(memory) {}
 
     void mark(uint32_t id) {
         if (leaves[id].stale) return;
         stale.push_back(id);
         leaves[id].stale = true;
     }
-    void find_fresh();
-    void merge();
+    template <class Meet>
+    void for_partners(uint32_t id, Meet&& meet) const;
+    void find(uint32_t begin, uint32_t end);
+    void gather_fresh();
+    bool merge();
 
     btDbvt tree;
-    btNodeStack stack;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
+    Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
+    static constexpr uint32_t kRoom = 12;
     Array<uint32_t> strays;  // those that are not any more are listed until the next step
     Array<uint64_t> pairs;   // sorted
     Array<uint64_t> fresh;   // found by this refresh, then sorted
-    Array<uint64_t> merged;  // the next pairs
+    Array<uint64_t> gone;    // taken out by this refresh, sorted: those of stale leaves
 };
 
-// Pairs of every stale leaf; of two stale leaves the smaller id reports.
-void Broadphase::State::find_fresh() {
-    struct Collect : btDbvt::ICollide {
-        using btDbvt::ICollide::Process;
-        State* state = nullptr;
-        uint32_t self = 0;
-        void Process(const btDbvtNode* node) override {
+// Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
+// smaller id reports. Down the tree and up again by the parents, with no memory of its own.
+template <class Meet>
+void Broadphase::State::for_partners(uint32_t id, Meet&& meet) const {
+    const Leaf& leaf = leaves[id];
+    const btDbvtNode* node = leaf.node ? tree.m_root : nullptr;
+    while (node) {
+        if (Intersect(node->volume, leaf.node->volume)) {
+            if (node->isinternal()) {
+                node = node->childs[0];
+                continue;
+            }
             const uint32_t other = uint32_t(node->dataAsInt);
-            const Leaf& leaf = state->leaves[other];
-            if (other == self || (leaf.stale && other < self)) return;
-            if (leaf.moves || state->leaves[self].moves) state->fresh.push_back(pair_key(self, other));
+            const bool reports = other != id && !(leaves[other].stale && other < id);
+            if (reports && (leaves[other].moves || leaf.moves)) meet(other);
         }
-    };
-    Collect collect;
-    collect.state = this;
+        while (node->parent && node == node->parent->childs[1]) node = node->parent;
+        node = node->parent ? node->parent->childs[1] : nullptr;
+    }
+}
+
+void Broadphase::State::find(uint32_t begin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i) {
+        uint32_t* room = &partners[size_t(i) * kRoom];
+        uint32_t count = 0;
+        for_partners(stale[i], [&](uint32_t other) {
+            if (count < kRoom) room[count] = other;
+            ++count;
+        });
+        partner_count[i] = count;
+    }
+}
+
+// What find() found, those anew that found more than they had room for.
+void Broadphase::State::gather_fresh() {
     fresh.clear();
-    for (const uint32_t id : stale) {
-        const Leaf& leaf = leaves[id];
-        if (!leaf.node) continue;
-        collect.self = id;
-        tree.collideTVNoStackAlloc(tree.m_root, leaf.node->volume, stack, collect);
+    reserve_more(fresh, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
+    for (size_t i = 0; i < stale.size(); ++i) {
+        const auto add = [&](uint32_t other) { fresh.push_back(pair_key(stale[i], other)); };
+        if (partner_count[i] > kRoom)
+            for_partners(stale[i], add);
+        else
+            std::for_each_n(&partners[i * kRoom], partner_count[i], add);
     }
     std::sort(fresh.begin(), fresh.end());
 }
 
-// Pairs of two leaves that stayed are kept; all others are in fresh if they overlap.
-void Broadphase::State::merge() {
-    merged.clear();
-    auto next = fresh.begin();
+// Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. In place, from the last to the
+// first. True: the list changed.
+bool Broadphase::State::merge() {
+    gone.clear();
+    for (const uint64_t key : pairs)
+        if (leaves[uint32_t(key >> 32)].stale || leaves[uint32_t(key)].stale) gone.push_back(key);
+    if (gone == fresh) return false;
+    reserve_more(pairs, fresh.size());
+    size_t kept = 0;
+    auto next = gone.begin();
     for (const uint64_t key : pairs) {
-        if (leaves[uint32_t(key >> 32)].stale || leaves[uint32_t(key)].stale) continue;
-        while (next != fresh.end() && *next < key) merged.push_back(*next++);
-        merged.push_back(key);
+        if (next != gone.end() && *next == key)
+            ++next;
+        else
+            pairs[kept++] = key;
     }
-    merged.insert(merged.end(), next, fresh.end());
+    pairs.resize(kept);
+    size_t from = kept, left = fresh.size();
+    pairs.resize(from + left);
+    for (size_t to = pairs.size(); left > 0;)
+        pairs[--to] = from > 0 && pairs[from - 1] > fresh[left - 1] ? pairs[--from] : fresh[--left];
+    return true;
 }
 
 Broadphase::Broadphase(Memory& memory) : state_(nullptr), memory_(memory) {
@@ -191,16 +237,28 @@ void Broadphase::set_moves(uint32_t id, bool moves) {
     s.leaves[id].moves = moves;
 }
 
-bool Broadphase::refresh_pairs() {
+uint32_t Broadphase::start_refresh() {
+    State& s = *state_;
+    s.partners.resize(s.stale.size() * State::kRoom);
+    s.partner_count.resize(s.stale.size());
+    return uint32_t(s.stale.size());
+}
+
+void Broadphase::find_pairs(uint32_t begin, uint32_t end) { state_->find(begin, end); }
+
+bool Broadphase::finish_refresh() {
     State& s = *state_;
     if (s.stale.empty()) return false;
-    s.find_fresh();
-    s.merge();
+    s.gather_fresh();
+    const bool changed = s.merge();
     for (const uint32_t id : s.stale) s.leaves[id].stale = false;
     s.stale.clear();
-    const bool changed = s.merged != s.pairs;
-    s.pairs.swap(s.merged);
     return changed;
+}
+
+bool Broadphase::refresh_pairs() {
+    find_pairs(0, start_refresh());
+    return finish_refresh();
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }

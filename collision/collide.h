@@ -132,7 +132,12 @@ public:
     void update(uint32_t id, const Box& tight, const Vec3f& displacement);
     void set_moves(uint32_t id, bool moves);
 
-    // Brings the pair list up to date. Returns true if it changed.
+    // Brings the pair list up to date: find_pairs() for ranges that cover [0, start_refresh()), any number at once,
+    // which takes no memory, then finish_refresh(). Returns true if the list changed.
+    uint32_t start_refresh();
+    void find_pairs(uint32_t begin, uint32_t end);
+    bool finish_refresh();
+    // All of this by the caller alone.
     bool refresh_pairs();
     // Sorted keys (smaller id << 32 | larger id) of overlapping fat boxes; independent of the tree's history.
     std::span<const uint64_t> pairs() const;
@@ -247,8 +252,8 @@ double spin_radius(const Shape& shape, double lever);
 // Radius of the ball that grows the core to the shape [m]: what of the shape does not turn with it.
 double ball_radius(const Shape& shape);
 
-// Whether contacts stay in place while the shape rolls about its y axis, and are no longer of its core: of cylinders and
-// cones.
+// Whether contacts stay in place while the shape rolls about its y axis, and are no longer of its core: of cylinders
+// and cones.
 bool rolls(const Shape& shape);
 // About where that ball, and the one inside the shape, have their middle, in the shape's frame.
 Vec3 middle(const Shape& shape);

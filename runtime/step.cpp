@@ -32,7 +32,7 @@ void detect(World& w, Stopwatch& watch) {
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     tell(w, {Stage::bounds});
-    update_pairs(w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
+    update_pairs(w.team, w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
     retire_pairs(w);
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
@@ -68,7 +68,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     w.profile.predict_us += watch.lap();
 
     for (uint32_t i = 0; i < group.substeps; ++i) {
-        quarantine(w.nodes, group.nodes, w.frozen, system.h);
+        quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
         if (i > 0)
             find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
@@ -123,7 +123,8 @@ void solve(World& w, Stopwatch& watch) {
         solve_group(w, i, solver, settings, report, watch);
         w.profile.substeps = std::max(w.profile.substeps, w.partition.groups[i].substeps);
     }
-    for (uint32_t i = 0; i < w.partition.group_count; ++i) quarantine(w.nodes, w.partition.groups[i].nodes, w.frozen);
+    for (uint32_t i = 0; i < w.partition.group_count; ++i)
+        quarantine(w.team, w.nodes, w.partition.groups[i].nodes, w.frozen);
     if (const uint32_t failures = report.failures; failures > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (!w.frozen.empty()) {
@@ -146,6 +147,7 @@ void solve(World& w, Stopwatch& watch) {
 void step(World& w) {
     Stopwatch whole, watch;
     const RestAfter rest(w.team);
+    const Memory::Keeping keeping(w.memory);
     const uint64_t calls = w.memory.calls();
     w.profile = {};
     w.profile.struct_size = sizeof(taut_profile);

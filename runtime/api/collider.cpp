@@ -1,5 +1,6 @@
 #include <taut/collider.h>
 
+#include <utility>
 #include <vector>
 
 #include "api/access.h"
@@ -98,6 +99,17 @@ taut_collider_def def_of(const World& world, const Collider& collider) {
     def.contact_events = collider.asks & TAUT_CONTACT_EVENTS_ALL;
     def.one_way = to_vec3(collider.one_way.cast<double>());
     return def;
+}
+
+// A pair whose surface is none any more keeps one record, without points: it may touch on.
+void forget_parts(Pairs& pairs, NearPair& near) {
+    if (near.pair == kNone || pairs.list[near.pair].part == 0) return;
+    Pair& first = pairs.list[near.pair];
+    NearPair others;
+    others.pair = std::exchange(first.next, kNone);
+    give_slots(pairs, others);
+    first.part = 0;
+    first.manifold.count = 0;
 }
 
 }  // namespace
@@ -232,8 +244,10 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         collider = changed;
         wake(world, collider.node);
         wake_near(world, collider.node);
-        for_pairs(world.pairs, [&](Pair& pair) {
-            if (ends_on_collider(index)(pair)) pair.cache = {};
+        for_near(world.pairs, [&](NearPair& near) {
+            if (near.collider_a() != index && near.collider_b() != index) return;
+            near.cache = {};
+            if (!collision::has_parts(world.shapes.record[collider.shape].shape)) forget_parts(world.pairs, near);
         });
         return TAUT_OK;
     });

@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 
@@ -9,25 +10,33 @@ Memory::~Memory() {
     for (int c = 0; c < kSizes; ++c)
         while (Piece* piece = kept_[c]) {
             kept_[c] = piece->next;
-            give_to_host(piece, kLeast << c, kAlignment);
+            give_to_host(piece, size_of_class(c), kAlignment);
         }
 }
 
 int Memory::size_class(size_t size, size_t alignment) {
-    if (size > kLeast << (kSizes - 1) || alignment > kAlignment) return kSizes;
-    return size <= kLeast ? 0 : std::bit_width((size - 1) / kLeast);
+    if (size > size_of_class(kSizes - 1) || alignment > kAlignment) return kSizes;
+    const size_t units = size <= kLeast ? 1 : (size + kLeast - 1) / kLeast;
+    const int octave = std::max(0, static_cast<int>(std::bit_width(units - 1)) - 3);
+    return 4 * octave + static_cast<int>((units - 1) >> octave);
+}
+
+// 1 to 8 units, then 5 to 8 times 2, 4, 8, ...
+size_t Memory::size_of_class(int size_class) {
+    const int octave = std::max(0, size_class / 4 - 1);
+    return (static_cast<size_t>(size_class - 4 * octave) + 1) * kLeast << octave;
 }
 
 size_t Memory::whole(size_t size, size_t alignment) {
     const int c = size_class(size, alignment);
-    return c == kSizes ? size : kLeast << c;
+    return c == kSizes ? size : size_of_class(c);
 }
 
 void* Memory::allocate(size_t size, size_t alignment) {
     const int c = size_class(size, alignment);
     if (c == kSizes) return take_from_host(size, alignment);
     Piece* piece = kept_[c];
-    if (!piece) return take_from_host(kLeast << c, kAlignment);
+    if (!piece) return take_from_host(size_of_class(c), kAlignment);
     kept_[c] = piece->next;
     return piece;
 }
@@ -37,6 +46,8 @@ void Memory::release(void* pointer, size_t size, size_t alignment) noexcept {
     const int c = size_class(size, alignment);
     if (c == kSizes)
         give_to_host(pointer, size, alignment);
+    else if (!keeping_)
+        give_to_host(pointer, size_of_class(c), kAlignment);
     else
         kept_[c] = new (pointer) Piece{kept_[c]};
 }

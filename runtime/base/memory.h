@@ -10,8 +10,9 @@
 
 namespace taut {
 
-// Pieces that the world lets go stay with it for the next one of their size, so that a world whose blocks and lists
-// come and go asks the host for nothing once it is warm.
+// Pieces that a step lets go stay with the world for the next one of their size, so that a world whose blocks and lists
+// come and go asks the host for nothing once it is warm. What is let go between steps, as by arrays that grow with what
+// the host adds, goes back to it.
 class Memory {
 public:
     explicit Memory(const taut_hooks& hooks) : hooks_(hooks) {}
@@ -24,6 +25,18 @@ public:
 
     uint64_t bytes() const { return bytes_; }  // held from the host
     uint64_t calls() const { return calls_; }  // to the host
+    // Whether pieces let go stay; as long as this is true.
+    class Keeping {
+    public:
+        explicit Keeping(Memory& memory) : memory_(memory) { memory_.keeping_ = true; }
+        ~Keeping() { memory_.keeping_ = false; }
+        Keeping(const Keeping&) = delete;
+        Keeping& operator=(const Keeping&) = delete;
+
+    private:
+        Memory& memory_;
+    };
+
     // What a request of this size takes from the host.
     static size_t whole(size_t size, size_t alignment);
 
@@ -32,9 +45,10 @@ private:
         Piece* next;
     };
     static constexpr size_t kLeast = 64, kAlignment = 64;  // of pieces that are kept
-    static constexpr int kSizes = 13;                      // 64 bytes to 256 KiB, by twos
+    static constexpr int kSizes = 44;                      // 64 bytes to 256 KiB, four to an octave
 
     static int size_class(size_t size, size_t alignment);  // or kSizes: not kept
+    static size_t size_of_class(int size_class);
     void* take_from_host(size_t size, size_t alignment);
     void give_to_host(void* pointer, size_t size, size_t alignment) noexcept;
 
@@ -42,6 +56,7 @@ private:
     uint64_t bytes_ = 0;
     uint64_t calls_ = 0;
     Piece* kept_[kSizes] = {};
+    bool keeping_ = false;
 };
 
 template <class T>
@@ -66,5 +81,12 @@ struct HostAllocator {
 // A growing array in the world's memory. Constructed from the world's Memory: Array<int> a(memory);
 template <class T>
 using Array = std::vector<T, HostAllocator<T>>;
+
+// Room for more elements. By a quarter, not by doubling: large arrays make up a world's memory.
+template <class T>
+void reserve_more(Array<T>& array, size_t more) {
+    const size_t needed = array.size() + more;
+    if (needed > array.capacity()) array.reserve(needed + needed / 4);
+}
 
 }  // namespace taut

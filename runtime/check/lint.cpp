@@ -147,14 +147,14 @@ private:
 
     // A body on a lighter one, against gravity; without gravity nothing rests.
     void masses_of_contacts() {
-        for (const Pair& pair : world_.pairs.list) {
+        for_awake_pairs(world_.pairs, [&](const Pair& pair) {
             uint32_t light = pair.a, heavy = pair.b;
-            if (!pair.touching || !moves(light) || !moves(heavy)) continue;
+            if (!pair.touching || !moves(light) || !moves(heavy)) return;
             if (mass(light) > mass(heavy)) std::swap(light, heavy);
-            if ((nodes_.motion[heavy].x - nodes_.motion[light].x).dot(gravity()) >= 0) continue;
+            if ((nodes_.motion[heavy].x - nodes_.motion[light].x).dot(gravity()) >= 0) return;
             add_above(TAUT_LINT_CONTACT_MASS_RATIO, light, kNone, mass(heavy) / mass(light),
                       direct(pair) ? kBlockMassRatio : kSweptMassRatio);
-        }
+        });
     }
 
     struct Neighbours {
@@ -178,8 +178,9 @@ private:
             for (size_t b = 0; b < ends.size(); ++b)
                 for (size_t a = 0; a < b; ++a) meet(ends[a], ends[b], !direct(joint));
         });
-        for (const Pair& pair : world_.pairs.list)
+        for_awake_pairs(world_.pairs, [&](const Pair& pair) {
             if (pair.touching) meet(pair.a, pair.b, !direct(pair));
+        });
         for (uint32_t node = 0; node < nodes_.slots(); ++node) {
             const Neighbours& n = around[node];
             if (n.second == 0) continue;

@@ -43,15 +43,15 @@ public:
 private:
     // Nodes whose segment touched a sphere, a capsule or a cylinder in the last step, other than a cable's.
     void mark_what_is_on_round() {
-        for (const Pair& pair : world_.pairs.list) {
-            if (!pair.touching) continue;
+        for_awake_pairs(world_.pairs, [&](const Pair& pair) {
+            if (!pair.touching) return;
             for (const auto& [mine, other] :
                  {std::pair(pair.a, pair.collider_b()), std::pair(pair.b, pair.collider_a())}) {
                 const Collider& collider = world_.colliders.record[other];
                 if (world_.nodes.info[mine].cable == kNone || world_.nodes.info[collider.node].cable != kNone) continue;
                 if (is_round(world_.shapes.record[collider.shape].shape.kind)) on_round_[mine] = 1;
             }
-        }
+        });
     }
 
     void add(taut_lint_kind kind, const Cable& cable, uint32_t segment, double value, double limit) {

@@ -1,6 +1,7 @@
 #include "check/quarantine.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace taut {
@@ -15,12 +16,29 @@ bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& 
     return !sane(after);
 }
 
+bool is_bad(const Nodes& nodes, uint32_t node, double h) {
+    const NodeMotion& m = nodes.motion[node];
+    return !sane(m) || pushed_too_hard(m, nodes.mass[node], nodes.load[node], h);
+}
+
+constexpr uint32_t kGrain = 256;  // nodes that a thread takes at a time
+
+bool any_bad(Team& team, const Nodes& nodes, const Array<uint32_t>& list, double h) {
+    std::atomic<bool> any{false};
+    team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i)
+            if (is_bad(nodes, list[i], h)) any.store(true, std::memory_order_relaxed);
+    });
+    return any.load(std::memory_order_relaxed);
+}
+
 }  // namespace
 
-void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
+void quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
+    if (!any_bad(team, nodes, list, h)) return;
     for (uint32_t node : list) {
+        if (!is_bad(nodes, node, h)) continue;
         NodeMotion& m = nodes.motion[node];
-        if (sane(m) && !pushed_too_hard(m, nodes.mass[node], nodes.load[node], h)) continue;
         nodes.load[node] = {};
         const NodePose& last = nodes.before[node];
         m = {};

@@ -5,6 +5,7 @@
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
+#include "threads/team.h"
 
 namespace taut {
 
@@ -18,7 +19,7 @@ inline bool sane(const NodeMotion& m) {
 
 // Freezes the insane nodes of a list, and those that their own load makes so within h, before they drag others along;
 // appends their numbers to frozen.
-void quarantine(Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
+void quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
 
 // Carried impulses and forces that are not finite become zero.
 void drop_bad_impulses(Pairs& pairs, Joints& joints);

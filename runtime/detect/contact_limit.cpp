@@ -34,7 +34,7 @@ uint32_t limit_contacts(const Nodes& nodes, const Colliders& colliders, uint32_t
 
     uint32_t index = 0;
     auto next = dropped;
-    drop_contacts(nodes, colliders, pairs, [&](const ActivePair&, const Pair&) {
+    drop_contacts(nodes, colliders, pairs, [&](const ActivePair&, const NearPair&) {
         const bool drop = next != order.end() && *next == index++;
         next += drop;
         return drop;

@@ -15,7 +15,7 @@ constexpr float kSamePoint = 0.02f;
 constexpr uint32_t kGrain = 64;  // colliders or pairs that a thread takes at a time
 
 // How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
-float margin_of(const Nodes& nodes, const Pair& pair, double time_step) {
+float margin_of(const Nodes& nodes, const PairEnds& pair, double time_step) {
     double fastest = 0;
     for_sides(pair, [&](uint32_t a, uint32_t b) {
         fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).norm());
@@ -60,14 +60,14 @@ void carry_turning(const collision::Manifold& old, Impulse turning, float spin_s
 // Two shapes as they stand in a pair, or as they will where they meet later in the time ahead [s].
 class Shaped {
 public:
-    Shaped(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs, const Pair& pair,
-           double time)
+    Shaped(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+           const PairEnds& pair, bool fast, double time)
         : a_(shapes.record[colliders.record[pair.collider_a()].shape].shape),
           b_(shapes.record[colliders.record[pair.collider_b()].shape].shape),
           at_a_(&pairs.placement[pair.collider_a()]),
           at_b_(&pairs.placement[pair.collider_b()]),
           margin_(margin_of(nodes, pair, time)) {
-        if (!pair.fast) return;
+        if (!fast) return;
         encounter_.emplace(nodes, colliders, shapes, pairs, pair);
         look_ahead(time, pair.a2 != kNone || pair.b2 != kNone);
     }
@@ -111,7 +111,7 @@ private:
     collision::Placement met_[2];         // where they meet
 };
 
-bool has_parts(const Colliders& colliders, const Shapes& shapes, const Pair& pair) {
+bool has_parts(const Colliders& colliders, const Shapes& shapes, const PairEnds& pair) {
     const auto of = [&](uint32_t collider) {
         return collision::has_parts(shapes.record[colliders.record[collider].shape].shape);
     };
@@ -119,7 +119,7 @@ bool has_parts(const Colliders& colliders, const Shapes& shapes, const Pair& pai
 }
 
 // By the host's function or a one-way direction: what goes through on purpose is not held back.
-bool may_be_ignored(const Colliders& colliders, const Pair& pair) {
+bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
@@ -165,9 +165,10 @@ void adopt(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders,
 }
 
 // Manifold of one pair, with the impulses of the last one.
-void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, Pair& pair) {
+void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, const Pairs& pairs,
+                 collision::PairCache& cache, Pair& pair) {
     const collision::Manifold old = pair.manifold;
-    shaped.find_points(pair.cache, pair.manifold);
+    shaped.find_points(cache, pair.manifold);
     if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, pairs, old, pair, pair);
 }
 
@@ -192,47 +193,34 @@ const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, c
     return like;
 }
 
-// The parts that a pair with a surface touches, into pairs.fresh; old: its records of the last frame.
-void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pairs& pairs,
-                std::span<Pair> old) {
-    Pair& first = old[0];
-    first.manifold.count = 0;
+// A pair without points has no records and touches no more.
+void lose_points(const Nodes& nodes, const Colliders& colliders, Pairs& pairs, NearPair& near) {
+    if (near.touching) report_end(pairs, nodes, colliders, near);
+    near.touching = false;
+    give_slots(pairs, near);
+}
+
+// The parts that a pair with a surface touches, in place of its records of the last frame.
+void find_parts(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pairs& pairs, NearPair& near,
+                const PairEnds& ends) {
     shaped.find_parts(pairs.parts);
+    if (pairs.parts.found.empty()) return lose_points(nodes, colliders, pairs, near);
+    reserve_slots(pairs, pairs.parts.found.size());
+    Pair old[collision::kMaxParts];
+    size_t count = 0;
+    for_parts(pairs, near, [&](const Pair& pair) { old[count++] = pair; });
+    give_slots(pairs, near);
+    collision::Manifold nothing;
+    uint32_t* link = &near.pair;
     for (const collision::PartManifold& found : pairs.parts.found) {
-        const Pair* before = find_old(old.subspan(1), pairs.parts, found);
-        Pair& pair = pairs.fresh.emplace_back();
-        pair.key = first.key;
-        pair.a = first.a;
-        pair.b = first.b;
-        pair.a2 = first.a2;
-        pair.b2 = first.b2;
+        const Pair* before = find_old({old, count}, pairs.parts, found);
+        *link = take_slot(pairs, ends);
+        Pair& pair = pairs.list[*link];
+        link = &pair.next;
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        adopt(shaped, nodes, colliders, pairs, before ? before->manifold : first.manifold, before ? *before : first,
-              pair);
-    }
-}
-
-ActivePair active_of(const Pair& pair, uint32_t index) {
-    return {pair.a, pair.b, index, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks};
-}
-
-// The fresh parts in place of the old ones, and the active pairs anew.
-void replace_parts(Pairs& pairs) {
-    reserve_pairs(pairs.list, pairs.fresh.size());
-    std::erase_if(pairs.list, [](const Pair& pair) { return pair.part != 0; });
-    merge_pairs(
-        pairs.list, pairs.fresh.size(), [&] { return pairs.fresh.back().key; },
-        [&] {
-            const Pair pair = pairs.fresh.back();
-            pairs.fresh.pop_back();
-            return pair;
-        });
-    pairs.active.clear();
-    for (uint32_t i = 0; i < pairs.list.size(); ++i) {
-        const Pair& pair = pairs.list[i];
-        if (!pair.filtered && pair.manifold.count > 0) pairs.active.push_back(active_of(pair, i));
+        adopt(shaped, nodes, colliders, pairs, before ? before->manifold : nothing, before ? *before : pair, pair);
     }
 }
 
@@ -246,6 +234,53 @@ void refresh_part(const Shaped& shaped, const Nodes& nodes, const Colliders& col
     if (pair.manifold.count > 0) adopt(shaped, nodes, colliders, pairs, old, pair, pair);
 }
 
+// The manifold of a pair without a surface, if it has a record; else whether it is to get one. That is found out with
+// the cache as it was, so that whoever finds the points starts from the same.
+void find_points(const Shaped& shaped, const Nodes& nodes, const Colliders& colliders, Pairs& pairs, NearPair& near) {
+    if (near.pair != kNone) {
+        Pair& pair = pairs.list[near.pair];
+        pair.answered = false;
+        find_points(shaped, nodes, colliders, pairs, near.cache, pair);
+        return;
+    }
+    const collision::PairCache before = near.cache;
+    collision::Manifold manifold;
+    shaped.find_points(near.cache, manifold);
+    near.arrives = manifold.count > 0;
+    if (near.arrives) near.cache = before;
+}
+
+// Records of pairs that got their first points: given in the order of keys, filled side by side.
+void admit_arriving(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                    double time_step) {
+    Array<uint32_t>& arriving = pairs.arriving;
+    arriving.clear();
+    for (uint32_t i = 0; i < pairs.near.size(); ++i)
+        if (pairs.near[i].arrives) arriving.push_back(i);
+    reserve_slots(pairs, arriving.size());
+    for (const uint32_t i : arriving) pairs.near[i].pair = take_slot(pairs, pairs.near[i].ends(colliders));
+    team.for_ranges(static_cast<uint32_t>(arriving.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t k = begin; k < end; ++k) {
+            NearPair& near = pairs.near[arriving[k]];
+            Pair& pair = pairs.list[near.pair];
+            find_points(Shaped(nodes, colliders, shapes, pairs, pair, near.fast, time_step), nodes, colliders, pairs,
+                        near.cache, pair);
+        }
+    });
+}
+
+// The records of a near pair as it is now.
+void list_active(const Nodes& nodes, const Colliders& colliders, Pairs& pairs, uint32_t index) {
+    NearPair& near = pairs.near[index];
+    if (near.pair != kNone && pairs.list[near.pair].manifold.count == 0) lose_points(nodes, colliders, pairs, near);
+    for (uint32_t p = near.pair; p != kNone; p = pairs.list[p].next) {
+        const Pair& pair = pairs.list[p];
+        near.asks = pair.asks;
+        pairs.active.push_back(
+            {pair.a, pair.b, p, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks, index});
+    }
+}
+
 }  // namespace
 
 void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
@@ -256,10 +291,10 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
         Pair& pair = pairs.list[active.pair];
         for (uint32_t c : {pair.collider_a(), pair.collider_b()})
             pairs.placement[c] = placement_of(nodes, colliders.record[c], elapsed);
-        pair.fast = is_fast(nodes, pairs, pair, substep);
-        const Shaped shaped(nodes, colliders, shapes, pairs, pair, substep);
+        const bool fast = is_fast(nodes, pairs, pair, substep);
+        const Shaped shaped(nodes, colliders, shapes, pairs, pair, fast, substep);
         if (pair.part == 0) {
-            find_points(shaped, nodes, colliders, pairs, pair);
+            find_points(shaped, nodes, colliders, pairs, pairs.near[active.near].cache, pair);
         } else {
             if (pair.key != found) shaped.find_parts(pairs.parts);
             found = pair.key;
@@ -280,41 +315,34 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
             pairs.placement[c] = placement_of(nodes, collider);
         }
     });
-    team.for_ranges(static_cast<uint32_t>(pairs.list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
-            Pair& pair = pairs.list[i];
-            if (pair.filtered || pair.part != 0) continue;
-            pair.answered = false;
-            pair.fast = is_fast(nodes, pairs, pair, time_step);
-            pair.on_surface = has_parts(colliders, shapes, pair);
-            if (!pair.on_surface)
-                find_points(Shaped(nodes, colliders, shapes, pairs, pair, time_step), nodes, colliders, pairs, pair);
+            NearPair& near = pairs.near[i];
+            if (near.filtered) continue;
+            const PairEnds ends = near.ends(colliders);
+            near.arrives = false;
+            near.fast = is_fast(nodes, pairs, ends, time_step);
+            near.on_surface = has_parts(colliders, shapes, ends);
+            if (!near.on_surface)
+                find_points(Shaped(nodes, colliders, shapes, pairs, ends, near.fast, time_step), nodes, colliders,
+                            pairs, near);
         }
     });
+    admit_arriving(team, nodes, colliders, shapes, pairs, time_step);
     pairs.active.clear();
-    pairs.fresh.clear();
+    reserve_more(pairs.active, pairs.list.size() - pairs.free.size());
     pairs.fast.clear();
-    bool parts = false;
-    for (uint32_t i = 0; i < pairs.list.size(); ++i) {
-        Pair& pair = pairs.list[i];
-        parts = parts || pair.part != 0;
-        if (pair.filtered || pair.part != 0) continue;
-        if (pair.fast && !may_be_ignored(colliders, pair)) pairs.fast.push_back(pair.key);
-        const size_t fresh = pairs.fresh.size();
-        if (pair.on_surface) {
-            size_t end = i + 1;
-            while (end < pairs.list.size() && pairs.list[end].part != 0) ++end;
-            find_parts(Shaped(nodes, colliders, shapes, pairs, pair, time_step), nodes, colliders, pairs,
-                       std::span(pairs.list).subspan(i, end - i));
+    for (uint32_t i = 0; i < pairs.near.size(); ++i) {
+        NearPair& near = pairs.near[i];
+        if (near.filtered) continue;
+        if (near.fast && !may_be_ignored(colliders, near)) pairs.fast.push_back(near.key);
+        if (near.on_surface) {
+            const PairEnds ends = near.ends(colliders);
+            find_parts(Shaped(nodes, colliders, shapes, pairs, ends, near.fast, time_step), nodes, colliders, pairs,
+                       near, ends);
         }
-        if (pair.manifold.count > 0) {
-            pairs.active.push_back(active_of(pair, i));
-        } else if (pairs.fresh.size() == fresh && pair.touching) {
-            report_end(pairs, nodes, colliders, pair);
-            pair.touching = false;
-        }
+        list_active(nodes, colliders, pairs, i);
     }
-    if (parts || !pairs.fresh.empty()) replace_parts(pairs);
 }
 
 }  // namespace taut

@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint32_t kGrain = 64;  // colliders that a thread takes at a time
 
-bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const Pair& pair) {
+bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const PairEnds& pair) {
     bool moves = false, tied = false;
     for_sides(pair, [&](uint32_t a, uint32_t b) {
         moves = moves || moves_by_forces(nodes.info[a].kind) || moves_by_forces(nodes.info[b].kind);
@@ -70,41 +70,39 @@ bool stays_within(const Nodes& nodes, const Collider& collider, const collision:
 
 // Keys of the broadphase of which there is no record.
 void find_arrived(std::span<const uint64_t> keys, Pairs& pairs) {
-    const auto has = [](const Array<Pair>& list, size_t& at, uint64_t key) {
+    const auto has = [](const Array<NearPair>& list, size_t& at, uint64_t key) {
         while (at < list.size() && list[at].key < key) ++at;
         return at < list.size() && list[at].key == key;
     };
     size_t listed = 0, resting = 0;
     pairs.arrived.clear();
     for (const uint64_t key : keys)
-        if (!has(pairs.list, listed, key) && !has(pairs.resting, resting, key)) pairs.arrived.push_back(key);
+        if (!has(pairs.near, listed, key) && !has(pairs.resting, resting, key)) pairs.arrived.push_back(key);
 }
 
 // Records whose keys have left the broadphase leave the list.
 void drop_departed(const Nodes& nodes, const Colliders& colliders, std::span<const uint64_t> keys, Pairs& pairs) {
-    reserve_ended(pairs, [&](const Pair& pair) { return !std::binary_search(keys.begin(), keys.end(), pair.key); });
+    reserve_ended(pairs, [&](const PairEnds& ends) { return !std::binary_search(keys.begin(), keys.end(), ends.key); });
     auto key = keys.begin();
     size_t kept = 0;
-    for (const Pair& pair : pairs.list) {
-        while (key != keys.end() && *key < pair.key) ++key;
-        if (key != keys.end() && *key == pair.key)
-            pairs.list[kept++] = pair;
-        else if (pair.touching && pair.part == 0)
-            report_end(pairs, nodes, colliders, pair);
+    for (NearPair& near : pairs.near) {
+        while (key != keys.end() && *key < near.key) ++key;
+        if (key != keys.end() && *key == near.key) {
+            NearPair& place = pairs.near[kept++];
+            if (&place != &near) place = near;
+            continue;
+        }
+        if (near.touching) report_end(pairs, nodes, colliders, near);
+        give_slots(pairs, near);
     }
-    pairs.list.resize(kept);
+    pairs.near.resize(kept);
 }
 
-Pair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
-    Pair pair;
-    pair.key = key;
-    const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    pair.a = a.node;
-    pair.b = b.node;
-    pair.a2 = a.node_b;
-    pair.b2 = b.node_b;
-    pair.filtered = !may_collide(nodes, colliders, pairs, pair);
-    return pair;
+NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
+    NearPair near;
+    near.key = key;
+    near.filtered = !may_collide(nodes, colliders, pairs, near.ends(colliders));
+    return near;
 }
 
 }  // namespace
@@ -187,21 +185,23 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
         });
 }
 
-void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
+void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs) {
     refresh_joined(joints, pairs);
-    if (broadphase.refresh_pairs()) pairs.complete = false;
+    team.for_ranges(broadphase.start_refresh(), kGrain,
+                    [&](uint32_t begin, uint32_t end) { broadphase.find_pairs(begin, end); });
+    if (broadphase.finish_refresh()) pairs.complete = false;
     if (pairs.complete) return;
     const std::span<const uint64_t> keys = broadphase.pairs();
     find_arrived(keys, pairs);
-    reserve_pairs(pairs.list, pairs.arrived.size());
+    reserve_more(pairs.near, pairs.arrived.size());
     drop_departed(nodes, colliders, keys, pairs);
     merge_pairs(
-        pairs.list, pairs.arrived.size(), [&] { return pairs.arrived.back(); },
+        pairs.near, pairs.arrived.size(), [&] { return pairs.arrived.back(); },
         [&] {
-            const Pair pair = new_pair(nodes, colliders, pairs, pairs.arrived.back());
+            const NearPair near = new_pair(nodes, colliders, pairs, pairs.arrived.back());
             pairs.arrived.pop_back();
-            return pair;
+            return near;
         });
     pairs.complete = true;
 }

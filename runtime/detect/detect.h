@@ -30,7 +30,7 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
                  std::span<const uint32_t> frozen, Pairs& pairs, collision::Broadphase& broadphase);
 
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
-void update_pairs(const Nodes& nodes, const Colliders& colliders, const Joints& joints,
+void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs);
 
 // Manifolds of all pairs in the list at the present poses; impulses follow their features.

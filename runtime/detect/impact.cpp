@@ -49,14 +49,14 @@ Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shap
             rolls};
 }
 
-bool is_fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time) {
+bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time) {
     const Pace &a = pairs.pace[pair.collider_a()], &b = pairs.pace[pair.collider_b()];
     const double linear = time * (movement_of(nodes, pair.a, pair.a2).v - movement_of(nodes, pair.b, pair.b2).v).norm();
     return linear + a.turning + b.turning > a.thickness + b.thickness;
 }
 
 Encounter::Encounter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
-                     const Pair& pair)
+                     const PairEnds& pair)
     : a_(shapes.record[colliders.record[pair.collider_a()].shape].shape),
       b_(shapes.record[colliders.record[pair.collider_b()].shape].shape),
       motion_a_(motion_of(nodes, colliders.record[pair.collider_a()], pairs.placement[pair.collider_a()])),

@@ -19,7 +19,7 @@ constexpr double kAhead = 1.25;
 Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time);
 
 // Whether two colliders move further against each other in time [s] than they are thick.
-bool is_fast(const Nodes& nodes, const Pairs& pairs, const Pair& pair, double time);
+bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time);
 
 // After the solve: contacts are found once a frame, and what they turn or turn aside may pass a wall in the rest of it.
 // Of the fast pairs, the way of the smaller one's core (half the ball inside) against the other ends where it meets it;
@@ -32,7 +32,7 @@ void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& j
 class Encounter {
 public:
     Encounter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
-              const Pair& pair);
+              const PairEnds& pair);
 
     // When they meet within time [s]: infinite if they do not, 0 where they are close by now.
     double meeting(double time) const;

@@ -73,12 +73,12 @@ uint32_t filter_contacts(const Nodes& nodes, const Colliders& colliders, const P
     const uint32_t filters = kAsksOneWay | (pre_solve.ask ? kAsksPreSolve : 0);
     const auto is_filtered = [&](const ActivePair& pair) { return (pair.asks & filters) != 0; };
     uint32_t refused = 0;
-    const auto is_ignored = [&](const ActivePair& item, const Pair& first) {
+    const auto is_ignored = [&](const ActivePair& item, const NearPair& near) {
         if (!is_filtered(item)) return false;
         Pair& pair = pairs.list[item.pair];
-        if ((item.asks & kAsksOneWay) && !from_open_side(colliders, pairs, pair, first.touching)) return true;
+        if ((item.asks & kAsksOneWay) && !from_open_side(colliders, pairs, pair, near.touching)) return true;
         if (!(item.asks & filters & kAsksPreSolve)) return false;
-        const Verdict verdict = ask_host(pre_solve, question_of(nodes, colliders, pairs, pair, first.touching), pair);
+        const Verdict verdict = ask_host(pre_solve, question_of(nodes, colliders, pairs, pair, near.touching), pair);
         refused += verdict == Verdict::refused;
         return verdict == Verdict::ignored;
     };

@@ -109,11 +109,6 @@ void begin_frame(System& system, const Nodes& nodes) {
     const uint32_t slots = nodes.slots();
     system.pose.resize(slots + 1);
     system.exact.resize(slots + 1);
-    system.free.resize(slots + 1);
-    system.kept.resize(slots + 1);
-    system.correction.resize(slots + 1);
-    system.start.resize(slots + 1);
-    system.inertia.resize(slots + 1);
     system.found.resize(slots + 1);
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
@@ -148,7 +143,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
         if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
             u = {};
             system.inverse_mass[node + 1] = {};
-            system.inertia[node + 1].setZero();  // its block cannot be factored, and moves freely
+            if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
         }
         if (nodes.info[node].kind == NodeKind::dynamic) {
             pose.R = m.q.toRotationMatrix();
@@ -163,7 +158,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
                 u.w += h * (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
             if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
         }
-        system.start[node + 1] = {m.v, m.w};
+        if (system.in_block[node + 1]) system.start[node + 1] = {m.v, m.w};
         system.exact[node + 1] = u;
         set_sweep_velocity(system.velocity[node + 1], u.v, u.w);
     });

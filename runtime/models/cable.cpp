@@ -304,7 +304,7 @@ uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points
 void remove_cable(World& world, uint32_t index) {
     const auto own = [&](uint32_t node) { return node != kNone && world.nodes.info[node].cable == index; };
     // What may fail comes first.
-    reserve_ended(world.pairs, [&](const Pair& pair) { return own(pair.a) || own(pair.b); });
+    reserve_ended(world.pairs, [&](const PairEnds& pair) { return own(pair.a) || own(pair.b); });
     for (uint32_t node : world.cables.record[index].node) wake(world, node);  // and what it is tied to
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;

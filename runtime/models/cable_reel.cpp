@@ -101,7 +101,7 @@ void Reel::rest() {
 }
 
 void Reel::reserve_ended_of(std::initializer_list<uint32_t> nodes) {
-    reserve_ended(world_.pairs, [&](const Pair& pair) {
+    reserve_ended(world_.pairs, [&](const PairEnds& pair) {
         return std::any_of(nodes.begin(), nodes.end(), [&](uint32_t node) { return ends_on(node)(pair); });
     });
 }

@@ -14,7 +14,7 @@ bool touches(const Pair& pair) {
 
 // Active pairs with one key: a pair, or the parts of one with a surface.
 struct Touch {
-    Pair& pair;  // part 0
+    NearPair& pair;
     size_t begin, end;
 };
 
@@ -26,10 +26,11 @@ public:
     static float finite(float x) { return std::isfinite(x) ? x : 0.0f; }
 
     void tell(const Touch& touch, bool before) {
-        const Pair& pair = touch.pair;
+        const NearPair& pair = touch.pair;
+        const PairEnds ends = pair.ends(world_.colliders);
         const uint32_t asks = world_.pairs.active[touch.begin].asks;
-        taut_contact_event event{world_.body_handle(pair.a),
-                                 world_.body_handle(pair.b),
+        taut_contact_event event{world_.body_handle(ends.a),
+                                 world_.body_handle(ends.b),
                                  world_.collider_handle(pair.collider_a()),
                                  world_.collider_handle(pair.collider_b()),
                                  static_cast<uint32_t>(world_.contact_points.size()),
@@ -121,16 +122,15 @@ void publish_contacts(World& world) {
     const Array<ActivePair>& active = world.pairs.active;
     Publisher publisher(world);
     for (size_t i = 0, next = 0; i < active.size(); i = next) {
-        Pair& pair = first_of(world.pairs, active[i].pair);
+        NearPair& pair = world.pairs.near[active[i].near];
         const bool before = pair.touching;
         bool now = false;  // by any of the pair's parts
-        for (; next < active.size() && world.pairs.list[active[next].pair].key == pair.key; ++next) {
+        for (; next < active.size() && active[next].near == active[i].near; ++next) {
             Pair& part = world.pairs.list[active[next].pair];
             part.touching = touches(part);
             now = now || part.touching;
         }
         pair.touching = now;
-        pair.asks = static_cast<uint8_t>(active[i].asks);  // where parts alone have points; for its end
         if (now || before) publisher.tell({pair, i, next}, before);
     }
     sort_by_slots(world.contact_end);

@@ -57,6 +57,8 @@ void watch_contacts(const Nodes& nodes, const Pairs& pairs, ContactWatch& watch)
         watched.pair = active.pair;
         watched.before = relative_motion(nodes, pairs.list[active.pair]);
     }
+    std::sort(watch.pairs.begin(), watch.pairs.end(),
+              [](const WatchedPair& one, const WatchedPair& other) { return one.pair < other.pair; });
 }
 
 void watch_group(const Group& group, const System& system, const Pairs& pairs, ContactWatch& watch) {

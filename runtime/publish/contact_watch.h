@@ -28,7 +28,7 @@ struct WatchedPair {
 struct ContactWatch {
     explicit ContactWatch(Memory& memory) : pairs(memory), current(memory) {}
 
-    Array<WatchedPair> pairs;  // in the order of Pairs::list
+    Array<WatchedPair> pairs;  // sorted by slot
     Array<uint32_t> current;   // of them, those of the group being solved
 };
 

@@ -112,7 +112,7 @@ void find_islands(World& world) {
     for (const Joint& joint : world.joints.record) unite(world, joint.nodes());
     for (const Pair& pair : world.pairs.list) {
         const uint32_t sides[] = {pair.a, pair.b, pair.a2, pair.b2};
-        if (!pair.filtered && touches_closely(pair)) unite(world, sides);
+        if (touches_closely(pair)) unite(world, sides);
     }
 }
 

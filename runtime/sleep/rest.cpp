@@ -15,7 +15,7 @@ bool moves(const Nodes& nodes, uint32_t node) {
     return node != kNone && nodes.info[node].kind != NodeKind::fixed && nodes.rest[node] == Rest::awake;
 }
 
-bool some_side(const Pair& pair, bool (*is)(const Nodes&, uint32_t), const Nodes& nodes) {
+bool some_side(const PairEnds& pair, bool (*is)(const Nodes&, uint32_t), const Nodes& nodes) {
     const auto sides = {pair.a, pair.b, pair.a2, pair.b2};
     return std::any_of(sides.begin(), sides.end(), [&](uint32_t node) { return is(nodes, node); });
 }
@@ -25,21 +25,21 @@ bool rests(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.re
 
 // The pairs that meet a condition from one sorted list to another.
 template <class Condition>
-void transfer(Array<Pair>& from, Array<Pair>& to, Condition&& condition) {
+void transfer(Array<NearPair>& from, Array<NearPair>& to, Condition&& condition) {
     const auto count = static_cast<size_t>(std::count_if(from.begin(), from.end(), condition));
     if (count == 0) return;
-    reserve_pairs(to, count);
+    reserve_more(to, count);
     size_t left = from.size();  // of which the last that meets the condition is the next to go
-    const auto last = [&]() -> const Pair& {
+    const auto last = [&]() -> const NearPair& {
         while (!condition(from[left - 1])) --left;
         return from[left - 1];
     };
     merge_pairs(
         to, count, [&] { return last().key; },
         [&] {
-            const Pair pair = last();
+            const NearPair near = last();
             --left;
-            return pair;
+            return near;
         });
     std::erase_if(from, condition);
 }
@@ -79,15 +79,17 @@ bool touches_closely(const Pair& pair) {
 void recall_pairs(World& world) {
     if (!world.sleep.recall) return;
     Pairs& pairs = world.pairs;
-    transfer(pairs.resting, pairs.list, [&](const Pair& pair) { return some_side(pair, moves, world.nodes); });
+    transfer(pairs.resting, pairs.near,
+             [&](const NearPair& near) { return some_side(near.ends(world.colliders), moves, world.nodes); });
     world.sleep.recall = false;
 }
 
 void retire_pairs(World& world) {
     if (world.sleep.bodies == 0) return;
     Pairs& pairs = world.pairs;
-    transfer(pairs.list, pairs.resting, [&](const Pair& pair) {
-        return some_side(pair, rests, world.nodes) && !some_side(pair, moves, world.nodes);
+    transfer(pairs.near, pairs.resting, [&](const NearPair& near) {
+        const PairEnds ends = near.ends(world.colliders);
+        return some_side(ends, rests, world.nodes) && !some_side(ends, moves, world.nodes);
     });
 }
 

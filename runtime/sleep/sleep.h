@@ -1,7 +1,7 @@
 // Sleeping of islands: what a step does about it. Nodes connected by joints and close contacts fall asleep together,
 // once all of them were slow for a while, and wake together.
 //
-// The pairs of sleeping nodes move from Pairs::list to Pairs::resting, where no stage of the step meets them; they keep
+// The pairs of sleeping nodes move from Pairs::near to Pairs::resting, where no stage of the step meets them; they keep
 // their manifolds and impulses, from which the island goes on when it wakes.
 #pragma once
 

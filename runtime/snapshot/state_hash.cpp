@@ -124,24 +124,28 @@ void add_cables(Hash& hash, const Cables& cables) {
     }
 }
 
+void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
+    if (pair.manifold.count == 0) return;
+    hash.add(pair.key);
+    if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
+    if (pair.asks & (kAsksPreSolve | kAsksOneWay)) hash.add(static_cast<uint64_t>(pair.touching));
+    for (uint32_t word : near.cache.words) hash.add(static_cast<uint64_t>(word));
+    for (int k = 0; k < pair.manifold.count; ++k) {
+        hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));
+        hash.add(pair.impulse[k].normal);
+        hash.add(pair.impulse[k].tangent1);
+        hash.add(pair.impulse[k].tangent2);
+        hash.add(pair.impulse[k].slip);
+    }
+    if (!pair.turns()) return;
+    for (float x :
+         {pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2, pair.turning.slip, pair.spin_slip})
+        hash.add(x);
+}
+
 void add_pairs(Hash& hash, const Pairs& pairs) {
-    for_pairs(pairs, [&](const Pair& pair) {
-        if (pair.manifold.count == 0) return;
-        hash.add(pair.key);
-        if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
-        if (pair.asks & (kAsksPreSolve | kAsksOneWay)) hash.add(static_cast<uint64_t>(pair.touching));
-        for (uint32_t word : pair.cache.words) hash.add(static_cast<uint64_t>(word));
-        for (int k = 0; k < pair.manifold.count; ++k) {
-            hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));
-            hash.add(pair.impulse[k].normal);
-            hash.add(pair.impulse[k].tangent1);
-            hash.add(pair.impulse[k].tangent2);
-            hash.add(pair.impulse[k].slip);
-        }
-        if (!pair.turns()) return;
-        for (float x :
-             {pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2, pair.turning.slip, pair.spin_slip})
-            hash.add(x);
+    for_near(pairs, [&](const NearPair& near) {
+        for_parts(pairs, near, [&](const Pair& pair) { add_pair(hash, near, pair); });
     });
 }
 

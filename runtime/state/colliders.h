@@ -50,7 +50,7 @@ struct Colliders {
     // Throws std::bad_alloc before anything changes.
     void reserve_one() {
         ids.reserve_one();
-        if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
+        reserve_more(record, 1);
         reserve_sensor();
     }
     void reserve_sensor() {

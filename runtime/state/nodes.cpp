@@ -7,7 +7,7 @@ uint32_t Nodes::add() {
     const size_t slots = info.size() + 1;
     // Grow everything first: the part below cannot fail.
     if (info.capacity() < slots) {
-        const size_t room = 2 * slots + 14;
+        const size_t room = slots + slots / 4 + 14;
         motion.reserve(room);
         mass.reserve(room);
         load.reserve(room);

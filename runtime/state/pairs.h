@@ -1,5 +1,5 @@
-// Contact pairs of colliders whose fat boxes overlap, carried over frames. Each has one record, part 0; where one shape
-// is a surface, this has no points, and one more record follows for each part of the surface that is touched.
+// Pairs of colliders, carried over frames. Those whose fat boxes overlap are near and have a small record each; only
+// those with contact points have a large one besides, a Pair: one for each part where one shape is a surface.
 #pragma once
 
 #include <taut/event.h>
@@ -22,15 +22,41 @@ struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1,
     float slip = -1;  // of points in blocks: compliance of sliding friction [1/kg]; 0: sticks; -1: new
 };
 
-struct Pair {
+// Who meets whom.
+struct PairEnds {
     uint64_t key = 0;                 // of the two colliders, see pair_key
     uint32_t a = 0, b = 0;            // their nodes, in the order of the key
     uint32_t a2 = kNone, b2 = kNone;  // second nodes of colliders that span two
-    uint32_t part = 0;                // of a surface, see collision::PartManifold; else 0
+
+    uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
+    uint32_t collider_b() const { return static_cast<uint32_t>(key); }
+};
+
+struct NearPair {
+    uint64_t key = 0;  // of the two colliders, see pair_key
     collision::PairCache cache;
+    uint32_t pair = kNone;        // the first of its records in Pairs::list, while it has points
+    uint8_t asks = 0;             // bits of contact events, as its pair's
+    bool filtered : 1 = false;    // never collides (filter, joint); kept to remember the answer
+    bool on_surface : 1 = false;  // a shape has parts
+    bool fast : 1 = false;        // looked for along its way in this frame; detect/impact.h
+    bool arrives : 1 = false;     // got its first points in this frame; find_contacts()
+    bool touching : 1 = false;    // had a point at the end of the last step, on any part
+    bool hit : 1 = false;         // gave a hit event in the last step
+
+    uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
+    uint32_t collider_b() const { return static_cast<uint32_t>(key); }
+    PairEnds ends(const Colliders& colliders) const {
+        const Collider &a = colliders.record[collider_a()], &b = colliders.record[collider_b()];
+        return {key, a.node, b.node, a.node_b, b.node_b};
+    }
+};
+
+struct Pair : PairEnds {
+    uint32_t part = 0;             // of a surface, see collision::PartManifold; else 0
+    uint32_t next = kNone;         // record of the next part, in their order
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
     float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
-    bool rolls_a = false, rolls_b = false;  // contact levers stay while the shape turns: collision::rolls()
     // Radii of the balls that grow the two cores to their shapes [m]; see state/levers.h.
     float round_a = 0, round_b = 0;
     Impulse impulse[4];  // by point: carried in, updated by the solver
@@ -42,20 +68,15 @@ struct Pair {
     // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
     // bodies: drive + drive_spin x p [m/s], world axes, p as the points of the manifold.
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
-    bool driven = false;      // else these two mean nothing
-    bool on_surface = false;  // a shape has parts; of records with part 0
-    bool fast = false;        // looked for along its way in this frame; detect/impact.h
-    bool filtered = false;    // never collides (filter, joint); kept to remember the answer
-    bool touching = false;    // had a point at the end of the last step; part 0: or another part had
-    bool answered = false;    // the host gave this step's friction and restitution
-    bool hit = false;         // gave a hit event in the last step; part 0
-    uint8_t asks = 0;         // bits of contact events, kAsks: of the world and the two colliders
+    bool driven = false;                    // else these two mean nothing
+    bool rolls_a = false, rolls_b = false;  // contact levers stay while the shape turns: collision::rolls()
+    bool touching = false;                  // had a point at the end of the last step
+    bool answered = false;                  // the host gave this step's friction and restitution
+    uint8_t asks = 0;                       // bits of contact events, kAsks: of the world and the two colliders
 
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
     bool turns() const { return spinning > 0 || rolling > 0; }
-    uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
-    uint32_t collider_b() const { return static_cast<uint32_t>(key); }
 };
 
 // The smaller index first; of colliders or of nodes.
@@ -65,7 +86,7 @@ constexpr uint64_t pair_key(uint32_t one, uint32_t other) {
 
 // Calls act(node of a, node of b) for all nodes of the two sides of a pair.
 template <class Act>
-void for_sides(const Pair& pair, Act&& act) {
+void for_sides(const PairEnds& pair, Act&& act) {
     for (uint32_t a : {pair.a, pair.a2})
         for (uint32_t b : {pair.b, pair.b2})
             if (a != kNone && b != kNone) act(a, b);
@@ -84,6 +105,7 @@ struct ActivePair {
     uint32_t points;
     uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
     uint32_t asks = 0;                // as the pair
+    uint32_t near = 0;                // index into Pairs::near
 
     bool spans() const { return a2 != kNone || b2 != kNone; }
     std::array<uint32_t, 2> sides() const { return {a, b}; }
@@ -106,10 +128,12 @@ struct Pace {
 
 struct Pairs {
     explicit Pairs(Memory& memory)
-        : list(memory),
+        : near(memory),
           resting(memory),
+          list(memory),
+          free(memory),
           arrived(memory),
-          fresh(memory),
+          arriving(memory),
           active(memory),
           by_depth(memory),
           ended(memory),
@@ -120,12 +144,14 @@ struct Pairs {
           placement(memory),
           parts(memory) {}
 
-    Array<Pair> list;                       // sorted by key and part
-    Array<Pair> resting;                    // sorted likewise: pairs of which no side moves and one is asleep
-    bool complete = false;                  // all pairs of the broadphase are listed
-    Array<uint64_t> arrived;                // keys that the list does not hold yet, sorted; update_pairs()
-    Array<Pair> fresh;                      // parts touched in this frame, sorted; find_contacts()
-    Array<ActivePair> active;               // sorted as list is; find_contacts()
+    Array<NearPair> near;                   // sorted by key
+    Array<NearPair> resting;                // sorted likewise: pairs of which no side moves and one is asleep
+    bool complete = false;                  // all pairs of the broadphase are in one of the two
+    Array<Pair> list;                       // slots, in no order; free ones have no points
+    Array<uint32_t> free;                   // of them; room for all
+    Array<uint64_t> arrived;                // keys that near does not hold yet, sorted; update_pairs()
+    Array<uint32_t> arriving;               // in near: those that got their first points; find_contacts()
+    Array<ActivePair> active;               // in the order of near and of parts; find_contacts()
     Array<uint32_t> by_depth;               // in active, in the order of depth; limit_contacts()
     Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
     uint32_t world = 0;                     // id of the world, for the handles in ended
@@ -139,16 +165,17 @@ struct Pairs {
     collision::Parts parts;                 // of the pair looked at last
 };
 
-// Room for more records. By a quarter, not by doubling: most of a pile's memory is here.
-inline void reserve_pairs(Array<Pair>& list, size_t more) {
-    const size_t needed = list.size() + more;
-    if (needed > list.capacity()) list.reserve(needed + needed / 4);
-}
+// Room for so many pairs with points beyond those that there are.
+void reserve_slots(Pairs& pairs, size_t more);
+// A slot with a new record; reserve_slots() went before.
+uint32_t take_slot(Pairs& pairs, const PairEnds& ends);
+// The records of a pair that is left without points.
+void give_slots(Pairs& pairs, NearPair& near);
 
 // Merges `count` records into a list, both sorted by key, in place, from the last to the first: last_key() is the key
-// of the last that is left, take() gives it away. Of equal keys the list's own come first. Room was reserved before.
+// of the last that is left, take() gives it away. Room was reserved before.
 template <class LastKey, class Take>
-void merge_pairs(Array<Pair>& list, size_t count, LastKey&& last_key, Take&& take) {
+void merge_pairs(Array<NearPair>& list, size_t count, LastKey&& last_key, Take&& take) {
     size_t from = list.size();
     list.resize(from + count);
     for (size_t to = list.size(); to > from;) {
@@ -159,31 +186,43 @@ void merge_pairs(Array<Pair>& list, size_t count, LastKey&& last_key, Take&& tak
     }
 }
 
-// The record of part 0, which stands before those of the others.
-inline Pair& first_of(Pairs& pairs, uint32_t index) {
-    while (pairs.list[index].part != 0) --index;
-    return pairs.list[index];
-}
-
 // Notes that a touching pair ended, if anybody asks.
-void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const Pair& pair);
+void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const NearPair& near);
 
-// Calls act(pair) for all pairs, resting ones too, in the order of key and part.
+// Calls act(near) for all near pairs, resting ones too, in the order of keys.
 template <class SomePairs, class Act>
-void for_pairs(SomePairs& pairs, Act&& act) {
+void for_near(SomePairs& pairs, Act&& act) {
     auto resting = pairs.resting.begin();
-    for (auto& pair : pairs.list) {
-        while (resting != pairs.resting.end() && resting->key < pair.key) act(*resting++);
-        act(pair);
+    for (auto& near : pairs.near) {
+        while (resting != pairs.resting.end() && resting->key < near.key) act(*resting++);
+        act(near);
     }
     while (resting != pairs.resting.end()) act(*resting++);
+}
+
+// Calls act(pair) for the pairs with points that a near pair has, in the order of parts.
+template <class SomePairs, class Act>
+void for_parts(SomePairs& pairs, const NearPair& near, Act&& act) {
+    for (uint32_t index = near.pair; index != kNone; index = pairs.list[index].next) act(pairs.list[index]);
+}
+
+// Calls act(pair) for all pairs with points, resting ones too, in the order of key and part.
+template <class SomePairs, class Act>
+void for_pairs(SomePairs& pairs, Act&& act) {
+    for_near(pairs, [&](const NearPair& near) { for_parts(pairs, near, act); });
+}
+
+// The same without the resting ones.
+template <class SomePairs, class Act>
+void for_awake_pairs(SomePairs& pairs, Act&& act) {
+    for (const NearPair& near : pairs.near) for_parts(pairs, near, act);
 }
 
 // Room for the end events of the touching pairs that meet a condition.
 template <class Condition>
 void reserve_ended(Pairs& pairs, Condition&& condition) {
     size_t needed = pairs.ended.size();
-    for_pairs(pairs, [&](const Pair& pair) { needed += pair.touching && condition(pair); });
+    for_near(pairs, [&](const NearPair& near) { needed += near.touching && condition(pairs.list[near.pair]); });
     if (needed > pairs.ended.capacity()) pairs.ended.reserve(std::max(needed, 2 * pairs.ended.capacity()));
 }
 
@@ -193,25 +232,28 @@ void reserve_ended(Pairs& pairs, Condition&& condition) {
 template <class Condition>
 void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, Condition&& condition) {
     reserve_ended(pairs, condition);
-    for_pairs(pairs, [&](const Pair& pair) {
-        if (pair.touching && pair.part == 0 && condition(pair)) report_end(pairs, nodes, colliders, pair);
+    for_near(pairs, [&](NearPair& near) {
+        if (!condition(near.ends(colliders))) return;
+        if (near.touching) report_end(pairs, nodes, colliders, near);
+        give_slots(pairs, near);
     });
-    std::erase_if(pairs.list, condition);
-    std::erase_if(pairs.resting, condition);
+    const auto met = [&](const NearPair& near) { return condition(near.ends(colliders)); };
+    std::erase_if(pairs.near, met);
+    std::erase_if(pairs.resting, met);
     pairs.complete = false;
 }
 
 // Conditions: pairs of one node, pairs of one collider, pairs of two nodes.
 inline auto ends_on(uint32_t node) {
-    return [node](const Pair& pair) { return pair.a == node || pair.b == node || pair.a2 == node || pair.b2 == node; };
+    return [node](const PairEnds& of) { return of.a == node || of.b == node || of.a2 == node || of.b2 == node; };
 }
 inline auto ends_on_collider(uint32_t collider) {
-    return [collider](const Pair& pair) { return pair.collider_a() == collider || pair.collider_b() == collider; };
+    return [collider](const PairEnds& of) { return of.collider_a() == collider || of.collider_b() == collider; };
 }
 inline auto between_nodes(uint32_t a, uint32_t b) {
-    return [a, b](const Pair& pair) {
+    return [a, b](const PairEnds& of) {
         auto on = [](uint32_t node, uint32_t one, uint32_t two) { return node == one || node == two; };
-        return (on(a, pair.a, pair.a2) && on(b, pair.b, pair.b2)) || (on(b, pair.a, pair.a2) && on(a, pair.b, pair.b2));
+        return (on(a, of.a, of.a2) && on(b, of.b, of.b2)) || (on(b, of.a, of.a2) && on(a, of.b, of.b2));
     };
 }
 

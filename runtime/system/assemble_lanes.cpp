@@ -138,6 +138,30 @@ void add_colour(ContactLanes& lanes, const Pairs& pairs, std::span<const uint32_
     lanes.colour_begin.push_back(static_cast<uint32_t>(lanes.group.size()));
 }
 
+// Calls act(pairs, width) for each colour, in order.
+template <class Act>
+void for_pair_colours(const Group& group, Act&& act) {
+    for (uint32_t c = 0; c < kMaxColours; ++c) {
+        const uint32_t begin = group.pair_colour_begin[c], end = group.pair_colour_begin[c + 1];
+        const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one pair at a time
+        act(std::span(group.pairs.data() + begin, end - begin), width);
+    }
+}
+
+// A colour's lane groups of at least k points are those that its pairs of as many fill, the last one in part.
+void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) {
+    size_t groups = 0, points = 0;
+    for_pair_colours(group, [&](std::span<const uint32_t> items, uint32_t width) {
+        size_t at_least[5] = {};
+        for (uint32_t item : items)
+            for (uint32_t k = 1; k <= pairs.active[item].points; ++k) ++at_least[k];
+        for (uint32_t k = 1; k <= 4; ++k) points += (at_least[k] + width - 1) / width;
+        groups += (items.size() + width - 1) / width;
+    });
+    reserve_more(lanes.group, groups);
+    reserve_more(lanes.point, points);
+}
+
 constexpr uint32_t kGrain = 16;  // lane groups that a thread takes at a time
 
 }  // namespace
@@ -151,11 +175,9 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     lanes.rolling.clear();
     lanes.bounces = false;
     lanes.colour_begin.assign(1, 0);
-    for (uint32_t c = 0; c < kMaxColours; ++c) {
-        const uint32_t begin = group.pair_colour_begin[c], end = group.pair_colour_begin[c + 1];
-        const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one pair at a time
-        add_colour(lanes, pairs, {group.pairs.data() + begin, end - begin}, width);
-    }
+    reserve_lanes(lanes, pairs, group);
+    for_pair_colours(group,
+                     [&](std::span<const uint32_t> items, uint32_t width) { add_colour(lanes, pairs, items, width); });
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t g = begin; g < end; ++g) fill_group(lanes, lanes.group[g], pairs, nodes);
         kernels.prepare(lanes.view(), begin, end, system.velocity.data(), system.inverse_mass.data());

@@ -219,6 +219,13 @@ void reserve_room(Array<Data>& data, size_t most) {
     data.reserve(most);
 }
 
+// Of arrays by node, those that only nodes in blocks use.
+void make_room_for_blocks(System& system) {
+    const size_t count = system.pose.size();
+    for (Array<Velocity>* each : {&system.free, &system.kept, &system.correction, &system.start}) each->resize(count);
+    system.inertia.resize(count);
+}
+
 }  // namespace
 
 void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Pairs& pairs,
@@ -228,6 +235,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     rows.error.clear();
     rows.impulse.clear();
     rows.jacobian.clear();
+    if (!group.blocks.empty()) make_room_for_blocks(system);
     for (uint32_t b : group.blocks) {
         blocks[b].first_row_block = static_cast<uint32_t>(rows.block.size());
         blocks[b].contact_count = 0;

@@ -116,13 +116,13 @@ struct System {
     double h = 0;           // substep [s]
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
 
-    // by node + 1
+    // by node + 1; of those for nodes in blocks all or, where no block ever was, none
     Array<Pose> pose;               // at the start of the substep; predict()
     Array<Velocity> exact;          // predict(): v* = v + h a; solvers: v+
     Array<Velocity> free;           // v* with contact impulses, of nodes in blocks; block_ldlt
     Array<Velocity> kept;           // v+ without the push of overlaps, of nodes in blocks with bounded rows
     Array<Velocity> correction;     // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
-    Array<Velocity> start;          // v before forces, for energy balances; predict()
+    Array<Velocity> start;          // v before forces, for energy balances, of nodes in blocks; predict()
     Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;             // begin_frame(), predict()
     Array<uint8_t> turned;          // 1: so far that levers turn in this substep; predict()

@@ -134,4 +134,38 @@ TEST_F(Meshes, SendEventsByPair) {
     ASSERT_OK(taut_world_destroy(world));
 }
 
+// What touches parts of a mesh goes on touching the box that comes in its place, and the mesh after that.
+TEST_F(Meshes, GiveWayToABoxAndComeBack) {
+    const taut_world world = make_world();
+    taut_shape floor{};
+    const taut_vec3 vertices[] = {{-9, 0, -9}, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}};
+    const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    taut_mesh_def def;
+    taut_mesh_def_init(&def);
+    def.vertices = vertices;
+    def.vertex_count = 4;
+    def.indices = indices;
+    def.triangle_count = 2;
+    ASSERT_OK(taut_world_add_mesh(world, &def, &floor));
+    const taut_body ground = add_body(world, body_def(TAUT_BODY_STATIC, floor));
+    const taut_shape cube = add_box(world);
+    add_body(world, body_def(TAUT_BODY_DYNAMIC, cube, 0, 0.5, 0));
+    taut_collider collider{};
+    uint32_t count = 0;
+    ASSERT_OK(taut_body_get_colliders(ground, &collider, 1, &count));
+    for (const auto& [shape, y] : {std::pair(floor, 0.0f), std::pair(cube, -0.5f), std::pair(floor, 0.0f)}) {
+        ASSERT_OK(taut_collider_set_shape(collider, shape, {0, y, 0}, {0, 0, 0, 1}));
+        for (int i = 0; i < 10; ++i) {
+            ASSERT_OK(taut_world_step(world));
+            taut_events events;
+            ASSERT_OK(taut_world_get_events(world, &events));
+            EXPECT_EQ(events.end_count, 0u) << i;
+            taut_contact contacts[8];
+            ASSERT_OK(taut_world_get_contacts(world, contacts, 8, &count));
+            EXPECT_EQ(count, 4u) << i;
+        }
+    }
+    ASSERT_OK(taut_world_destroy(world));
+}
+
 }  // namespace

@@ -22,7 +22,7 @@ public:
     explicit Sums(const World& world) : world_(world), sum_(world.nodes.slots()) {}
 
     Hash& of(uint32_t node) { return sum_[node]; }
-    Hash& of(const Pair& pair) { return of_moving(pair.a, pair.b); }
+    Hash& of(const PairEnds& pair) { return of_moving(pair.a, pair.b); }
     Hash& of(const RowBlock& rows) { return sum_[std::max(rows.node[0], rows.node[1]) - 1]; }
     Hash& of(const Joint& joint) { return of_moving(joint.node[0], joint.node[1]); }
 
@@ -67,10 +67,12 @@ void add_bounds(const World& world, Sums& sums) {
 }
 
 void add_pairs(const World& world, Sums& sums) {
-    for_pairs(world.pairs, [&](const Pair& pair) {
-        Hash& hash = sums.of(pair);
-        hash.add(pair.key);
-        hash.add(uint64_t{pair.part} << 2 | uint64_t{pair.filtered} << 1 | uint64_t{pair.touching});
+    for_near(world.pairs, [&](const NearPair& near) {
+        Hash& hash = sums.of(near.ends(world.colliders));
+        hash.add(near.key);
+        hash.add(uint64_t{near.filtered} << 1 | uint64_t{near.touching});
+        for_parts(world.pairs, near,
+                  [&](const Pair& pair) { hash.add(uint64_t{pair.part} << 1 | uint64_t{pair.touching}); });
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -50,11 +51,12 @@ struct Host {
     }
 };
 
-// Pieces come in powers of two from 64 bytes and stay for the next of their size; larger ones go back at once.
+// Pieces of 64 bytes and more stay for the next of their size; larger ones go back at once.
 TEST(Memory, KeepsTheBooksOfItsHost) {
     Host host;
     {
         Memory memory(host.hooks());
+        const Memory::Keeping keeping(memory);
         void* a = memory.allocate(100, 16);
         void* b = memory.allocate(7, 64);
         void* large = memory.allocate(300000, 16);
@@ -77,6 +79,30 @@ TEST(Memory, KeepsTheBooksOfItsHost) {
     EXPECT_EQ(host.frees, 3u);
     EXPECT_EQ(host.mistakes, 0u);
     EXPECT_TRUE(host.live.empty());
+}
+
+TEST(Memory, GivesBackWhatIsLetGoWhileItKeepsNothing) {
+    Host host;
+    Memory memory(host.hooks());
+    {
+        const Memory::Keeping keeping(memory);
+        memory.release(memory.allocate(100, 16), 100, 16);
+        EXPECT_EQ(host.frees, 0u);
+    }
+    memory.release(memory.allocate(100, 16), 100, 16);
+    EXPECT_EQ(memory.calls(), 1u);
+    EXPECT_EQ(host.frees, 1u);
+    EXPECT_EQ(memory.bytes(), 0u);
+}
+
+// From 256 bytes on by at most a quarter.
+TEST(Memory, RoundsUpByLittle) {
+    for (size_t size = 0; size <= 300000; ++size) {
+        const size_t whole = Memory::whole(size, 16);
+        ASSERT_GE(whole, size);
+        ASSERT_LE(whole, std::max(size + size / 4, size + 64)) << size;
+        ASSERT_EQ(Memory::whole(whole, 16), whole) << size;
+    }
 }
 
 TEST(Memory, GivesEvenNothingAPlace) {
@@ -108,6 +134,7 @@ TEST(Memory, ForgivesReleasingNull) {
 
 TEST(Memory, TakesTheRuntimesWithoutHooks) {
     Memory memory(taut_hooks{});
+    const Memory::Keeping keeping(memory);
     for (size_t alignment : {8, 16, 32, 64}) {
         void* p = memory.allocate(33, alignment);
         ASSERT_NE(p, nullptr);
