@@ -20,6 +20,7 @@ constexpr double kAtLimit = 1e-5;        // a box this close to its limit begins
 // loaded cable changes tenfold from substep to substep; with c of the last one, cables slide at a third of
 // Coulomb's force.
 constexpr double kSlipMiss = 0.1;
+constexpr double kPull = 0.02;  // of all that push: less pull after the last round does no harm
 // Of a tower: share of all impulses that may be of the wrong sign, and what may close unseen [m]. Tighter refuses the
 // substeps of an impact, and the change to sweeps is what kicks a tower (measured: of 72 hit by a heavy box 0 fall, 27
 // with 0.1 and 1 mm).
@@ -248,6 +249,13 @@ bool ActiveSet::revise() {
     for (BoundedRow& r : rows())
         if (r.width > 0 && r.on) changed = revise_slip(r) || changed;
     return changed;
+}
+
+bool ActiveSet::pulls() const {
+    double pull = 0, push = 0;
+    for (const BoundedRow& r : rows())
+        if (r.kind == Kind::push) (r.mu < 0 ? pull : push) += std::abs(r.mu);
+    return pull > kPull * push;
 }
 
 bool ActiveSet::drop_pulling() {

@@ -30,7 +30,9 @@ public:
     void take_impulses();
     // After a biased solve: true if a row came, went or left its box, or slides by another force than its loads give.
     bool revise();
-    // After a relaxed solve of a tower: true if a row that is on pulls.
+    // True if the rows that pull do so by more than a little of what all push.
+    bool pulls() const;
+    // Drops rows that pull; false: none did.
     bool drop_pulling();
     // Of a tower: no row pulls, slides beyond its cone or closes unseen by more than a little.
     bool acceptable() const;

@@ -69,11 +69,10 @@ bool BlockSolve::gives(const RowBlock& block) const {
 }
 
 // More joints than a tree on the nodes (and the ground, where something is held) can have, soft ones included; or a
-// loop by contacts. Then nodes are not eliminated from leaf to root, and two rods in line may come right after the
-// particle between them, which cannot part them.
+// loop by contacts. Then nodes are not eliminated from leaf to root, and two joints may come right after the body
+// between them, which cannot part them: it has no freedom for all their rows.
 bool BlockSolve::looped() const {
-    for (uint32_t i = 0; i < nodes_ && !b_.links.empty(); ++i)
-        if (size_of(i) == 3) return true;
+    if (!b_.links.empty() && joints() > 1) return true;
     bool held = false;
     for (uint32_t j = 0; j < joints(); ++j)
         for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;

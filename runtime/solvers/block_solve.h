@@ -55,6 +55,7 @@ private:
     Vec3 line_turn(const RowBlock& block, const Line& line) const;
     void slow_velocities(const RowBlock& block, double* slow) const;
     void filter_lines();
+    bool solve_round();
     bool factor_rounds();
     void right_hand_side();
     void solve_known();

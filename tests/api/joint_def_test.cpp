@@ -24,8 +24,8 @@ TEST_F(JointRefusals, BallJoint) {
         check.expect_refused(&bad, code, word);
     };
     refuse(TAUT_INVALID_ARGUMENT, "collide_connected", [](Def& d) { d.collide_connected = 2; });
-    refuse(TAUT_INVALID_ARGUMENT, "solve is 2, expected [0, 1]",
-           [](Def& d) { d.solve = static_cast<taut_joint_solve>(2); });
+    refuse(TAUT_INVALID_ARGUMENT, "solve is 3, expected [0, 2]",
+           [](Def& d) { d.solve = static_cast<taut_joint_solve>(3); });
     refuse(TAUT_INVALID_ARGUMENT, "neither", [](Def& d) { d.body_a = {0}; });
     refuse(TAUT_INVALID_ARGUMENT, "neither", [&](Def& d) { d.body_a = p.ground; });
     refuse(TAUT_INVALID_ARGUMENT, "neither", [&](Def& d) { d.body_a = p.lift, d.body_b = p.ground; });
@@ -161,7 +161,7 @@ void hold_against(Populated& p, const char* name, void (*init)(Def*),
     const taut_result invalid = TAUT_INVALID_ARGUMENT;
     refuse("collide_connected", invalid, [](Def& d) { d.collide_connected = 2; });
     refuse("reserved", invalid, [](Def& d) { d.reserved = 1; });
-    refuse("solve", invalid, [](Def& d) { d.solve = static_cast<taut_joint_solve>(2); });
+    refuse("solve", invalid, [](Def& d) { d.solve = static_cast<taut_joint_solve>(3); });
     refuse("same", invalid, [&](Def& d) { d.body_b = p.crate; });
     refuse("neither", invalid, [&](Def& d) { d.body_a = {0}, d.body_b = p.ground; });
     refuse("particle", invalid, [&](Def& d) { d.body_b = p.bob; });

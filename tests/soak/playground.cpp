@@ -295,6 +295,13 @@ bool Playground::sound() const {
     return out;
 }
 
+double Playground::spin() const {
+    double most = 0;
+    for (const Group& group : groups_)
+        for (taut_body one : group.bodies) most = std::max(most, norm(state(one).spin));
+    return most;
+}
+
 size_t Playground::below_terrain() const {
     constexpr double kReach = 0.6;  // of the largest body [m]
     size_t out = 0;

@@ -20,8 +20,10 @@ public:
     Playground(const Playground&) = delete;
     Playground& operator=(const Playground&) = delete;
 
-    void change();   // between steps: something comes, or the oldest goes
-    void queries();  // rays, casts, overlaps and distances of one frame
+    void add_ragdoll();
+    double spin() const;  // of the fastest body [rad/s]
+    void change();        // between steps: something comes, or the oldest goes
+    void queries();       // rays, casts, overlaps and distances of one frame
     // Queries as above from any thread while the world does not change; how many colliders they found.
     uint64_t search(uint64_t seed) const;
     // Counts events and checks their bookkeeping: who enters leaves once.
@@ -52,7 +54,6 @@ private:
     void add_shapes();
     void add_sensors();
     void add_single();
-    void add_ragdoll();
     void add_chain();
     void add_cable();
     void remove(const Group& group);

@@ -85,7 +85,7 @@ protected:
                 run("taut_joint_set_break", [&] { return taut_joint_set_break(joint, 1e4f * a, b); });
                 break;
             case 4: {
-                const taut_joint_solve solve = static_cast<taut_joint_solve>(byte() % (one_in(8) ? 3 : 2));
+                const taut_joint_solve solve = static_cast<taut_joint_solve>(byte() % (one_in(8) ? 4 : 3));
                 run("taut_joint_set_solve", [&] { return taut_joint_set_solve(joint, solve); });
                 break;
             }
@@ -95,7 +95,7 @@ protected:
                 break;
             }
             case 6: {
-                const uint32_t collide = byte() % (one_in(8) ? 3 : 2);
+                const uint32_t collide = byte() % (one_in(8) ? 4 : 3);
                 run("taut_joint_set_collide_connected",
                     [&] { return taut_joint_set_collide_connected(joint, collide); });
                 break;

@@ -21,7 +21,7 @@ protected:
         if (one_in(2)) def.compliance = real(0, 0.01);
         if (one_in(2)) def.damping = real(0, 10);
         if (one_in(4)) def.break_force = real(0, 1e4);
-        if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 3 : 2));
+        if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 4 : 3));
         return def;
     }
     taut_frame joint_frame() {
@@ -80,7 +80,7 @@ protected:
         if (one_in(4)) def.angular_damping = real(0, 10);
         if (one_in(4)) def.break_force = real(0, 1e4);
         if (one_in(4)) def.break_torque = real(0, 1e4);
-        if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 3 : 2));
+        if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 4 : 3));
         spoil(def.reserved);
         return def;
     }
