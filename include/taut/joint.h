@@ -52,9 +52,9 @@ typedef enum taut_joint_solve {
     TAUT_JOINT_SOLVE_DIRECT = 0,  /**< with all joints it hangs together with, at once; where the world's solver can */
     TAUT_JOINT_SOLVE_SOFT = 1,    /**< by sweeps: cheap, yields under loads far heavier than the bodies it holds */
     TAUT_JOINT_SOLVE_BY_LOAD = 2, /**< for crowds: by sweeps, but directly while the bodies that such joints connect
-                                     differ by more than 20 in mass, or one of the joints bears over 300 N per kg of its
-                                       lighter body: from the third step on, to a second after. With a direct joint
-                                       among them: directly */
+                                     differ by 20 times or more in mass, or one of the joints bears over 1000 N per kg
+                                     of its lighter body: from the third step on, to a second after. With a direct
+                                     joint among them: directly */
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;
 
