@@ -1,12 +1,11 @@
-// Contacts of a group in lanes: eight pairs of one colour side by side, so that one instruction works on eight.
+// Contacts of a group in lanes: kLanes pairs of one colour side by side, so that one instruction works on many.
 // No two pairs of a lane group share a moving node. Structure of arrays inside, one group after the other.
 #pragma once
 
 #include "base/memory.h"
+#include "simd/width.h"
 
 namespace taut {
-
-constexpr int kLanes = 8;
 
 // By node + 1; 32 bytes each, so that eight gather as an 8x8 transpose.
 struct alignas(32) SweepVelocity {
@@ -25,7 +24,7 @@ struct alignas(32) SweepShift {        // since the contacts were found
 
 constexpr uint32_t kNoLanes = UINT32_MAX;
 
-struct alignas(32) LaneGroup {
+struct alignas(64) LaneGroup {
     uint32_t a[kLanes], b[kLanes];  // index into arrays by node
     uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
     float normal[3][kLanes], tangent[3][kLanes];
@@ -41,11 +40,11 @@ struct alignas(32) LaneGroup {
     uint8_t rolls[2][kLanes];         // of a and b, 1: levers stay as they are while the body turns
 };
 
-struct alignas(32) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move
+struct alignas(64) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move
     float speed[2][kLanes];     // along the tangents [m/s]
 };
 
-struct alignas(32) LaneRolling {   // about normal, tangent 1, tangent 2; lanes without it have zero arms
+struct alignas(64) LaneRolling {   // about normal, tangent 1, tangent 2; lanes without it have zero arms
     float arm[2][kLanes];          // of spinning and of rolling [m]
     float spin_mass[kLanes];       // 1 / k about the normal [kg m^2]
     float roll_mass[3][kLanes];    // inverse of the 2x2 block about the tangents: 11, 22, 12 [kg m^2]
@@ -53,13 +52,14 @@ struct alignas(32) LaneRolling {   // about normal, tangent 1, tangent 2; lanes 
     float impulse[3][kLanes];      // [N m s]
 };
 
-struct alignas(32) LanePoint {           // empty places have zero masses
+struct alignas(64) LanePoint {           // empty places have zero masses
     float ra[3][kLanes], rb[3][kLanes];  // from the centres of mass, world axes, at detection [m]
     float gap0[kLanes];                  // separation at detection [m]
-    float gap[kLanes];                   // at the start of the substep; biased sweep
+    float gap[kLanes];                   // at the start of the substep; the first biased sweep measures it
     float normal_mass[kLanes];           // 1 / k_n [kg]
     float friction_mass[3][kLanes];      // inverse of the 2x2 tangential block: 11, 22, 12 [kg]
     float isotropic_mass[kLanes];        // 1 / its larger eigenvalue [kg]
+    float coupling[2][kLanes];           // slip along the tangents by a normal impulse of one [1/kg]
     float impulse[3][kLanes];            // normal, tangent 1, tangent 2 [N s]
     float peak[kLanes];                  // largest normal impulse of the frame [N s]
     float approach[kLanes];              // normal velocity before the frame's forces [m/s], negative when closing
@@ -105,7 +105,7 @@ struct ContactKernels {
     // Effective masses and approach speeds from the geometry that assembly filled in.
     void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
     void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
-    // Gap from the shifts, then soft normal rows and friction on the cone.
+    // Soft normal rows and friction on the cone. shifts: gaps follow from them; null: they are as measured before.
     void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepShift*,
                          const SweepTerms&);
     // Same rows without bias or softness: removes the push from the velocity that is kept.

@@ -1,4 +1,4 @@
-// Swept joints in lanes: eight of one colour and type side by side, no two of which share a moving node. The rows that
+// Swept joints in lanes: kLanes of one colour and type side by side, no two of which share a moving node. The rows that
 // lock are solved as one block a joint, stops, drives and friction after them one by one.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace taut {
 
-struct alignas(32) LaneScalar {
+struct alignas(64) LaneScalar {
     float value[kLanes];
 };
 
@@ -22,7 +22,7 @@ struct JointGroup {
     uint32_t first_axis, axes;         // in LaneAxis
 };
 
-struct alignas(32) LaneRow {
+struct alignas(64) LaneRow {
     float locked[kLanes];   // 1: solved with the block
     float rigid[kLanes];    // 1: locked without compliance, so softened while positions are corrected
     float bias[kLanes];     // J v that is wanted: locked rows against it [m/s]; zero for the others
@@ -30,7 +30,7 @@ struct alignas(32) LaneRow {
 };
 
 // A stop, drive or friction along a row: sign J v + c mu = target, least <= mu <= most. Empty places have no mass.
-struct alignas(32) LaneAxis {
+struct alignas(64) LaneAxis {
     float sign[kLanes];
     float mass[kLanes];  // 1 / (k + c); before prepare(): 1 in a filled place
     float compliance[kLanes];

@@ -18,7 +18,7 @@ struct Vec3Lanes {
     }
 };
 
-// Velocities and inverse masses of eight nodes.
+// Velocities and inverse masses of kLanes nodes.
 template <class F>
 struct SweepSide {
     using V = Vec3Lanes<F>;
@@ -64,9 +64,21 @@ struct SweepSide {
         velocity[5] = velocity[5] + change.y;
         velocity[6] = velocity[6] + change.z;
     }
-    void add(const V& p, const V& r) {
+    void subtract_spin(const V& l) {
+        const V change = turn(l);
+        velocity[4] = velocity[4] - change.x;
+        velocity[5] = velocity[5] - change.y;
+        velocity[6] = velocity[6] - change.z;
+    }
+    void add(const V& p, const V& r) {  // an impulse at r
         add_move(p);
         add_spin(cross(r, p));
+    }
+    void subtract(const V& p, const V& r) {
+        velocity[0] = velocity[0] - inv_mass * p.x;
+        velocity[1] = velocity[1] - inv_mass * p.y;
+        velocity[2] = velocity[2] - inv_mass * p.z;
+        subtract_spin(cross(r, p));
     }
 };
 

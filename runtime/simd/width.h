@@ -5,6 +5,8 @@
 
 namespace taut {
 
+constexpr int kLanes = 16;  // floats that a kernel works on side by side
+
 enum class Width : uint8_t { scalar, sse2, avx2 };
 
 Width widest();        // that this processor runs

@@ -111,21 +111,48 @@ private:
     int rows_;
 };
 
-// run(begin, end) over the lane groups of colour after colour. Those of one colour share no moving node, so that
-// threads may take them side by side; the overflow colour, the last, goes one by one.
-template <class Lanes, class Run>
-void for_colours(Substep& s, const Lanes& lanes, Run&& run) {
-    constexpr uint32_t kGrain = 16;  // lane groups, about 3 us
-    const uint32_t all = static_cast<uint32_t>(lanes.group.size());
-    if (s.team.size() == 1 || all < 2 * kGrain) {
-        run(0u, all);
+// One pass over what is swept: joints(begin, end) over the lane groups of joints colour after colour, rows(), then
+// contacts(begin, end) likewise. Groups of one colour share no moving node, so that threads may take them side by side;
+// those of the overflow colour, the last, go one by one.
+template <class Joints, class Rows, class Contacts>
+void pass(Substep& s, Joints&& joints, Rows&& rows, Contacts&& contacts) {
+    constexpr uint32_t kFew = 16, kGrain = 2;  // lane groups, a third of a microsecond each
+    const auto groups = [](const auto& lanes) { return static_cast<uint32_t>(lanes.group.size()); };
+    const uint32_t all_joints = groups(s.system.joints), all_contacts = groups(s.system.contacts);
+    if (s.team.size() == 1 || all_joints + all_contacts < kFew) {
+        if (all_joints > 0) joints(0u, all_joints);
+        rows();
+        if (all_contacts > 0) contacts(0u, all_contacts);
         return;
     }
-    for (uint32_t c = 0; c + 1 < kMaxColours; ++c) {
-        const uint32_t first = lanes.colour_begin[c], count = lanes.colour_begin[c + 1] - first;
-        s.team.for_ranges(count, kGrain, [&](uint32_t begin, uint32_t end) { run(first + begin, first + end); });
-    }
-    if (lanes.colour_begin[kMaxColours - 1] < all) run(lanes.colour_begin[kMaxColours - 1], all);
+    constexpr uint32_t kJoints = 0, kRows = 1, kContacts = 2;
+    struct {
+        uint32_t what, first;
+    } work[Team::kMaxStages];
+    Team::Stage stage[Team::kMaxStages];
+    uint32_t stages = 0;
+    const auto add = [&](uint32_t what, uint32_t first, uint32_t count, uint32_t grain) {
+        if (count == 0) return;
+        work[stages] = {what, first};
+        stage[stages++] = {count, grain};
+    };
+    const auto add_colours = [&](uint32_t what, const auto& begin) {
+        for (uint32_t c = 0; c < kMaxColours; ++c) {
+            const uint32_t count = begin[c + 1] - begin[c];
+            const bool one_by_one = c + 1 == kMaxColours;
+            add(what, begin[c], count, one_by_one ? count : std::max(kGrain, count / (4 * s.team.size())));
+        }
+    };
+    static_assert(2 * kMaxColours + 1 <= Team::kMaxStages);
+    add_colours(kJoints, s.system.joints.colour_begin);
+    add(kRows, 0, s.system.rows.lasting > s.system.rows.joints, 1);
+    add_colours(kContacts, s.system.contacts.colour_begin);
+    s.team.for_stages({stage, stages}, [&](uint32_t i, uint32_t begin, uint32_t end) {
+        const uint32_t first = work[i].first;
+        if (work[i].what == kJoints) joints(first + begin, first + end);
+        if (work[i].what == kRows) rows();
+        if (work[i].what == kContacts) contacts(first + begin, first + end);
+    });
 }
 
 // What the sweeps changed becomes part of the solution, except where a direct solve owns it.
@@ -180,63 +207,90 @@ void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
     }
 }
 
-void warm_start_sweeps(Substep& s) {
-    const auto velocity = s.system.velocity.data();
-    const auto mass = s.system.inverse_mass.data();
-    JointLanes& joints = s.system.joints;
-    ContactLanes& contacts = s.system.contacts;
-    for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
-        s.settings.kernels->warm_start(contacts.view(), begin, end, velocity, mass);
-    });
-    for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
-        s.settings.joint_kernels->warm_start(joints.view(), begin, end, velocity, mass);
-    });
-    const Rows& rows = s.system.rows;
-    warm_start_rows(s, rows.joints, rows.lasting - rows.joints);
-}
+namespace {
+
+// What the kernels work on, and the passes over it.
+struct Swept {
+    Substep& s;
+    JointView joints;
+    LaneView contacts;
+    SweepVelocity* velocity;
+    const SweepMass* mass;
+    uint32_t first_row, row_count;
+    SweepTerms soft;
+
+    explicit Swept(Substep& substep)
+        : s(substep),
+          joints(s.system.joints.view()),
+          contacts(s.system.contacts.view()),
+          velocity(s.system.velocity.data()),
+          mass(s.system.inverse_mass.data()),
+          first_row(s.system.rows.joints),
+          row_count(s.system.rows.lasting - s.system.rows.joints),
+          soft(contact_terms(s.system.h)) {}
+
+    void warm_start() const {
+        pass(
+            s,
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.joint_kernels->warm_start(joints, begin, end, velocity, mass);
+            },
+            [&] { warm_start_rows(s, first_row, row_count); },
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.kernels->warm_start(contacts, begin, end, velocity, mass);
+            });
+    }
+    // first: of the substep, which measures the gaps.
+    void sweep_biased(bool first) const {
+        const SweepTerms stiff = joint_terms(s.system.h);
+        const SweepShift* const shifts = first ? s.system.shift.data() : nullptr;
+        pass(
+            s,
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.joint_kernels->sweep_biased(joints, begin, end, velocity, mass, stiff);
+            },
+            [&] { sweep_rows(s, first_row, row_count, true); },
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.kernels->sweep_biased(contacts, begin, end, velocity, mass, shifts, soft);
+            });
+    }
+    void sweep_relaxed() const {
+        pass(
+            s,
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.joint_kernels->sweep_relaxed(joints, begin, end, velocity, mass);
+            },
+            [&] { sweep_rows(s, first_row, row_count, false); },
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.kernels->sweep_relaxed(contacts, begin, end, velocity, mass, soft);
+            });
+    }
+    void restitute() const {
+        pass(
+            s, [](uint32_t, uint32_t) {}, [] {},
+            [&](uint32_t begin, uint32_t end) {
+                s.settings.kernels->restitute(contacts, begin, end, velocity, mass, kBounceSpeed, s.last);
+            });
+    }
+};
+
+}  // namespace
+
+void warm_start_sweeps(Substep& s) { Swept(s).warm_start(); }
 
 void sweep_biased(Substep& s) {
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
-    const auto velocity = s.system.velocity.data();
-    const auto mass = s.system.inverse_mass.data();
-    JointLanes& joints = s.system.joints;
-    ContactLanes& contacts = s.system.contacts;
-    const Rows& rows = s.system.rows;
-    const SweepTerms soft = contact_terms(s.system.h);
-    for (uint32_t i = 0; i < sweeps; ++i) {
-        for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
-            s.settings.joint_kernels->sweep_biased(joints.view(), begin, end, velocity, mass, joint_terms(s.system.h));
-        });
-        sweep_rows(s, rows.joints, rows.lasting - rows.joints, true);
-        for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
-            s.settings.kernels->sweep_biased(contacts.view(), begin, end, velocity, mass, s.system.shift.data(), soft);
-        });
-    }
+    const Swept swept(s);
+    for (uint32_t i = 0; i < sweeps; ++i) swept.sweep_biased(i == 0);
     store_joint_lanes(s.team, s.system);
     publish(s);
 }
 
 void sweep_relaxed(Substep& s) {
-    const auto velocity = s.system.velocity.data();
-    const auto mass = s.system.inverse_mass.data();
-    JointLanes& joints = s.system.joints;
-    ContactLanes& contacts = s.system.contacts;
-    const Rows& rows = s.system.rows;
-    const SweepTerms soft = contact_terms(s.system.h);
-    for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
-        for_colours(s, joints, [&](uint32_t begin, uint32_t end) {
-            s.settings.joint_kernels->sweep_relaxed(joints.view(), begin, end, velocity, mass);
-        });
-        sweep_rows(s, rows.joints, rows.lasting - rows.joints, false);
-        for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
-            s.settings.kernels->sweep_relaxed(contacts.view(), begin, end, velocity, mass, soft);
-        });
-    }
-    if (contacts.bounces)
-        for_colours(s, contacts, [&](uint32_t begin, uint32_t end) {
-            s.settings.kernels->restitute(contacts.view(), begin, end, velocity, mass, kBounceSpeed, s.last);
-        });
-    if (s.last) bounce_rows(s, rows.joints, rows.lasting - rows.joints);
+    const Swept swept(s);
+    for (uint32_t i = 0; i < kRelaxSweeps; ++i) swept.sweep_relaxed();
+    if (s.system.contacts.bounces) swept.restitute();
+    if (s.last) bounce_rows(s, swept.first_row, swept.row_count);
     store_joint_lanes(s.team, s.system);
     publish(s);
 }

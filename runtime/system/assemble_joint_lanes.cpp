@@ -67,7 +67,7 @@ void fill_rows(System& system, const JointGroup& g, int lane, const RowBlock& bl
     }
 }
 
-// Room for at most eight joints of a colour and type.
+// Room for at most kLanes joints of a colour and type.
 void add_group(System& system, std::span<const uint32_t> blocks) {
     JointLanes& lanes = system.joints;
     const auto& all = system.rows.block;

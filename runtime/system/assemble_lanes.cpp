@@ -95,7 +95,7 @@ void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nod
     }
 }
 
-// Room for at most eight active pairs of a colour; the first has the most points.
+// Room for at most kLanes active pairs of a colour; the first has the most points.
 void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, uint32_t count) {
     LaneGroup& g = lanes.group.emplace_back();
     g.first_point = static_cast<uint32_t>(lanes.point.size());

@@ -1,5 +1,9 @@
 #include "threads/team.h"
 
+#if defined(__linux__)
+#include <pthread.h>
+#include <sched.h>
+#endif
 #if defined(__x86_64__) || defined(__i386__)
 #include <immintrin.h>
 #endif
@@ -7,7 +11,9 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kSpins = 4000;  // looks at the ticket before a thread offers its core to others, some 40 us
+constexpr uint32_t kSpins = 1000;  // looks before a thread offers its core to others, some 10 to 50 us
+
+constexpr int kPatience = 20;  // looks before a thread takes chunks of the part of another that is at work, some 1 us
 
 // One look at something that another thread will change soon.
 class Spin {
@@ -28,11 +34,27 @@ private:
 
 }  // namespace
 
-Team::Team(const taut_hooks& hooks, uint32_t threads) : hooks_(hooks), size_(threads) {
+// How a stage is cut.
+struct Team::Chunks {
+    uint32_t count, grain, number, parts;
+
+    Chunks(uint64_t stage, uint32_t team)
+        : count(static_cast<uint32_t>(stage >> 32)), grain(static_cast<uint32_t>(stage)), parts(team) {
+        constexpr uint32_t kMost = 1u << (kChunkBits - 1);
+        if (count / grain >= kMost) grain = count / kMost + 1;
+        number = count / grain + (count % grain != 0);
+    }
+    uint32_t first(uint32_t part) const { return static_cast<uint32_t>((uint64_t{part} * number + parts - 1) / parts); }
+    uint32_t begin(uint32_t chunk) const { return chunk * grain; }
+    uint32_t end(uint32_t chunk) const { return count - begin(chunk) > grain ? begin(chunk) + grain : count; }
+};
+
+Team::Team(const taut_hooks& hooks, uint32_t threads)
+    : hooks_(hooks), size_(threads), stage_(threads > 1 ? kMaxStages : 0), part_(threads) {
     if (hooks_.enqueue_task) return;
     own_.reserve(threads - 1);
     try {
-        for (uint32_t i = 1; i < threads; ++i) own_.emplace_back([this] { live(); });
+        for (uint32_t i = 1; i < threads; ++i) own_.emplace_back([this, i] { live(i); });
     } catch (...) {
         call_.store(kQuit, std::memory_order_release);
         call_.notify_all();
@@ -48,38 +70,67 @@ Team::~Team() {
     for (std::thread& thread : own_) thread.join();
 }
 
-void Team::hand_out(uint32_t count, uint32_t grain, RangeFn run, const void* context) {
+void Team::hand_out(std::span<const Stage> stages, RangeFn run, const void* context) {
     call_helpers();
-    const uint32_t chunks = (count + grain - 1) / grain;
-    const uint64_t loop = (ticket_.load(std::memory_order_relaxed) >> 32) + 1;
-    ticket_.store(loop << 32 | kNoTicket, std::memory_order_release);
+    const uint64_t program = next_loop_;
+    next_loop_ += stages.size();
+    program_.store(kNone, std::memory_order_release);
     run_.store(run, std::memory_order_release);
     context_.store(context, std::memory_order_release);
-    count_.store(count, std::memory_order_release);
-    grain_.store(grain, std::memory_order_release);
-    left_.store(chunks, std::memory_order_release);
-    chunks_.store(chunks, std::memory_order_release);
-    ticket_.store(loop << 32, std::memory_order_release);
-    while (take_chunk()) {
-    }
-    for (Spin spin; left_.load(std::memory_order_acquire) != 0;) spin.wait();
+    stage_count_.store(static_cast<uint32_t>(stages.size()), std::memory_order_release);
+    for (size_t i = 0; i < stages.size(); ++i)
+        stage_[i].store(uint64_t{stages[i].count} << 32 | stages[i].grain, std::memory_order_release);
+    finished_.store(0, std::memory_order_release);
+    program_.store(program, std::memory_order_release);
+    work(program, 0);
 }
 
-// Claims the next chunk of the loop that is out and runs it; false: all are taken.
-bool Team::take_chunk() {
-    uint64_t ticket = ticket_.load(std::memory_order_acquire);
+// Takes chunks of stage after stage. The caller, worker 0, returns when all are finished, a helper when it finds none.
+void Team::work(uint64_t program, uint32_t worker) {
+    const auto is_out = [&] { return program_.load(std::memory_order_acquire) == program; };
+    const RangeFn run = run_.load(std::memory_order_acquire);
+    const void* const context = context_.load(std::memory_order_acquire);
+    const uint32_t stages = stage_count_.load(std::memory_order_acquire);
+    uint64_t before = 0;  // chunks of the stages so far
+    // A part has better stay with the thread that has its data in the cache.
+    const auto be_patient = [&] {
+        Spin spin;
+        for (int i = 0; i < kPatience && finished_.load(std::memory_order_acquire) < before; ++i) spin.wait();
+    };
+    const auto wait = [&] {
+        for (Spin spin; finished_.load(std::memory_order_acquire) < before; spin.wait())
+            if (!is_out()) return;
+    };
+    part_[worker].joined.store(program, std::memory_order_release);
+    for (uint32_t i = 0; i < stages; ++i) {
+        const Chunks chunks(stage_[i].load(std::memory_order_acquire), size_);
+        wait();
+        if (!is_out()) return;
+        before += chunks.number;
+        for (uint32_t k = 0, part = worker; k < size_; ++k, part = part + 1 < size_ ? part + 1 : 0) {
+            if (part != worker && part_[part].joined.load(std::memory_order_acquire) == program) be_patient();
+            uint64_t mine = 0;
+            for (uint32_t chunk; claim(part, chunks, program + i, chunk); ++mine)
+                run(context, i, chunks.begin(chunk), chunks.end(chunk));
+            if (mine > 0) finished_.fetch_add(mine, std::memory_order_acq_rel);
+        }
+    }
+    if (worker == 0) wait();
+}
+
+// The next chunk of a worker's part of a loop; false: all are taken.
+bool Team::claim(uint32_t part, const Chunks& chunks, uint64_t loop, uint32_t& chunk) {
+    const uint32_t first = chunks.first(part), end = chunks.first(part + 1);
+    if (first == end) return false;
+    std::atomic<uint64_t>& cursor = part_[part].cursor;
+    uint64_t at = cursor.load(std::memory_order_acquire);
     for (;;) {
-        const uint32_t chunk = static_cast<uint32_t>(ticket), grain = grain_.load(std::memory_order_acquire),
-                       count = count_.load(std::memory_order_acquire);
-        const RangeFn run = run_.load(std::memory_order_acquire);
-        const void* const context = context_.load(std::memory_order_acquire);
-        if (chunk >= chunks_.load(std::memory_order_acquire)) return false;
-        if (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_acquire))
-            continue;
-        const uint32_t begin = chunk * grain;
-        run(context, begin, count - begin > grain ? begin + grain : count);
-        left_.fetch_sub(1, std::memory_order_acq_rel);
-        return true;
+        if (at >> kChunkBits > loop) return false;  // this thread is late
+        chunk = at >> kChunkBits < loop ? first : static_cast<uint32_t>(at & ((1u << kChunkBits) - 1));
+        if (chunk == end) return false;
+        if (cursor.compare_exchange_weak(at, loop << kChunkBits | (chunk + 1), std::memory_order_acq_rel,
+                                         std::memory_order_acquire))
+            return true;
     }
 }
 
@@ -87,11 +138,26 @@ void Team::call_helpers() {
     if (called_) return;
     called_ = true;
     caller_ = std::this_thread::get_id();
+    keep_off_caller();
     call_.fetch_add(1, std::memory_order_release);
     if (hooks_.enqueue_task)
         token_ = hooks_.enqueue_task(help_as_task, size_ - 1, 1, this, hooks_.task_user_data);
     else
         call_.notify_all();
+}
+
+// A thread that wakes may be queued behind the one that woke it, though other cores are idle: for 4 ms, as measured on
+// virtual machines whose cores tell of no common cache. So the own threads leave the caller's core alone.
+void Team::keep_off_caller() {
+#if defined(__linux__)
+    const int core = sched_getcpu();
+    cpu_set_t cores;
+    if (core == caller_core_ || core < 0 || sched_getaffinity(0, sizeof cores, &cores) != 0) return;
+    caller_core_ = core;
+    CPU_CLR(static_cast<size_t>(core), &cores);
+    if (CPU_COUNT(&cores) == 0) return;
+    for (std::thread& thread : own_) pthread_setaffinity_np(thread.native_handle(), sizeof cores, &cores);
+#endif
 }
 
 void Team::rest() {
@@ -101,16 +167,19 @@ void Team::rest() {
     if (hooks_.enqueue_task) hooks_.finish_task(token_, hooks_.task_user_data);
 }
 
-// Takes chunks of every loop until this call for help is over.
-void Team::help(uint32_t call) {
+// Works on every program until this call for help is over.
+void Team::help(uint32_t call, uint32_t worker) {
+    uint64_t last = kNone;
     for (Spin spin; call_.load(std::memory_order_acquire) == call; spin.wait()) {
-        bool worked = false;
-        while (take_chunk()) worked = true;
-        if (worked) spin = {};
+        const uint64_t program = program_.load(std::memory_order_acquire);
+        if (program == kNone || program == last) continue;
+        last = program;
+        work(program, worker);
+        spin = {};
     }
 }
 
-void Team::live() {
+void Team::live(uint32_t worker) {
     for (;;) {
         uint32_t call = call_.load(std::memory_order_acquire);
         while (call % 2 == 0) {
@@ -118,16 +187,16 @@ void Team::live() {
             call = call_.load(std::memory_order_acquire);
         }
         if (call == kQuit) return;
-        help(call);
+        help(call, worker);
     }
 }
 
 // A host that runs tasks at once on the thread that enqueues them has no helper to give.
-void Team::help_as_task(uint32_t, uint32_t, uint32_t, void* team) {
+void Team::help_as_task(uint32_t begin, uint32_t, uint32_t, void* team) {
     Team& self = *static_cast<Team*>(team);
     if (std::this_thread::get_id() == self.caller_) return;
     const uint32_t call = self.call_.load(std::memory_order_acquire);
-    if (call % 2 == 1 && call != kQuit) self.help(call);
+    if (call % 2 == 1 && call != kQuit) self.help(call, begin + 1);
 }
 
 }  // namespace taut

@@ -1,13 +1,16 @@
 // A team of threads for the loops inside a step: the calling thread and helpers, the world's own or the host's, that
 // join while a step runs and sleep between steps.
 //
-// The calling thread hands out a loop as chunks and works on them itself; whoever else is there takes chunks too. It
-// never waits for a helper that has not taken one, so a host whose workers are busy only makes the step slower. What a
-// loop computes may not depend on who runs which chunk: results follow the scene, not the team.
+// The calling thread hands out loops as chunks and works on them itself; whoever else is there takes chunks too. Each
+// thread begins with chunks of its own part of a loop, the same part in each loop as long, so that what it wrote is
+// still in its cache, and then helps the others. The caller never waits for a helper that has not taken a chunk, so a
+// host whose workers are busy only makes the step slower. What a loop computes may not depend on who runs which chunk:
+// results follow the scene, not the team.
 #pragma once
 
 #include <atomic>
 #include <memory>
+#include <span>
 #include <thread>
 #include <type_traits>
 #include <vector>
@@ -34,11 +37,30 @@ public:
             if (count > 0) run(0u, count);
             return;
         }
+        const Stage stage{count, grain};
+        for_stages({&stage, 1}, [&](uint32_t, uint32_t begin, uint32_t end) { run(begin, end); });
+    }
+
+    struct Stage {
+        uint32_t count, grain;
+    };
+    static constexpr uint32_t kMaxStages = 256;
+
+    // Loops one after the other: run(stage, begin, end) over ranges of [0, count) of each stage, which begins when the
+    // one before is over. As for_ranges(), but the helpers go from stage to stage by themselves, some tenths of a
+    // microsecond each. At most kMaxStages.
+    template <class Run>
+    void for_stages(std::span<const Stage> stages, Run&& run) {
+        if (size_ == 1) {
+            for (uint32_t i = 0; i < stages.size(); ++i)
+                if (stages[i].count > 0) run(i, 0u, stages[i].count);
+            return;
+        }
         using Held = std::remove_reference_t<Run>;
         hand_out(
-            count, grain,
-            [](const void* context, uint32_t begin, uint32_t end) noexcept {
-                (*const_cast<Held*>(static_cast<const Held*>(context)))(begin, end);
+            stages,
+            [](const void* context, uint32_t stage, uint32_t begin, uint32_t end) noexcept {
+                (*const_cast<Held*>(static_cast<const Held*>(context)))(stage, begin, end);
             },
             std::addressof(run));
     }
@@ -47,13 +69,16 @@ public:
     void rest();
 
 private:
-    using RangeFn = void (*)(const void* context, uint32_t begin, uint32_t end) noexcept;
+    using RangeFn = void (*)(const void* context, uint32_t stage, uint32_t begin, uint32_t end) noexcept;
+    struct Chunks;
 
-    void hand_out(uint32_t count, uint32_t grain, RangeFn run, const void* context);
-    bool take_chunk();
+    void hand_out(std::span<const Stage> stages, RangeFn run, const void* context);
+    void work(uint64_t program, uint32_t worker);
+    bool claim(uint32_t part, const Chunks& chunks, uint64_t loop, uint32_t& chunk);
     void call_helpers();
-    void help(uint32_t call);
-    void live();
+    void keep_off_caller();
+    void help(uint32_t call, uint32_t worker);
+    void live(uint32_t worker);
     static void help_as_task(uint32_t begin, uint32_t end, uint32_t worker, void* team);
 
     taut_hooks hooks_;
@@ -62,19 +87,29 @@ private:
     void* token_ = nullptr;  // of the host's task
     bool called_ = false;    // helpers are there, or on their way
     std::thread::id caller_;
+    int caller_core_ = -1;  // where the own threads do not run
+    uint64_t next_loop_ = 1;
 
-    // The loop that is out, written while no ticket is. A helper that comes late may read a mixture of two loops, but
-    // then the ticket has changed and its claim fails: stores release and loads acquire for that.
-    static constexpr uint64_t kNoTicket = UINT32_MAX;
+    // The program that is out: the number of its first loop, a stage being a loop; kNone while the rest is written. A
+    // helper that comes late may read a mixture of two programs, but then the number has changed, at which it looks
+    // before it claims anything: stores release and loads acquire for that.
+    static constexpr uint64_t kNone = 0;
+    static constexpr uint32_t kChunkBits = 20;
+    alignas(64) std::atomic<uint64_t> program_{kNone};
     std::atomic<RangeFn> run_{nullptr};
     std::atomic<const void*> context_{nullptr};
-    std::atomic<uint32_t> count_{0}, grain_{1}, chunks_{0};
-    std::atomic<uint32_t> left_{0};            // chunks that have not finished
-    std::atomic<uint64_t> ticket_{kNoTicket};  // loop number << 32 | next chunk
+    std::atomic<uint32_t> stage_count_{0};
+    std::vector<std::atomic<uint64_t>> stage_;       // count << 32 | grain
+    alignas(64) std::atomic<uint64_t> finished_{0};  // chunks of the program
+    struct alignas(64) Part {
+        std::atomic<uint64_t> cursor{0};  // loop << kChunkBits | its next chunk; of an earlier loop: none is taken yet
+        alignas(64) std::atomic<uint64_t> joined{0};  // the last program that the worker came to
+    };
+    std::vector<Part> part_;  // by worker
 
     // Odd: helpers are wanted; even: they sleep. kQuit: they end.
     static constexpr uint32_t kQuit = UINT32_MAX;
-    std::atomic<uint32_t> call_{0};
+    alignas(64) std::atomic<uint32_t> call_{0};
 };
 
 // Lets a team rest at the end of a scope, however that is left.

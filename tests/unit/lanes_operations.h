@@ -5,33 +5,33 @@
 
 namespace taut::test {
 
-constexpr std::size_t kOperations = 7, kTransposed = 64;
+constexpr std::size_t kWide = kLanes, kOperations = 7;
 
-// a, b, c, d: eight numbers each, aligned to 32; out: kOperations times eight.
+// a, b, c, d: kLanes numbers each, aligned to 64; out: kOperations times kLanes.
 template <class F>
 void run_operations(const float* a, const float* b, const float* c, const float* d, float* out) {
     const F x = F::load(a), y = F::load(b);
     (x + y).store(out);
-    (x - y).store(out + 8);
-    (x * y).store(out + 16);
-    (x / y).store(out + 24);
-    F::max(x, y).store(out + 32);
-    F::sqrt(F::max(x, F::all(0))).store(out + 40);
-    F::if_greater(x, y, F::load(c), F::load(d)).store(out + 48);
+    (x - y).store(out + kWide);
+    (x * y).store(out + 2 * kWide);
+    (x / y).store(out + 3 * kWide);
+    F::max(x, y).store(out + 4 * kWide);
+    F::sqrt(F::max(x, F::all(0))).store(out + 5 * kWide);
+    F::if_greater(x, y, F::load(c), F::load(d)).store(out + 6 * kWide);
 }
 
-// rows: eight rows of eight at a stride. columns: what lane k of component c holds; back: the rows again.
+// rows: kLanes rows of eight at a stride. columns: what lane k of component c holds; back: the rows again.
 template <class F>
 void run_transpose(const float* rows, std::size_t stride, float* columns, float* back) {
-    const float* from[8];
-    float* to[8];
-    for (std::size_t i = 0; i < 8; ++i) {
+    const float* from[kWide];
+    float* to[kWide];
+    for (std::size_t i = 0; i < kWide; ++i) {
         from[i] = rows + i * stride;
         to[i] = back + i * stride;
     }
     F lanes[8];
     F::transpose(from, lanes);
-    for (std::size_t i = 0; i < 8; ++i) lanes[i].store(columns + 8 * i);
+    for (std::size_t i = 0; i < 8; ++i) lanes[i].store(columns + kWide * i);
     F::transpose_back(lanes, to);
 }
 

@@ -1,4 +1,4 @@
-// Eight lanes in three builds: the same bits for every operation.
+// Lanes in three builds: the same bits for every operation.
 #include "simd/lanes.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ constexpr LanesBuild kScalar{run_operations<ScalarLanes>, run_transpose<ScalarLa
 constexpr LanesBuild kSse2{run_operations<Sse2Lanes>, run_transpose<Sse2Lanes>};
 #endif
 
-struct alignas(32) Eight {
-    float f[8];
+struct alignas(64) Wide {
+    float f[kWide];
 };
 
 // Numbers of every size, with zeros of both signs, equal pairs, denormals and infinities among them.
@@ -33,8 +33,8 @@ public:
         std::uniform_real_distribution<float> number(-1, 1), exponent(-20, 20);
         return number(engine_) * std::exp2(exponent(engine_));
     }
-    Eight eight() {
-        Eight e;
+    Wide wide() {
+        Wide e;
         for (float& f : e.f) f = next();
         return e;
     }
@@ -57,52 +57,52 @@ void expect_same(const float* a, const float* b, size_t count) {
 void expect_same_build(const LanesBuild& build) {
     Numbers numbers(1);
     for (int i = 0; i < 20000; ++i) {
-        const Eight a = numbers.eight(), b = i % 4 ? numbers.eight() : a, c = numbers.eight(), d = numbers.eight();
-        alignas(32) float expected[8 * kOperations], got[8 * kOperations];
+        const Wide a = numbers.wide(), b = i % 4 ? numbers.wide() : a, c = numbers.wide(), d = numbers.wide();
+        alignas(64) float expected[kWide * kOperations], got[kWide * kOperations];
         kScalar.operations(a.f, b.f, c.f, d.f, expected);
         build.operations(a.f, b.f, c.f, d.f, got);
-        expect_same(expected, got, 8 * kOperations);
+        expect_same(expected, got, kWide * kOperations);
         if (testing::Test::HasFatalFailure()) return;
     }
     for (size_t stride : {8, 16}) {
-        alignas(32) float rows[128], columns[2][64], back[2][128] = {};
+        alignas(64) float rows[16 * kWide], columns[2][8 * kWide], back[2][16 * kWide] = {};
         for (float& f : rows) f = numbers.next();
         kScalar.transpose(rows, stride, columns[0], back[0]);
         build.transpose(rows, stride, columns[1], back[1]);
-        expect_same(columns[0], columns[1], 64);
-        expect_same(back[0], back[1], 128);
+        expect_same(columns[0], columns[1], 8 * kWide);
+        expect_same(back[0], back[1], 16 * kWide);
     }
 }
 
 TEST(ScalarLanes, ComputeWhatEachNumberDoes) {
     Numbers numbers(2);
     for (int i = 0; i < 5000; ++i) {
-        const Eight a = numbers.eight(), b = numbers.eight(), c = numbers.eight(), d = numbers.eight();
-        alignas(32) float out[8 * kOperations], expected[8 * kOperations];
+        const Wide a = numbers.wide(), b = numbers.wide(), c = numbers.wide(), d = numbers.wide();
+        alignas(64) float out[kWide * kOperations], expected[kWide * kOperations];
         kScalar.operations(a.f, b.f, c.f, d.f, out);
-        for (int k = 0; k < 8; ++k) {
+        for (size_t k = 0; k < kWide; ++k) {
             expected[k] = a.f[k] + b.f[k];
-            expected[8 + k] = a.f[k] - b.f[k];
-            expected[16 + k] = a.f[k] * b.f[k];
-            expected[24 + k] = a.f[k] / b.f[k];
-            expected[32 + k] = a.f[k] > b.f[k] ? a.f[k] : b.f[k];
-            expected[40 + k] = std::sqrt(a.f[k] > 0 ? a.f[k] : 0.0f);
-            expected[48 + k] = a.f[k] > b.f[k] ? c.f[k] : d.f[k];
+            expected[kWide + k] = a.f[k] - b.f[k];
+            expected[2 * kWide + k] = a.f[k] * b.f[k];
+            expected[3 * kWide + k] = a.f[k] / b.f[k];
+            expected[4 * kWide + k] = a.f[k] > b.f[k] ? a.f[k] : b.f[k];
+            expected[5 * kWide + k] = std::sqrt(a.f[k] > 0 ? a.f[k] : 0.0f);
+            expected[6 * kWide + k] = a.f[k] > b.f[k] ? c.f[k] : d.f[k];
         }
-        expect_same(expected, out, 8 * kOperations);
+        expect_same(expected, out, kWide * kOperations);
     }
 }
 
 TEST(ScalarLanes, TransposeThereAndBack) {
     for (size_t stride : {8, 16}) {
-        alignas(32) float rows[128], columns[64], back[128];
-        for (int i = 0; i < 128; ++i) rows[i] = back[i] = static_cast<float>(i);
-        for (size_t r = 0; r < 8; ++r)
+        alignas(64) float rows[16 * kWide], columns[8 * kWide], back[16 * kWide];
+        for (size_t i = 0; i < 16 * kWide; ++i) rows[i] = back[i] = static_cast<float>(i);
+        for (size_t r = 0; r < kWide; ++r)
             for (size_t c = 0; c < 8; ++c) back[r * stride + c] = -1;
         kScalar.transpose(rows, stride, columns, back);
-        for (size_t r = 0; r < 8; ++r)
+        for (size_t r = 0; r < kWide; ++r)
             for (size_t c = 0; c < 8; ++c) {
-                EXPECT_EQ(columns[8 * c + r], rows[r * stride + c]);
+                EXPECT_EQ(columns[kWide * c + r], rows[r * stride + c]);
                 EXPECT_EQ(back[r * stride + c], rows[r * stride + c]);
             }
     }

@@ -50,6 +50,28 @@ TEST(Team, LoopsSeeTheOnesBeforeThem) {
     for (uint64_t value : a) ASSERT_EQ(value, 2001u);
 }
 
+// Stages of many lengths, empty ones among them; each index of a stage needs what the stage before wrote everywhere.
+TEST(Team, StagesRunOneAfterTheOther) {
+    for (uint32_t threads : {1u, 2u, 3u, 8u}) {
+        Team team({}, threads);
+        for (int call = 0; call < 40; ++call) {
+            const RestAfter rest(team);
+            std::vector<Team::Stage> stages;
+            for (uint32_t i = 0; i < Team::kMaxStages; ++i) stages.push_back({(i * 7919u + 13) % 97, 1 + i % 9});
+            std::vector<std::atomic<uint32_t>> count(stages.size()), early(stages.size());
+            team.for_stages(stages, [&](uint32_t stage, uint32_t begin, uint32_t end) {
+                for (uint32_t before = 0; before < stage; ++before)
+                    if (count[before].load(std::memory_order_relaxed) != stages[before].count) ++early[stage];
+                count[stage].fetch_add(end - begin, std::memory_order_relaxed);
+            });
+            for (size_t i = 0; i < stages.size(); ++i) {
+                ASSERT_EQ(count[i].load(), stages[i].count) << "stage " << i << ", " << threads << " threads";
+                ASSERT_EQ(early[i].load(), 0u) << "stage " << i << ", " << threads << " threads";
+            }
+        }
+    }
+}
+
 TEST(Team, OthersHelp) {
     Team team({}, 2);
     const RestAfter rest(team);
