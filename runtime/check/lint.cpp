@@ -342,7 +342,7 @@ private:
             const bool angle = is_angle(joint, row);
             if (rigid(joint, row)) off[angle] += reading.value[row] * reading.value[row];
             if (axis.mode != AxisMode::limited) continue;
-            if (axis.limit_compliance == 0) overrun[angle] = std::max(overrun[angle], overrun_of(joint, reading, row));
+            if (axis.limit_compliance == 0) overrun[angle] = std::max(overrun[angle], overrun_of(joint, reading.value, row));
             room[angle] = std::min(room[angle], static_cast<double>(axis.upper) - axis.lower);
         }
         constexpr struct {

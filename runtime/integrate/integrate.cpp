@@ -71,10 +71,18 @@ void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
     for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
 }
 
+void set_sweep_pose(SweepPose& pose, const Vec3& dx, const Quat& q) {
+    for (int i = 0; i < 3; ++i) pose.dx[i] = static_cast<float>(dx[i]);
+    for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
+}
+
+// Of a product of unit quaternions, where |q|^2 - 1 = e is some rounding: one Newton step leaves 3/8 e^2.
+Quat unit_again(const Quat& q) { return Quat(q.coeffs() * (1.5 - 0.5 * q.squaredNorm())); }
+
 void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const Vec3& dtheta) {
     NodeMotion& m = nodes.motion[node];
     m.x += dx;
-    if (nodes.info[node].kind == NodeKind::dynamic) m.q = (rotation_from_vector(dtheta) * m.q).normalized();
+    if (nodes.info[node].kind == NodeKind::dynamic) m.q = unit_again(rotation_from_vector(dtheta) * m.q);
     const System::Found& found = system.found[node + 1];
     set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
 }
@@ -113,6 +121,7 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
     system.shift.assign(slots + 1, SweepShift{});
+    system.sweep_pose.resize(slots + 1);
     system.turned.assign(slots + 1, 0);
     system.turn.resize(slots + 1);
     system.in_block.assign(slots + 1, 0);
@@ -124,6 +133,7 @@ void begin_frame(System& system, const Nodes& nodes) {
         const NodeMotion& m = nodes.motion[node];
         system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
         system.found[node + 1] = {m.x, m.q};
+        set_sweep_pose(system.sweep_pose[node + 1], Vec3::Zero(), m.q);
         system.exact[node + 1] = {m.v, m.w};
         set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
         if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
@@ -139,6 +149,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
         const NodeLoad& load = nodes.load[node];
         Pose& pose = system.pose[node + 1];
         pose.x = m.x;
+        set_sweep_pose(system.sweep_pose[node + 1], m.x - system.found[node + 1].x, m.q);
         Velocity u{m.v + h * (mass.gravity_scale * gravity + mass.inv_mass * load.force), m.w};
         if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
             u = {};
@@ -197,6 +208,7 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
         const Quat turned = (rotation_from_vector(time * m.w) * m.q).normalized();
         system.pose[node + 1] = {m.x + time * m.v, turned.toRotationMatrix()};
         set_shift(system.shift[node + 1], time * m.v, turned * m.q.conjugate());
+        set_sweep_pose(system.sweep_pose[node + 1], time * m.v, turned);
     }
 }
 

@@ -114,6 +114,13 @@ private:
 };
 #endif
 
+// What every machine of this kind has, for code that comes in one build.
+#if defined(__SSE2__)
+using BaseLanes = Sse2Lanes;
+#else
+using BaseLanes = ScalarLanes;
+#endif
+
 #if defined(__AVX2__)
 struct Avx2Lanes {
     __m256 f;

@@ -212,7 +212,6 @@ void sweep_biased(Substep& s) {
             s.settings.kernels->sweep_biased(contacts.view(), begin, end, velocity, mass, s.system.shift.data(), soft);
         });
     }
-    store_joint_lanes(s.team, s.system);
     publish(s);
 }
 
@@ -237,7 +236,6 @@ void sweep_relaxed(Substep& s) {
             s.settings.kernels->restitute(contacts.view(), begin, end, velocity, mass, kBounceSpeed, s.last);
         });
     if (s.last) bounce_rows(s, rows.joints, rows.lasting - rows.joints);
-    store_joint_lanes(s.team, s.system);
     publish(s);
 }
 
