@@ -8,7 +8,10 @@
 namespace taut::collision {
 
 // Clamped to [0, 1] without a branch, which would be mispredicted half the time.
-inline float share(float x) { return std::min(std::max(x, 0.0f), 1.0f); }
+inline float share(float x) {
+    const float most = x < 1 ? x : 1;
+    return most > 0 ? most : 0;
+}
 
 struct Segment {
     Vec3f from, step;

@@ -40,10 +40,13 @@ double angle_of(double y, double x) {
         c = 1, angle = 0.78539816339744831;
     else if (small > 0.25 * large)
         c = 0.5, angle = 0.46364760900080612;
-    const double t = (small - c * large) / (large + c * small), z = t * t;
-    double sum = 0;  // sum (-z)^k / (2k+1)
-    for (int k = 13; k >= 0; --k) sum = 1.0 / (2 * k + 1) - z * sum;
-    angle += t * sum;
+    const double t = (small - c * large) / (large + c * small), z = t * t, zz = z * z;
+    double even = 0, odd = 0;  // of sum (-z)^k / (2k+1), side by side
+    for (int k = 12; k >= 0; k -= 2) {
+        even = 1.0 / (2 * k + 1) + zz * even;
+        odd = 1.0 / (2 * k + 3) + zz * odd;
+    }
+    angle += t * (even - z * odd);
     if (ax < ay) angle = 1.57079632679489662 - angle;
     if (x < 0) angle = 3.14159265358979324 - angle;
     return y < 0 ? -angle : angle;

@@ -71,7 +71,7 @@ struct ConstraintType {
     Line (*line)(const void* data, const Pose* x) = nullptr;
     // Of types whose data are JointFrames and whose angles, the last rows, turn their nodes against each other alone:
     // J_b = -J_a = (0, g). C and J of eight instances at once, in floats; else null. pose: of both ends in each lane, a
-    // SweepPose. jacobian: [2][rows][6], of which what is zero at any pose is not written.
+    // SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn are not written.
     void (*evaluate_lanes)(const LaneFrames& frames, const float* const (&pose)[2][8], LaneScalar* error,
                            LaneScalar* jacobian) = nullptr;
 };

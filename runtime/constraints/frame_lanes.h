@@ -121,10 +121,10 @@ public:
 
     void anchors() {
         store(f_.d, error_);
-        const F one = F::all(1);
-        for (int k = 0; k < 3; ++k) {
-            (F::all(0) - one).store(row(0, k)[k].value);
-            one.store(row(1, k)[k].value);
+        for (int node = 0; node < 2; ++node) {
+            const F sign = F::all(node == 0 ? -1 : 1);
+            for (int k = 0; k < 3; ++k)
+                for (int i = 0; i < 3; ++i) (i == k ? sign : F::all(0)).store(row(node, k)[i].value);
         }
         store_hat(0, f_.ra);
         store_hat(1, -f_.rb);
@@ -209,14 +209,11 @@ private:
         v.z.store(to[2].value);
     }
     LaneScalar* row(int node, int r) { return jacobian_ + (node * rows_ + r) * kDof; }
-    void store_hat(int node, const V& r) {  // without its zeros
-        const V back = -r;
-        back.z.store(row(node, 0)[4].value);
-        r.y.store(row(node, 0)[5].value);
-        r.z.store(row(node, 1)[3].value);
-        back.x.store(row(node, 1)[5].value);
-        back.y.store(row(node, 2)[3].value);
-        r.x.store(row(node, 2)[4].value);
+    void store_hat(int node, const V& r) {
+        const F zero = F::all(0);
+        store({zero, zero - r.z, r.y}, row(node, 0) + 3);
+        store({r.z, zero, zero - r.x}, row(node, 1) + 3);
+        store({zero - r.y, r.x, zero}, row(node, 2) + 3);
     }
     void turn(int r, const F& value, const V& gradient) {
         value.store(error_[r].value);

@@ -6,7 +6,7 @@ namespace taut {
 namespace {
 
 // x of [c0 c1 c2] x = r, by Cramer's rule.
-Vec3 solve(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec3& r) {
+inline Vec3 solve(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec3& r) {
     const Vec3 across = c1.cross(c2);
     const double scale = 1 / c0.dot(across);
     return {scale * r.dot(across), scale * c0.dot(r.cross(c2)), scale * c0.dot(c1.cross(r))};

@@ -43,7 +43,6 @@ void add_axes(System& system, JointGroup& g, std::span<const uint32_t> blocks) {
         for (uint32_t part = 0; part < kParts; ++part) {
             if (!has[r][part]) continue;
             LaneAxis& axis = lanes.axis.emplace_back();
-            axis = {};
             axis.row = r;
             axis.part = part;
             lanes.law.push_back({});
@@ -52,13 +51,20 @@ void add_axes(System& system, JointGroup& g, std::span<const uint32_t> blocks) {
     g.axes = size_of(lanes.axis) - g.first_axis;
 }
 
+// The next places of an array, with whatever an earlier frame left there; returns the first.
+uint32_t take(Array<LaneScalar>& array, uint32_t& taken, uint32_t count) {
+    const uint32_t first = taken;
+    taken += count;
+    if (array.size() < taken) array.resize(taken);
+    return first;
+}
+
 // Room for at most eight joints of a colour and type.
 void add_group(System& system, std::span<const uint32_t> blocks) {
     JointLanes& lanes = system.joints;
     const auto& all = system.rows.block;
     const ConstraintType& type = *all[blocks[0]].type;
     JointGroup& g = lanes.group.emplace_back();
-    g = {};
     g.type = &type;
     g.nodes = static_cast<uint32_t>(type.nodes);
     g.rows = g.first_turn = static_cast<uint32_t>(type.rows);
@@ -66,13 +72,11 @@ void add_group(System& system, std::span<const uint32_t> blocks) {
     for (uint32_t b : blocks) g.held = std::max(g.held, static_cast<uint32_t>(all[b].held()));
     if (type.evaluate_lanes) g.first_turn = static_cast<uint32_t>(std::countr_zero(type.angular));
     g.first_row = size_of(lanes.row);
-    g.first_jacobian = size_of(lanes.jacobian);
-    g.first_factor = size_of(lanes.factor);
+    g.first_jacobian = take(lanes.jacobian, lanes.jacobians, kDof * g.nodes * g.rows);
+    g.first_factor = take(lanes.factor, lanes.factors, triangle(g.rows, 0));
     g.first_compliance = g.first_frames = kNoLanes;
     lanes.row.resize(lanes.row.size() + g.rows, LaneRow{});
     lanes.coordinate.resize(lanes.row.size(), LaneCoordinate{});
-    lanes.jacobian.resize(lanes.jacobian.size() + kDof * g.nodes * g.rows, LaneScalar{});
-    lanes.factor.resize(lanes.factor.size() + triangle(g.rows, 0));
     auto elastic = [&](uint32_t b) {
         bool any = false;
         for (int r = 0; r < type.rows; ++r) any = any || (all[b].locked(r) && all[b].elastic(r));
@@ -85,6 +89,8 @@ void add_group(System& system, std::span<const uint32_t> blocks) {
     if (type.evaluate_lanes) {
         g.first_frames = size_of(lanes.frames);
         lanes.frames.push_back({});
+    } else {  // empty lanes stay 0
+        std::fill(lanes.jacobian.begin() + g.first_jacobian, lanes.jacobian.begin() + lanes.jacobians, LaneScalar{});
     }
     add_axes(system, g, blocks);
     std::fill(g.block, g.block + kLanes, kNoLanes);
@@ -246,8 +252,7 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
     lanes.axis.clear();
     lanes.law.clear();
     lanes.frames.clear();
-    lanes.jacobian.clear();
-    lanes.factor.clear();
+    lanes.jacobians = lanes.factors = 0;
     lanes.compliance.clear();
     lanes.colour_begin.assign(1, 0);
     const uint32_t first = system.rows.direct;
