@@ -113,7 +113,7 @@ struct JointLanes {
     Array<LaneFrames> frames;
     Array<LaneScalar> jacobian, factor, compliance;
     uint32_t jacobians = 0, factors = 0;  // how many of them this frame has: what is written before it is read stays
-    Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
+    Array<uint32_t> colour_begin;         // first group of each colour, and one past the last
 
     JointView view() {
         return {group.data(), row.data(),      coordinate.data(), axis.data(),
