@@ -62,7 +62,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
     if (solver.lanes) {
         build_lanes(w.team, system, group, w.pairs, w.nodes, *settings.kernels);
-        build_joint_lanes(system, group);
+        build_joint_lanes(w.team, system, group, frame);
     }
     watch_group(group, system, w.pairs, w.watch);
     w.profile.predict_us += watch.lap();
@@ -78,13 +78,13 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();
         evaluate_rows(w.team, system, 1 - (i + 1.0) / group.substeps, frame);
-        if (solver.lanes) load_joint_lanes(w.team, system, *settings.joint_kernels);
+        if (solver.lanes) evaluate_joint_lanes(w.team, system, *settings.joint_kernels);
         tell(w, {Stage::assemble, index, i});
         w.profile.assemble_us += watch.lap();
         Substep substep{w.team,   system, group,     w.partition.blocks,     w.nodes,
                         settings, report, w.scratch, i + 1 == group.substeps};
         solver.solve(substep);
-        if (substep.last) report.residual = std::max(report.residual, row_residual(system));
+        if (substep.last) report.residual = std::max(report.residual, row_residual(system, *settings.joint_kernels));
         tell(w, {Stage::solve, index, i});
         w.profile.sweep_us += watch.lap();
         commit(w.team, system, group, w.nodes);
@@ -103,7 +103,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
     }
-    if (solver.lanes) store_lanes(w.team, system, w.pairs);
+    if (!solver.lanes) return;
+    store_lanes(w.team, system, w.pairs);
+    store_joint_lanes(w.team, system);
 }
 
 void solve(World& w, Stopwatch& watch) {

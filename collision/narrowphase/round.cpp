@@ -48,9 +48,8 @@ void add_ends(const Rounds& rounds, float margin, Manifold& out) {
     add_point(rounds, hi, rounds.b.nearest(rounds.a.at(hi)), margin, 3, out);
 }
 
-}  // namespace
-
-void touch_rounds(const Rounds& rounds, float margin, Manifold& out) {
+// Inlined, so that what has just been transformed stays in registers.
+[[gnu::always_inline]] inline void touch(const Rounds& rounds, float margin, Manifold& out) {
     const SegmentPair nearest = nearest_points(rounds.a, rounds.b);
     const Vec3f between = rounds.b.at(nearest.t) - rounds.a.at(nearest.s);
     const float squared = between.squaredNorm();
@@ -68,13 +67,17 @@ void touch_rounds(const Rounds& rounds, float margin, Manifold& out) {
     add_point(rounds, nearest.s, nearest.t, margin, 1, out);
 }
 
+}  // namespace
+
+void touch_rounds(const Rounds& rounds, float margin, Manifold& out) { touch(rounds, margin, out); }
+
 void round_round(const Pair& pair, Manifold& out) {
     const Segment axis = round_axis(pair.b);
-    touch_rounds({round_axis(pair.a),
-                  {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
-                  round_radius(pair.a),
-                  round_radius(pair.b)},
-                 pair.margin, out);
+    touch({round_axis(pair.a),
+           {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
+           round_radius(pair.a),
+           round_radius(pair.b)},
+          pair.margin, out);
 }
 
 }  // namespace taut::collision

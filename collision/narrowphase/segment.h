@@ -7,6 +7,12 @@
 
 namespace taut::collision {
 
+// Clamped to [0, 1] without a branch, which would be mispredicted half the time.
+inline float share(float x) {
+    const float most = x < 1 ? x : 1;
+    return most > 0 ? most : 0;
+}
+
 struct Segment {
     Vec3f from, step;
 
@@ -14,7 +20,7 @@ struct Segment {
     // Parameter of the point nearest to p.
     float nearest(const Vec3f& p) const {
         const float squared = step.squaredNorm();
-        return squared > 0 ? std::clamp(step.dot(p - from) / squared, 0.0f, 1.0f) : 0.0f;
+        return squared > 0 ? share(step.dot(p - from) / squared) : 0.0f;
     }
 };
 
@@ -23,20 +29,21 @@ struct SegmentPair {
 };
 
 // Nearest points: the free minimum over s with t eliminated, clamped, then each against the other.
-// d/ds, d/dt |p + s a - q - t b|^2 = 0 give s (aa bb - ab^2) = ab br - bb ar with r = p - q.
+// d/ds, d/dt |p + s a - q - t b|^2 = 0 give s (aa bb - ab^2) = ab br - bb ar, s aa = ab t - ar and t bb = ab s + br
+// with r = p - q.
 inline SegmentPair nearest_points(const Segment& p, const Segment& q) {
     const Vec3f r = p.from - q.from;
     const float aa = p.step.squaredNorm();
     const float bb = q.step.squaredNorm();
     const float ab = p.step.dot(q.step);
+    const float ar = p.step.dot(r), br = q.step.dot(r);
+    const float per_aa = aa > 0 ? 1 / aa : 0, per_bb = bb > 0 ? 1 / bb : 0;
     const float determinant = aa * bb - ab * ab;
     float s = 0.5f;  // parallel: any s will do, the middle moves least
-    if (determinant > 1e-6f * aa * bb) {
-        s = std::clamp((ab * q.step.dot(r) - bb * p.step.dot(r)) / determinant, 0.0f, 1.0f);
-    }
-    const float t = q.nearest(p.at(s));
-    s = p.nearest(q.at(t));
-    return {s, q.nearest(p.at(s))};
+    if (determinant > 1e-6f * aa * bb) s = share((ab * br - bb * ar) / determinant);
+    const float t = share((ab * s + br) * per_bb);
+    s = share((ab * t - ar) * per_aa);
+    return {s, share((ab * s + br) * per_bb)};
 }
 
 }  // namespace taut::collision

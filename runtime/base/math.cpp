@@ -40,17 +40,36 @@ double angle_of(double y, double x) {
         c = 1, angle = 0.78539816339744831;
     else if (small > 0.25 * large)
         c = 0.5, angle = 0.46364760900080612;
-    const double t = (small - c * large) / (large + c * small), z = t * t;
-    double sum = 0;  // sum (-z)^k / (2k+1)
-    for (int k = 13; k >= 0; --k) sum = 1.0 / (2 * k + 1) - z * sum;
-    angle += t * sum;
+    const double t = (small - c * large) / (large + c * small), z = t * t, zz = z * z;
+    double even = 0, odd = 0;  // of sum (-z)^k / (2k+1), side by side
+    for (int k = 12; k >= 0; k -= 2) {
+        even = 1.0 / (2 * k + 1) + zz * even;
+        odd = 1.0 / (2 * k + 3) + zz * odd;
+    }
+    angle += t * (even - z * odd);
     if (ax < ay) angle = 1.57079632679489662 - angle;
     if (x < 0) angle = 3.14159265358979324 - angle;
     return y < 0 ? -angle : angle;
 }
 
+namespace {
+
+// Turns below half a radian, which most are: the same series, from the square of half the angle y <= 1/16. What they
+// leave out is less than 2e-17.
+Quat small_rotation(const Vec3& theta, double y) {
+    const double k =
+        1.0 + y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 - y * (1.0 / 39916800)))));
+    const double c =
+        1.0 + y * (-1.0 / 2 + y * (1.0 / 24 + y * (-1.0 / 720 +
+                                                   y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
+    return Quat(c, 0.5 * k * theta.x(), 0.5 * k * theta.y(), 0.5 * k * theta.z());
+}
+
+}  // namespace
+
 Quat rotation_from_vector(const Vec3& theta) {
     const double squared = theta.squaredNorm();
+    if (squared <= 0.25) return small_rotation(theta, 0.25 * squared);
     double half = 0.5 * std::sqrt(squared);
     if (half <= 1.5) {
         const double k = 0.5 * sinc(half);

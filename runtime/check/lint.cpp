@@ -52,7 +52,9 @@ public:
 private:
     bool moves(uint32_t node) const { return node != kNone && moves_by_forces(nodes_.info[node].kind); }
     double mass(uint32_t node) const { return nodes_.mass[node].mass; }
-    bool direct(const Joint& joint) const { return solvers()[world_.def.solver]->direct && joint.solve != JointSolve::swept; }
+    bool direct(const Joint& joint) const {
+        return solvers()[world_.def.solver]->direct && joint.solve != JointSolve::swept;
+    }
     double substep() const { return static_cast<double>(world_.def.time_step) / world_.def.substeps; }
     Vec3 gravity() const { return {world_.def.gravity.x, world_.def.gravity.y, world_.def.gravity.z}; }
 
@@ -342,7 +344,8 @@ private:
             const bool angle = is_angle(joint, row);
             if (rigid(joint, row)) off[angle] += reading.value[row] * reading.value[row];
             if (axis.mode != AxisMode::limited) continue;
-            if (axis.limit_compliance == 0) overrun[angle] = std::max(overrun[angle], overrun_of(joint, reading, row));
+            if (axis.limit_compliance == 0)
+                overrun[angle] = std::max(overrun[angle], overrun_of(joint, reading.value, row));
             room[angle] = std::min(room[angle], static_cast<double>(axis.upper) - axis.lower);
         }
         constexpr struct {

@@ -8,8 +8,8 @@ namespace taut {
 namespace {
 
 struct ConeTwist {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair& f) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames& f) {
         out.anchors();
         out.swing(3, f.xa(), f.xb(), f.ya());
         out.twist(4);

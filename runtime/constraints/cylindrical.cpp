@@ -9,8 +9,8 @@ namespace taut {
 namespace {
 
 struct Cylindrical {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair&) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames&) {
         out.slides();
         out.axis_alignment(3);
         out.twist(5);

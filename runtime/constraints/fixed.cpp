@@ -8,8 +8,8 @@ namespace taut {
 namespace {
 
 struct Fixed {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair&) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames&) {
         out.anchors();
         out.alignment(3);
     }

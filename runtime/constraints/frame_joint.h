@@ -1,11 +1,12 @@
-// A joint type between frames from one description of its rows, which says through either writer what C, J and K are:
+// A joint type between frames from one description of its rows, which says through each writer what C, J and K are:
 //
 //   struct Hinge {
-//       template <class Writer>
-//       static void rows(Writer& out, const FramePair& f);
+//       template <class Writer, class Frames>
+//       static void rows(Writer& out, const Frames& f);
 //   };
 #pragma once
 
+#include "constraints/frame_lanes.h"
 #include "constraints/frame_sample.h"
 #include "constraints/frame_stiffness.h"
 
@@ -15,6 +16,14 @@ template <class Type, int kRows>
 void evaluate_frames(const void* data, const Pose* x, double* error, double* jacobian) {
     const FramePair f(data, x);
     RowWriter out(f, kRows, error, jacobian);
+    Type::rows(out, f);
+}
+
+template <class Type, int kRows>
+void evaluate_frame_lanes(const LaneFrames& frames, const float* const (&pose)[2][8], LaneScalar* error,
+                          LaneScalar* jacobian) {
+    const FramePairLanes<BaseLanes> f(frames, pose);
+    LaneRowWriter<BaseLanes> out(f, kRows, error, jacobian);
     Type::rows(out, f);
 }
 
@@ -40,7 +49,9 @@ constexpr ConstraintType frame_joint(const char* name, void (*sample)(uint64_t s
             evaluate_frames<Type, kRows>,
             stiffness_of_frames<Type>,
             nullptr,
-            sample};
+            sample,
+            nullptr,
+            evaluate_frame_lanes<Type, kRows>};
 }
 
 }  // namespace taut

@@ -94,12 +94,15 @@ struct OuterTurns {
     Vec3 first, last;  // g
 };
 
-struct Ratio {
-    double over, under;
+// One of them: the turn about `axis` of its body, whose tangent is the share of the other body's axis along `sine` over
+// that along `cosine`.
+template <class Vector>
+struct OuterTurn {
+    Vector axis, sine, cosine;
 };
 
-// Writes rows of error and Jacobian; no Jacobian where that is null. StiffnessWriter has the same functions, so that a
-// joint type says once which rows it has (frame_joint.h). r: the first row.
+// Writes rows of error and Jacobian; no Jacobian where that is null. StiffnessWriter and LaneRowWriter have the same
+// functions, so that a joint type says once which rows it has (frame_joint.h). r: the first row.
 class RowWriter {
 public:
     RowWriter(const FramePair& f, int rows, double* error, double* jacobian)
@@ -148,10 +151,10 @@ public:
         turn(r, {angle_of(a.dot(b), a.cross(b).norm()), -swing_axis(a, b, across)});
     }
 
-    // Angles whose tangents are given as what they are the quotient of.
-    void outer_turns(const OuterTurns& t, int first, const Ratio& tan_first, int last, const Ratio& tan_last) {
-        turn(first, {angle_of(tan_first.over, tan_first.under), t.first});
-        turn(last, {angle_of(tan_last.over, tan_last.under), t.last});
+    void outer_turns(int first, const OuterTurn<Vec3>& a, int last, const OuterTurn<Vec3>& b) {
+        const OuterTurns t(a.axis, b.axis);
+        turn(first, {angle_of(a.sine.dot(t.q), a.cosine.dot(t.q)), t.first});
+        turn(last, {angle_of(t.p.dot(b.sine), t.p.dot(b.cosine)), t.last});
     }
 
 private:

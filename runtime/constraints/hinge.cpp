@@ -8,8 +8,8 @@ namespace taut {
 namespace {
 
 struct Hinge {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair&) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames&) {
         out.anchors();
         out.axis_alignment(3);
         out.twist(5);

@@ -11,28 +11,54 @@ struct alignas(64) LaneScalar {
     float value[kLanes];
 };
 
+// By node + 1, as SweepVelocity.
+struct alignas(32) SweepPose {
+    float dx[3] = {0, 0, 0}, pad = 0;  // translation since the frame began [m]
+    float q[4] = {0, 0, 0, 1};         // world from body: x, y, z, w
+};
+
+// JointFrames in lanes. An end that stays where it is in this frame, which may be far from its node, is in `apart`.
+struct alignas(32) LaneFrames {
+    float anchor[2][3][kLanes];  // relative to the centre of mass, body axes [m]; of such an end 0
+    float frame[2][4][kLanes];   // body from joint frame: x, y, z, w
+    float apart[3][kLanes];      // as the frame began, from node to node [m]; from the anchor of such an end
+};
+
 struct JointGroup {
+    const ConstraintType* type;
     uint32_t node[kMaxNodes][kLanes];  // index into arrays by node
     uint32_t block[kLanes];            // in Rows::block, kNoLanes for an empty lane
     uint32_t nodes, rows;              // of the type
+    uint32_t held;                     // rows up to the last that a lane locks
+    uint32_t first_turn;               // rows from here on move nothing, they turn alone: J_b = -J_a = (0, g)
     uint32_t first_row;                // in LaneRow
     uint32_t first_jacobian;           // in jacobian: [node][row][6]
     uint32_t first_factor;             // in factor: S + c = L D L^T, row by row the lower triangle, 1/D on the diagonal
     uint32_t first_compliance;         // in compliance: c, likewise; kNoLanes: no row of a lane is elastic
-    uint32_t first_axis, axes;         // in LaneAxis
+    uint32_t first_axis, axes;         // in LaneAxis and LaneAxisLaw
+    uint32_t first_frames;             // in LaneFrames, one; kNoLanes: the type is not evaluated in lanes
 };
 
 struct alignas(64) LaneRow {
     float locked[kLanes];   // 1: solved with the block
     float rigid[kLanes];    // 1: locked without compliance, so softened while positions are corrected
     float bias[kLanes];     // J v that is wanted: locked rows against it [m/s]; zero for the others
+    float own[kLanes];      // J W J^T [1/kg or 1/(kg m^2)]
     float impulse[kLanes];  // of the row, stops, drive and friction included [N s]
+};
+
+// What a row's bias comes from.
+struct alignas(32) LaneCoordinate {
+    float value[kLanes];         // C [m or rad]; prepare() adds what of the drift has come
+    float rate[kLanes];          // bias = -rate C [1/s]; zero for rows that are not locked
+    float drift[kLanes];         // of C in this frame [m or rad] ...
+    float damped_drift[kLanes];  // ... and what damping adds; see evaluate_rows()
 };
 
 // A stop, drive or friction along a row: sign J v + c mu = target, least <= mu <= most. Empty places have no mass.
 struct alignas(64) LaneAxis {
     float sign[kLanes];
-    float mass[kLanes];  // 1 / (k + c); before prepare(): 1 in a filled place
+    float mass[kLanes];  // 1 / (k + c); 0 where it does nothing in this substep
     float compliance[kLanes];
     float target[kLanes], relaxed_target[kLanes];  // [m/s]
     float least[kLanes], most[kLanes];             // [N s]
@@ -43,11 +69,24 @@ struct alignas(64) LaneAxis {
     uint32_t used;  // 0: in no lane in this substep
 };
 
+// How its target follows C, taken in the turn that is nearest to `near`:
+//   gap = sign (C - at),   target = min(base - rate gap, push),   rate = open where gap > 0, else closed or relaxed
+struct alignas(32) LaneAxisLaw {
+    float filled[kLanes];                                 // 0: an empty place
+    float near[kLanes], turn[kLanes];                     // [m or rad]; turn: 2 pi, or 0 where C is taken as it is
+    float at[kLanes];                                     // [m or rad]
+    float base[kLanes], push[kLanes];                     // [m/s]
+    float open[kLanes], closed[kLanes], relaxed[kLanes];  // [1/s]
+    float reach[kLanes];                                  // with a larger gap and no impulse it does nothing [m or rad]
+};
+
 // What the kernels see.
 struct JointView {
     const JointGroup* group;
     LaneRow* row;
+    LaneCoordinate* coordinate;
     LaneAxis* axis;
+    const LaneAxisLaw* law;
     const LaneScalar* jacobian;
     LaneScalar* factor;
     const LaneScalar* compliance;
@@ -57,7 +96,10 @@ struct JointLanes {
     explicit JointLanes(Memory& memory)
         : group(memory),
           row(memory),
+          coordinate(memory),
           axis(memory),
+          law(memory),
+          frames(memory),
           jacobian(memory),
           factor(memory),
           compliance(memory),
@@ -65,12 +107,17 @@ struct JointLanes {
 
     Array<JointGroup> group;
     Array<LaneRow> row;
+    Array<LaneCoordinate> coordinate;  // one for each row
     Array<LaneAxis> axis;
+    Array<LaneAxisLaw> law;  // one for each axis
+    Array<LaneFrames> frames;
     Array<LaneScalar> jacobian, factor, compliance;
-    Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
+    uint32_t jacobians = 0, factors = 0;  // how many of them this frame has: what is written before it is read stays
+    Array<uint32_t> colour_begin;         // first group of each colour, and one past the last
 
     JointView view() {
-        return {group.data(), row.data(), axis.data(), jacobian.data(), factor.data(), compliance.data()};
+        return {group.data(), row.data(),      coordinate.data(), axis.data(),
+                law.data(),   jacobian.data(), factor.data(),     compliance.data()};
     }
 };
 
@@ -80,12 +127,15 @@ constexpr uint32_t triangle(uint32_t row, uint32_t column) { return row * (row +
 // The sweep over lanes [begin, end) of groups. Three builds of one source give the same bits: scalar, SSE2, AVX2.
 struct JointKernels {
     const char* name;
-    // Factors and masses from the Jacobian and the compliance.
-    void (*prepare)(JointView, uint32_t begin, uint32_t end, const SweepMass*);
+    // From coordinates, Jacobian and compliance: biases, targets, factors and masses. frame_left: share of the frame
+    // after this substep.
+    void (*prepare)(JointView, uint32_t begin, uint32_t end, const SweepMass*, float frame_left);
     void (*warm_start)(JointView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
     void (*sweep_biased)(JointView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepTerms&);
     // Same rows without the bias and softness of rigid ones and the push of stops.
     void (*sweep_relaxed)(JointView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
+    // Largest |J v + c p - bias| of the locked rows [m/s or rad/s].
+    float (*residual)(JointView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
 };
 
 extern const JointKernels kJointKernelsScalar, kJointKernelsSse2, kJointKernelsAvx2;

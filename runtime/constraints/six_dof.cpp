@@ -11,12 +11,11 @@ namespace taut {
 namespace {
 
 struct SixDof {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair& f) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames& f) {
         out.slides();
         out.rise(4, f.xa(), f.zb(), -f.ya());
-        out.outer_turns(OuterTurns(f.xa(), f.zb()), 3, {-f.ya().dot(f.zb()), f.za().dot(f.zb())}, 5,
-                        {-f.xa().dot(f.yb()), f.xa().dot(f.xb())});
+        out.outer_turns(3, {f.xa(), -f.ya(), f.za()}, 5, {f.zb(), -f.yb(), f.xb()});
     }
 };
 

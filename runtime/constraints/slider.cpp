@@ -8,8 +8,8 @@ namespace taut {
 namespace {
 
 struct Slider {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair&) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames&) {
         out.slides();
         out.alignment(3);
     }

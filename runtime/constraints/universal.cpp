@@ -9,12 +9,11 @@ namespace taut {
 namespace {
 
 struct Universal {
-    template <class Writer>
-    static void rows(Writer& out, const FramePair& f) {
+    template <class Writer, class Frames>
+    static void rows(Writer& out, const Frames& f) {
         out.anchors();
         out.misalignment(3, f.xa(), f.yb());
-        out.outer_turns(OuterTurns(f.xa(), f.yb()), 4, {f.za().dot(f.yb()), f.ya().dot(f.yb())}, 5,
-                        {f.xa().dot(f.zb()), f.xa().dot(f.xb())});
+        out.outer_turns(4, {f.xa(), f.za(), f.ya()}, 5, {f.yb(), f.zb(), f.xb()});
     }
 };
 

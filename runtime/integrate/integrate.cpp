@@ -6,28 +6,51 @@ namespace taut {
 namespace {
 
 // x of [c0 c1 c2] x = r, by Cramer's rule.
-Vec3 solve(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec3& r) {
+inline Vec3 solve(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec3& r) {
     const Vec3 across = c1.cross(c2);
     const double scale = 1 / c0.dot(across);
     return {scale * r.dot(across), scale * c0.dot(r.cross(c2)), scale * c0.dot(c1.cross(r))};
 }
 
+// F(w) = I (w - w0) + h m x I m with m = (w + w0)/2, for any inertia ...
+struct FullInertia {
+    Mat3 i;
+
+    Vec3 times(const Vec3& w) const { return i * w; }
+    // d of dF/dw d = -F, where l = I m.
+    Vec3 newton_step(const Vec3& m, const Vec3& l, double h, const Vec3& f) const {
+        const auto column = [&](int j) -> Vec3 {  // of dF/dw
+            const Vec3 own = i.col(j);
+            return own + 0.5 * h * (m.cross(own) + Vec3::Unit(j).cross(l));
+        };
+        return solve(column(0), column(1), column(2), -f);
+    }
+};
+
+// ... and for one in principal axes, where m x I m = (m2 m3 (I3 - I2), ...).
+struct PrincipalInertia {
+    Vec3 i;
+
+    Vec3 times(const Vec3& w) const { return i.cwiseProduct(w); }
+    Vec3 newton_step(const Vec3& m, const Vec3&, double h, const Vec3& f) const {
+        const Vec3 k = 0.5 * h * Vec3(i[2] - i[1], i[0] - i[2], i[1] - i[0]);
+        return solve({i[0], k[1] * m[2], k[2] * m[1]}, {k[0] * m[2], i[1], k[2] * m[0]},
+                     {k[0] * m[1], k[1] * m[0], i[2]}, -f);
+    }
+};
+
 // Gyroscopic torque in body axes, where the inertia is constant; the explicit form spins thin bodies up.
-// Implicit midpoint, F(w) = I (w - w0) + h m x I m = 0 with m = (w + w0)/2, keeps w.I w and |I w| as they are. F is
-// quadratic: what a Newton step d leaves of it is h/4 d x I d. One step solves it for slow bodies, three where a
-// substep turns the body by less than a radian or so.
-bool gyroscopic_midpoint(const Vec3& w0, const Mat3& inertia, double h, Vec3& w) {
+// Implicit midpoint, F(w) = 0, keeps w.I w and |I w| as they are. F is quadratic: what a Newton step d leaves of it is
+// h/4 d x I d. One step solves it for slow bodies, three where a substep turns the body by less than a radian or so.
+template <class Inertia>
+bool gyroscopic_midpoint(const Vec3& w0, const Inertia& inertia, double h, Vec3& w) {
     constexpr double kSolved = 1e-10, kGood = 1e-6;  // of I w0
-    const Vec3 l0 = inertia * w0;
+    const Vec3 l0 = inertia.times(w0);
     const double scale = l0.squaredNorm();
     w = w0;
     Vec3 m = w0, l = l0, residual = h * w0.cross(l0);
     for (int step = 0; step < 3 && residual.squaredNorm() > kSolved * kSolved * scale; ++step) {
-        const auto column = [&](int j) -> Vec3 {  // of dF/dw
-            const Vec3 own = inertia.col(j);
-            return own + 0.5 * h * (m.cross(own) + Vec3::Unit(j).cross(l));
-        };
-        const Vec3 d = solve(column(0), column(1), column(2), -residual), ld = inertia * d;
+        const Vec3 d = inertia.newton_step(m, l, h, residual), ld = inertia.times(d);
         w += d;
         m += 0.5 * d;
         l += 0.5 * ld;
@@ -44,10 +67,16 @@ Vec3 gyroscopic_euler(const Vec3& w0, const Mat3& inertia, double h) {
 }
 
 // Free bodies keep their energy; links of a block, which whip about thin axes, take the damped form.
-Vec3 gyroscopic(const Vec3& w0, const Mat3& inertia, double h, bool damped) {
+Vec3 gyroscopic(const Vec3& w0, const Sym3& inertia, double h, bool damped) {
     Vec3 w;
-    if (!damped && gyroscopic_midpoint(w0, inertia, h, w)) return w;
-    return gyroscopic_euler(w0, inertia, h);
+    if (!damped) {
+        const bool principal = inertia.xy == 0 && inertia.xz == 0 && inertia.yz == 0;
+        const bool solved = principal
+                                ? gyroscopic_midpoint(w0, PrincipalInertia{{inertia.xx, inertia.yy, inertia.zz}}, h, w)
+                                : gyroscopic_midpoint(w0, FullInertia{inertia.matrix()}, h, w);
+        if (solved) return w;
+    }
+    return gyroscopic_euler(w0, inertia.matrix(), h);
 }
 
 void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
@@ -71,10 +100,18 @@ void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
     for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
 }
 
+void set_sweep_pose(SweepPose& pose, const Vec3& dx, const Quat& q) {
+    for (int i = 0; i < 3; ++i) pose.dx[i] = static_cast<float>(dx[i]);
+    for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
+}
+
+// Of a product of unit quaternions, where |q|^2 - 1 = e is some rounding: one Newton step leaves 3/8 e^2.
+Quat unit_again(const Quat& q) { return Quat(q.coeffs() * (1.5 - 0.5 * q.squaredNorm())); }
+
 void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const Vec3& dtheta) {
     NodeMotion& m = nodes.motion[node];
     m.x += dx;
-    if (nodes.info[node].kind == NodeKind::dynamic) m.q = (rotation_from_vector(dtheta) * m.q).normalized();
+    if (nodes.info[node].kind == NodeKind::dynamic) m.q = unit_again(rotation_from_vector(dtheta) * m.q);
     const System::Found& found = system.found[node + 1];
     set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
 }
@@ -113,6 +150,7 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
     system.shift.assign(slots + 1, SweepShift{});
+    system.sweep_pose.resize(slots + 1);
     system.turned.assign(slots + 1, 0);
     system.turn.resize(slots + 1);
     system.in_block.assign(slots + 1, 0);
@@ -124,6 +162,7 @@ void begin_frame(System& system, const Nodes& nodes) {
         const NodeMotion& m = nodes.motion[node];
         system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
         system.found[node + 1] = {m.x, m.q};
+        set_sweep_pose(system.sweep_pose[node + 1], Vec3::Zero(), m.q);
         system.exact[node + 1] = {m.v, m.w};
         set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
         if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
@@ -139,6 +178,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
         const NodeLoad& load = nodes.load[node];
         Pose& pose = system.pose[node + 1];
         pose.x = m.x;
+        set_sweep_pose(system.sweep_pose[node + 1], m.x - system.found[node + 1].x, m.q);
         Velocity u{m.v + h * (mass.gravity_scale * gravity + mass.inv_mass * load.force), m.w};
         if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
             u = {};
@@ -150,7 +190,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
             const Mat3& R = pose.R;
             note_turn(system, node, m.q);
             if (!mass.isotropic) {
-                u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia.matrix(), h, system.in_block[node + 1] != 0);
+                u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia, h, system.in_block[node + 1] != 0);
                 if (system.turned[node + 1] || system.in_block[node + 1])
                     set_inverse_mass(system.inverse_mass[node + 1], mass, R);
             }
@@ -197,6 +237,7 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
         const Quat turned = (rotation_from_vector(time * m.w) * m.q).normalized();
         system.pose[node + 1] = {m.x + time * m.v, turned.toRotationMatrix()};
         set_shift(system.shift[node + 1], time * m.v, turned * m.q.conjugate());
+        set_sweep_pose(system.sweep_pose[node + 1], time * m.v, turned);
     }
 }
 

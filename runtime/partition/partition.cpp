@@ -25,6 +25,9 @@ constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses alwa
 // Beyond these, mechanisms of joints solved by load are blocks. Their contacts stay swept.
 constexpr double kSweptLoad = 1000;     // likewise [m/s^2]: such a joint yields by .4 mm at 240 substeps a second
 constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
+// For so many frames after. A hit in a heap loads a joint for three to six frames: a hold of a second would keep half
+// of it in blocks for nothing.
+constexpr uint8_t kSweptFor = 15;
 
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
@@ -48,9 +51,11 @@ void note_loads(Joints& joints, const Nodes& nodes) {
             if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];
         for (uint32_t node : joint.nodes())
             if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
-        const double most = (joint.solve == JointSolve::by_load ? kSweptLoad : kLoad) * lighter;
+        const bool by_load = joint.solve == JointSolve::by_load;
+        const double most = (by_load ? kSweptLoad : kLoad) * lighter;
+        const int then = kLoadedAfter + (by_load ? kSweptFor : kLoadedFor);
         if (squared > most * most)
-            joint.loaded = joint.loaded + 1 < kLoadedAfter ? joint.loaded + 1 : kLoadedAfter + kLoadedFor;
+            joint.loaded = static_cast<uint8_t>(joint.loaded + 1 < kLoadedAfter ? joint.loaded + 1 : then);
         else
             joint.loaded = joint.loaded > kLoadedAfter ? joint.loaded - 1 : 0;
     }

@@ -47,7 +47,7 @@ void publish_profile(World& world) {
         if (!joint.type) continue;
         ++p.joints;
         if (asleep(world.nodes, joint)) continue;
-        const JointError error = error_of(joint, read_joint(world.nodes, joint));
+        const JointError error = error_of(world.nodes, joint);
         p.joint_error = std::max(p.joint_error, static_cast<float>(error.linear));
     }
     p.islands = world.partition.islands;

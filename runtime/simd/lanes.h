@@ -149,6 +149,13 @@ struct Sse2Register {
 using Sse2Lanes = Twice<Twice<Sse2Register>>;
 #endif
 
+// What every machine of this kind has, for code that comes in one build.
+#if defined(__SSE2__)
+using BaseLanes = Sse2Lanes;
+#else
+using BaseLanes = ScalarLanes;
+#endif
+
 #if defined(__AVX2__)
 struct Avx2Register {
     static constexpr int kWidth = 8;

@@ -287,7 +287,6 @@ void sweep_biased(Substep& s) {
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
     const Swept swept(s);
     for (uint32_t i = 0; i < sweeps; ++i) swept.sweep_biased(i);
-    store_joint_lanes(s.team, s.system);
     publish(s);
 }
 
@@ -296,7 +295,6 @@ void sweep_relaxed(Substep& s) {
     for (uint32_t i = 0; i < kRelaxSweeps; ++i) swept.sweep_relaxed();
     if (s.system.contacts.bounces) swept.restitute();
     if (s.last) bounce_rows(s, swept.first_row, swept.row_count);
-    store_joint_lanes(s.team, s.system);
     publish(s);
 }
 

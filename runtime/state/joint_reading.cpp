@@ -31,6 +31,19 @@ double coupling(const Nodes& nodes, const Joint& joint, const JointReading& read
     return sum;
 }
 
+void poses_of(const Nodes& nodes, const Joint& joint, Pose* pose) {
+    for (int end = 0; end < joint.type->nodes; ++end) pose[end] = pose_of(nodes, joint.node[end]);
+}
+
+JointError error_at(const Joint& joint, const double* value) {
+    double squared[2] = {};
+    for (int row = 0; row < joint.type->rows; ++row) {
+        const double error = is_locked(joint, row) ? value[row] : overrun_of(joint, value, row);
+        squared[is_angle(joint, row)] += error * error;
+    }
+    return {std::sqrt(squared[0]), std::sqrt(squared[1])};
+}
+
 }  // namespace
 
 Vec3 anchor_of(const Joint& joint, int end) {
@@ -57,7 +70,7 @@ Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end) {
 
 JointReading read_joint(const Nodes& nodes, const Joint& joint) {
     JointReading reading;
-    for (int end = 0; end < joint.type->nodes; ++end) reading.pose[end] = pose_of(nodes, joint.node[end]);
+    poses_of(nodes, joint, reading.pose);
     joint.type->evaluate(joint.data, reading.pose, reading.value, reading.jacobian);
     return reading;
 }
@@ -96,22 +109,23 @@ double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointR
     return std::max(a[count - 1][count - 1], kLeast * inverse_mass_of(nodes, joint, reading, row));
 }
 
-double overrun_of(const Joint& joint, const JointReading& reading, int row) {
+double overrun_of(const Joint& joint, const double* values, int row) {
     const Axis& axis = joint.axis[row];
     if (axis.mode != AxisMode::limited) return 0;
-    double value = reading.value[row];
+    double value = values[row];
     const double centre = 0.5 * (static_cast<double>(axis.lower) + axis.upper);
     if (is_angle(joint, row) && std::isfinite(centre)) value -= kTurn * std::round((value - centre) / kTurn);
     return std::max({0.0, axis.lower - value, value - axis.upper});
 }
 
-JointError error_of(const Joint& joint, const JointReading& reading) {
-    double squared[2] = {};
-    for (int row = 0; row < joint.type->rows; ++row) {
-        const double error = is_locked(joint, row) ? reading.value[row] : overrun_of(joint, reading, row);
-        squared[is_angle(joint, row)] += error * error;
-    }
-    return {std::sqrt(squared[0]), std::sqrt(squared[1])};
+JointError error_of(const Joint& joint, const JointReading& reading) { return error_at(joint, reading.value); }
+
+JointError error_of(const Nodes& nodes, const Joint& joint) {
+    Pose pose[kMaxNodes];
+    double value[kMaxRows];
+    poses_of(nodes, joint, pose);
+    joint.type->evaluate(joint.data, pose, value, nullptr);
+    return error_at(joint, value);
 }
 
 Wrench wrench_of(const Joint& joint, const JointReading& reading) {

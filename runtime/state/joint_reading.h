@@ -36,13 +36,15 @@ double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReadin
 // the inertia about the hinge, not that about the centre of mass.
 double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
 // How far a coordinate is beyond the stops of its row, an angle in the turn that is nearest to them; 0 within.
-double overrun_of(const Joint& joint, const JointReading& reading, int row);
+double overrun_of(const Joint& joint, const double* value, int row);
 
 // Of locked rows their coordinates, of limited rows their overrun.
 struct JointError {
     double linear, angular;  // [m], [rad]
 };
 JointError error_of(const Joint& joint, const JointReading& reading);
+// The same without a reading, at the present poses.
+JointError error_of(const Nodes& nodes, const Joint& joint);
 
 // On end b about its anchor, world axes, of a joint of two nodes; zero of one that was not solved yet.
 struct Wrench {

@@ -17,7 +17,7 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
 // frame [s] that is left after this substep, of which the drift of C is still to come.
 void evaluate_rows(Team& team, System& system, double frame_left, double frame);
 // Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
-double row_residual(const System& system);
+double row_residual(System& system, const JointKernels& kernels);
 // After a substep: impulses of contact rows back into the pairs.
 void store_contact_rows(const System& system);
 
@@ -29,10 +29,10 @@ void turn_lanes(Team& team, System& system, const ContactKernels& kernels);
 void store_lanes(Team& team, const System& system, Pairs& pairs);
 
 // Once a frame and group: swept joints by colour into lanes.
-void build_joint_lanes(System& system, const Group& group);
+void build_joint_lanes(Team& team, System& system, const Group& group, double frame);
 // Once a substep, after evaluate_rows(): their rows, stops, drives and friction.
-void load_joint_lanes(Team& team, System& system, const JointKernels& kernels);
-// Their impulses back into the rows and the joints.
-void store_joint_lanes(Team& team, System& system);
+void evaluate_joint_lanes(Team& team, System& system, const JointKernels& kernels);
+// Once a frame and group: their forces back into the joints.
+void store_joint_lanes(Team& team, const System& system);
 
 }  // namespace taut

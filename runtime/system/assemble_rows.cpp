@@ -9,21 +9,23 @@
 namespace taut {
 namespace {
 
-RowBlock& add_block(System& system, const ConstraintType& type) {
+RowBlock& add_block(System& system, const ConstraintType& type, bool in_lanes = false) {
     Rows& rows = system.rows;
     RowBlock block{};
     block.type = &type;
+    block.in_lanes = in_lanes;
     block.row = static_cast<uint32_t>(rows.error.size());
     block.jacobian = static_cast<uint32_t>(rows.jacobian.size());
     rows.error.resize(rows.error.size() + type.rows, 0.0);
     rows.impulse.resize(rows.error.size(), 0.0);
-    rows.jacobian.resize(rows.jacobian.size() + static_cast<size_t>(type.rows * type.nodes * kDof), 0.0);
+    if (!block.evaluated_in_lanes())
+        rows.jacobian.resize(rows.jacobian.size() + static_cast<size_t>(type.rows * type.nodes * kDof), 0.0);
     rows.block.push_back(block);
     return rows.block.back();
 }
 
-void add_joint(System& system, Joint& joint) {
-    RowBlock& block = add_block(system, *joint.type);
+void add_joint(System& system, Joint& joint, bool in_lanes) {
+    RowBlock& block = add_block(system, *joint.type, in_lanes);
     block.data = joint.data;
     block.force = joint.lambda;
     block.drift = joint.drift;
@@ -243,10 +245,10 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
             system.in_block[blocks[b].nodes[i] + 1] = 1;
             system.place[blocks[b].nodes[i] + 1] = i;
         }
-        for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j]);
+        for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j], false);
     }
     rows.direct = static_cast<uint32_t>(rows.block.size());
-    for (uint32_t j : group.joints) add_joint(system, joints.record[j]);
+    for (uint32_t j : group.joints) add_joint(system, joints.record[j], !contacts_as_rows);
     rows.joints = static_cast<uint32_t>(rows.block.size());
     constexpr size_t kPoints = 4;
     const size_t whole = (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size();
@@ -287,11 +289,12 @@ void evaluate_joint(System& system, const RowBlock& block, double frame_left, do
     Pose poses[kMaxNodes];
     poses_of(system, block, poses);
     evaluate(system, block, poses);
+    if (block.in_lanes) return;
     for (int r = 0; r < block.type->rows; ++r) {
         const uint32_t row = block.row + static_cast<uint32_t>(r);
         system.rows.impulse[row] = system.h * block.force[r];
         // Damping acts on how fast C changes, drift included.
-        const double damped = block.relaxation[block.compliance_block ? 0 : block.angular(r)] / frame;
+        const double damped = relaxation_of(block, r) / frame;
         system.rows.error[row] += (damped - frame_left) * block.drift[r];
     }
 }
@@ -303,7 +306,8 @@ void evaluate_rows(Team& team, System& system, double frame_left, double frame) 
     system.frame_left = frame_left;
     Rows& rows = system.rows;
     team.for_ranges(rows.joints, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i) evaluate_joint(system, rows.block[i], frame_left, frame);
+        for (uint32_t i = begin; i < end; ++i)
+            if (!rows.block[i].evaluated_in_lanes()) evaluate_joint(system, rows.block[i], frame_left, frame);
     });
     size_t next_rolling = 0;  // their data are in the order of their blocks
     for (size_t i = rows.joints; i < rows.block.size(); ++i) {
@@ -324,17 +328,20 @@ void store_contact_rows(const System& system) {
     }
 }
 
-double row_residual(const System& system) {
-    double largest = 0;
+double row_residual(System& system, const JointKernels& kernels) {
+    const auto groups = static_cast<uint32_t>(system.joints.group.size());
+    double largest =
+        kernels.residual(system.joints.view(), 0, groups, system.velocity.data(), system.inverse_mass.data());
     for (const RowBlock& block : system.rows.block) {
-        if (block.type->bound != Bound::free) continue;
+        if (block.type->bound != Bound::free || block.in_lanes) continue;
         RowVector r = error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
         for (int n = 0; n < block.type->nodes; ++n) {
             NodeVector u;
             u << system.exact[block.node[n]].v, system.exact[block.node[n]].w;
             r += jacobian_of(system, block, n) * u;
         }
-        largest = std::max(largest, r.cwiseAbs().maxCoeff());
+        for (int i = 0; i < block.type->rows; ++i)
+            if (block.locked(i)) largest = std::max(largest, std::abs(r[i]));
     }
     return largest;
 }

@@ -52,9 +52,12 @@ struct RowBlock {
     float* spin_slip;                // of a load: what spinning carries on; rolling is in contact
     double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
     bool fresh;                      // lambda of the last substep means nothing yet
+    bool in_lanes;                   // a swept joint: bias, targets and impulses are in System::joints
 
     bool angular(int r) const { return (type->angular >> r & 1) != 0; }
     bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }
+    // Its C and J too.
+    bool evaluated_in_lanes() const { return in_lanes && type->evaluate_lanes; }
     int held() const {  // rows up to the last locked one
         int rows = type->rows;
         while (rows > 0 && !locked(rows - 1)) --rows;
@@ -109,6 +112,7 @@ struct System {
           velocity(memory),
           inverse_mass(memory),
           shift(memory),
+          sweep_pose(memory),
           rows(memory),
           joints(memory),
           contacts(memory) {}
@@ -133,6 +137,7 @@ struct System {
     Array<SweepVelocity> velocity;  // float copy for sweeps
     Array<SweepMass> inverse_mass;  // of sweeps, world axes
     Array<SweepShift> shift;        // motion since contacts were found; commit()
+    Array<SweepPose> sweep_pose;    // pose in floats; begin_frame(), predict()
 
     Rows rows;              // of the group being solved
     JointLanes joints;      // swept ones of the group being solved
@@ -143,8 +148,11 @@ struct System {
 struct RowTerms {
     double scale, rate;
 };
+inline double relaxation_of(const RowBlock& block, int r) {
+    return block.relaxation[block.compliance_block ? 0 : block.angular(r)];
+}
 inline RowTerms row_terms(const RowBlock& block, int r, double h) {
-    const double d = block.relaxation[block.compliance_block ? 0 : block.angular(r)];
+    const double d = relaxation_of(block, r);
     return {1 / (h * (h + d)), 1 / (h + d)};
 }
 

@@ -122,6 +122,19 @@ void add_lanes(const World& world, Sums& sums) {
         }
 }
 
+void add_joint_lanes(const World& world, Sums& sums) {
+    const JointLanes& lanes = world.system.joints;
+    for (const JointGroup& group : lanes.group)
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (group.block[lane] == kNoLanes) continue;
+            Hash& hash = sums.of(world.system.rows.block[group.block[lane]]);
+            for (uint32_t r = 0; r < group.rows; ++r) {
+                hash.add(lanes.row[group.first_row + r].impulse[lane]);
+                hash.add(lanes.coordinate[group.first_row + r].value[lane]);
+            }
+        }
+}
+
 // The system of the group that is being solved.
 void add_system(const World& world, const StageEnd& end, Sums& sums) {
     const System& system = world.system;
@@ -144,6 +157,7 @@ void add_system(const World& world, const StageEnd& end, Sums& sums) {
         }
     }
     add_lanes(world, sums);
+    add_joint_lanes(world, sums);
 }
 
 void add_results(const World& world, Sums& sums) {

@@ -115,6 +115,41 @@ TEST(ByLoad, HoldsDirectlyWhatSweepsWouldNot) {
     EXPECT_LE(fastest, 0.05);
 }
 
+// A pull that swings about the limit, slower and faster than the time for which a chain is held: each change between
+// the two ways of solving passes without a kick.
+TEST(ByLoad, ChangesToAndFroWithoutAKick) {
+    int changes = 0;
+    for (const double frequency : {0.3, 1.0, 2.5}) {
+        SCOPED_TRACE(frequency);
+        World world;
+        taut_body before{};
+        for (int i = 0; i < 5; ++i) {
+            const double y = 10 - 0.5 * i;
+            const taut_body link =
+                world.add({.position = {0, y - 0.25, 0}, .mass = 1, .inertia = Vec(0.02, 0.003, 0.02)});
+            const taut_joint joint = world.ball(before, i == 0 ? Vec(0, y, 0) : Vec(0, -0.25, 0), link, {0, 0.25, 0});
+            ok(taut_joint_set_solve(joint, TAUT_JOINT_SOLVE_BY_LOAD));
+            before = link;
+        }
+        double fastest = 0, widest = 0;
+        bool direct = false;
+        for (int frame = 0; frame < 900; ++frame) {
+            const double pull = 1000 + 700 * std::sin(2 * M_PI * frequency * frame / 60.0);
+            ok(taut_body_apply_force(before, {0, static_cast<float>(-pull), 0}, {0, 0, 0}));
+            world.step();
+            const taut_profile profile = world.profile();
+            if (frame < 120) continue;
+            changes += (profile.solves > 0) != direct;
+            direct = profile.solves > 0;
+            fastest = std::max(fastest, norm(state(before).velocity));
+            widest = std::max(widest, static_cast<double>(profile.joint_error));
+        }
+        EXPECT_LE(fastest, 0.1);
+        EXPECT_LE(widest, 0.004);
+    }
+    EXPECT_GE(changes, 20);
+}
+
 // y = a cosh(x / a) with 2 a sinh(span / 2 a) = length. Arc length from the middle: a sinh(x / a).
 TEST(HangingCable, TakesTheShapeOfACatenary) {
     constexpr int kPoints = 40;

@@ -35,6 +35,8 @@ struct Mechanism {
         system.velocity.resize(1 + kMaxNodes * kJoints);
         system.inverse_mass.resize(1 + kMaxNodes * kJoints);
         system.pose.resize(1 + kMaxNodes * kJoints);
+        system.sweep_pose.resize(1 + kMaxNodes * kJoints);
+        system.found.resize(1 + kMaxNodes * kJoints);
         group.joint_colour_begin.assign(kMaxColours + 1, kJoints);
         group.joint_colour_begin[0] = 0;
         std::vector<const ConstraintType*> types;
@@ -45,13 +47,14 @@ struct Mechanism {
             add(*types[static_cast<size_t>(random.unit() * static_cast<double>(types.size()))], seed * 1000 + j,
                 random);
         system.rows.joints = system.rows.lasting = kJoints;
-        build_joint_lanes(system, group);
+        build_joint_lanes(team, system, group, kStep);
     }
 
     void add(const ConstraintType& type, uint64_t seed, Random& random) {
         Part& part = parts.emplace_back(type, seed);
         RowBlock block{};
         block.type = &type;
+        block.in_lanes = true;
         block.data = part.instance.data.data();
         block.force = part.force.data();
         block.drift = part.drift.data();
@@ -63,7 +66,7 @@ struct Mechanism {
             const bool world = n == 0 && random.unit() < 0.2;
             block.node[n] = world ? 0 : node;
             if (!world) place(node, random);
-            if (!world) system.pose[node] = part.instance.pose[static_cast<size_t>(n)];
+            if (!world) move_to(node, part.instance.pose[static_cast<size_t>(n)]);
         }
         if (random.unit() < 0.3) {
             block.compliance[0] = 1e-4 * random.unit();
@@ -77,6 +80,12 @@ struct Mechanism {
         system.rows.impulse.resize(system.rows.error.size(), 0.0);
         system.rows.jacobian.resize(system.rows.jacobian.size() + rows * static_cast<size_t>(type.nodes) * kDof, 0.0);
         system.rows.block.push_back(block);
+    }
+    void move_to(uint32_t node, const Pose& pose) {
+        system.pose[node] = pose;
+        system.found[node].x = pose.x;
+        const Quat q(pose.R);
+        for (int k = 0; k < 4; ++k) system.sweep_pose[node].q[k] = static_cast<float>(q.coeffs()[k]);
     }
     void place(uint32_t node, Random& random) {
         const Vec3 v = random.vector(), w = random.vector();
@@ -113,7 +122,7 @@ struct Mechanism {
 
     void run(const JointKernels& kernels, int biased, int relaxed) {
         evaluate_rows(team, system, 0, kStep);
-        load_joint_lanes(team, system, kernels);
+        evaluate_joint_lanes(team, system, kernels);
         const JointView view = system.joints.view();
         const auto groups = static_cast<uint32_t>(system.joints.group.size());
         kernels.warm_start(view, 0, groups, system.velocity.data(), system.inverse_mass.data());
@@ -147,7 +156,7 @@ void expect_same_bits(const JointKernels& kernels) {
         for (const SweepVelocity& u : scalar.system.velocity) sum += u.v[0] + u.w[2];
         ASSERT_TRUE(std::isfinite(sum));
         ASSERT_TRUE(same_bits(scalar.system.velocity, other.system.velocity));
-        ASSERT_TRUE(same_bits(scalar.system.rows.impulse, other.system.rows.impulse));
+        for (uint32_t j = 0; j < kJoints; ++j) ASSERT_EQ(scalar.parts[j].force, other.parts[j].force);
     }
 }
 
@@ -289,7 +298,7 @@ TEST(JointKernels, SolveTheEquationsOfEachJoint) {
             const RowBlock& block = m.system.rows.block[j];
             SCOPED_TRACE(testing::Message() << block.type->name << ", joint " << j);
             const Vector u = velocities_of(m.system, block);
-            const Vector p = Vector::Map(&m.system.rows.impulse[block.row], block.type->rows);
+            const Vector p = kStep * Vector::Map(m.parts[j].force.data(), block.type->rows);
             if (written[j].condition > 1e4) continue;  // beyond what floats tell apart
             EXPECT_LE((u - written[j].u).norm(), 1e-3 * std::max(1.0, written[j].u.norm()));
             EXPECT_LE((p - written[j].p).norm(), 1e-3 * std::max(1.0, written[j].p.norm()));
@@ -306,7 +315,8 @@ TEST(JointKernels, WhatCannotMoveIsLeftOut) {
     const auto before = m.system.velocity;
     m.run(kJointKernelsSse2, 2, 2);
     EXPECT_TRUE(same_bits(before, m.system.velocity));
-    for (double impulse : m.system.rows.impulse) EXPECT_TRUE(std::isfinite(impulse));
+    for (const auto& part : m.parts)
+        for (double force : part.force) EXPECT_TRUE(std::isfinite(force));
 }
 
 }  // namespace

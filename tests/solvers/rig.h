@@ -98,7 +98,7 @@ public:
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
         if (!solver.lanes) return;
         build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
-        build_joint_lanes(w.system, group());
+        build_joint_lanes(w.team, w.system, group(), h);
     }
     // Unconstrained velocities and rows of a substep.
     void predict() {
@@ -106,11 +106,12 @@ public:
         taut::predict(w.team, w.system, group(), w.nodes, gravity);
         build_block_contacts(w.system, group(), w.partition.blocks, w.pairs, w.nodes);
         evaluate_rows(w.team, w.system, 0, h);
-        if (solver.lanes) load_joint_lanes(w.team, w.system, *settings.joint_kernels);
+        if (solver.lanes) evaluate_joint_lanes(w.team, w.system, *settings.joint_kernels);
     }
     void solve() {
         Substep s = substep();
         solver.solve(s);
+        if (solver.lanes) store_joint_lanes(w.team, w.system);
     }
     void move() { commit(w.team, w.system, group(), w.nodes); }
     void relax() {

@@ -1,0 +1,229 @@
+// The rows of frame_rows.h for kLanes joints at once, in floats: the same coordinates and gradients, from anchors and
+// rotations relative to the nodes, so that no figure is larger than the joint. Errors are some 1e-7 of a lever, and of
+// a radian.
+#pragma once
+
+#include "constraints/frame_rows.h"
+#include "constraints/joint_lanes.h"
+#include "constraints/sweep_side.inl"
+
+namespace taut {
+
+template <class F>
+Vec3Lanes<F> operator-(const Vec3Lanes<F>& a) {
+    const F zero = F::all(0);
+    return {zero - a.x, zero - a.y, zero - a.z};
+}
+
+// atan2(y, x), 0 at the origin; within 3e-7. atan t = pi/4 + atan((t - 1)/(t + 1)) leaves |t| <= tan(pi/8), for which
+// the polynomial is that of Moshier's Cephes library (atanf.c).
+template <class F>
+F angle_of(const F& y, const F& x) {
+    const F zero = F::all(0), tiny = F::all(1e-30f);
+    const F ax = F::max(x, zero - x), ay = F::max(y, zero - y);
+    const F large = F::max(ax, ay), small = F::if_greater(ay, ax, ax, ay), limit = F::all(0.41421356f) * large;
+    const F over = F::if_greater(small, limit, small - large, small);
+    const F under = F::if_greater(small, limit, small + large, large);
+    const F t = over / F::max(under, tiny), z = t * t;
+    F sum = F::all(8.05374449538e-2f) * z - F::all(1.38776856032e-1f);
+    sum = (sum * z + F::all(1.99777106478e-1f)) * z - F::all(3.33329491539e-1f);
+    F angle = F::if_greater(small, limit, F::all(0.78539816f), zero) + (sum * z * t + t);
+    angle = F::if_greater(ay, ax, F::all(1.57079633f) - angle, angle);
+    angle = F::if_greater(zero, x, F::all(3.14159265f) - angle, angle);
+    return F::if_greater(zero, y, zero - angle, angle);
+}
+
+template <class F>
+struct QuatLanes {
+    using V = Vec3Lanes<F>;
+    V v;
+    F w;
+
+    friend QuatLanes operator*(const QuatLanes& a, const QuatLanes& b) {
+        return {a.w * b.v + b.w * a.v + cross(a.v, b.v), a.w * b.w - dot(a.v, b.v)};
+    }
+    V turn(const V& a) const {
+        const V t = cross(v + v, a);
+        return a + w * t + cross(v, t);
+    }
+};
+
+// Columns of a rotation.
+template <class F>
+struct AxesLanes {
+    Vec3Lanes<F> x, y, z;
+
+    explicit AxesLanes(const QuatLanes<F>& q) {
+        const F one = F::all(1);
+        const Vec3Lanes<F> twice = q.v + q.v, w = q.w * twice;
+        const F xx = q.v.x * twice.x, yy = q.v.y * twice.y, zz = q.v.z * twice.z;
+        const F xy = q.v.x * twice.y, xz = q.v.x * twice.z, yz = q.v.y * twice.z;
+        x = {one - (yy + zz), xy + w.z, xz - w.y};
+        y = {xy - w.z, one - (xx + zz), yz + w.x};
+        z = {xz + w.y, yz - w.x, one - (xx + yy)};
+    }
+};
+
+// As FramePair.
+template <class F>
+class FramePairLanes {
+public:
+    using V = Vec3Lanes<F>;
+
+    FramePairLanes(const LaneFrames& joint, const float* const (&pose)[2][kLanes])
+        : FramePairLanes(joint, Node(pose[0]), Node(pose[1])) {}
+
+    const V& xa() const { return a_.x; }
+    const V& ya() const { return a_.y; }
+    const V& za() const { return a_.z; }
+    const V& xb() const { return b_.x; }
+    const V& yb() const { return b_.y; }
+    const V& zb() const { return b_.z; }
+
+    V ra, rb, d;
+
+private:
+    struct Node {  // what a SweepPose says
+        explicit Node(const float* const (&pose)[kLanes]) {
+            F part[8];
+            F::transpose(pose, part);
+            dx = {part[0], part[1], part[2]};
+            q = {{part[4], part[5], part[6]}, part[7]};
+        }
+        V dx;
+        QuatLanes<F> q;
+    };
+
+    FramePairLanes(const LaneFrames& joint, const Node& a, const Node& b)
+        : ra(a.q.turn(load(joint.anchor[0]))),
+          rb(b.q.turn(load(joint.anchor[1]))),
+          d(load(joint.apart) + (b.dx - a.dx) + (rb - ra)),
+          a_(a.q * frame(joint, 0)),
+          b_(b.q * frame(joint, 1)) {}
+
+    static V load(const float (&from)[3][kLanes]) { return {F::load(from[0]), F::load(from[1]), F::load(from[2])}; }
+    static QuatLanes<F> frame(const LaneFrames& joint, int end) {
+        const float(&q)[4][kLanes] = joint.frame[end];
+        return {{F::load(q[0]), F::load(q[1]), F::load(q[2])}, F::load(q[3])};
+    }
+
+    AxesLanes<F> a_, b_;
+};
+
+// As RowWriter.
+template <class F>
+class LaneRowWriter {
+public:
+    using V = Vec3Lanes<F>;
+
+    LaneRowWriter(const FramePairLanes<F>& f, int rows, LaneScalar* error, LaneScalar* jacobian)
+        : f_(f), rows_(rows), error_(error), jacobian_(jacobian) {}
+
+    void anchors() {
+        store(f_.d, error_);
+        for (int node = 0; node < 2; ++node) {
+            const F sign = F::all(node == 0 ? -1 : 1);
+            for (int k = 0; k < 3; ++k)
+                for (int i = 0; i < 3; ++i) (i == k ? sign : F::all(0)).store(row(node, k)[i].value);
+        }
+        store_hat(0, f_.ra);
+        store_hat(1, -f_.rb);
+    }
+
+    void slides() {
+        const V l = f_.ra + f_.d;
+        const V axis[3] = {f_.xa(), f_.ya(), f_.za()};
+        for (int k = 0; k < 3; ++k) {
+            dot(axis[k], f_.d).store(error_[k].value);
+            store(-axis[k], row(0, k));
+            store(-cross(l, axis[k]), row(0, k) + 3);
+            store(axis[k], row(1, k));
+            store(cross(f_.rb, axis[k]), row(1, k) + 3);
+        }
+    }
+
+    void alignment(int r) {
+        const F half = F::all(0.5f);
+        const V a[3] = {f_.xa(), f_.ya(), f_.za()}, b[3] = {f_.xb(), f_.yb(), f_.zb()};
+        for (int k = 0; k < 3; ++k) {
+            const int i = (k + 1) % 3, j = (k + 2) % 3;
+            turn(r + k, half * (dot(a[j], b[i]) - dot(a[i], b[j])), half * (cross(b[i], a[j]) - cross(b[j], a[i])));
+        }
+    }
+
+    void axis_alignment(int r) {
+        misalignment(r, f_.ya(), f_.xb());
+        misalignment(r + 1, f_.za(), f_.xb());
+    }
+
+    void misalignment(int r, const V& a, const V& b) { turn(r, dot(a, b), cross(b, a)); }
+
+    void twist(int r) {
+        const F one = F::all(1), reversed = F::all(kReversedLanes), n = one + dot(f_.xa(), f_.xb());
+        const V sum = (one / F::max(n, reversed)) * (f_.xa() + f_.xb());
+        const F y = dot(f_.yb(), f_.za()) - dot(f_.zb(), f_.ya()), x = dot(f_.ya(), f_.yb()) + dot(f_.za(), f_.zb());
+        turn(r, angle_of(y, x), if_greater(n, reversed, sum, f_.xa()));
+    }
+
+    void swing(int r, const V& a, const V& b, const V& across) {
+        const Swing s(a, b, across);
+        turn(r, angle_of(s.sine, s.cosine), s.axis);
+    }
+
+    void rise(int r, const V& a, const V& b, const V& across) {
+        const Swing s(a, b, across);
+        turn(r, angle_of(s.cosine, s.sine), -s.axis);
+    }
+
+    void outer_turns(int first, const OuterTurn<V>& a, int last, const OuterTurn<V>& b) {
+        const F one = F::all(1), lock = F::all(kLock);
+        const V &p = a.axis, &q = b.axis;
+        F s = dot(p, q);
+        s = F::if_greater(lock, one - s * s, F::all(1 - kLock) * s, s);
+        const F inverse = one / (one - s * s);
+        turn(first, angle_of(dot(a.sine, q), dot(a.cosine, q)), inverse * (p - s * q));
+        turn(last, angle_of(dot(p, b.sine), dot(p, b.cosine)), inverse * (q - s * p));
+    }
+
+private:
+    // Below what floats tell from 0 no axis is known.
+    static constexpr float kReversedLanes = 1e-6f, kParallel = 1e-6f, kLock = 1e-5f;
+
+    struct Swing {
+        Swing(const V& a, const V& b, const V& across) : cosine(dot(a, b)) {
+            const V v = cross(a, b);
+            sine = F::sqrt(dot(v, v));
+            const F least = F::all(kParallel);
+            axis = if_greater(sine, least, (F::all(1) / F::max(sine, least)) * v, across);
+        }
+        F cosine, sine;
+        V axis;
+    };
+
+    static V if_greater(const F& a, const F& b, const V& yes, const V& no) {
+        return {F::if_greater(a, b, yes.x, no.x), F::if_greater(a, b, yes.y, no.y), F::if_greater(a, b, yes.z, no.z)};
+    }
+    static void store(const V& v, LaneScalar* to) {
+        v.x.store(to[0].value);
+        v.y.store(to[1].value);
+        v.z.store(to[2].value);
+    }
+    LaneScalar* row(int node, int r) { return jacobian_ + (node * rows_ + r) * kDof; }
+    void store_hat(int node, const V& r) {
+        const F zero = F::all(0);
+        store({zero, zero - r.z, r.y}, row(node, 0) + 3);
+        store({r.z, zero, zero - r.x}, row(node, 1) + 3);
+        store({zero - r.y, r.x, zero}, row(node, 2) + 3);
+    }
+    void turn(int r, const F& value, const V& gradient) {
+        value.store(error_[r].value);
+        store(-gradient, row(0, r) + 3);
+        store(gradient, row(1, r) + 3);
+    }
+
+    const FramePairLanes<F>& f_;
+    int rows_;
+    LaneScalar *error_, *jacobian_;
+};
+
+}  // namespace taut

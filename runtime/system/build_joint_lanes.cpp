@@ -1,0 +1,269 @@
+// What a frame keeps of swept joints, into lanes: who is where, softness, stops and drives, frames, impulses.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+
+#include "constraints/joint_frames.h"
+#include "system/assemble.h"
+#include "system/axis_rows.h"
+#include "system/soft_contact.h"
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kParts = 4;  // of AxisRow::part
+constexpr uint32_t kGrain = 8;  // lane groups that a thread takes at a time
+
+// A stop that nothing reaches within a substep at this speed, and that does not push, is left out [m/s or rad/s].
+constexpr double kReach = 50;
+
+constexpr double kMost = 1e30;  // as a float
+
+uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.size()); }
+
+// visit(row, AxisRow) for each stop, drive and friction of a block, with drives at their target.
+template <class Visit>
+void for_each_axis(const RowBlock& block, double h, Visit visit) {
+    if (!block.axis) return;
+    for (int r = 0; r < block.type->rows; ++r)
+        for_each_axis_row(block, r, block.axis[r].target, h,
+                          [&](const AxisRow& axis) { visit(static_cast<uint32_t>(r), axis); });
+}
+
+// Places for what some lane has along a row.
+void add_axes(System& system, JointGroup& g, std::span<const uint32_t> blocks) {
+    JointLanes& lanes = system.joints;
+    bool has[kMaxRows][kParts] = {};
+    for (uint32_t b : blocks)
+        for_each_axis(system.rows.block[b], system.h,
+                      [&](uint32_t r, const AxisRow& axis) { has[r][axis.part] = true; });
+    g.first_axis = size_of(lanes.axis);
+    for (uint32_t r = 0; r < g.rows; ++r) {
+        for (uint32_t part = 0; part < kParts; ++part) {
+            if (!has[r][part]) continue;
+            LaneAxis& axis = lanes.axis.emplace_back();
+            axis.row = r;
+            axis.part = part;
+            lanes.law.push_back({});
+        }
+    }
+    g.axes = size_of(lanes.axis) - g.first_axis;
+}
+
+// The next places of an array, with whatever an earlier frame left there; returns the first.
+uint32_t take(Array<LaneScalar>& array, uint32_t& taken, uint32_t count) {
+    const uint32_t first = taken;
+    taken += count;
+    if (array.size() < taken) array.resize(taken);
+    return first;
+}
+
+// Room for at most kLanes joints of a colour and type.
+void add_group(System& system, std::span<const uint32_t> blocks) {
+    JointLanes& lanes = system.joints;
+    const auto& all = system.rows.block;
+    const ConstraintType& type = *all[blocks[0]].type;
+    JointGroup& g = lanes.group.emplace_back();
+    g.type = &type;
+    g.nodes = static_cast<uint32_t>(type.nodes);
+    g.rows = g.first_turn = static_cast<uint32_t>(type.rows);
+    g.held = 0;
+    for (uint32_t b : blocks) g.held = std::max(g.held, static_cast<uint32_t>(all[b].held()));
+    if (type.evaluate_lanes) g.first_turn = static_cast<uint32_t>(std::countr_zero(type.angular));
+    g.first_row = size_of(lanes.row);
+    g.first_jacobian = take(lanes.jacobian, lanes.jacobians, kDof * g.nodes * g.rows);
+    g.first_factor = take(lanes.factor, lanes.factors, triangle(g.rows, 0));
+    g.first_compliance = g.first_frames = kNoLanes;
+    lanes.row.resize(lanes.row.size() + g.rows, LaneRow{});
+    lanes.coordinate.resize(lanes.row.size(), LaneCoordinate{});
+    auto elastic = [&](uint32_t b) {
+        bool any = false;
+        for (int r = 0; r < type.rows; ++r) any = any || (all[b].locked(r) && all[b].elastic(r));
+        return any;
+    };
+    if (std::any_of(blocks.begin(), blocks.end(), elastic)) {
+        g.first_compliance = size_of(lanes.compliance);
+        lanes.compliance.resize(lanes.compliance.size() + triangle(g.rows, 0), LaneScalar{});
+    }
+    if (type.evaluate_lanes) {
+        g.first_frames = size_of(lanes.frames);
+        lanes.frames.push_back({});
+    } else {  // empty lanes stay 0
+        std::fill(lanes.jacobian.begin() + g.first_jacobian, lanes.jacobian.begin() + lanes.jacobians, LaneScalar{});
+    }
+    add_axes(system, g, blocks);
+    std::fill(g.block, g.block + kLanes, kNoLanes);
+    std::copy(blocks.begin(), blocks.end(), g.block);
+}
+
+// Lane groups of the row blocks [begin, end) of one colour: joints of a type side by side, types as they first occur.
+void add_colour(System& system, uint32_t begin, uint32_t end, uint32_t width) {
+    const auto& all = system.rows.block;
+    for (uint32_t first = begin; first < end; ++first) {
+        const ConstraintType* type = all[first].type;
+        if (std::any_of(all.begin() + begin, all.begin() + first, [&](const RowBlock& b) { return b.type == type; }))
+            continue;
+        uint32_t batch[kLanes], filled = 0;
+        for (uint32_t b = first; b < end; ++b) {
+            if (all[b].type != type) continue;
+            batch[filled++] = b;
+            if (filled < width) continue;
+            add_group(system, {batch, filled});
+            filled = 0;
+        }
+        if (filled > 0) add_group(system, {batch, filled});
+    }
+    system.joints.colour_begin.push_back(size_of(system.joints.group));
+}
+
+struct Times {
+    double h, frame;  // [s]
+    SweepTerms soft;
+};
+
+// How soft a locked row is.
+void fill_compliance(System& system, const JointGroup& g, uint32_t r, int lane, const RowBlock& block) {
+    const int i = static_cast<int>(r);
+    const double scale = row_terms(block, i, system.h).scale;
+    const auto compliance = [&](uint32_t column) -> float& {
+        return system.joints.compliance[g.first_compliance + triangle(r, column)].value[lane];
+    };
+    if (!block.compliance_block)
+        compliance(r) = static_cast<float>(scale * block.compliance[block.angular(i)]);
+    else
+        for (uint32_t k = 0; k <= r; ++k)
+            compliance(k) = static_cast<float>(scale * block.compliance_block[r * g.rows + k]);
+}
+
+// Which rows of a lane are locked, and what they carry.
+void fill_rows(System& system, const JointGroup& g, int lane, const RowBlock& block, const Times& times) {
+    JointLanes& lanes = system.joints;
+    for (uint32_t r = 0; r < g.rows; ++r) {
+        const int i = static_cast<int>(r);
+        const bool locked = block.locked(i), rigid = locked && !block.elastic(i);
+        LaneRow& row = lanes.row[g.first_row + r];
+        row.locked[lane] = locked ? 1 : 0;
+        row.rigid[lane] = rigid ? 1 : 0;
+        row.impulse[lane] = static_cast<float>(times.h * block.force[r]);
+        LaneCoordinate& c = lanes.coordinate[g.first_row + r];
+        c.drift[lane] = static_cast<float>(block.drift[r]);
+        if (rigid) c.rate[lane] = times.soft.bias_rate;
+        if (!locked || rigid) continue;
+        c.rate[lane] = static_cast<float>(row_terms(block, i, times.h).rate);
+        c.damped_drift[lane] = static_cast<float>(relaxation_of(block, i) / times.frame * block.drift[r]);
+        fill_compliance(system, g, r, lane, block);
+    }
+}
+
+// C is between near -+ half a turn.
+void fill_turn(LaneAxisLaw& law, int lane, bool angular, double near, double at) {
+    constexpr double kTurn = 2 * 3.14159265358979323846;
+    const bool turns = angular && std::isfinite(near);
+    // C itself is within half a turn of 0.
+    const double whole = turns && std::abs(near) > 0.5 * kTurn ? kTurn * std::round(near / kTurn) : 0;
+    law.turn[lane] = static_cast<float>(turns ? kTurn : 0);
+    law.near[lane] = static_cast<float>(turns ? near - whole : 0);
+    law.at[lane] = static_cast<float>(at - whole);
+}
+
+void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, bool angular, const Times& times) {
+    const double relaxation = double(axis.limit_compliance) * axis.limit_damping;
+    const auto yielding = static_cast<float>(1 / (times.h + relaxation));
+    fill_turn(law, lane, angular, 0.5 * (double(axis.lower) + axis.upper), stop.sign > 0 ? axis.lower : axis.upper);
+    law.open[lane] = times.soft.inv_h;
+    law.closed[lane] = stop.physical ? yielding : times.soft.bias_rate;
+    law.relaxed[lane] = stop.physical ? yielding : 0;
+    law.push[lane] = stop.physical ? static_cast<float>(kMost) : times.soft.push;
+    law.reach[lane] = static_cast<float>(kReach * times.h);
+}
+
+// A drive at its target, or friction.
+void fill_drive(LaneAxisLaw& law, int lane, const AxisRow& drive, const Axis& axis, bool angular, const Times& times) {
+    const auto rate = static_cast<float>(times.h * drive.compliance * axis.stiffness);
+    fill_turn(law, lane, angular, axis.target, axis.target);
+    law.base[lane] = static_cast<float>(drive.target);
+    law.open[lane] = law.closed[lane] = law.relaxed[lane] = rate;
+    law.push[lane] = law.reach[lane] = static_cast<float>(kMost);
+}
+
+void fill_axes(System& system, const JointGroup& g, int lane, const RowBlock& block, const Times& times) {
+    JointLanes& lanes = system.joints;
+    for_each_axis(block, times.h, [&](uint32_t r, const AxisRow& axis) {
+        uint32_t at = g.first_axis;
+        while (lanes.axis[at].row != r || lanes.axis[at].part != axis.part) ++at;
+        LaneAxis& out = lanes.axis[at];
+        out.sign[lane] = static_cast<float>(axis.sign);
+        out.compliance[lane] = static_cast<float>(axis.compliance);
+        out.most[lane] = static_cast<float>(std::min(axis.limit, kMost));
+        out.least[lane] = axis.stop ? 0 : -out.most[lane];
+        out.impulse[lane] = static_cast<float>(times.h * *axis.force);
+        out.force[lane] = axis.force;
+        LaneAxisLaw& law = lanes.law[at];
+        law.filled[lane] = 1;
+        const auto fill = axis.stop ? fill_stop : fill_drive;
+        fill(law, lane, axis, block.axis[r], block.angular(static_cast<int>(r)), times);
+    });
+}
+
+bool stays(const System& system, uint32_t node) {
+    const SweepVelocity& u = system.velocity[node];
+    const auto still = [](float x) { return x == 0; };
+    return system.inverse_mass[node].inv_mass == 0 && std::all_of(u.v, u.v + 3, still) &&
+           std::all_of(u.w, u.w + 3, still);
+}
+
+void fill_frames(const System& system, LaneFrames& out, int lane, const RowBlock& block) {
+    const auto& joint = *static_cast<const JointFrames*>(block.data);
+    Vec3 apart = Vec3::Zero();
+    for (int end = 0; end < 2; ++end) {
+        const Vec3& x = system.found[block.node[end]].x;  // poses of kinematic nodes are of another substep
+        const Vec3& anchor = end == 0 ? joint.anchor_a : joint.anchor_b;
+        const Quat& frame = end == 0 ? joint.frame_a : joint.frame_b;
+        const bool still = stays(system, block.node[end]);
+        apart += (end == 0 ? -1 : 1) * Vec3(still ? x + system.pose[block.node[end]].R * anchor : x);
+        for (int k = 0; k < 3; ++k) out.anchor[end][k][lane] = still ? 0 : static_cast<float>(anchor[k]);
+        for (int k = 0; k < 4; ++k) out.frame[end][k][lane] = static_cast<float>(frame.coeffs()[k]);
+    }
+    for (int k = 0; k < 3; ++k) out.apart[k][lane] = static_cast<float>(apart[k]);
+}
+
+void fill_group(System& system, JointGroup& g, const Times& times) {
+    JointLanes& lanes = system.joints;
+    if (g.first_frames != kNoLanes)
+        for (auto& each : lanes.frames[g.first_frames].frame) std::fill(each[3], each[3] + kLanes, 1.0f);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        if (g.block[lane] == kNoLanes) continue;
+        const RowBlock& block = system.rows.block[g.block[lane]];
+        for (uint32_t n = 0; n < g.nodes; ++n) g.node[n][lane] = block.node[n];
+        fill_rows(system, g, lane, block, times);
+        fill_axes(system, g, lane, block, times);
+        if (g.first_frames != kNoLanes) fill_frames(system, lanes.frames[g.first_frames], lane, block);
+    }
+}
+
+}  // namespace
+
+void build_joint_lanes(Team& team, System& system, const Group& group, double frame) {
+    JointLanes& lanes = system.joints;
+    lanes.group.clear();
+    lanes.row.clear();
+    lanes.coordinate.clear();
+    lanes.axis.clear();
+    lanes.law.clear();
+    lanes.frames.clear();
+    lanes.jacobians = lanes.factors = 0;
+    lanes.compliance.clear();
+    lanes.colour_begin.assign(1, 0);
+    const uint32_t first = system.rows.direct;
+    for (uint32_t c = 0; c < kMaxColours; ++c) {
+        const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one joint at a time
+        add_colour(system, first + group.joint_colour_begin[c], first + group.joint_colour_begin[c + 1], width);
+    }
+    const Times times{system.h, frame, joint_terms(system.h)};
+    team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) fill_group(system, lanes.group[i], times);
+    });
+}
+
+}  // namespace taut
