@@ -25,8 +25,7 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 // Of the fast pairs, the way of the smaller one's core (half the ball inside) against the other ends where it meets it;
 // what is too much is taken back by shares of inverse mass. Velocities stay: the next frame finds the contact. Nodes
 // that joints hold are not moved, and no pair is looked after that the host or a one-way collider may ignore.
-void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, const Pairs& pairs,
-               Nodes& nodes);
+void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs, Nodes& nodes);
 
 // Two colliders under way.
 class Encounter {
