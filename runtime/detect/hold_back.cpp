@@ -8,16 +8,31 @@ namespace taut {
 namespace {
 
 // Parts of the ball inside a shape.
-constexpr double kStride = 0.25;                  // what moved less is not looked after
-constexpr double kCores[] = {0.6, 0.3, 0.15};  // the largest that is free at the start is what may not pass
-constexpr double kSkin = 0.02;                    // where none is, the middle stays so far off
-constexpr double kSlack = 0.01;                   // less is not put back
-constexpr int kRounds = 3;                        // who was moved may now pass something else
+constexpr double kStride = 0.25;                // who moved less against each other did not pass
+constexpr double kCores[] = {0.8, 0.4, 0.2};    // the largest that is free at the start is what may not pass
+constexpr double kSkin = 0.02;                  // where none is, the middle stays so far off
+constexpr double kSlack = 0.01;                 // less is not put back
+constexpr int kRounds = 3;                      // where a mechanism was put back, other parts of it may have passed
+constexpr double kTurn = 0.02;                  // a smaller turn moves no middle worth the name: sine of half of it
 
-// A collider in a frame: where it was and is.
+// ---------------------------------------------------------------- ways
+
+// Of a collider's middle in this step, but for the turn of a slow one [m].
+Vec3 way_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape) {
+    const NodePose& before = nodes.before[collider.node];
+    const NodeMotion& now = nodes.motion[collider.node];
+    const Vec3& centre = nodes.mass[collider.node].centre;
+    Vec3 way = now.x - before.position;
+    if (centre != Vec3::Zero()) way -= before.rotation * centre;
+    if ((now.q.coeffs() - before.rotation.coeffs()).squaredNorm() < kTurn * kTurn) return way;
+    const Vec3 lever = collider.position + collider.rotation * collision::middle(shape) - centre;
+    return way + now.q * lever - before.rotation * lever;
+}
+
+// A collider in a step: where it was and is.
 struct Passage {
-    Passage(const Nodes& nodes, const Collider& collider, const collision::Shape& s)
-        : shape(s), node(collider.node), before(placed_before(nodes, collider)), now(placement_of(nodes, collider)) {}
+    Passage(const Nodes& nodes, const Collider& c, const collision::Shape& s)
+        : collider(c), shape(s), before(placed_before(nodes, c)), now(placement_of(nodes, c)) {}
 
     static collision::Placement placed_before(const Nodes& nodes, const Collider& collider) {
         const NodePose& pose = nodes.before[collider.node];
@@ -28,20 +43,21 @@ struct Passage {
     Vec3 middle(const collision::Placement& at) const {
         return at.position + at.rotation.cast<double>() * collision::middle(shape);
     }
+    Vec3 way() const { return middle(now) - middle(before); }
 
+    const Collider& collider;
     const collision::Shape& shape;
-    uint32_t node;
     collision::Placement before, now;
 };
 
-// What of a way is too much.
+// What is too much of two ways.
 struct Excess {
-    Vec3 way = Vec3::Zero(), normal = Vec3::Zero();  // [m]; of the surface met
-    explicit operator bool() const { return way != Vec3::Zero(); }
+    double share = 0;             // of each
+    Vec3 normal = Vec3::Zero();  // of the surface met, at the present poses
 };
 
-// The part of b's way that is left when its core meets a; 1 if it does not.
-double meeting(const Passage& a, const Passage& b, const Vec3& from, const Vec3& along, collision::Hit& hit) {
+// The part of b's way along which its core is free of a, up to 1.
+double free_part(const Passage& a, const Passage& b, const Vec3& from, const Vec3& along, collision::Hit& hit) {
     const double inside = collision::thickness(b.shape);
     for (const double core : kCores) {
         collision::Shape ball;
@@ -53,18 +69,66 @@ double meeting(const Passage& a, const Passage& b, const Vec3& from, const Vec3&
     return std::max(0.0, hit.fraction - kSkin * inside / -hit.normal.dot(along));
 }
 
-// How far b's way, as a sees it on its own, goes on after its core met a; at the present poses.
+// Of b's way as a sees it, which turns as well.
 Excess excess_of(const Passage& a, const Passage& b) {
     const Mat3 then = a.before.rotation.cast<double>(), to_now = a.now.rotation.cast<double>() * then.transpose();
     const Vec3 from = b.middle(b.before);
     const Vec3 to = a.before.position + to_now.transpose() * (b.middle(b.now) - a.now.position);
     const Vec3 along = to - from;
-    if (along.norm() < kSlack * collision::thickness(b.shape)) return {};
+    const double slack = kSlack * collision::thickness(b.shape);
+    if (along.norm() < slack) return {};
     collision::Hit hit;
-    const double met = meeting(a, b, from, along, hit);
-    if ((1 - met) * along.norm() < kSlack * collision::thickness(b.shape)) return {};
-    return {(1 - met) * (to_now * along), to_now * hit.normal};
+    const double met = free_part(a, b, from, along, hit);
+    if ((1 - met) * along.norm() < slack) return {};
+    return {1 - met, to_now * hit.normal};
 }
+
+// ---------------------------------------------------------------- pairs
+
+// By the host's function or a one-way direction: what goes through on purpose is not held back.
+bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
+    const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
+    return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
+}
+
+// Marks what moved otherwise than its speed told before the step: further from there than a part of its thickness. Whether
+// anything did.
+bool find_astray(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
+    bool any = false;
+    for (uint32_t c = 0; c < pairs.pace.size(); ++c) {
+        const Collider& collider = colliders.record[c];
+        Pace& pace = pairs.pace[c];
+        if (collider.node == kNone || collider.node_b != kNone || !nodes.solved(collider.node)) continue;
+        const Vec3 foreseen = pairs.reach[c].ahead.cast<double>();
+        const double stride = kStride * pace.thickness;
+        const Vec3 way = way_of(nodes, collider, shapes.record[collider.shape].shape);
+        pace.astray = (way - foreseen).squaredNorm() > stride * stride;
+        any = any || pace.astray;
+    }
+    return any;
+}
+
+// The pairs of these and those that were fast, where they moved further against each other than a part of the thickness.
+void find_fast(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, bool any_astray, Pairs& pairs) {
+    const auto way = [&](uint32_t c) {
+        const Collider& collider = colliders.record[c];
+        return way_of(nodes, collider, shapes.record[collider.shape].shape);
+    };
+    pairs.fast.clear();
+    for (const NearPair& near : pairs.near) {
+        if (!near.fast && !any_astray) continue;
+        const uint32_t a = near.collider_a(), b = near.collider_b();
+        const Pace &one = pairs.pace[a], &other = pairs.pace[b];
+        if (!(near.fast || one.astray || other.astray) || near.filtered) continue;
+        const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
+                                                                         : std::max(one.thickness, other.thickness);
+        const double stride = kStride * thinner;
+        if ((way(a) - way(b)).squaredNorm() > stride * stride && !may_be_ignored(colliders, near))
+            pairs.fast.push_back(near.key);
+    }
+}
+
+// ---------------------------------------------------------------- mechanisms
 
 // By node: the least of those that joints tie together.
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Array<uint32_t>& least) {
@@ -75,43 +139,40 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Array<uint32_t>& 
         return node;
     };
     for (const Joint& joint : joints.record) {
-        uint32_t first = kNone;
+        uint32_t last = kNone;
         for (const uint32_t node : joint.nodes()) {
             if (node == kNone || !nodes.solved(node)) continue;
-            const uint32_t one = root(node), other = first == kNone ? one : root(first);
+            const uint32_t one = root(node), other = last == kNone ? one : root(last);
             least[std::max(one, other)] = std::min(one, other);
-            first = node;
+            last = node;
         }
     }
     for (uint32_t node = 0; node < nodes.slots(); ++node) least[node] = root(node);
 }
 
-// What moves as one where a body is put back: it and what joints tie to it, whose errors are not to change.
+// What is put back as one: a body and what joints tie to it, so that they stay as they are against each other.
 class Mechanism {
 public:
     Mechanism(Nodes& nodes, const Joints& joints, const Array<uint32_t>& least, uint32_t node)
-        : nodes_(nodes), least_(least), root_(least[node]) {
-        if (!nodes.solved(node)) return;
-        double mass = 0;
-        for_each([&](uint32_t one) { mass += nodes.mass[one].mass; });
-        inv_mass_ = 1 / mass;
+        : nodes_(nodes), least_(least), root_(least[node]), moves_(nodes.solved(node)) {
         for (const Joint& joint : joints.record) {
             const auto ends = joint.nodes();
-            if (std::any_of(ends.begin(), ends.end(), [&](uint32_t end) { return has(end); })) {
-                jointed_ = true;
-                anchored_ = anchored_ || !std::all_of(ends.begin(), ends.end(), [&](uint32_t end) { return has(end); });
-            }
+            const auto own = std::count_if(ends.begin(), ends.end(), [&](uint32_t end) { return has(end); });
+            jointed_ = jointed_ || own > 0;
+            anchored_ = anchored_ || (own > 0 && static_cast<size_t>(own) < ends.size());
         }
     }
 
     bool has(uint32_t node) const { return node != kNone && nodes_.solved(node) && least_[node] == root_; }
-    bool jointed() const { return jointed_; }
-    bool moves() const { return inv_mass_ > 0; }
-    double ease() const { return anchored_ ? 0 : inv_mass_; }  // [1/kg]
+    bool moves() const { return moves_; }
 
-    void shift(const Vec3& by) {
-        for_each([&](uint32_t node) { nodes_.motion[node].x += by; });
+    // One body along its way, which is free; more of them only as far as they must.
+    void go_back(const Vec3& way, const Vec3& normal) {
+        if (anchored_) return stay();
+        const Vec3 back = jointed_ ? Vec3(normal.dot(way) * normal) : way;
+        for_each([&](uint32_t node) { nodes_.motion[node].x -= back; });
     }
+    // Where they were before the step.
     void stay() {
         for_each([&](uint32_t node) {
             const NodePose& before = nodes_.before[node];
@@ -123,109 +184,50 @@ public:
 private:
     template <class Act>
     void for_each(Act&& act) {
-        for (uint32_t node = 0; node < nodes_.slots(); ++node)
+        for (uint32_t node = 0; moves_ && node < nodes_.slots(); ++node)
             if (has(node)) act(node);
     }
 
     Nodes& nodes_;
     const Array<uint32_t>& least_;
     uint32_t root_;
-    double inv_mass_ = 0;
-    bool jointed_ = false, anchored_ = false;
+    bool moves_, jointed_ = false, anchored_ = false;
 };
 
-// By the host's function or a one-way direction: what goes through on purpose is not held back.
-bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
-    const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
-    return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
-}
-
-// No less than the way of a collider's middle in this step [m].
-double way_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape) {
-    const NodePose& before = nodes.before[collider.node];
-    const NodeMotion& now = nodes.motion[collider.node];
-    const Vec3& centre = nodes.mass[collider.node].centre;
-    const double moved = (now.x - before.position - before.rotation * centre).norm();
-    const Vec3 lever = collider.position + collider.rotation * collision::middle(shape) - centre;
-    return moved + 2 * (now.q * before.rotation.conjugate()).vec().norm() * lever.norm();
-}
-
-// Marks what moved further than a part of its thickness; whether anything did.
-bool find_strides(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
-    bool any = false;
-    for (uint32_t c = 0; c < pairs.pace.size(); ++c) {
-        const Collider& collider = colliders.record[c];
-        Pace& pace = pairs.pace[c];
-        pace.strides = false;
-        if (collider.node == kNone || collider.node_b != kNone || !nodes.solved(collider.node)) continue;
-        if (!(pace.thickness > 0 && std::isfinite(pace.thickness))) continue;
-        pace.strides = way_of(nodes, collider, shapes.record[collider.shape].shape) > kStride * pace.thickness;
-        any = any || pace.strides;
+// Whether a pair had passed; in the last round it stays where it was.
+bool part(const Colliders& colliders, const Shapes& shapes, const Joints& joints, uint64_t key, bool last, Pairs& pairs,
+          Nodes& nodes) {
+    const Collider &one = colliders.record[key >> 32], &other = colliders.record[static_cast<uint32_t>(key)];
+    const collision::Shape &shape_one = shapes.record[one.shape].shape, &shape_other = shapes.record[other.shape].shape;
+    const bool swapped = collision::spin_radius(shape_one, 0) < collision::spin_radius(shape_other, 0);
+    const Passage a(nodes, swapped ? other : one, swapped ? shape_other : shape_one);
+    const Passage b(nodes, swapped ? one : other, swapped ? shape_one : shape_other);
+    const Excess excess = excess_of(a, b);
+    if (!(excess.share > 0)) return false;
+    if (pairs.mechanism.empty()) find_mechanisms(nodes, joints, pairs.mechanism);
+    Mechanism of_a(nodes, joints, pairs.mechanism, a.collider.node);
+    Mechanism of_b(nodes, joints, pairs.mechanism, b.collider.node);
+    if (of_a.has(b.collider.node)) return false;
+    if (last) {
+        of_a.stay();
+        of_b.stay();
+    } else {
+        of_a.go_back(excess.share * a.way(), excess.normal);
+        of_b.go_back(excess.share * b.way(), excess.normal);
     }
-    return any;
+    return true;
 }
-
-void find_fast(const Colliders& colliders, Pairs& pairs) {
-    pairs.fast.clear();
-    for (const NearPair& near : pairs.near) {
-        const Pace &a = pairs.pace[near.collider_a()], &b = pairs.pace[near.collider_b()];
-        if ((a.strides || b.strides) && !near.filtered && !may_be_ignored(colliders, near))
-            pairs.fast.push_back(near.key);
-    }
-}
-
-// The work of one step.
-class Holder {
-public:
-    Holder(const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs, Nodes& nodes)
-        : colliders_(colliders), shapes_(shapes), joints_(joints), pairs_(pairs), nodes_(nodes) {}
-
-    // Whether a pair had passed. In the last round they stay where they were before the step.
-    bool part(uint64_t key, bool last) {
-        const Collider &one = collider(key >> 32), &other = collider(static_cast<uint32_t>(key));
-        const bool swapped = collision::spin_radius(shape(one), 0) < collision::spin_radius(shape(other), 0);
-        const Collider &thick = swapped ? other : one, &thin = swapped ? one : other;
-        const Excess excess = excess_of(Passage(nodes_, thick, shape(thick)), Passage(nodes_, thin, shape(thin)));
-        if (!excess) return false;
-        if (!found_) find_mechanisms(nodes_, joints_, pairs_.mechanism);
-        found_ = true;
-        Mechanism a(nodes_, joints_, pairs_.mechanism, thick.node), b(nodes_, joints_, pairs_.mechanism, thin.node);
-        if ((!a.moves() && !b.moves()) || a.has(thin.node)) return false;
-        const double ease = a.ease() + b.ease();
-        if (last || !(ease > 0)) {
-            a.stay();
-            b.stay();
-            return true;
-        }
-        const bool jointed = a.jointed() || b.jointed();
-        const Vec3 back = jointed ? Vec3(excess.normal.dot(excess.way) * excess.normal) : excess.way;
-        a.shift(a.ease() / ease * back);
-        b.shift(-b.ease() / ease * back);
-        return true;
-    }
-
-private:
-    const Collider& collider(uint64_t index) const { return colliders_.record[index]; }
-    const collision::Shape& shape(const Collider& of) const { return shapes_.record[of.shape].shape; }
-
-    const Colliders& colliders_;
-    const Shapes& shapes_;
-    const Joints& joints_;
-    Pairs& pairs_;
-    Nodes& nodes_;
-    bool found_ = false;  // the mechanisms
-};
 
 }  // namespace
 
 void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs, Nodes& nodes) {
-    if (!find_strides(nodes, colliders, shapes, pairs)) return;
-    find_fast(colliders, pairs);
-    Holder holder(colliders, shapes, joints, pairs, nodes);
+    pairs.mechanism.clear();
     bool again = true;
     for (int round = 1; again && round <= kRounds; ++round) {
         again = false;
-        for (const uint64_t key : pairs.fast) again = holder.part(key, round == kRounds) || again;
+        find_fast(nodes, colliders, shapes, find_astray(nodes, colliders, shapes, pairs), pairs);
+        for (const uint64_t key : pairs.fast)
+            again = part(colliders, shapes, joints, key, round == kRounds, pairs, nodes) || again;
     }
 }
 

@@ -124,7 +124,7 @@ struct Pace {
     double turning = 0;    // way of its furthest point about the centre of mass [m]
     float round = 0;       // collision::ball_radius() [m]
     bool rolls = false;    // collision::rolls()
-    bool strides = false;  // moved further in this step than a part of its thickness; hold_back()
+    bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
 };
 
 struct Pairs {
