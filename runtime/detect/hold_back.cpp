@@ -8,12 +8,12 @@ namespace taut {
 namespace {
 
 // Parts of the ball inside a shape.
-constexpr double kStride = 0.25;                // who moved less against each other did not pass
-constexpr double kCores[] = {0.8, 0.4, 0.2};    // the largest that is free at the start is what may not pass
-constexpr double kSkin = 0.02;                  // where none is, the middle stays so far off
-constexpr double kSlack = 0.01;                 // less is not put back
-constexpr int kRounds = 3;                      // where a mechanism was put back, other parts of it may have passed
-constexpr double kTurn = 0.02;                  // a smaller turn moves no middle worth the name: sine of half of it
+constexpr double kStride = 0.25;              // who moved less against each other did not pass
+constexpr double kCores[] = {0.8, 0.4, 0.2};  // the largest that is free at the start is what may not pass
+constexpr double kSkin = 0.02;                // where none is, the middle stays so far off
+constexpr double kSlack = 0.01;               // less is not put back
+constexpr int kRounds = 3;                    // where a mechanism was put back, other parts of it may have passed
+constexpr double kTurn = 0.02;                // a smaller turn moves no middle worth the name: sine of half of it
 
 // ---------------------------------------------------------------- ways
 
@@ -52,7 +52,7 @@ struct Passage {
 
 // What is too much of two ways.
 struct Excess {
-    double share = 0;             // of each
+    double share = 0;            // of each
     Vec3 normal = Vec3::Zero();  // of the surface met, at the present poses
 };
 
@@ -91,8 +91,8 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
-// Marks what moved otherwise than its speed told before the step: further from there than a part of its thickness. Whether
-// anything did.
+// Marks what moved otherwise than its speed told before the step: further from there than a part of its thickness.
+// Whether anything did.
 bool find_astray(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     bool any = false;
     for (uint32_t c = 0; c < pairs.pace.size(); ++c) {
@@ -108,7 +108,8 @@ bool find_astray(const Nodes& nodes, const Colliders& colliders, const Shapes& s
     return any;
 }
 
-// The pairs of these and those that were fast, where they moved further against each other than a part of the thickness.
+// The pairs of these and those that were fast, where they moved further against each other than a part of the
+// thickness.
 void find_fast(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, bool any_astray, Pairs& pairs) {
     const auto way = [&](uint32_t c) {
         const Collider& collider = colliders.record[c];
@@ -121,7 +122,7 @@ void find_fast(const Nodes& nodes, const Colliders& colliders, const Shapes& sha
         const Pace &one = pairs.pace[a], &other = pairs.pace[b];
         if (!(near.fast || one.astray || other.astray) || near.filtered) continue;
         const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
-                                                                         : std::max(one.thickness, other.thickness);
+                                                                        : std::max(one.thickness, other.thickness);
         const double stride = kStride * thinner;
         if ((way(a) - way(b)).squaredNorm() > stride * stride && !may_be_ignored(colliders, near))
             pairs.fast.push_back(near.key);

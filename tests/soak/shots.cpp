@@ -97,7 +97,8 @@ taut_shape ShootingRange::shape(int kind) {
     // Points all about and off the origin.
     std::vector<taut_vec3> points(6 + random_.bits() % 8);
     const Vec off = 0.5 * size * Vec(random_.direction());
-    for (taut_vec3& point : points) point = (off + size * (0.4 + 0.6 * random_.uniform()) * Vec(random_.direction())).narrow();
+    for (taut_vec3& point : points)
+        point = (off + size * (0.4 + 0.6 * random_.uniform()) * Vec(random_.direction())).narrow();
     return hull(world_, points);
 }
 

@@ -23,11 +23,11 @@ public:
 
     ShootingRange(const ShotPlan& plan, uint64_t seed);
 
-    // Fires a body of a kind and steps until it has come to rest or is long gone. Whether its centre of mass came to the
-    // far side, by more than the wall is thick.
+    // Fires a body of a kind and steps until it has come to rest or is long gone. Whether its centre of mass came to
+    // the far side, by more than the wall is thick.
     bool comes_through(int kind);
-    // Throws a trunk with a head and four limbs of two pieces, all turning together; how many of the ten stay on the far
-    // side.
+    // Throws a trunk with a head and four limbs of two pieces, all turning together; how many of the ten stay on the
+    // far side.
     int limbs_through(taut_joint_solve solve);
 
 private:
