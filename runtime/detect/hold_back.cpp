@@ -18,14 +18,15 @@ constexpr double kTurn = 0.02;                // a smaller turn moves no middle 
 // ---------------------------------------------------------------- ways
 
 // Of a collider's middle in this step, but for the turn of a slow one [m].
-Vec3 way_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape) {
+inline Vec3 way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
     const NodePose& before = nodes.before[collider.node];
     const NodeMotion& now = nodes.motion[collider.node];
     const Vec3& centre = nodes.mass[collider.node].centre;
     Vec3 way = now.x - before.position;
     if (centre != Vec3::Zero()) way -= before.rotation * centre;
     if ((now.q.coeffs() - before.rotation.coeffs()).squaredNorm() < kTurn * kTurn) return way;
-    const Vec3 lever = collider.position + collider.rotation * collision::middle(shape) - centre;
+    const Vec3 middle = collision::middle(shapes.record[collider.shape].shape);
+    const Vec3 lever = collider.position + collider.rotation * middle - centre;
     return way + now.q * lever - before.rotation * lever;
 }
 
@@ -99,10 +100,9 @@ bool find_astray(const Nodes& nodes, const Colliders& colliders, const Shapes& s
         const Collider& collider = colliders.record[c];
         Pace& pace = pairs.pace[c];
         if (collider.node == kNone || collider.node_b != kNone || !nodes.solved(collider.node)) continue;
-        const Vec3 foreseen = pairs.reach[c].ahead.cast<double>();
         const double stride = kStride * pace.thickness;
-        const Vec3 way = way_of(nodes, collider, shapes.record[collider.shape].shape);
-        pace.astray = (way - foreseen).squaredNorm() > stride * stride;
+        const Vec3 off = way_of(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
+        pace.astray = off.squaredNorm() > stride * stride;
         any = any || pace.astray;
     }
     return any;
@@ -111,16 +111,14 @@ bool find_astray(const Nodes& nodes, const Colliders& colliders, const Shapes& s
 // The pairs of these and those that were fast, where they moved further against each other than a part of the
 // thickness.
 void find_fast(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, bool any_astray, Pairs& pairs) {
-    const auto way = [&](uint32_t c) {
-        const Collider& collider = colliders.record[c];
-        return way_of(nodes, collider, shapes.record[collider.shape].shape);
-    };
+    const auto way = [&](uint32_t c) { return way_of(nodes, colliders.record[c], shapes); };
     pairs.fast.clear();
     for (const NearPair& near : pairs.near) {
         if (!near.fast && !any_astray) continue;
         const uint32_t a = near.collider_a(), b = near.collider_b();
         const Pace &one = pairs.pace[a], &other = pairs.pace[b];
         if (!(near.fast || one.astray || other.astray) || near.filtered) continue;
+        if (std::isinf(one.thickness + other.thickness)) continue;  // not to be looked for
         const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                         : std::max(one.thickness, other.thickness);
         const double stride = kStride * thinner;
