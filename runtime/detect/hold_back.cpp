@@ -8,7 +8,7 @@ namespace taut {
 namespace {
 
 // Parts of the ball inside a shape.
-constexpr double kStride = 0.25;              // who moved less against each other did not pass
+constexpr double kStride = 0.25;              // who moved less against each other is not looked after
 constexpr double kCores[] = {0.8, 0.4, 0.2};  // the largest that is free at the start is what may not pass
 constexpr double kSkin = 0.02;                // where none is, the middle stays so far off
 constexpr double kSlack = 0.01;               // less is not put back
