@@ -97,11 +97,21 @@ bool rolls(const Shape& shape) {
            shape.kind == ShapeKind::tapered_capsule;
 }
 
+// A point from which the shape reaches about as far one way as the opposite way: a thin wall that it is in front of
+// pushes the shape out in front.
 Vec3 middle(const Shape& shape) {
+    constexpr double kConeBelow = 0.2;  // of the half length: the ways differ by 0.26 of it where the base is 1.2 wide
+    if (shape.kind == ShapeKind::cone) return -kConeBelow * double(shape.size.y()) * Vec3::UnitY();
+    if (shape.kind == ShapeKind::tapered_capsule) return 0.5 * double(shape.size.z() - shape.size.x()) * Vec3::UnitY();
     return is_convex(shape) ? Vec3(centre_line(shape).at(0.5f).cast<double>()) : Vec3(Vec3::Zero());
 }
 
-double thickness(const Shape& shape) { return is_convex(shape) ? double(inner_radius(shape)) : 0.0; }
+// A tapered capsule's surface is as far from its axis as its radius is between the ends' there.
+double thickness(const Shape& shape) {
+    if (shape.kind != ShapeKind::tapered_capsule) return is_convex(shape) ? double(inner_radius(shape)) : 0.0;
+    const Vec3 size = shape.size.cast<double>();
+    return 0.5 * (size.x() + size.z() + middle(shape).y() / size.y() * (size.z() - size.x()));
+}
 
 double spin_radius(const Shape& shape, double lever) {
     const Box box = bounds(shape, {Vec3::Zero(), Mat3f::Identity()});

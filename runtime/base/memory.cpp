@@ -35,7 +35,7 @@ size_t Memory::whole(size_t size, size_t alignment) {
 void* Memory::allocate(size_t size, size_t alignment) {
     const int c = size_class(size, alignment);
     if (c == kSizes) return take_from_host(size, alignment);
-    Piece* piece = kept_[c];
+    Piece* piece = keeping_ ? kept_[c] : nullptr;  // what steps let go is for steps
     if (!piece) return take_from_host(size_of_class(c), kAlignment);
     kept_[c] = piece->next;
     return piece;

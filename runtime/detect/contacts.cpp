@@ -118,12 +118,6 @@ bool has_parts(const Colliders& colliders, const Shapes& shapes, const PairEnds&
     return of(pair.collider_a()) || of(pair.collider_b());
 }
 
-// By the host's function or a one-way direction: what goes through on purpose is not held back.
-bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
-    const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
-    return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
-}
-
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
 Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at, float then) {
     if (a.node_b != kNone) {
@@ -331,11 +325,9 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     admit_arriving(team, nodes, colliders, shapes, pairs, time_step);
     pairs.active.clear();
     reserve_more(pairs.active, pairs.list.size() - pairs.free.size());
-    pairs.fast.clear();
     for (uint32_t i = 0; i < pairs.near.size(); ++i) {
         NearPair& near = pairs.near[i];
         if (near.filtered) continue;
-        if (near.fast && !may_be_ignored(colliders, near)) pairs.fast.push_back(near.key);
         if (near.on_surface) {
             const PairEnds ends = near.ends(colliders);
             find_parts(Shaped(nodes, colliders, shapes, pairs, ends, near.fast, time_step), nodes, colliders, pairs,

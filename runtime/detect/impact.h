@@ -22,11 +22,13 @@ Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shap
 bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time);
 
 // After the solve: contacts are found once a frame, and what they turn or turn aside may pass a wall in the rest of it.
-// Of the fast pairs, the way of the smaller one's core (half the ball inside) against the other ends where it meets it;
-// what is too much is taken back by shares of inverse mass. Velocities stay: the next frame finds the contact. Nodes
-// that joints hold are not moved, and no pair is looked after that the host or a one-way collider may ignore.
-void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, const Pairs& pairs,
-               Nodes& nodes);
+// Of pairs that were fast, or of which one went elsewhere than its speed told, the way of the smaller one's core (of
+// the ball inside, about collision::middle()) against the other ends where it meets it. What is too much both go back,
+// each along its own way, which was free. A mechanism goes back as one and without turning, so that its joints stay as
+// they are, and only across the surface; where it hangs on the world, or still passes something, it stays where it was
+// before the step. Velocities stay: the next frame finds the contact. Cables of particles are not moved, and no pair is
+// looked after that the host or a one-way collider may ignore.
+void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs, Nodes& nodes);
 
 // Two colliders under way.
 class Encounter {

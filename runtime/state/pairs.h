@@ -124,6 +124,7 @@ struct Pace {
     double turning = 0;    // way of its furthest point about the centre of mass [m]
     float round = 0;       // collision::ball_radius() [m]
     bool rolls = false;    // collision::rolls()
+    bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
 };
 
 struct Pairs {
@@ -141,6 +142,7 @@ struct Pairs {
           reach(memory),
           pace(memory),
           fast(memory),
+          mechanism(memory),
           placement(memory),
           parts(memory) {}
 
@@ -160,7 +162,8 @@ struct Pairs {
     uint64_t joined_version = 0;            // of the joints that they were taken from
     Array<Reach> reach;                     // by collider; update_bounds()
     Array<Pace> pace;                       // by collider; update_bounds()
-    Array<uint64_t> fast;                   // keys of pairs to look after once they moved; find_contacts()
+    Array<uint64_t> fast;                   // keys of pairs to look after once they moved; hold_back()
+    Array<uint32_t> mechanism;              // by node: the least of those that joints tie together; hold_back()
     Array<collision::Placement> placement;  // by collider; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };

@@ -34,7 +34,6 @@ struct Row {
     const char* name;
     Bullet bullet;
     Wall wall;
-    int lost = 0;  // of 40, at most: what a lopsided hull leaves in a thin wall may be pushed out on its far side
 };
 
 struct Tunnel : testing::TestWithParam<Row> {};
@@ -72,19 +71,18 @@ int through(const Row& row, double speed, double restitution, uint32_t seed) {
 TEST_P(Tunnel, NothingComesThroughAtAnySpeed) {
     for (double speed : {20.0, 50.0, 100.0, 300.0, 1000.0, 5000.0})
         for (double restitution : {0.0, 0.7})
-            EXPECT_LE(through(GetParam(), speed, restitution, 7), GetParam().lost)
-                << speed << " m/s, restitution " << restitution;
+            EXPECT_EQ(through(GetParam(), speed, restitution, 7), 0) << speed << " m/s, restitution " << restitution;
 }
 
 const Row kRows[] = {
-    {"ball_thick", Bullet::ball, Wall::thick},  {"ball_plate", Bullet::ball, Wall::plate},
-    {"ball_sheet", Bullet::ball, Wall::sheet},  {"ball_mesh", Bullet::ball, Wall::mesh},
-    {"ball_plane", Bullet::ball, Wall::plane},  {"box_plate", Bullet::box, Wall::plate},
-    {"box_sheet", Bullet::box, Wall::sheet},    {"box_mesh", Bullet::box, Wall::mesh},
-    {"box_plane", Bullet::box, Wall::plane},    {"rod_plate", Bullet::rod, Wall::plate},
-    {"rod_sheet", Bullet::rod, Wall::sheet},    {"rod_mesh", Bullet::rod, Wall::mesh},
-    {"rod_plane", Bullet::rod, Wall::plane},    {"hull_plate", Bullet::hull, Wall::plate, 4},
-    {"hull_mesh", Bullet::hull, Wall::mesh, 4}, {"hull_plane", Bullet::hull, Wall::plane},
+    {"ball_thick", Bullet::ball, Wall::thick}, {"ball_plate", Bullet::ball, Wall::plate},
+    {"ball_sheet", Bullet::ball, Wall::sheet}, {"ball_mesh", Bullet::ball, Wall::mesh},
+    {"ball_plane", Bullet::ball, Wall::plane}, {"box_plate", Bullet::box, Wall::plate},
+    {"box_sheet", Bullet::box, Wall::sheet},   {"box_mesh", Bullet::box, Wall::mesh},
+    {"box_plane", Bullet::box, Wall::plane},   {"rod_plate", Bullet::rod, Wall::plate},
+    {"rod_sheet", Bullet::rod, Wall::sheet},   {"rod_mesh", Bullet::rod, Wall::mesh},
+    {"rod_plane", Bullet::rod, Wall::plane},   {"hull_plate", Bullet::hull, Wall::plate},
+    {"hull_mesh", Bullet::hull, Wall::mesh},   {"hull_plane", Bullet::hull, Wall::plane},
 };
 
 std::string name_of(const testing::TestParamInfo<Row>& row) { return row.param.name; }

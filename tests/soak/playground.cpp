@@ -306,7 +306,7 @@ size_t Playground::below_terrain() const {
     constexpr double kReach = 0.6;  // of the largest body [m]
     size_t out = 0;
     for_points([&](const Vec& p) {
-        out += std::max(std::abs(p.x), std::abs(p.z)) > kHalf || p.y < height(p.x, p.z) - kReach;
+        out += std::max(std::abs(p.x), std::abs(p.z)) < kHalf && p.y < height(p.x, p.z) - kReach;
     });
     return out;
 }

@@ -31,8 +31,9 @@ public:
     // Height of the terrain [m].
     static double height(double x, double z);
     bool sound() const;  // all finite
-    size_t below_terrain()
-        const;  // bodies and cable points under the surface by more than their reach, or beyond its rim
+    // Bodies and cable points under the surface by more than their reach. What a shot throws over the rim, 12 m up, is
+    // none of them.
+    size_t below_terrain() const;
     taut_world handle() const { return world_; }
     uint64_t live_bytes() const { return memory_.bytes(); }
     size_t population() const;
