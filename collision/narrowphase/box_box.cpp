@@ -163,6 +163,23 @@ void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out)
     move_to_a(pair.b_in_a, out);
 }
 
+// The face axis of either box that looks most along a normal.
+int facing(const Boxes& boxes, const Vec3f& normal) {
+    const Vec3f in_b = boxes.r.transpose() * normal;
+    int a = 0, b = 0;
+    normal.cwiseAbs().maxCoeff(&a);
+    in_b.cwiseAbs().maxCoeff(&b);
+    return std::fabs(normal[a]) >= std::fabs(in_b[b]) ? a : 3 + b;
+}
+
+// Points of the face next to the edges, where they cross nearly in its plane. That face need not separate best: the
+// other edge may run far under it.
+void add_face_beside(const Pair& pair, const Boxes& boxes, Manifold& out) {
+    Manifold face;
+    face_contact(pair, boxes, facing(boxes, out.normal), face);
+    add_beside(face, out);
+}
+
 // Of a box from its centre along an axis of the world.
 float reach(const Shape& box, const Placement& at, const Vec3f& axis) {
     return (at.rotation.transpose() * axis).cwiseAbs().dot(box.size);
@@ -204,7 +221,7 @@ void box_box(const Pair& pair, Manifold& out) {
     if (!on_edge) on_edge = preference.face_misses(deepest(face), axes.edge.separation, axes.face.separation);
     if (on_edge) {
         edge_contact(boxes, axes.edge, out);
-        add_beside(face, out);
+        add_face_beside(pair, boxes, out);
     } else {
         out = face;
     }

@@ -155,11 +155,10 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
     }
     if (preference.edge_wins(edges.distance, face.distance, was_edge) ||
         preference.face_misses(deepest(out), edges.distance, face.distance)) {
-        const Manifold clipped = out;
         out.count = 0;
         face.axis = edges.axis;
         contact(pair, edges.axis, false, margin, out);
-        add_beside(clipped, out);
+        add_face_beside(pair, edges.axis, margin, out);
     }
     write(face.axis, true, pair, shapes.cache);
 }

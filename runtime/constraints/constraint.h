@@ -14,6 +14,7 @@
 #include <span>
 
 #include "base/math.h"
+#include "simd/width.h"
 
 namespace taut {
 
@@ -70,9 +71,9 @@ struct ConstraintType {
     // Where K resists the turning of a line between its nodes, which their own rotations do not describe; else null.
     Line (*line)(const void* data, const Pose* x) = nullptr;
     // Of types whose data are JointFrames and whose angles, the last rows, turn their nodes against each other alone:
-    // J_b = -J_a = (0, g). C and J of kLanes instances at once, in floats; else null. pose: of both ends in each lane, a
-    // SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn are not written.
-    void (*evaluate_lanes)(const LaneFrames& frames, const float* const (&pose)[2][8], LaneScalar* error,
+    // J_b = -J_a = (0, g). C and J of kLanes instances at once, in floats; else null. pose: of both ends in each lane,
+    // a SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn are not written.
+    void (*evaluate_lanes)(const LaneFrames& frames, const float* const (&pose)[2][kLanes], LaneScalar* error,
                            LaneScalar* jacobian) = nullptr;
 };
 

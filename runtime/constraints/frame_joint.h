@@ -20,7 +20,7 @@ void evaluate_frames(const void* data, const Pose* x, double* error, double* jac
 }
 
 template <class Type, int kRows>
-void evaluate_frame_lanes(const LaneFrames& frames, const float* const (&pose)[2][8], LaneScalar* error,
+void evaluate_frame_lanes(const LaneFrames& frames, const float* const (&pose)[2][kLanes], LaneScalar* error,
                           LaneScalar* jacobian) {
     const FramePairLanes<BaseLanes> f(frames, pose);
     LaneRowWriter<BaseLanes> out(f, kRows, error, jacobian);

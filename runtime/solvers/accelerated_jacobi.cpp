@@ -4,8 +4,9 @@
 //   beta_{k+1} = theta_k (1 - theta_k) / (theta_k^2 + theta_{k+1})
 // S is the block's diagonal with each node's inverse mass multiplied by the number of blocks on it: the mass
 // splitting bound, under which the plain iteration (omega = 1) cannot diverge. The momentum restarts where it
-// points against the descent. Stops, drives and friction of a joint's axis are scalar rows of their own beside the
-// block of what is locked.
+// points against the descent. Rows that friction bounds take steps of their own: a matrix that couples them would let
+// the speed at which a contact slides into the equation of its normal. Stops, drives and friction of a joint's axis are
+// scalar rows of their own beside the block of what is locked.
 #include <Eigen/LU>
 #include <algorithm>
 #include <utility>
@@ -114,6 +115,12 @@ private:
         }
         RowMatrix softness = soft_.impulse_scale / soft_.mass_scale * own;
         if (block.elastic(0)) softness = compliance_of(block, sys_.h);
+        if (block.type->bound != Bound::free) {
+            split = uncoupled(split);
+            const double of_normal = block.type->bound == Bound::cone ? softness(0, 0) : 0.0;
+            softness.setZero();
+            softness(0, 0) = of_normal;
+        }
         split.diagonal().array() += 1e-12 * split.trace();
         for (int r = 0; r < rows; ++r) {  // rows that are not locked stay out
             if (block.locked(r)) continue;
@@ -126,6 +133,16 @@ private:
         const RowMatrix inverse = (split + softness).inverse();
         inverse_.insert(inverse_.end(), inverse.data(), inverse.data() + rows * rows);
         softness_.insert(softness_.end(), softness.data(), softness.data() + rows * rows);
+    }
+
+    // Above the matrix of a normal and its tangents, or of spinning and rolling: twice what does not couple the two
+    // (Cauchy and Schwarz), and the same for either of the second, so that projection onto their circle keeps the slip
+    // opposed to the friction.
+    static RowMatrix uncoupled(const RowMatrix& s) {
+        const double larger = 0.5 * (s(1, 1) + s(2, 2)) + std::hypot(0.5 * (s(1, 1) - s(2, 2)), s(1, 2));
+        RowMatrix out = RowMatrix::Zero(3, 3);
+        out.diagonal() << 2 * s(0, 0), 2 * larger, 2 * larger;
+        return out;
     }
 
     // One iteration; true if the momentum pointed against the descent.

@@ -47,16 +47,18 @@ TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdge) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
-                         testing::Values(Edge{"10", 0}, Edge{"10", 12}, Edge{"100", 1}, Edge{"100", 5}, Edge{"1000", 3},
-                                         Edge{"1000", 14}, Edge{"10000", 7}, Edge{"10000", 9}, Edge{"10000", 14},
-                                         Edge{"100000", 2}),
+                         testing::Values(Edge{"10", 0}, Edge{"10", 12}, Edge{"10", 16}, Edge{"10", 338}, Edge{"100", 1},
+                                         Edge{"100", 5}, Edge{"1000", 3}, Edge{"1000", 14}, Edge{"10000", 7},
+                                         Edge{"10000", 9}, Edge{"10000", 14}, Edge{"100000", 2}),
                          [](const auto& tested) {
                              return std::string("r") + tested.param.ratio + "_seed" + std::to_string(tested.param.seed);
                          });
 
 // Ten links' weight swings out for more than ten seconds: at that weight the links slide little on the edge, and
 // nothing else damps it. Not an error of coarse steps: with sixteen times as many substeps it swings on as well,
-// centimetres to and fro, and dies down further in the ten seconds that follow.
+// centimetres to and fro, and dies down further in the ten seconds that follow; below 1 cm/s it is after 22 to 60 (seeds
+// 1 to 4). With four substeps 9 of 36 are there within a minute. Below the others a link juts out over the edge, its
+// corner on that of the box, and the weight hangs free: it swings on at up to 0.3 m/s.
 class LightWeightOverEdge : public testing::TestWithParam<uint64_t> {};
 
 TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {

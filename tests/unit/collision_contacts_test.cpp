@@ -96,6 +96,43 @@ TEST(CollisionContacts, EdgeAcrossEdgeIsOnePoint) {
     EXPECT_LT((m.points[0].position - Vec3f(0, float(diagonal) - 0.002f, 0.03f)).norm(), 1e-3f);
 }
 
+// A link of a chain over the rim of a table, twisted a little: its lower side misses the rim's far ends by more than
+// the table's own sides do, yet it is that side which lies on the rim, from one of its long edges to the other.
+TEST(CollisionContacts, TwistedBeamOverALongRimTouchesOnBothSides) {
+    const Shape boxes[2] = {oracle::box(4, 2.5f, 2), oracle::box(0.15f, 0.03f, 0.03f)};
+    const auto hull_of = [](const Shape& box) {
+        std::vector<Vec3f> points;
+        for (int i = 0; i < 8; ++i)
+            points.push_back(box.size.cwiseProduct(Vec3f(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+        return oracle::hull(points);
+    };
+    const Shape hulls[2] = {hull_of(boxes[0]), hull_of(boxes[1])};
+    for (const Shape* shape : {boxes, hulls})
+        for (double steep : {20.0, 45.0, 64.0, 75.0})
+            for (double twist : {-4.0, -2.0, 2.0, 4.0}) {
+                SCOPED_TRACE(testing::Message() << (shape == boxes ? "boxes " : "hulls ") << steep << ", " << twist);
+                constexpr double kDegree = 0.017453292519943295, kDeep = 0.012;
+                const Mat3f down = turned(Vec3(0, 0, -steep * kDegree));
+                const Mat3f rotation = down * turned(Vec3(twist * kDegree, 0, 0));
+                const Vec3 out = down.col(1).cast<double>();
+                const Placement table = {Vec3::Zero(), kUpright},
+                                beam = {Vec3(4, 2.5, 0) + (0.03 - kDeep) * out, rotation};
+                for (const bool swapped : {false, true}) {
+                    const Manifold m = swapped ? collide_at(shape[1], beam, shape[0], table)
+                                               : collide_at(shape[0], table, shape[1], beam);
+                    float least = 0, most = 0;  // along the rim
+                    for (int i = 0; i < m.count; ++i) {
+                        const Vec3f p = swapped ? Vec3f(rotation * m.points[i].position) : m.points[i].position;
+                        least = std::min(least, p.z()), most = std::max(most, p.z());
+                        EXPECT_LT(m.points[i].separation, 0);
+                    }
+                    EXPECT_GE(m.count, 2);
+                    EXPECT_LT(least, -0.025f);
+                    EXPECT_GT(most, 0.025f);
+                }
+            }
+}
+
 TEST(CollisionContacts, CapsuleLiesOnTwoPoints) {
     const Shape capsule = oracle::capsule(0.2f, 0.4f);
     const Mat3f lying = turned(Vec3(0, 0, 1.5707963));

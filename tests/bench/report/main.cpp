@@ -187,7 +187,7 @@ constexpr struct {
                  {"links", links}};
 
 int report(const std::vector<std::string>& arguments) {
-    if (arguments.empty()) {
+    if (arguments.empty() || arguments[0].starts_with('-')) {
         std::fputs("taut-report FOLDER [SECTION ...] writes CSV files there; sections (default all):", stderr);
         for (const auto& section : kSections) say(" %s", section.name);
         say("\n");
