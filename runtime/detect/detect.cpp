@@ -105,6 +105,29 @@ NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& p
     return near;
 }
 
+// Of a body's centre of mass; kinematic bodies move at the end of the frame.
+struct CentrePose {
+    Vec3 x;
+    Quat q;
+};
+CentrePose pose_of(const Nodes& nodes, uint32_t node, double elapsed) {
+    const NodeMotion& m = nodes.motion[node];
+    if (nodes.info[node].kind != NodeKind::kinematic || elapsed == 0) return {m.x, m.q};
+    return {m.x + elapsed * m.v, rotation_from_vector(elapsed * m.w) * m.q};
+}
+
+// How far a collider may get in the frame, linear way and turning.
+void look_ahead(const Nodes& nodes, const Collider& collider, const Pace& pace, double time_step, Travel& travel) {
+    travel.ahead = static_cast<float>(time_step * nodes.motion[collider.node].v.norm() + pace.turning);
+    travel.thickness = static_cast<float>(pace.thickness);
+}
+
+collision::Box grown(collision::Box box) {
+    box.lo.array() -= kContactMargin;
+    box.hi.array() += kContactMargin;
+    return box;
+}
+
 }  // namespace
 
 collision::Placement place_between(const Vec3& from, const Vec3& to) {
@@ -116,21 +139,37 @@ collision::Placement place_between(const Vec3& from, const Vec3& to) {
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
     if (collider.node_b != kNone) return place_between(nodes.motion[collider.node].x, nodes.motion[collider.node_b].x);
-    const NodeMotion& m = nodes.motion[collider.node];
-    const bool ahead = nodes.info[collider.node].kind == NodeKind::kinematic && elapsed > 0;
-    const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
-    const Vec3 x = ahead ? Vec3(m.x + elapsed * m.v) : m.x;
-    const Mat3 R = q.toRotationMatrix();
-    const Vec3 origin = x - R * nodes.mass[collider.node].centre;
+    const CentrePose pose = pose_of(nodes, collider.node, elapsed);
+    const Mat3 R = pose.q.toRotationMatrix();
+    const Vec3 origin = pose.x - R * nodes.mass[collider.node].centre;
     if (collider.at_origin()) return {origin, R.cast<float>()};
     return {origin + R * collider.position, (R * collider.rotation.toRotationMatrix()).cast<float>()};
 }
 
+// The chord of a turn between unit quaternions p and q, of a point at radius r: 2 r sin(angle / 2) <= 2 r |p - q|.
+void place_collider(const Nodes& nodes, const Shapes& shapes, const Collider& collider, double elapsed, Pairs& pairs,
+                    uint32_t index) {
+    collision::Placement& at = pairs.placement[index];
+    Stance& stance = pairs.stance[index];
+    const Vec3 was_at = at.position;
+    const Quatf was = stance.turn;
+    at = placement_of(nodes, collider, elapsed);
+    if (collider.node_b != kNone) return;
+    const CentrePose pose = pose_of(nodes, collider.node, elapsed);
+    const NodeMotion& m = nodes.motion[collider.node];
+    stance.turn = (collider.at_origin() ? pose.q : pose.q * collider.rotation).cast<float>();
+    stance.velocity = (m.v + m.w.cross(at.position - pose.x)).cast<float>();
+    stance.spin = m.w.cast<float>();
+    stance.from_node = collider.at_origin() ? Vec3f(Vec3f::Zero()) : Vec3f((pose.q * collider.position).cast<float>());
+    stance.reach = shapes.record[collider.shape].reach;
+    stance.size = shapes.record[collider.shape].size;
+    const float turned = 2 * stance.reach * (stance.turn.coeffs() - was.coeffs()).norm();
+    if (stance.placed) pairs.travel[index].way += (at.position - was_at).norm() + static_cast<double>(turned);
+    stance.placed = true;
+}
+
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider) {
-    collision::Box box = collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider));
-    box.lo.array() -= kContactMargin;
-    box.hi.array() += kContactMargin;
-    return box;
+    return grown(collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)));
 }
 
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
@@ -138,11 +177,16 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
     pairs.reach.resize(slots);
     pairs.pace.resize(slots);
+    pairs.placement.resize(slots);
+    pairs.stance.resize(slots);
+    pairs.travel.resize(slots);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             if (collider.node == kNone) continue;
             pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape].shape, time_step);
+            look_ahead(nodes, collider, pairs.pace[c], time_step, pairs.travel[c]);
+            if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
             if (!moves(nodes, collider)) continue;
             const bool along_way = std::isfinite(pairs.pace[c].thickness);
             Vec3f ahead = reach_of(nodes, collider.node, time_step, along_way);
@@ -154,7 +198,7 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
                 least = least.cwiseMin(ahead);
                 most = most.cwiseMax(ahead);
             }
-            collision::Box box = contact_box(nodes, shapes, collider);
+            collision::Box box = grown(collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]));
             box.lo += least;
             box.hi += most;
             if (collider.node_b == kNone) grow_turning(pairs.pace[c], box);  // else its ends tell
