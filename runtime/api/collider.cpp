@@ -242,6 +242,7 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         --world.shapes.record[collider.shape].users;
         ++world.shapes.record[changed.shape].users;
         collider = changed;
+        world.pairs.forget_place(index);
         wake(world, collider.node);
         wake_near(world, collider.node);
         for_near(world.pairs, [&](NearPair& near) {

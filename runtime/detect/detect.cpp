@@ -56,8 +56,8 @@ void grow_turning(const Pace& pace, collision::Box& box) {
     box.hi.array() += way;
 }
 
-// A collider that moved by no more than the contact margin in this step cannot have left the box that was made before
-// it: |dx| + angle x distance of the furthest corner, the angle at most pi |sin(angle / 2)|.
+// A collider that moved by no more than what is left of the contact margin in this step cannot have left the box that
+// was made before it: |dx| + angle x distance of the furthest corner, the angle at most pi |sin(angle / 2)|.
 bool stays_within(const Nodes& nodes, const Collider& collider, const collision::Box& box) {
     if (collider.node_b != kNone) return false;
     const NodePose& before = nodes.before[collider.node];
@@ -65,7 +65,7 @@ bool stays_within(const Nodes& nodes, const Collider& collider, const collision:
     const double sine = (nodes.motion[collider.node].q * before.rotation.conjugate()).vec().norm();
     const Vec3 middle = (0.5f * (box.lo + box.hi)).cast<double>();
     const double furthest = (middle - before.position).norm() + 0.5 * static_cast<double>((box.hi - box.lo).norm());
-    return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin);
+    return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin) - kBoxLag;
 }
 
 // Keys of the broadphase of which there is no record.
@@ -128,6 +128,32 @@ collision::Box grown(collision::Box box) {
     return box;
 }
 
+// Whether a box that was made before holds its collider where it is and gets to in the frame.
+bool box_holds(const Reach& reach, const Travel& travel) {
+    return std::abs(travel.way - reach.made) + static_cast<double>(travel.ahead) <= kBoxLag;
+}
+
+void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& shapes, Pairs& pairs,
+              double time_step) {
+    const bool spans = collider.node_b != kNone;
+    const bool along_way = std::isfinite(pairs.pace[c].thickness);
+    Vec3f ahead = reach_of(nodes, collider.node, time_step, along_way);
+    Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
+    if (spans) {
+        const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
+        shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
+        ahead = reach_of(nodes, collider.node_b, time_step, along_way);
+        least = least.cwiseMin(ahead);
+        most = most.cwiseMax(ahead);
+    }
+    collision::Box box = grown(collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]));
+    box.lo += least;
+    box.hi += most;
+    if (!spans) grow_turning(pairs.pace[c], box);  // else its ends tell
+    pairs.reach[c] = {box, ahead};
+    if (!spans) pairs.reach[c].made = pairs.travel[c].way;
+}
+
 }  // namespace
 
 collision::Placement place_between(const Vec3& from, const Vec3& to) {
@@ -188,21 +214,7 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
             look_ahead(nodes, collider, pairs.pace[c], time_step, pairs.travel[c]);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
             if (!moves(nodes, collider)) continue;
-            const bool along_way = std::isfinite(pairs.pace[c].thickness);
-            Vec3f ahead = reach_of(nodes, collider.node, time_step, along_way);
-            Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
-            if (collider.node_b != kNone) {
-                const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
-                shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
-                ahead = reach_of(nodes, collider.node_b, time_step, along_way);
-                least = least.cwiseMin(ahead);
-                most = most.cwiseMax(ahead);
-            }
-            collision::Box box = grown(collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]));
-            box.lo += least;
-            box.hi += most;
-            if (collider.node_b == kNone) grow_turning(pairs.pace[c], box);  // else its ends tell
-            pairs.reach[c] = {box, ahead};
+            if (!box_holds(pairs.reach[c], pairs.travel[c])) make_box(nodes, collider, c, shapes, pairs, time_step);
         }
     });
     for (uint32_t c = 0; c < slots; ++c)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "collision/collide.h"
 #include "state/colliders.h"
@@ -16,6 +17,8 @@ using Quatf = Eigen::Quaternion<float, Eigen::DontAlign>;
 
 // How far apart two surfaces get contact points [m]; tight boxes are grown by it before they enter the broadphase.
 constexpr float kContactMargin = 0.02f;
+// A box is kept until its collider moved, or is about to move, so far from where it was made [m].
+constexpr double kBoxLag = 0.005;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
 
@@ -141,8 +144,9 @@ struct ActivePair {
 
 // Where a collider may be until the next frame.
 struct Reach {
-    collision::Box box;  // tight, grown by the contact margin and the motion [m]
+    collision::Box box;  // tight, grown by the contact margin, of which kBoxLag may be used up, and the motion [m]
     Vec3f ahead;         // the motion [m]
+    double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
 };
 
 // How a collider's shape stands and moves; place_collider().
@@ -189,11 +193,12 @@ struct Pairs {
           travel(memory),
           parts(memory) {}
 
-    // Of a new collider in a slot.
+    // Of a new collider in a slot, or of one that gets another shape.
     void forget_place(uint32_t collider) {
         if (collider >= stance.size()) return;
         stance[collider] = {};
         travel[collider] = {};
+        reach[collider].made = std::numeric_limits<double>::infinity();
     }
 
     Array<NearPair> near;                   // sorted by key
