@@ -91,17 +91,6 @@ bool reuse_manifold(const Pairs& pairs, double time, Pair& pair) {
     return true;
 }
 
-bool may_be_fast(const Pairs& pairs, const NearPair& near) {
-    const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
-    return !(a.ahead + b.ahead <= a.thickness + b.thickness);
-}
-
-bool stay_clear(const Pairs& pairs, const NearPair& near) {
-    const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
-    return a.way + b.way + static_cast<double>(a.ahead + b.ahead + kContactMargin) < near.clear &&
-           !may_be_fast(pairs, near);
-}
-
 void note_clear(const Pairs& pairs, float gap, NearPair& near) {
     near.clear = pairs.travel[near.collider_a()].way + pairs.travel[near.collider_b()].way + static_cast<double>(gap) -
                  kRounding;

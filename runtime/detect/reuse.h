@@ -23,9 +23,18 @@ void keep_manifold(const Pairs& pairs, Pair& pair);
 bool reuse_manifold(const Pairs& pairs, double time, Pair& pair);
 
 // Whether two colliders may go further against each other in a frame than they are thick; is_fast() knows.
-bool may_be_fast(const Pairs& pairs, const NearPair& near);
+inline bool may_be_fast(const Pairs& pairs, const NearPair& near) {
+    const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
+    return !(a.ahead + b.ahead <= a.thickness + b.thickness);
+}
+
 // Whether two colliders that were found further apart than the contact margin still are, wherever they go in a frame.
-bool stay_clear(const Pairs& pairs, const NearPair& near);
+inline bool stay_clear(const Pairs& pairs, const NearPair& near) {
+    const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
+    return a.way + b.way + static_cast<double>(a.ahead + b.ahead + kContactMargin) < near.clear &&
+           !may_be_fast(pairs, near);
+}
+
 // Notes that they are at least so far apart now [m]; 0: not known, or they have points.
 void note_clear(const Pairs& pairs, float gap, NearPair& near);
 
