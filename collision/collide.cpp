@@ -15,8 +15,8 @@ struct Entry {
     ApartTest apart;
 };
 
-void never_touch(const Pair&, Manifold&) {}
-bool ask_the_kernel(const Sides&, const PairCache&) { return false; }
+float never_touch(const Pair&, Manifold&) { return 0; }
+float ask_the_kernel(const Sides&, const PairCache&) { return kNoAxis; }
 
 constexpr Entry kNone = {never_touch, false, ask_the_kernel};
 constexpr Entry kBoxes = {box_box, false, boxes_apart};
@@ -56,24 +56,26 @@ void to_world(const Mat3f& rotation, Manifold& manifold) {
 
 }  // namespace
 
-void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
-             PairCache& cache, Manifold& out) {
+float collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+              PairCache& cache, Manifold& out) {
     out.count = 0;
-    if (has_parts(a) || has_parts(b)) return;
+    if (has_parts(a) || has_parts(b)) return 0;
     const Entry& entry = kKernels[size_t(a.kind)][size_t(b.kind)];
     // The difference of positions in double, all else in single precision.
     const Vec3f apart = (at_b.position - at_a.position).cast<float>();
-    if (entry.apart({a, b, at_a, at_b, apart, margin}, cache)) return;
+    const float held = entry.apart({a, b, at_a, at_b, apart}, cache);
+    if (held > margin) return held;
     if (!entry.swapped) {
-        entry.kernel({a, b, at_a, at_b, relative(at_a, at_b, apart), margin, cache}, out);
+        const float gap = entry.kernel({a, b, at_a, at_b, relative(at_a, at_b, apart), margin, cache}, out);
         if (out.count > 0) to_world(at_a.rotation, out);
-        return;
+        return gap;
     }
-    entry.kernel({b, a, at_b, at_a, relative(at_b, at_a, -apart), margin, cache}, out);
-    if (out.count == 0) return;
+    const float gap = entry.kernel({b, a, at_b, at_a, relative(at_b, at_a, -apart), margin, cache}, out);
+    if (out.count == 0) return gap;
     to_world(at_b.rotation, out);
     out.normal = -out.normal;
     for (int i = 0; i < out.count; ++i) out.points[i].position += apart;
+    return 0;
 }
 
 }  // namespace taut::collision

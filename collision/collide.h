@@ -181,8 +181,10 @@ struct PairCache {
 // At most four points, chosen for area and depth. The kinds may come in any order; two planes never touch. A plane
 // is best b: positions are relative to a, and a plane's own origin may be far off.
 // Of out, normal and points beyond count are written only where count > 0.
-void collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
-             PairCache& cache, Manifold& out);
+// Returns, where there are no points, how far apart the two are at least [m], margin or more; 0 where that is not
+// known.
+float collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
+              PairCache& cache, Manifold& out);
 
 // Whether a shape touches with parts of its own; collide() finds nothing on it.
 inline bool has_parts(const Shape& shape) { return shape.kind == ShapeKind::surface; }

@@ -58,7 +58,7 @@ struct Best {
 
 struct Axes {
     Best face, edge;
-    int separating = -1;  // an axis further apart than the margin; the rest is unset then
+    Best separating;  // an axis further apart than the margin; the rest is unset then
 };
 
 // kept: last frame's face, preferred; -1 for none. Edges that could not be chosen over the best face are left out.
@@ -68,7 +68,7 @@ Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& pre
     for (int axis = 0; axis < kFirstEdge; ++axis) {
         const float s = boxes.face(axis);
         if (s > margin) {
-            axes.separating = axis;
+            axes.separating = {axis, s};
             return axes;
         }
         const float score = axis == kept ? s + preference.keep : s;
@@ -81,7 +81,7 @@ Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& pre
     for (int axis = kFirstEdge; axis < kAxes; ++axis) {
         const float s = boxes.edge((axis - kFirstEdge) / 3, (axis - kFirstEdge) % 3, least);
         if (s > margin) {
-            axes.separating = axis;
+            axes.separating = {axis, s};
             return axes;
         }
         if (s > axes.edge.separation) axes.edge = {axis, s};
@@ -187,10 +187,10 @@ float reach(const Shape& box, const Placement& at, const Vec3f& axis) {
 
 }  // namespace
 
-bool boxes_apart(const Sides& sides, const PairCache& cache) {
+float boxes_apart(const Sides& sides, const PairCache& cache) {
     const uint32_t word = cache.words[0];
     const int axis = int(word & 0xff) - 1;
-    if (axis < 0 || axis >= kAxes || word & kTouching) return false;
+    if (axis < 0 || axis >= kAxes || word & kTouching) return kNoAxis;
     const Mat3f& a = sides.at_a.rotation;
     const Mat3f& b = sides.at_b.rotation;
     Vec3f n;
@@ -198,21 +198,21 @@ bool boxes_apart(const Sides& sides, const PairCache& cache) {
         n = axis < 3 ? a.col(axis) : b.col(axis - 3);
     } else {
         n = a.col((axis - kFirstEdge) / 3).cross(b.col((axis - kFirstEdge) % 3));
-        if (n.squaredNorm() < kParallel) return false;
+        if (n.squaredNorm() < kParallel) return kNoAxis;
+        n.normalize();
     }
-    return std::fabs(n.dot(sides.apart)) >
-           reach(sides.a, sides.at_a, n) + reach(sides.b, sides.at_b, n) + sides.margin * n.norm();
+    return std::fabs(n.dot(sides.apart)) - reach(sides.a, sides.at_a, n) - reach(sides.b, sides.at_b, n);
 }
 
-void box_box(const Pair& pair, Manifold& out) {
+float box_box(const Pair& pair, Manifold& out) {
     const Boxes boxes(pair);
     uint32_t& word = pair.cache.words[0];
     const int kept = int(word & 0xff) - 1;
     const Preference preference(boxes.size());
     const Axes axes = find_axes(boxes, pair.margin, word & kTouching ? kept : -1, preference);
-    if (axes.separating >= 0) {
-        word = uint32_t(axes.separating + 1);
-        return;
+    if (axes.separating.axis >= 0) {
+        word = uint32_t(axes.separating.axis + 1);
+        return axes.separating.separation;
     }
     const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
     bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge);
@@ -226,6 +226,7 @@ void box_box(const Pair& pair, Manifold& out) {
         out = face;
     }
     word = uint32_t((on_edge ? axes.edge.axis : axes.face.axis) + 1) | kTouching;
+    return 0;
 }
 
 }  // namespace taut::collision

@@ -149,11 +149,14 @@ void round_contact(const Solids& solids, const Push& push, double radius_a, Mani
 
 }  // namespace
 
-void convex_convex(const Pair& pair, Manifold& out) {
+float convex_convex(const Pair& pair, Manifold& out) {
     const Solids solids(pair);
     const Kept kept = read(pair.cache);
     const Push push = least_push(solids.a, solids.b, pair, kept.normal, double(pair.margin));
-    if (push.separation > double(pair.margin)) return write(push.normal, kNothing, pair.cache);
+    if (push.separation > double(pair.margin)) {
+        write(push.normal, kNothing, pair.cache);
+        return float(push.separation);
+    }
 
     const Preference preference(solids.size);
     const float separation = float(push.separation);
@@ -163,15 +166,17 @@ void convex_convex(const Pair& pair, Manifold& out) {
     if (clipped.count > 0 && !preference.edge_wins(separation, face.separation, kept.bearer == kRound) &&
         !preference.face_misses(deepest(clipped), separation, face.separation)) {
         out = clipped;
-        return write(push.normal, face.bearer, pair.cache);
+        write(push.normal, face.bearer, pair.cache);
+        return 0;
     }
     round_contact(solids, push, core_radius(pair.a), out);
     add_beside(clipped, out);
     write(push.normal, kRound, pair.cache);
+    return 0;
 }
 
 // A plane is a face without sides. Its tangents do not matter: there are no diagonals to choose along.
-void convex_plane(const Pair& pair, Manifold& out) {
+float convex_plane(const Pair& pair, Manifold& out) {
     // Height of a's origin in double: a plane's own origin may be kilometres away.
     const Vec3f up = pair.at_b.rotation * pair.b.size;
     const float height = float(up.cast<double>().dot(pair.at_a.position - pair.at_b.position));
@@ -182,6 +187,7 @@ void convex_plane(const Pair& pair, Manifold& out) {
     plane.offset = -height;
     face_contact(plane, Solid(pair.a), {Mat3f::Identity(), Vec3f::Zero()}, 0, 0, pair.margin, out);
     out.normal = -plane.normal;
+    return 0;
 }
 
 }  // namespace taut::collision

@@ -30,26 +30,27 @@ struct Sides {
     const Placement& at_a;
     const Placement& at_b;
     Vec3f apart;  // from a's origin to b's, world axes [m]
-    float margin;
 };
 
-// Whether the axis that parted the pair last still holds it further apart than the margin. Asked before the kernel, in
-// the world: the pair's own frame costs more than the answer.
-using ApartTest = bool (*)(const Sides& sides, const PairCache& cache);
+// How far the axis that parted the pair last holds it apart [m]; negative where it does not, or there is none. Asked
+// before the kernel, in the world: the pair's own frame costs more than the answer.
+using ApartTest = float (*)(const Sides& sides, const PairCache& cache);
+constexpr float kNoAxis = -1e30f;
 
-bool boxes_apart(const Sides& sides, const PairCache& cache);
-bool polytopes_apart(const Sides& sides, const PairCache& cache);
+float boxes_apart(const Sides& sides, const PairCache& cache);
+float polytopes_apart(const Sides& sides, const PairCache& cache);
 
-// Fills out (empty on entry) in a's frame: normal from a to b, positions in a's axes about a's origin.
-using Kernel = void (*)(const Pair& pair, Manifold& out);
+// Fills out (empty on entry) in a's frame: normal from a to b, positions in a's axes about a's origin. Returns, where
+// it finds no points, how far apart the two are at least [m]; 0 where that is not known.
+using Kernel = float (*)(const Pair& pair, Manifold& out);
 
-void box_box(const Pair& pair, Manifold& out);
-void polytope_polytope(const Pair& pair, Manifold& out);  // box or hull against box or hull
-void polytope_round(const Pair& pair, Manifold& out);     // box or hull against sphere or capsule
-void round_round(const Pair& pair, Manifold& out);        // sphere or capsule against sphere or capsule
-void core_plane(const Pair& pair, Manifold& out);         // box, sphere, capsule or hull against a plane
-void convex_convex(const Pair& pair, Manifold& out);      // any two kinds but a plane
-void convex_plane(const Pair& pair, Manifold& out);       // any kind but a plane against a plane
+float box_box(const Pair& pair, Manifold& out);
+float polytope_polytope(const Pair& pair, Manifold& out);  // box or hull against box or hull
+float polytope_round(const Pair& pair, Manifold& out);     // box or hull against sphere or capsule
+float round_round(const Pair& pair, Manifold& out);        // sphere or capsule against sphere or capsule
+float core_plane(const Pair& pair, Manifold& out);         // box, sphere, capsule or hull against a plane
+float convex_convex(const Pair& pair, Manifold& out);      // any two kinds but a plane
+float convex_plane(const Pair& pair, Manifold& out);       // any kind but a plane against a plane
 
 // Takes a manifold from b's frame, with its normal from b to a, to a's frame.
 inline void move_to_a(const Pose& b_in_a, Manifold& manifold) {

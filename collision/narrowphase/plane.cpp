@@ -42,7 +42,7 @@ constexpr Core (*kCores[])(const Shape&, CoreStore&) = {nullptr, box_core, spher
 
 }  // namespace
 
-void core_plane(const Pair& pair, Manifold& out) {
+float core_plane(const Pair& pair, Manifold& out) {
     // Height of a's origin in double: a plane's own origin may be kilometres away.
     const Vec3f up = pair.at_b.rotation * pair.b.size;
     const float height = float(up.cast<double>().dot(pair.at_a.position - pair.at_b.position));
@@ -61,14 +61,18 @@ void core_plane(const Pair& pair, Manifold& out) {
     plane.v = up_in_a.cross(plane.u);
     plane.offset = -height;
     Polygon polygon;
+    float least = 1e30f;
     for (size_t i = 0; i < core.points.size(); ++i) {
         const Vec3f& p = core.points[i];
         const float z = up_in_a.dot(p) + height - core.radius;
+        least = std::min(least, z);
         if (z > pair.margin) continue;
         polygon.points[polygon.count++] = {plane.u.dot(p), plane.v.dot(p), z, uint32_t(i)};
     }
+    if (polygon.count == 0) return least;
     add_points(polygon, plane, 0, pair.margin, out);
     out.normal = -up_in_a;
+    return 0;
 }
 
 }  // namespace taut::collision

@@ -1,4 +1,4 @@
-// Whether a box or hull and another are still apart along the axis that parted them, all in world axes.
+// How far apart a box or hull and another are along the axis that parted them, all in world axes.
 #include "collision/hull.h"
 #include "collision/narrowphase/polytope_cache.h"
 
@@ -36,31 +36,31 @@ struct Placed {
     Vec3f centre() const { return shape.hull ? Vec3f(rotation * shape.hull->centre) : Vec3f::Zero(); }
 };
 
-// Whether two edges' common normal holds the shapes further apart than the margin.
-bool edges_part(const Placed& a, const Placed& b, Axis axis, const Sides& sides) {
+// Along two edges' common normal.
+float edges_part(const Placed& a, const Placed& b, Axis axis, const Sides& sides) {
     Vec3f n = a.edge(axis.i).cross(b.edge(axis.j));
     const float sine = n.norm();
-    if (sine < kParallel) return false;
+    if (sine < kParallel) return kNoAxis;
     if (n.dot(sides.apart + b.centre() - a.centre()) < 0) n = -n;
-    return n.dot(sides.apart) > a.reach(n) + b.reach(-n) + sides.margin * sine;
+    return (n.dot(sides.apart) - a.reach(n) - b.reach(-n)) / sine;
 }
 
 }  // namespace
 
-bool polytopes_apart(const Sides& sides, const PairCache& cache) {
+float polytopes_apart(const Sides& sides, const PairCache& cache) {
     const Kept kept = read_axis(cache.words[0]);
-    if (kept.touching) return false;
+    if (kept.touching) return kNoAxis;
     const Placed a = {sides.a, sides.at_a.rotation};
     const Placed b = {sides.b, sides.at_b.rotation};
     const Axis axis = kept.axis;
-    if (axis.kind == AxisKind::none || !a.valid(axis.kind, axis.i) || !b.valid(axis.kind, axis.j)) return false;
+    if (axis.kind == AxisKind::none || !a.valid(axis.kind, axis.i) || !b.valid(axis.kind, axis.j)) return kNoAxis;
     if (axis.kind == AxisKind::edges) return edges_part(a, b, axis, sides);
     if (axis.kind == AxisKind::face_a) {
         const Vec3f n = a.normal(axis.i);
-        return n.dot(sides.apart) > a.offset(axis.i) + b.reach(-n) + sides.margin;
+        return n.dot(sides.apart) - a.offset(axis.i) - b.reach(-n);
     }
     const Vec3f n = b.normal(axis.j);
-    return -n.dot(sides.apart) > b.offset(axis.j) + a.reach(-n) + sides.margin;
+    return -n.dot(sides.apart) - b.offset(axis.j) - a.reach(-n);
 }
 
 }  // namespace taut::collision

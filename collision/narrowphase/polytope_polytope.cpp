@@ -120,13 +120,13 @@ bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache&
 
 }  // namespace
 
-void polytope_polytope(const Pair& shapes, Manifold& out) {
+float polytope_polytope(const Pair& shapes, Manifold& out) {
     const PolytopeOf storage_a(shapes.a);
     const PolytopeOf storage_b(shapes.b);
     const PolytopePair pair(storage_a.view(), storage_b.view(), shapes.b_in_a);
     const float margin = shapes.margin;
     Kept kept = read(shapes.cache);
-    if (keep_contact(pair, kept, margin, shapes.cache, out)) return;
+    if (keep_contact(pair, kept, margin, shapes.cache, out)) return 0;
 
     Separation face = best_face_a(pair, margin);
     if (face.distance <= margin) {
@@ -136,7 +136,10 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
         const bool b_was = kept.touching && kept.axis.kind == AxisKind::face_b;
         if (face_b.distance > margin || face_b.distance > face.distance + (b_was ? -keep : keep)) face = face_b;
     }
-    if (face.distance > margin) return write(face.axis, false, pair, shapes.cache);
+    if (face.distance > margin) {
+        write(face.axis, false, pair, shapes.cache);
+        return face.distance;
+    }
     const Preference preference(pair.size());
     const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
     const FaceView view = view_of(pair, face.axis);
@@ -145,13 +148,16 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
     const float ask = preference.ask(was_edge);
     // Where the faces lie over each other the two are at most so far apart.
     const float most = deepest(out);
-    if (std::max(most, 0.0f) <= face.distance + slack || view.decides(view.lowest(), ask, slack))
-        return write(face.axis, true, pair, shapes.cache);
+    if (std::max(most, 0.0f) <= face.distance + slack || view.decides(view.lowest(), ask, slack)) {
+        write(face.axis, true, pair, shapes.cache);
+        return 0;
+    }
     const float depth = std::max(std::min(margin, most + slack), -face.distance);
     Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
     if (edges.distance > margin) {
         out.count = 0;
-        return write(edges.axis, false, pair, shapes.cache);
+        write(edges.axis, false, pair, shapes.cache);
+        return edges.distance;
     }
     if (preference.edge_wins(edges.distance, face.distance, was_edge) ||
         preference.face_misses(deepest(out), edges.distance, face.distance)) {
@@ -161,6 +167,7 @@ void polytope_polytope(const Pair& shapes, Manifold& out) {
         add_face_beside(pair, edges.axis, margin, out);
     }
     write(face.axis, true, pair, shapes.cache);
+    return 0;
 }
 
 }  // namespace taut::collision

@@ -30,7 +30,9 @@ bool find_faces(const Polytope& polytope, const Segment& axis, float reach, uint
     if (cached < polytope.faces.size()) {
         const Face& face = polytope.faces[cached];
         faces.best = int(cached);
-        if (std::min(face.normal.dot(axis.from), face.normal.dot(end)) - face.offset > reach) return false;
+        faces.separation = std::min(face.normal.dot(axis.from), face.normal.dot(end)) - face.offset;
+        if (faces.separation > reach) return false;
+        faces.separation = -1e30f;
     }
     float enter = 0;
     float leave = 1;
@@ -178,7 +180,7 @@ bool lie_on_face(const Polytope& polytope, const Round& round, const Faces& face
 
 }  // namespace
 
-void polytope_round(const Pair& pair, Manifold& out) {
+float polytope_round(const Pair& pair, Manifold& out) {
     const PolytopeOf storage(pair.a);
     const Polytope& polytope = storage.view();
     const Segment own = round_axis(pair.b);
@@ -188,7 +190,7 @@ void polytope_round(const Pair& pair, Manifold& out) {
     Faces faces;
     const bool near = find_faces(polytope, round.axis, round.radius + pair.margin, pair.cache.words[0], faces);
     pair.cache.words[0] = uint32_t(faces.best);
-    if (!near) return;
+    if (!near) return faces.separation - round.radius;
 
     Nearest nearest;
     if (!faces.inside) nearest = nearest_outside(polytope, round.axis, faces);
@@ -196,12 +198,13 @@ void polytope_round(const Pair& pair, Manifold& out) {
     if (faces.inside || nearest.separation < 1e-4f * round.radius) {
         nearest = nearest_inside(polytope, round.axis, faces);
     }
-    if (nearest.separation - round.radius > pair.margin) return;
+    if (nearest.separation - round.radius > pair.margin) return nearest.separation - round.radius;
     const bool lies =
         round.axis.step.squaredNorm() > 0 && lie_on_face(polytope, round, faces, nearest, pair.margin, out);
-    if (lies) return;
+    if (lies) return 0;
     out.normal = nearest.normal;
     add_point(round, nearest.t, nearest.separation, kAlone, out);
+    return 0;
 }
 
 }  // namespace taut::collision

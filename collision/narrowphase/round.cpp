@@ -49,12 +49,12 @@ void add_ends(const Rounds& rounds, float margin, Manifold& out) {
 }
 
 // Inlined, so that what has just been transformed stays in registers.
-[[gnu::always_inline]] inline void touch(const Rounds& rounds, float margin, Manifold& out) {
+[[gnu::always_inline]] inline float touch(const Rounds& rounds, float margin, Manifold& out) {
     const SegmentPair nearest = nearest_points(rounds.a, rounds.b);
     const Vec3f between = rounds.b.at(nearest.t) - rounds.a.at(nearest.s);
     const float squared = between.squaredNorm();
     const float reach = rounds.radius_a + rounds.radius_b + margin;
-    if (squared > reach * reach) return;
+    if (squared > reach * reach) return std::sqrt(squared) - rounds.radius_a - rounds.radius_b;
 
     const float least = 1e-4f * rounds.radius_a;
     out.normal = squared > least * least ? Vec3f(between / std::sqrt(squared)) : across(rounds.a.step, rounds.b.step);
@@ -62,22 +62,23 @@ void add_ends(const Rounds& rounds, float margin, Manifold& out) {
     const float bb = rounds.b.step.squaredNorm();
     if (rounds.a.step.cross(rounds.b.step).squaredNorm() < kParallel * aa * bb) {
         add_ends(rounds, margin, out);
-        if (deepest(out) <= std::sqrt(squared) - rounds.radius_a - rounds.radius_b + kBetween) return;
+        if (deepest(out) <= std::sqrt(squared) - rounds.radius_a - rounds.radius_b + kBetween) return 0;
     }
     add_point(rounds, nearest.s, nearest.t, margin, 1, out);
+    return 0;
 }
 
 }  // namespace
 
-void touch_rounds(const Rounds& rounds, float margin, Manifold& out) { touch(rounds, margin, out); }
+float touch_rounds(const Rounds& rounds, float margin, Manifold& out) { return touch(rounds, margin, out); }
 
-void round_round(const Pair& pair, Manifold& out) {
+float round_round(const Pair& pair, Manifold& out) {
     const Segment axis = round_axis(pair.b);
-    touch({round_axis(pair.a),
-           {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
-           round_radius(pair.a),
-           round_radius(pair.b)},
-          pair.margin, out);
+    return touch({round_axis(pair.a),
+                  {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
+                  round_radius(pair.a),
+                  round_radius(pair.b)},
+                 pair.margin, out);
 }
 
 }  // namespace taut::collision

@@ -12,7 +12,7 @@ struct Rounds {
 };
 
 // Their contact, closer than margin: one point, or both ends of the stretch where they run side by side. Fills out,
-// empty on entry: normal from a to b.
-void touch_rounds(const Rounds& rounds, float margin, Manifold& out);
+// empty on entry: normal from a to b. Returns how far apart they are, where that is further [m]; else 0.
+float touch_rounds(const Rounds& rounds, float margin, Manifold& out);
 
 }  // namespace taut::collision

@@ -318,7 +318,7 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         wake(world, node);
         for_colliders(world.nodes, world.colliders, node,
-                      [&](uint32_t c) { world.colliders.record[c].material = *material; });
+                      [&](uint32_t c) { world.colliders.change(c).material = *material; });
         return TAUT_OK;
     });
 }
@@ -328,7 +328,7 @@ taut_result taut_body_set_contact_events(taut_body handle, uint32_t contact_even
     if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         for_colliders(world.nodes, world.colliders, node,
-                      [&](uint32_t c) { ask_for(world.colliders.record[c], TAUT_CONTACT_EVENTS_ALL, contact_events); });
+                      [&](uint32_t c) { ask_for(world.colliders.change(c), TAUT_CONTACT_EVENTS_ALL, contact_events); });
         return TAUT_OK;
     });
 }

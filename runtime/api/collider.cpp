@@ -242,11 +242,12 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         --world.shapes.record[collider.shape].users;
         ++world.shapes.record[changed.shape].users;
         collider = changed;
+        world.pairs.forget_place(index);
         wake(world, collider.node);
         wake_near(world, collider.node);
         for_near(world.pairs, [&](NearPair& near) {
             if (near.collider_a() != index && near.collider_b() != index) return;
-            near.cache = {};
+            near.forget_shapes();
             if (!collision::has_parts(world.shapes.record[collider.shape].shape)) forget_parts(world.pairs, near);
         });
         return TAUT_OK;
@@ -259,7 +260,7 @@ taut_result taut_collider_set_material(taut_collider handle, const taut_material
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         wake(world, world.colliders.record[collider].node);
-        world.colliders.record[collider].material = *material;
+        world.colliders.change(collider).material = *material;
         return TAUT_OK;
     });
 }
@@ -291,8 +292,8 @@ taut_result taut_collider_set_surface_velocity(taut_collider handle, taut_vec3 v
     Check check(__func__);
     if (!check.bounded("velocity", velocity, kSpeed).bounded("spin", spin, kSpeed)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
-        Collider& collider = world.colliders.record[index];
-        if (!check_own(check, world, collider.node)) return check.result();
+        if (!check_own(check, world, world.colliders.record[index].node)) return check.result();
+        Collider& collider = world.colliders.change(index);
         collider.surface_velocity = to_vec(velocity).cast<float>();
         collider.surface_spin = to_vec(spin).cast<float>();
         collider.driven = collider.surface_velocity != Vec3f::Zero() || collider.surface_spin != Vec3f::Zero();
@@ -316,7 +317,7 @@ taut_result taut_collider_set_contact_events(taut_collider handle, uint32_t cont
     Check check(__func__);
     if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
-        ask_for(world.colliders.record[collider], TAUT_CONTACT_EVENTS_ALL, contact_events);
+        ask_for(world.colliders.change(collider), TAUT_CONTACT_EVENTS_ALL, contact_events);
         return TAUT_OK;
     });
 }
@@ -325,7 +326,7 @@ taut_result taut_collider_set_pre_solve(taut_collider handle, int32_t pre_solve)
     Check check(__func__);
     if (!check.boolean("pre_solve", static_cast<uint32_t>(pre_solve))) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
-        ask_for(world.colliders.record[collider], kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
+        ask_for(world.colliders.change(collider), kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
         return TAUT_OK;
     });
 }
@@ -334,7 +335,7 @@ taut_result taut_collider_set_one_way(taut_collider handle, taut_vec3 direction)
     Check check(__func__);
     if (!check.vector("direction", direction, kOneWay)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
-        set_one_way(world.colliders.record[collider], direction);
+        set_one_way(world.colliders.change(collider), direction);
         return TAUT_OK;
     });
 }

@@ -171,6 +171,7 @@ taut_result taut_world_set_contact_events(taut_world handle, uint32_t contact_ev
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         world.def.contact_events = contact_events;
         world.pairs.asks = static_cast<uint8_t>(contact_events);
+        ++world.colliders.version;
         return TAUT_OK;
     });
 }

@@ -56,8 +56,8 @@ void grow_turning(const Pace& pace, collision::Box& box) {
     box.hi.array() += way;
 }
 
-// A collider that moved by no more than the contact margin in this step cannot have left the box that was made before
-// it: |dx| + angle x distance of the furthest corner, the angle at most pi |sin(angle / 2)|.
+// A collider that moved by no more than what is left of the contact margin in this step cannot have left the box that
+// was made before it: |dx| + angle x distance of the furthest corner, the angle at most pi |sin(angle / 2)|.
 bool stays_within(const Nodes& nodes, const Collider& collider, const collision::Box& box) {
     if (collider.node_b != kNone) return false;
     const NodePose& before = nodes.before[collider.node];
@@ -65,7 +65,7 @@ bool stays_within(const Nodes& nodes, const Collider& collider, const collision:
     const double sine = (nodes.motion[collider.node].q * before.rotation.conjugate()).vec().norm();
     const Vec3 middle = (0.5f * (box.lo + box.hi)).cast<double>();
     const double furthest = (middle - before.position).norm() + 0.5 * static_cast<double>((box.hi - box.lo).norm());
-    return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin);
+    return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin) - kBoxLag;
 }
 
 // Keys of the broadphase of which there is no record.
@@ -105,6 +105,55 @@ NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& p
     return near;
 }
 
+// Of a body's centre of mass; kinematic bodies move at the end of the frame.
+struct CentrePose {
+    Vec3 x;
+    Quat q;
+};
+CentrePose pose_of(const Nodes& nodes, uint32_t node, double elapsed) {
+    const NodeMotion& m = nodes.motion[node];
+    if (nodes.info[node].kind != NodeKind::kinematic || elapsed == 0) return {m.x, m.q};
+    return {m.x + elapsed * m.v, rotation_from_vector(elapsed * m.w) * m.q};
+}
+
+// How far a collider may get in the frame, linear way and turning.
+void look_ahead(const Nodes& nodes, const Collider& collider, const Pace& pace, double time_step, Travel& travel) {
+    travel.ahead = static_cast<float>(time_step * nodes.motion[collider.node].v.norm() + pace.turning);
+    travel.thickness = static_cast<float>(pace.thickness);
+}
+
+collision::Box grown(collision::Box box) {
+    box.lo.array() -= kContactMargin;
+    box.hi.array() += kContactMargin;
+    return box;
+}
+
+// Whether a box that was made before holds its collider where it is and gets to in the frame.
+bool box_holds(const Reach& reach, const Travel& travel) {
+    return std::abs(travel.way - reach.made) + static_cast<double>(travel.ahead) <= kBoxLag;
+}
+
+void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& shapes, Pairs& pairs,
+              double time_step) {
+    const bool spans = collider.node_b != kNone;
+    const bool along_way = std::isfinite(pairs.pace[c].thickness);
+    Vec3f ahead = reach_of(nodes, collider.node, time_step, along_way);
+    Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
+    if (spans) {
+        const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
+        shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
+        ahead = reach_of(nodes, collider.node_b, time_step, along_way);
+        least = least.cwiseMin(ahead);
+        most = most.cwiseMax(ahead);
+    }
+    collision::Box box = grown(collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]));
+    box.lo += least;
+    box.hi += most;
+    if (!spans) grow_turning(pairs.pace[c], box);  // else its ends tell
+    pairs.reach[c] = {box, ahead};
+    if (!spans) pairs.reach[c].made = pairs.travel[c].way;
+}
+
 }  // namespace
 
 collision::Placement place_between(const Vec3& from, const Vec3& to) {
@@ -116,21 +165,37 @@ collision::Placement place_between(const Vec3& from, const Vec3& to) {
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
     if (collider.node_b != kNone) return place_between(nodes.motion[collider.node].x, nodes.motion[collider.node_b].x);
-    const NodeMotion& m = nodes.motion[collider.node];
-    const bool ahead = nodes.info[collider.node].kind == NodeKind::kinematic && elapsed > 0;
-    const Quat q = ahead ? rotation_from_vector(elapsed * m.w) * m.q : m.q;
-    const Vec3 x = ahead ? Vec3(m.x + elapsed * m.v) : m.x;
-    const Mat3 R = q.toRotationMatrix();
-    const Vec3 origin = x - R * nodes.mass[collider.node].centre;
+    const CentrePose pose = pose_of(nodes, collider.node, elapsed);
+    const Mat3 R = pose.q.toRotationMatrix();
+    const Vec3 origin = pose.x - R * nodes.mass[collider.node].centre;
     if (collider.at_origin()) return {origin, R.cast<float>()};
     return {origin + R * collider.position, (R * collider.rotation.toRotationMatrix()).cast<float>()};
 }
 
+// The chord of a turn between unit quaternions p and q, of a point at radius r: 2 r sin(angle / 2) <= 2 r |p - q|.
+void place_collider(const Nodes& nodes, const Shapes& shapes, const Collider& collider, double elapsed, Pairs& pairs,
+                    uint32_t index) {
+    collision::Placement& at = pairs.placement[index];
+    Stance& stance = pairs.stance[index];
+    const Vec3 was_at = at.position;
+    const Quatf was = stance.turn;
+    at = placement_of(nodes, collider, elapsed);
+    if (collider.node_b != kNone) return;
+    const CentrePose pose = pose_of(nodes, collider.node, elapsed);
+    const NodeMotion& m = nodes.motion[collider.node];
+    stance.turn = (collider.at_origin() ? pose.q : pose.q * collider.rotation).cast<float>();
+    stance.velocity = (m.v + m.w.cross(at.position - pose.x)).cast<float>();
+    stance.spin = m.w.cast<float>();
+    stance.from_node = collider.at_origin() ? Vec3f(Vec3f::Zero()) : Vec3f((pose.q * collider.position).cast<float>());
+    stance.reach = shapes.record[collider.shape].reach;
+    stance.size = shapes.record[collider.shape].size;
+    const float turned = 2 * stance.reach * (stance.turn.coeffs() - was.coeffs()).norm();
+    if (stance.placed) pairs.travel[index].way += (at.position - was_at).norm() + static_cast<double>(turned);
+    stance.placed = true;
+}
+
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider) {
-    collision::Box box = collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider));
-    box.lo.array() -= kContactMargin;
-    box.hi.array() += kContactMargin;
-    return box;
+    return grown(collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)));
 }
 
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
@@ -138,27 +203,18 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
     pairs.reach.resize(slots);
     pairs.pace.resize(slots);
+    pairs.placement.resize(slots);
+    pairs.stance.resize(slots);
+    pairs.travel.resize(slots);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             if (collider.node == kNone) continue;
             pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape].shape, time_step);
+            look_ahead(nodes, collider, pairs.pace[c], time_step, pairs.travel[c]);
+            if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
             if (!moves(nodes, collider)) continue;
-            const bool along_way = std::isfinite(pairs.pace[c].thickness);
-            Vec3f ahead = reach_of(nodes, collider.node, time_step, along_way);
-            Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
-            if (collider.node_b != kNone) {
-                const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
-                shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
-                ahead = reach_of(nodes, collider.node_b, time_step, along_way);
-                least = least.cwiseMin(ahead);
-                most = most.cwiseMax(ahead);
-            }
-            collision::Box box = contact_box(nodes, shapes, collider);
-            box.lo += least;
-            box.hi += most;
-            if (collider.node_b == kNone) grow_turning(pairs.pace[c], box);  // else its ends tell
-            pairs.reach[c] = {box, ahead};
+            if (!box_holds(pairs.reach[c], pairs.travel[c])) make_box(nodes, collider, c, shapes, pairs, time_step);
         }
     });
     for (uint32_t c = 0; c < slots; ++c)

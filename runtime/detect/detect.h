@@ -16,11 +16,14 @@ namespace taut {
 collision::Placement place_between(const Vec3& from, const Vec3& to);
 // Where a collider's shape is, `elapsed` after the start of the frame: kinematic bodies move at its end.
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed = 0);
+// Brings Pairs::placement, stance and way of a collider to that moment.
+void place_collider(const Nodes& nodes, const Shapes& shapes, const Collider& collider, double elapsed, Pairs& pairs,
+                    uint32_t index);
 // The shape's box at the node's pose, grown by the contact margin.
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider);
 
-// Tight boxes reaching as far as the nodes move in a frame, into the broadphase. Capsules between two nodes take their
-// length.
+// Where colliders are, and tight boxes reaching as far as the nodes move in a frame, into the broadphase. Capsules
+// between two nodes take their length.
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step);
 

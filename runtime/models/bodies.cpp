@@ -69,6 +69,7 @@ uint32_t add_collider(World& world, const Collider& collider) {
         throw;
     }
     link_to(world, record.node, kNone) = index;
+    world.pairs.forget_place(index);
     ++world.shapes.record[record.shape].users;
     if (!moves_by_forces(world.nodes.info[record.node].kind))
         wake_box(world, contact_box(world.nodes, world.shapes, record));

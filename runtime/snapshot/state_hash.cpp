@@ -124,12 +124,20 @@ void add_cables(Hash& hash, const Cables& cables) {
     }
 }
 
+// From which the next steps may take the contact.
+void add_found(Hash& hash, const FoundManifold& found, int count) {
+    for (int i = 0; i < 4; ++i) hash.add(found.turn.coeffs()[i]);
+    for (int i = 0; i < 3; ++i) hash.add(found.origin[i]);
+    for (int k = 0; k < count; ++k) hash.add(found.separation[k]);
+}
+
 void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
     if (pair.manifold.count == 0) return;
     hash.add(pair.key);
     if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
     if (pair.asks & (kAsksPreSolve | kAsksOneWay)) hash.add(static_cast<uint64_t>(pair.touching));
     for (uint32_t word : near.cache.words) hash.add(static_cast<uint64_t>(word));
+    if (near.kept) add_found(hash, pair.found, pair.manifold.count);
     for (int k = 0; k < pair.manifold.count; ++k) {
         hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));
         hash.add(pair.impulse[k].normal);

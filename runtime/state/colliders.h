@@ -78,9 +78,16 @@ struct Colliders {
         if (!sensor && listed) sensors.erase(at);
     }
 
+    // For a change of surface, material or asks: pairs ask again.
+    Collider& change(uint32_t index) {
+        ++version;
+        return record[index];
+    }
+
     IdPool ids;
     Array<Collider> record;
     Array<uint32_t> sensors;  // slots, sorted
+    uint64_t version = 0;     // counts changes
 };
 
 inline bool filters_agree(const taut_filter& a, const taut_filter& b) {

@@ -6,14 +6,19 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "collision/collide.h"
 #include "state/colliders.h"
 
 namespace taut {
 
+using Quatf = Eigen::Quaternion<float, Eigen::DontAlign>;
+
 // How far apart two surfaces get contact points [m]; tight boxes are grown by it before they enter the broadphase.
 constexpr float kContactMargin = 0.02f;
+// A box is kept until its collider moved, or is about to move, so far from where it was made [m].
+constexpr double kBoxLag = 0.005;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
 
@@ -35,6 +40,7 @@ struct PairEnds {
 struct NearPair {
     uint64_t key = 0;  // of the two colliders, see pair_key
     collision::PairCache cache;
+    double clear = 0;             // the ways of its colliders until they may touch [m]; detect/reuse.h
     uint32_t pair = kNone;        // the first of its records in Pairs::list, while it has points
     uint8_t asks = 0;             // bits of contact events, as its pair's
     bool filtered : 1 = false;    // never collides (filter, joint); kept to remember the answer
@@ -43,19 +49,38 @@ struct NearPair {
     bool arrives : 1 = false;     // got its first points in this frame; find_contacts()
     bool touching : 1 = false;    // had a point at the end of the last step, on any part
     bool hit : 1 = false;         // gave a hit event in the last step
+    bool kept : 1 = false;        // all its records hold their manifolds as found; detect/reuse.h
+    bool reused : 1 = false;      // and these go on in this frame
+    bool changed : 1 = false;     // the host may have changed a collider since the pair was looked at
 
     uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
+    // After a change of a shape: all that was found out about it.
+    void forget_shapes() {
+        cache = {};
+        clear = 0;
+        kept = false;
+    }
     PairEnds ends(const Colliders& colliders) const {
         const Collider &a = colliders.record[collider_a()], &b = colliders.record[collider_b()];
         return {key, a.node, b.node, a.node_b, b.node_b};
     }
 };
 
+// A manifold as it was found, and how b's shape lay then, all as seen from a's shape; detect/reuse.h.
+struct FoundManifold {
+    Quatf turn;    // of b's shape
+    Vec3f origin;  // of b's shape [m]
+    Vec3f normal;
+    Vec3f position[4];    // of points, from the origin of a's shape [m]
+    float separation[4];  // [m]
+};
+
 struct Pair : PairEnds {
     uint32_t part = 0;             // of a surface, see collision::PartManifold; else 0
     uint32_t next = kNone;         // record of the next part, in their order
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
+    FoundManifold found;           // while NearPair::kept
     float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
     // Radii of the balls that grow the two cores to their shapes [m]; see state/levers.h.
     float round_a = 0, round_b = 0;
@@ -98,6 +123,11 @@ inline Vec3f tangent_of(const Vec3f& n) {
     return n.cross(axis).normalized();
 }
 
+// Whether they go over into each other from one normal to another nearby.
+inline bool same_tangents(const Vec3f& one, const Vec3f& other) {
+    return (std::abs(one.x()) < 0.6f) == (std::abs(other.x()) < 0.6f);
+}
+
 // A pair with contact points in this frame, in brief: what partition and assembly go through.
 struct ActivePair {
     uint32_t a, b;  // nodes
@@ -114,8 +144,25 @@ struct ActivePair {
 
 // Where a collider may be until the next frame.
 struct Reach {
-    collision::Box box;  // tight, grown by the contact margin and the motion [m]
+    collision::Box box;  // tight, grown by the contact margin, of which kBoxLag may be used up, and the motion [m]
     Vec3f ahead;         // the motion [m]
+    double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
+};
+
+// How a collider's shape stands and moves; place_collider().
+struct Stance {
+    Quatf turn = Quatf::Identity();                        // world from shape
+    Vec3f velocity = Vec3f::Zero(), spin = Vec3f::Zero();  // of its origin [m/s]; [rad/s]
+    Vec3f from_node = Vec3f::Zero();                       // from the node's origin to its own, world axes [m]
+    float reach = 0, size = 0;                             // as in ShapeRecord [m]
+    bool placed = false;                                   // else all of this is yet to come
+};
+
+// What a collider's points covered so far, and may cover.
+struct Travel {
+    double way = 0;       // of its furthest point, at least as long as from each place to the next [m]
+    float ahead = 0;      // the same of the next frame, by its velocities [m]
+    float thickness = 0;  // as in Pace [m]
 };
 
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
@@ -144,7 +191,17 @@ struct Pairs {
           fast(memory),
           mechanism(memory),
           placement(memory),
+          stance(memory),
+          travel(memory),
           parts(memory) {}
+
+    // Of a new collider in a slot, or of one that gets another shape.
+    void forget_place(uint32_t collider) {
+        if (collider >= stance.size()) return;
+        stance[collider] = {};
+        travel[collider] = {};
+        reach[collider].made = std::numeric_limits<double>::infinity();
+    }
 
     Array<NearPair> near;                   // sorted by key
     Array<NearPair> resting;                // sorted likewise: pairs of which no side moves and one is asleep
@@ -160,11 +217,14 @@ struct Pairs {
     uint8_t asks = 0;                       // of all pairs: the world's contact events
     Array<uint64_t> joined;                 // keys of nodes whose joint forbids contacts, sorted
     uint64_t joined_version = 0;            // of the joints that they were taken from
+    uint64_t colliders_version = 0;         // that NearPair::changed knows
     Array<Reach> reach;                     // by collider; update_bounds()
     Array<Pace> pace;                       // by collider; update_bounds()
     Array<uint64_t> fast;                   // keys of pairs to look after once they moved; hold_back()
     Array<uint32_t> mechanism;              // by node: the least of those that joints tie together; hold_back()
-    Array<collision::Placement> placement;  // by collider; find_contacts()
+    Array<collision::Placement> placement;  // by collider; place_collider()
+    Array<Stance> stance;                   // by collider; place_collider()
+    Array<Travel> travel;                   // by collider; place_collider(), ahead: update_bounds()
     collision::Parts parts;                 // of the pair looked at last
 };
 

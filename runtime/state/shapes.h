@@ -9,6 +9,8 @@ namespace taut {
 struct ShapeRecord {
     collision::Shape shape;
     uint32_t users = 0;  // bodies that use it
+    float reach = 0;     // of its core about its origin: collision::spin_radius() [m]
+    float size = 0;      // the same of the shape itself, at most [m]
 };
 
 struct Shapes {
@@ -19,7 +21,9 @@ struct Shapes {
         if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
         const uint32_t index = ids.create();
         if (index == record.size()) record.emplace_back();
-        record[index] = {std::move(shape), 0};
+        const auto reach = static_cast<float>(collision::spin_radius(shape, 0));
+        const float size = reach + static_cast<float>(collision::ball_radius(shape));
+        record[index] = {std::move(shape), 0, reach, size};
         return index;
     }
     void remove(uint32_t index) {

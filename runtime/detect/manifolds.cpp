@@ -1,0 +1,202 @@
+#include "detect/manifolds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "detect/carry.h"
+#include "detect/reuse.h"
+#include "detect/surfaces.h"
+
+namespace taut {
+namespace {
+
+// How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
+float margin_of(const Nodes& nodes, const PairEnds& pair, double time_step) {
+    double fastest = 0;
+    for_sides(pair, [&](uint32_t a, uint32_t b) {
+        fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).norm());
+    });
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, fastest * time_step));
+}
+
+// Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
+Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placement& at, float then) {
+    if (a.node_b != kNone) {
+        const Vec3& x = nodes.motion[a.node].x;
+        if (then == 0) return (at.position - x).cast<float>();
+        return static_cast<float>(0.5 * (nodes.motion[a.node_b].x - x).norm()) * at.rotation.col(1);
+    }
+    if (a.position == Vec3::Zero()) return Vec3f::Zero();
+    const Mat3f body_rotation = at.rotation * a.rotation.conjugate().toRotationMatrix().cast<float>();
+    return body_rotation * a.position.cast<float>();
+}
+
+// What the two surfaces do to each other. What the host said of friction and restitution in this step stays.
+void meet(const Detection& of, const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,
+          Pair& pair) {
+    const Collider &a = of.colliders.record[pair.collider_a()], &b = of.colliders.record[pair.collider_b()];
+    const float friction = pair.friction, restitution = pair.restitution;
+    combine_surfaces(of.nodes, a, b, at_a, at_b, from_a, pair);
+    if (pair.answered) pair.friction = friction, pair.restitution = restitution;
+    pair.asks = of.pairs.asks | a.asks | b.asks;
+}
+
+// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
+void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
+    const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
+    for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
+    pair.rolls_a = of.pairs.pace[pair.collider_a()].rolls;
+    pair.rolls_b = of.pairs.pace[pair.collider_b()].rolls;
+    pair.round_a = of.pairs.pace[pair.collider_a()].round;
+    pair.round_b = of.pairs.pace[pair.collider_b()].round;
+    pair.then = shaped.then();
+    shaped.bring_to_present(pair);
+    meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
+    carry(old, before, pair);
+    if (shaped.as_they_stand()) keep_manifold(of.pairs, pair);
+}
+
+// The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
+// longer touched that looked about the same way. Null if there is none.
+const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, const collision::PartManifold& part) {
+    constexpr float kAlike = 0.95f;  // cosine between the normals
+    const auto now = [&](uint32_t number) {
+        const auto at = std::lower_bound(parts.found.begin(), parts.found.end(), number,
+                                         [](const auto& found, uint32_t p) { return found.part < p; });
+        return at != parts.found.end() && at->part == number;
+    };
+    const Pair* like = nullptr;
+    float most = kAlike;
+    for (const Pair& pair : old) {
+        if (pair.part == part.part) return &pair;
+        const float along = pair.manifold.normal.dot(part.manifold.normal);
+        if (pair.manifold.count == 0 || along <= most || now(pair.part)) continue;
+        most = along;
+        like = &pair;
+    }
+    return like;
+}
+
+}  // namespace
+
+Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast)
+    : a_(of.shapes.record[of.colliders.record[pair.collider_a()].shape].shape),
+      b_(of.shapes.record[of.colliders.record[pair.collider_b()].shape].shape),
+      at_a_(&of.pairs.placement[pair.collider_a()]),
+      at_b_(&of.pairs.placement[pair.collider_b()]),
+      margin_(margin_of(of.nodes, pair, of.time)),
+      spans_(pair.a2 != kNone || pair.b2 != kNone) {
+    if (!fast) return;
+    encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
+    look_ahead(of.time);
+}
+
+// The far end of a side that spans two nodes goes on when the near one is stopped: it gets its point too.
+void Shaped::look_ahead(double time) {
+    then_ = encounter_->meeting(time);
+    if (then_ == 0 || !std::isfinite(then_)) return;
+    met_[0] = encounter_->a_after(then_);
+    met_[1] = encounter_->b_after(then_);
+    at_a_ = &met_[0];
+    at_b_ = &met_[1];
+    if (!spans_) margin_ = kContactMargin;
+}
+
+float Shaped::find_points(collision::PairCache& cache, collision::Manifold& manifold) const {
+    manifold.count = 0;
+    if (!std::isfinite(then_)) return 0;
+    const float gap = collision::collide(a_, *at_a_, b_, *at_b_, margin_, cache, manifold);
+    return as_they_stand() ? gap : 0;
+}
+
+void Shaped::find_parts(collision::Parts& parts) const {
+    parts.found.clear();
+    if (std::isfinite(then_)) collision::collide_parts(a_, *at_a_, b_, *at_b_, margin_, parts);
+}
+
+void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
+    const collision::Manifold old = pair.manifold;
+    const Shaped shaped(of, pair, fast);
+    const float gap = shaped.find_points(near.cache, pair.manifold);
+    near.kept = shaped.as_they_stand() && pair.manifold.count > 0;
+    near.changed = false;
+    note_clear(of.pairs, gap, near);
+    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
+}
+
+bool gets_points(const Detection& of, NearPair& near) {
+    const collision::PairCache before = near.cache;
+    collision::Manifold manifold;
+    const float gap = Shaped(of, near.ends(of.colliders), near.fast).find_points(near.cache, manifold);
+    if (manifold.count > 0)
+        near.cache = before;
+    else
+        note_clear(of.pairs, gap, near);
+    return manifold.count > 0;
+}
+
+void find_parts(const Detection& of, NearPair& near) {
+    Pairs& pairs = of.pairs;
+    const PairEnds ends = near.ends(of.colliders);
+    const Shaped shaped(of, ends, near.fast);
+    shaped.find_parts(pairs.parts);
+    near.kept = shaped.as_they_stand();
+    near.changed = false;
+    if (pairs.parts.found.empty()) return lose_points(of, near);
+    reserve_slots(pairs, pairs.parts.found.size());
+    Pair old[collision::kMaxParts];
+    size_t count = 0;
+    for_parts(pairs, near, [&](const Pair& pair) { old[count++] = pair; });
+    give_slots(pairs, near);
+    collision::Manifold nothing;
+    uint32_t* link = &near.pair;
+    for (const collision::PartManifold& found : pairs.parts.found) {
+        const Pair* before = find_old({old, count}, pairs.parts, found);
+        *link = take_slot(pairs, ends);
+        Pair& pair = pairs.list[*link];
+        link = &pair.next;
+        pair.part = found.part;
+        pair.manifold = found.manifold;
+        pair.touching = before && before->part == found.part && before->touching;
+        adopt(shaped, of, before ? before->manifold : nothing, before ? *before : pair, pair);
+    }
+}
+
+void refresh_part(const Shaped& shaped, const Detection& of, Pair& pair) {
+    const collision::Manifold old = pair.manifold;
+    pair.manifold.count = 0;
+    for (const collision::PartManifold& found : of.pairs.parts.found)
+        if (found.part == pair.part) pair.manifold = found.manifold;
+    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
+}
+
+bool reuse(const Detection& of, const NearPair& near, Pair& pair) {
+    const Vec3f old_normal = pair.manifold.normal;
+    if (!reuse_manifold(of.pairs, of.time, pair)) return false;
+    if (near.changed || pair.driven) {
+        const uint32_t a = pair.collider_a();
+        meet(of, of.pairs.placement[a], of.pairs.placement[pair.collider_b()], of.pairs.stance[a].from_node, pair);
+    }
+    carry_on(old_normal, pair);
+    return true;
+}
+
+bool reuse(const Detection& of, NearPair& near) {
+    if (!near.kept) return false;
+    for (uint32_t p = near.pair; p != kNone; p = of.pairs.list[p].next) {
+        Pair& pair = of.pairs.list[p];
+        near.changed = near.changed || pair.answered;
+        pair.answered = false;
+        if (!reuse(of, near, pair)) return false;
+    }
+    near.changed = false;
+    return near.pair != kNone;
+}
+
+void lose_points(const Detection& of, NearPair& near) {
+    if (near.touching) report_end(of.pairs, of.nodes, of.colliders, near);
+    near.touching = false;
+    give_slots(of.pairs, near);
+}
+
+}  // namespace taut

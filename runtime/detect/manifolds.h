@@ -1,0 +1,74 @@
+// The manifolds of one pair: found in full, or reused.
+#pragma once
+
+#include <optional>
+
+#include "detect/impact.h"
+#include "state/colliders.h"
+#include "state/nodes.h"
+#include "state/pairs.h"
+#include "state/shapes.h"
+
+namespace taut {
+
+// What contacts are found from.
+struct Detection {
+    const Nodes& nodes;
+    const Colliders& colliders;
+    const Shapes& shapes;
+    Pairs& pairs;
+    double time;  // ahead [s]
+};
+
+// Two shapes as they stand in a pair, or as they will where they meet later in the time ahead.
+class Shaped {
+public:
+    Shaped(const Detection& of, const PairEnds& pair, bool fast);
+    Shaped(const Shaped&) = delete;
+    Shaped& operator=(const Shaped&) = delete;
+
+    const collision::Placement& at_a() const { return *at_a_; }
+    const collision::Placement& at_b() const { return *at_b_; }
+
+    // Returns, if it finds no points, how far apart the two are at least [m]; 0: not known.
+    float find_points(collision::PairCache& cache, collision::Manifold& manifold) const;
+    void find_parts(collision::Parts& parts) const;
+
+    float then() const { return static_cast<float>(then_); }
+    // Whether what is found is of the present, between two bodies: it can be reused.
+    bool as_they_stand() const { return then_ == 0 && !spans_; }
+    void bring_to_present(Pair& pair) const {
+        if (pair.then > 0) encounter_->bring_to_present(pair);
+    }
+
+private:
+    void look_ahead(double time);
+
+    const collision::Shape &a_, &b_;
+    const collision::Placement *at_a_, *at_b_;
+    float margin_;
+    bool spans_;
+    double then_ = 0;                     // 0: as they stand; infinite: they do not meet
+    std::optional<Encounter> encounter_;  // of fast ones
+    collision::Placement met_[2];         // where they meet
+};
+
+// The manifold of a pair without a surface, with the impulses of the last one.
+void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair);
+// Whether a pair that has no record gets points. That is found out with the cache as it was, so that whoever finds the
+// points starts from the same.
+bool gets_points(const Detection& of, NearPair& near);
+// The parts that a pair with a surface touches, in place of its records of the last frame.
+void find_parts(const Detection& of, NearPair& near);
+// A part of a pair whose parts were just found again: one that is not among them loses its points.
+void refresh_part(const Shaped& shaped, const Detection& of, Pair& pair);
+
+// Brings a manifold that NearPair::kept holds to the present; false if it is to be found again.
+bool reuse(const Detection& of, const NearPair& near, Pair& pair);
+// All manifolds of a pair.
+bool reuse(const Detection& of, NearPair& near);
+
+// A pair without points has no records and touches no more.
+void lose_points(const Detection& of, NearPair& near);
+
+}  // namespace taut
