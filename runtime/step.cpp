@@ -81,8 +81,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         if (solver.lanes) evaluate_joint_lanes(w.team, system, *settings.joint_kernels);
         tell(w, {Stage::assemble, index, i});
         w.profile.assemble_us += watch.lap();
-        Substep substep{w.team,   system, group,     w.partition.blocks,     w.nodes,
-                        settings, report, w.scratch, i + 1 == group.substeps};
+        Substep substep{w.team,    system, group,     w.partition.blocks,      w.nodes,
+                        settings,  report, w.scratch, i + 1 == group.substeps, i % 2 == 0,
+                        i % 2 == 1};
         solver.solve(substep);
         if (substep.last) report.residual = std::max(report.residual, row_residual(system, *settings.joint_kernels));
         tell(w, {Stage::solve, index, i});

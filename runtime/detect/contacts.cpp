@@ -93,7 +93,7 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             if (pair.key != found) shaped.find_parts(pairs.parts);
             found = pair.key;
             refresh_part(shaped, of, pair);
-            near.kept = shaped.as_they_stand();
+            near.kept = shaped.can_be_kept();
         }
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }

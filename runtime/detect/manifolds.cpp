@@ -53,7 +53,7 @@ void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
     shaped.bring_to_present(pair);
     meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
     carry(old, before, pair);
-    if (shaped.as_they_stand()) keep_manifold(of.pairs, pair);
+    if (shaped.can_be_kept()) keep_manifold(of.pairs, pair);
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -106,7 +106,7 @@ float Shaped::find_points(collision::PairCache& cache, collision::Manifold& mani
     manifold.count = 0;
     if (!std::isfinite(then_)) return 0;
     const float gap = collision::collide(a_, *at_a_, b_, *at_b_, margin_, cache, manifold);
-    return as_they_stand() ? gap : 0;
+    return can_be_kept() ? gap : 0;
 }
 
 void Shaped::find_parts(collision::Parts& parts) const {
@@ -118,7 +118,7 @@ void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     const Shaped shaped(of, pair, fast);
     const float gap = shaped.find_points(near.cache, pair.manifold);
-    near.kept = shaped.as_they_stand() && pair.manifold.count > 0;
+    near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
     near.changed = false;
     note_clear(of.pairs, gap, near);
     if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
@@ -140,7 +140,7 @@ void find_parts(const Detection& of, NearPair& near) {
     const PairEnds ends = near.ends(of.colliders);
     const Shaped shaped(of, ends, near.fast);
     shaped.find_parts(pairs.parts);
-    near.kept = shaped.as_they_stand();
+    near.kept = shaped.can_be_kept();
     near.changed = false;
     if (pairs.parts.found.empty()) return lose_points(of, near);
     reserve_slots(pairs, pairs.parts.found.size());

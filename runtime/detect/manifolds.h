@@ -36,7 +36,7 @@ public:
 
     float then() const { return static_cast<float>(then_); }
     // Whether what is found is of the present, between two bodies: it can be reused.
-    bool as_they_stand() const { return then_ == 0 && !spans_; }
+    bool can_be_kept() const { return then_ == 0 && !spans_; }
     void bring_to_present(Pair& pair) const {
         if (pair.then > 0) encounter_->bring_to_present(pair);
     }

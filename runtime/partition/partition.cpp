@@ -10,6 +10,7 @@ namespace {
 // heavy top's weight; a block of very unequal masses outruns the lag of its forces.
 constexpr uint32_t kTallLevels = 12;       // more bodies above one another than this, and
 constexpr uint32_t kSlenderness = 4;       // at most this many bodies a level: twice the substeps
+constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
 constexpr float kHeavyOnLight = 10;        // load over support mass: four times the substeps
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 
@@ -369,7 +370,7 @@ void Partition::choose_substeps(const PartitionRules& rules) {
             factor = 4;
         else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels)
             factor = 2;
-        else if (island.levels > kTallLevels)
+        else if (island.levels > kSwayingLevels)
             island.sweeps = rules.fixed ? 1 : 2;
         island.substeps = rules.substeps * (rules.fixed ? 1 : factor);
     }

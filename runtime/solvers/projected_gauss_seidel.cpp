@@ -243,11 +243,10 @@ struct Swept {
                 s.settings.kernels->warm_start(contacts, begin, end, velocity, mass);
             });
     }
-    // The first of a substep, number 0, measures the gaps. Every other goes backward, as symmetric Gauss-Seidel does:
-    // one order alone kept a wall of 30 rows swaying.
-    void sweep_biased(uint32_t number) const {
+    // first: of the substep, which measures the gaps.
+    void sweep_biased(bool first) const {
         const SweepTerms stiff = joint_terms(s.system.h);
-        const SweepShift* const shifts = number == 0 ? s.system.shift.data() : nullptr;
+        const SweepShift* const shifts = first ? s.system.shift.data() : nullptr;
         pass(
             s,
             [&](uint32_t begin, uint32_t end) {
@@ -257,7 +256,7 @@ struct Swept {
             [&](uint32_t begin, uint32_t end) {
                 s.settings.kernels->sweep_biased(contacts, begin, end, velocity, mass, shifts, soft);
             },
-            number % 2 == 1);
+            s.corrects_backward);
     }
     void sweep_relaxed() const {
         pass(
@@ -268,7 +267,8 @@ struct Swept {
             [&] { sweep_rows(s, first_row, row_count, false); },
             [&](uint32_t begin, uint32_t end) {
                 s.settings.kernels->sweep_relaxed(contacts, begin, end, velocity, mass, soft);
-            });
+            },
+            s.relaxes_backward);
     }
     void restitute() const {
         pass(
@@ -286,7 +286,7 @@ void warm_start_sweeps(Substep& s) { Swept(s).warm_start(); }
 void sweep_biased(Substep& s) {
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
     const Swept swept(s);
-    for (uint32_t i = 0; i < sweeps; ++i) swept.sweep_biased(i);
+    for (uint32_t i = 0; i < sweeps; ++i) swept.sweep_biased(i == 0);
     publish(s);
 }
 

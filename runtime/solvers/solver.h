@@ -66,6 +66,9 @@ struct Substep {
     SolverReport& report;
     SolverScratch& scratch;
     bool last;  // of the frame: bounces happen now
+    // Sweeps that correct, and those that relax, take the colours of contacts from the last to the first. In turns, each
+    // against the other: in one order alone a wall of ten rows or more kept swaying.
+    bool corrects_backward = false, relaxes_backward = false;
 };
 
 struct Solver {

@@ -214,7 +214,8 @@ TEST_F(ColliderCalls, ATableStandsOnItsLegs) {
         for (uint32_t k = 0; k < events.begin_count; ++k)
             begun += events.begin[k].body_a.bits == table.bits || events.begin[k].body_b.bits == table.bits;
     }
-    EXPECT_EQ(begun, 4u);
+    EXPECT_GE(begun, 4u);
+    EXPECT_LE(begun, 6u) << "legs that lift again and again";
     taut_pose pose;
     ASSERT_OK(taut_body_get_pose(table, &pose));
     EXPECT_NEAR(pose.position.y, 0.85, 2e-3);

@@ -28,7 +28,8 @@ double slope_of(const RunningScene& run) {
 TEST(Grains, HeapAtAnAngleThatRisesWithFriction) {
     double before = 0;
     for (const char* friction : {"0.1", "0.3", "0.6"}) {
-        RunningScene run(std::string("grains1000_r") + friction);
+        // A random start: poured exactly on its axis, a heap of grains that do not turn wears a needle on top.
+        RunningScene run(scenes::make_scene(std::string("grains1000_r") + friction, {.seed = 1, .mesh = {}}));
         for (int i = 0; i < 420; ++i) run.step();
         ASSERT_TRUE(run.sound());
         const double slope = slope_of(run) * 180 / M_PI;

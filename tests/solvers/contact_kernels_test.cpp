@@ -256,7 +256,7 @@ protected:
         by_rows.lanes = false;
         for (Rig* rig : {&lanes, &rows}) {
             build_pile(*rig, GetParam());
-            rig->settings.sweeps = 1;  // in lanes, a second one takes the colours backward
+            rig->settings.sweeps = 3;
             rig->begin(rig == &lanes ? kProjectedGaussSeidel : by_rows);
             rig->predict();
         }

@@ -63,7 +63,7 @@ struct Couple {
     }
 };
 
-constexpr float kMargin = 0.02f;
+constexpr float kMargin = kContactMargin;
 
 // The direction from a to b that makes them part in the end.
 Vec3 apart_along(const Couple& couple, Random& random) {
@@ -126,10 +126,11 @@ protected:
     ShapeKind other() const { return ShapeKind(std::get<1>(GetParam())); }
 };
 
-// The deepest point is as deep as found in full, within the bound of reuse.h, and so are nearly all.
+// The deepest point is as deep as found in full, within the bound of reuse.h, and so are nearly all. Of shapes that are
+// some mm apart, one in a hundred is told up to .4 mm off, where the nearest features change.
 TEST_P(ReusedPairs, AreAsFoundInFull) {
     Random random(static_cast<uint32_t>(17 + 8 * std::get<0>(GetParam()) + std::get<1>(GetParam())));
-    int reused = 0, tried = 0, others = 0, points = 0, beyond = 0;
+    int reused = 0, tried = 0, others = 0, points = 0, beyond = 0, off_apart = 0;
     double sum = 0;
     for (int round = 0; round < 300; ++round) {
         Couple couple(random_shape(one(), random), random_shape(other(), random));
@@ -144,7 +145,9 @@ TEST_P(ReusedPairs, AreAsFoundInFull) {
         couple.find(kMargin + slide, full);
         ASSERT_GT(full.count, 0);
         const Manifold& m = couple.pair.manifold;
-        EXPECT_NEAR(deepest(m), deepest(full), slide) << round;
+        const float off = std::abs(deepest(m) - deepest(full));
+        EXPECT_LE(off, deepest(full) > 1e-3f ? 4e-4f : slide) << round;
+        off_apart += off > slide;
         if (m.normal.dot(full.normal) < 0.999f) {
             ++others;  // another axis of two about as good
             continue;
@@ -152,14 +155,15 @@ TEST_P(ReusedPairs, AreAsFoundInFull) {
         for (int k = 0; k < m.count; ++k)
             for (int i = 0; i < full.count; ++i)
                 if (full.points[i].feature == m.points[k].feature) {
-                    const float off = std::abs(full.points[i].separation - m.points[k].separation);
-                    beyond += off > slide;
-                    sum += static_cast<double>(off / slide);
+                    const float moved = std::abs(full.points[i].separation - m.points[k].separation);
+                    beyond += moved > slide;
+                    sum += static_cast<double>(moved / slide);
                     ++points;
                 }
     }
     EXPECT_GE(2 * reused, tried);
     EXPECT_LE(20 * others, reused);
+    EXPECT_LE(100 * off_apart, reused);
     EXPECT_LE(100 * beyond, points);  // cut off where faces lie steeply to each other
     EXPECT_LE(sum, 0.1 * points);
 }
