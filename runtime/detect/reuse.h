@@ -8,7 +8,7 @@
 // counting starts anew, so that errors do not add up. Where two features are nearest to each other, n . d is the exact
 // change to first order, whatever they are; the next order is s^2 / r <= 50 nm. A point that a face's side cuts off
 // lags by s times the slope between the faces. The normal, which may be b's, is off by s / r <= 1e-3. What the manifold
-// does not hold is further than the contact margin, which is 400 s.
+// does not hold is further than the contact margin, which is 200 s.
 #pragma once
 
 #include "state/pairs.h"
