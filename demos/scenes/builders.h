@@ -35,5 +35,6 @@ Scene build_ragdolls(double n, double r, const Options& options);
 Scene build_ragdoll_liana(double n, double r, const Options& options);
 Scene build_ferris_wheel(double n, double r, const Options& options);
 Scene build_tensegrity(double n, double r, const Options& options);
+Scene build_net(double n, double r, const Options& options);
 
 }  // namespace scenes

@@ -81,6 +81,7 @@ const std::vector<Family>& families() {
          build_ferris_wheel, 40},
         {"tensegrity", "tensegrity", "six struts held apart by 24 tight ropes, dropped", 360, false, build_tensegrity,
          0},
+        {"netN", "net12", "N x N bodies tied by ball joints, hung by three corners", 300, false, build_net, 100},
         {"shapesN", "shapes200", "N bodies of all kinds of shapes poured into a bin", 600, false, build_shapes, 2000},
         {"hullsN", "hulls100", "N hulls of 12 to 16 vertices poured into a bin", 600, false, build_hulls, 5000},
         {"ragdollsN", "ragdolls6", "N ragdolls of 12 bodies dropped into a bin", 600, false, build_ragdolls, 1000},

@@ -140,6 +140,7 @@ struct Roles {
     std::optional<Bounds> bin;  // centres outside count as escaped
     bool swings = false;        // the chain swings freely: measure its period
     int load = -1;              // what is lifted, driven or shaken
+    double mesh_width = 0;      // of a net, which all joints belong to [m]
 };
 
 // The joint forces that colours tell apart, in powers of ten [N].

@@ -46,6 +46,21 @@ uint32_t window(const scenes::Scene& scene, uint32_t steps, double seconds) {
     return steps > count ? steps - count : 0;
 }
 
+bool is_surface(const scenes::Shape& shape) {
+    return shape.kind == scenes::ShapeKind::mesh || shape.kind == scenes::ShapeKind::height_field;
+}
+
+// A scene's shapes with scaled hulls told by their points.
+std::vector<scenes::Shape> unscaled(std::vector<scenes::Shape> shapes) {
+    for (scenes::Shape& shape : shapes) {
+        if (shape.kind != scenes::ShapeKind::scaled_hull) continue;
+        shape.kind = scenes::ShapeKind::hull;
+        shape.points = shapes[static_cast<size_t>(shape.hull)].points;
+        for (taut_vec3& p : shape.points) p = {p.x * shape.scale.x, p.y * shape.scale.y, p.z * shape.scale.z};
+    }
+    return shapes;
+}
+
 }  // namespace
 
 const char* const kFieldHelp = R"(JSON fields (one object on one line):
@@ -55,7 +70,7 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   finite                              1 if every pose and velocity stayed finite
   state_hash                          of the final state; equal hashes mean equal runs
  piles: from final poses and true shapes
-  pen_mean_mm pen_max_mm              overlap of the pairs that overlap
+  pen_mean_mm pen_max_mm              overlap of the pairs that overlap; meshes and height fields are left out
   rest_speed                          mean speed over the last second [m/s]
   escaped                             bodies outside the bin, below the ground or not finite
  stacks: the top body against its start
@@ -70,6 +85,8 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   blew_up                             1 if not finite, energy_max > 1.02, or a gap was above 25 % of a link
   first_vertical_s                    when the weight first passes below the anchor (null: never)
   period_s                            of a swing, mean over the run
+ nets: joint_sep_pct                  largest joint gap of the whole run, % of a mesh
+ solved directly
   solve_us                            mean of one substep's assembly and direct solve
  as run: solver substeps seed geometric_stiffness adaptive_damping
  with --sleep: asleep                 bodies at the end)";
@@ -148,6 +165,10 @@ void Metrics::follow_chain(uint32_t step) {
     side_ = side;
 }
 
+void Metrics::follow_net() {
+    for (const scenes::Joint& joint : scene_.joints) net_gap_ = std::max(net_gap_, joint_gap(joint));
+}
+
 void Metrics::after_step(uint32_t step) {
     read_motions();
     finite_ = finite_ && engine_.quarantined() == 0;
@@ -157,6 +178,7 @@ void Metrics::after_step(uint32_t step) {
             ++rest_count_;
         }
     if (scene_.roles.chain) follow_chain(step);
+    if (scene_.roles.mesh_width > 0) follow_net();
 }
 
 Metrics::Overlaps Metrics::overlaps() const {
@@ -164,7 +186,8 @@ Metrics::Overlaps Metrics::overlaps() const {
     for (const scenes::Joint& joint : scene_.joints) joined.insert(std::minmax(joint.body_a, joint.body_b));
     std::vector<bool> in_pile(scene_.bodies.size(), false);
     for (int body : scene_.roles.pile) in_pile[static_cast<size_t>(body)] = true;
-    auto shape_of = [&](size_t i) { return &scene_.shapes[static_cast<size_t>(scene_.bodies[i].shape)]; };
+    const std::vector<scenes::Shape> shapes = unscaled(scene_.shapes);
+    auto shape_of = [&](size_t i) { return &shapes[static_cast<size_t>(scene_.bodies[i].shape)]; };
     Overlaps result;
     size_t count = 0;
     for (size_t i = 0; i < scene_.bodies.size(); ++i)
@@ -172,6 +195,7 @@ Metrics::Overlaps Metrics::overlaps() const {
             const scenes::Body &a = scene_.bodies[i], &b = scene_.bodies[k];
             if ((!in_pile[i] && !in_pile[k]) || (a.group < 0 && a.group == b.group)) continue;
             if (a.shape < 0 || b.shape < 0 || joined.contains({static_cast<int>(i), static_cast<int>(k)})) continue;
+            if (is_surface(*shape_of(i)) || is_surface(*shape_of(k))) continue;
             double near = bounding_radius(*shape_of(i)) + bounding_radius(*shape_of(k));
             if (length(of(motions_[k].position) - of(motions_[i].position)) > near) continue;
             double depth = overlap_depth({shape_of(i), motions_[i].position, motions_[i].rotation},
@@ -246,6 +270,7 @@ void Metrics::report(nlohmann::ordered_json& json) const {
     if (!scene_.roles.pile.empty()) report_pile(json);
     if (scene_.roles.top_body >= 0) report_stack(json);
     if (scene_.roles.chain) report_chain(json);
+    if (scene_.roles.mesh_width > 0) json["joint_sep_pct"] = 100 * net_gap_ / scene_.roles.mesh_width;
 }
 
 }  // namespace bench

@@ -36,6 +36,7 @@ private:
     void read_motions();
     double energy_above_hanging() const;
     void follow_chain(uint32_t step);
+    void follow_net();
     double joint_gap(const scenes::Joint& joint) const;
     Overlaps overlaps() const;
     uint32_t escaped() const;
@@ -57,6 +58,7 @@ private:
     double gap_most_ = 0, gap_late_ = 0, stretch_most_ = 0, stretch_late_ = 0;       // [m], [m], [1], [1]
     std::vector<double> crossings_;  // times at which the weight passes below the anchor [s]
     double side_ = 0;                // of the weight at the last step [m]
+    double net_gap_ = 0;             // largest of a net's joints, of the whole run [m]
 };
 
 }  // namespace bench

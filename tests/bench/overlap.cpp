@@ -30,24 +30,29 @@ double half_width(const Vec& half, const std::array<Vec, 3>& axes, Vec direction
 // Largest reach of a shape along a unit direction, from its origin.
 double reach(const Placed& p, Vec direction) {
     const Shape& shape = *p.shape;
+    const double radius = shape.radius, half_length = shape.half_length;
+    const double up = dot(rotate(p.rotation, {0, 1, 0}), direction);    // along the shape's y axis
+    const double rim = radius * std::sqrt(std::max(1 - up * up, 0.0));  // of a circle across it
     switch (shape.kind) {
         case ShapeKind::box:
             return half_width(of(shape.half_extents), axes_of(p), direction);
         case ShapeKind::sphere:
-            return shape.radius;
+            return radius;
         case ShapeKind::capsule:
-            return static_cast<double>(shape.radius) +
-                   static_cast<double>(shape.half_length) * std::fabs(dot(rotate(p.rotation, {0, 1, 0}), direction));
+            return radius + half_length * std::fabs(up);
         case ShapeKind::hull: {
             double most = -std::numeric_limits<double>::infinity();
             for (const taut_vec3& point : shape.points)
                 most = std::max(most, dot(rotate(p.rotation, of(point)), direction));
             return most;
         }
-        case ShapeKind::plane:
         case ShapeKind::cylinder:
+            return half_length * std::fabs(up) + rim;
         case ShapeKind::cone:
+            return std::max(half_length * up, rim - half_length * up);
         case ShapeKind::tapered_capsule:
+            return std::max(radius - half_length * up, static_cast<double>(shape.top_radius) + half_length * up);
+        case ShapeKind::plane:
         case ShapeKind::scaled_hull:
         case ShapeKind::mesh:
         case ShapeKind::height_field:
@@ -160,7 +165,8 @@ double polytope_depth(const Placed& a, const Placed& b) {
     return least;
 }
 
-// Any two convex shapes: the least overlap of their shadows over directions all round, then ever closer about the best.
+// Any two convex shapes: the least overlap of their shadows over the normals of flat faces and over directions all
+// round, then ever closer about the best.
 double searched_depth(const Placed& a, const Placed& b) {
     constexpr int kAllRound = 400, kNearby = 12, kRefinements = 14;
     const Vec offset = of(b.position) - of(a.position);
@@ -171,6 +177,10 @@ double searched_depth(const Placed& a, const Placed& b) {
         const double d = depth(n);
         if (d < least) least = d, best = n;
     };
+    if (is_polytope(*a.shape))
+        for (const Vec& n : directions_of(a).normals) attempt(n);
+    if (is_polytope(*b.shape))
+        for (const Vec& n : directions_of(b).normals) attempt(n * -1);
     for (int i = 0; i < kAllRound; ++i) {  // a spiral from pole to pole, evenly dense
         const double y = 1 - (2 * i + 1.0) / kAllRound, r = std::sqrt(1 - y * y), angle = 2.399963229728653 * i;
         attempt({r * std::cos(angle), y, r * std::sin(angle)});
