@@ -42,7 +42,7 @@ Scene build_net(double n, double, const Options& options) {
     }
     scene.roles.mesh_width = kLink;
     perturb(scene, options.seed);
-    scene.camera = {{0.9 * width + 1, height + 0.3 * width, 1.5 * width + 3}, {0, 0.75 * height, 0}, 42};
+    scene.camera = {{0.7 * width + 1, 0.85 * height, 1.05 * width + 2}, {0, 0.76 * height, 0}, 42};
     scene.stage = {{-width, 0, -width}, {width, height + 1, width}};
     return scene;
 }

@@ -45,6 +45,7 @@ struct Block {
     bool failed = false;                   // this substep's matrix could not be factored
     bool corrected = false;                // this substep's positions get a correction
     double mass_ratio = 1;                 // heaviest over lightest node
+    double closing = 1;                    // part of its joints' gaps that this substep closes
     uint32_t first_row_block = 0;          // its joints' rows in System::rows, of this frame
     uint32_t first_contact = 0, contact_count = 0;  // its contacts' rows, of this substep
     uint32_t first_bounded = 0, bounded_count = 0;  // its bounded rows in SolverScratch, of this substep

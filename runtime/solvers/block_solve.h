@@ -7,6 +7,7 @@
 #pragma once
 
 #include "solvers/active_set.h"
+#include "solvers/energy_guard.h"
 
 namespace taut {
 
@@ -58,7 +59,17 @@ private:
     bool solve_round();
     bool factor_rounds();
     void right_hand_side();
+    double known_rate(const RowBlock& block, int r) const;
+    double error_of(const RowBlock& block, int r) const {
+        return sys_.rows.error[block.row + static_cast<uint32_t>(r)];
+    }
+    bool ideal(const RowBlock& block, int r) const;
+    double joint_work() const;
     void solve_known();
+    double energy_between(const Array<Velocity>& a, const Array<Velocity>& b) const;
+    double slow_closing() const;
+    void solve_closing(double part);
+    void limit_gain();
     void take_solution();
     void take_forces();
     bool outgrown(const RowBlock& block, const double* force) const;
@@ -73,6 +84,7 @@ private:
     Block& b_;
     uint32_t nodes_;
     bool relaxed_ = false;  // System::kept belongs to the present solution
+    EnergyGain gained_;     // by a guarded block's solution, before limit_gain
 };
 
 }  // namespace taut

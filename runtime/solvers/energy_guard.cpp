@@ -1,4 +1,4 @@
-// Each substep, with W the work of all that is not a joint (forces, contacts, gyroscopic torque):
+// Each substep, with W the work of all that is not an ideal joint (forces, contacts, springs, gyroscopic torque):
 //   W = sum m (free - v).(v + v+)/2,   account = max(0, 0.9 account + KE+ - KE - W)
 //   trips if account > 0.05 KE_internal + 1e-4 (240 h)^2 (KE + |W| + M g^2 h^2 / 2)
 // The total energy would be blind at high mass ratios: 1 % of a heavy weight's is 100 m/s on a light link.
@@ -57,14 +57,11 @@ double internal_energy(const Substep& s, const Block& block, double kinetic) {
 
 }  // namespace
 
-void guard_energy(Substep& s, Block& block, double bounded_work) {
-    BlockMemory& memory = block.memory;
-    if (memory.guard_left > 0) --memory.guard_left;
-    if (memory.since_trip < 1u << 30) ++memory.since_trip;
-    if (block.mass_ratio < kLeastMassRatio || memory.solved < kWarmup) return;
+bool is_guarded(const Block& block) { return block.mass_ratio >= kLeastMassRatio && block.memory.solved >= kWarmup; }
 
+EnergyGain energy_gain(const Substep& s, const Block& block, double row_work) {
     const double before = kinetic_energy(s, block, s.system.start), after = kinetic_energy(s, block, s.system.exact);
-    double work = bounded_work, mass = 0;  // of everything that is not a locked row
+    double work = row_work, mass = 0;  // of everything that is not an ideal joint
     for (uint32_t node : block.nodes) {
         const double m = s.nodes.mass[node].mass;
         const Velocity &v0 = s.system.start[node + 1], &free = s.system.free[node + 1], &v1 = s.system.exact[node + 1];
@@ -73,11 +70,18 @@ void guard_energy(Substep& s, Block& block, double bounded_work) {
         if (s.nodes.info[node].kind == NodeKind::dynamic)
             work += 0.5 * (s.system.inertia[node + 1] * (free.w - v0.w)).dot(v0.w + v1.w);
     }
-    const double h = s.system.h;
-    memory.excess_energy = std::max(0.0, 0.9 * memory.excess_energy + after - before - work);
-    const double scale = before + std::abs(work) + 0.5 * mass * s.settings.gravity_squared * h * h;
-    const double tolerance = 0.05 * internal_energy(s, block, after) + 1e-4 * (240 * h) * (240 * h) * scale;
-    if (!(memory.excess_energy > tolerance)) return;
+    const double h = s.system.h, internal = internal_energy(s, block, after);
+    const double fall = 0.5 * mass * s.settings.gravity_squared * h * h, scale = before + std::abs(work) + fall;
+    return {after - before - work, 0.05 * internal + 1e-4 * (240 * h) * (240 * h) * scale, fall};
+}
+
+void guard_energy(Substep& s, Block& block, const EnergyGain& gained) {
+    BlockMemory& memory = block.memory;
+    if (memory.guard_left > 0) --memory.guard_left;
+    if (memory.since_trip < 1u << 30) ++memory.since_trip;
+    if (!is_guarded(block)) return;
+    memory.excess_energy = std::max(0.0, 0.9 * memory.excess_energy + gained.gain);
+    if (!(memory.excess_energy > gained.allowed)) return;
     ++s.report.guard_trips;
     if (memory.since_trip < kGuardSubsteps) memory.escalated = true;
     memory.since_trip = 0;

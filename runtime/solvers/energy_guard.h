@@ -5,10 +5,22 @@
 
 namespace taut {
 
-// After a substep's solve, before positions move: adds what no force explains of the kinetic energy's growth to the
-// block's account, and trips where that exceeds what the block has of internal motion. A tripped block is solved
-// without the slow velocity (plain implicit damping) and twice for a while; tripping twice within that time asks for
-// more substeps. bounded_work: of the block's contacts, stops and drives [J].
-void guard_energy(Substep& substep, Block& block, double bounded_work);
+// What a solution gains of kinetic energy beyond the work of all that is not an ideal joint.
+struct EnergyGain {
+    double gain = 0;     // [J]
+    double allowed = 0;  // what the block's internal motion and the step's error account for [J]
+    double fall = 0;     // what gravity gives the block from rest within the substep [J]
+    bool excessive() const { return gain > allowed + fall; }
+};
+
+// Light parts under a heavy load, whose forces are no longer settling.
+bool is_guarded(const Block& block);
+// Of the block's present solution. row_work: of its contacts, stops, drives, springs and led joints [J].
+EnergyGain energy_gain(const Substep& substep, const Block& block, double row_work);
+
+// After the solve of a guarded block, before positions move: adds the gain to the block's account, and trips where that
+// exceeds what is allowed. A tripped block is solved without the slow velocity (plain implicit damping) and twice for a
+// while; tripping twice within that time asks for more substeps.
+void guard_energy(Substep& substep, Block& block, const EnergyGain& gained);
 
 }  // namespace taut

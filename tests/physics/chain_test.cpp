@@ -231,6 +231,7 @@ INSTANTIATE_TEST_SUITE_P(Ratio, SwingingChain, testing::Values(1.0, 100.0, 10000
 struct Seeds {
     double ratio;
     uint64_t first, last;
+    int lost = 0;           // starts that may fail
     bool adaptive = false;  // adaptive damping, and no slow motion spared
 };
 
@@ -238,46 +239,60 @@ void PrintTo(const Seeds& seeds, std::ostream* out) {
     *out << "r" << seeds.ratio << "_seeds_" << seeds.first << "_to_" << seeds.last;
 }
 
+struct Outcome {
+    double gap = 0, energy = 0;  // largest, of a link; rise over the start, of the start's
+    bool sound = true;
+    bool lost() const { return !sound || !(gap <= 0.25) || !(energy <= 0.02); }
+};
+
+Outcome start_violently(const Seeds& seeds, uint64_t seed) {
+    scenes::Options options;
+    options.seed = seed;
+    scenes::Scene scene = scenes::make_scene(name_of("chain10_r", seeds.ratio), options);
+    if (seeds.adaptive) scene.world.adaptive_damping = 1, scene.world.velocity_filter = 0;
+    RunningChain chain(scene);
+    const double unit = std::max(chain.start_energy, 0.01 * chain.fall);
+    Outcome found;
+    for (int i = 0; i < 600 && found.sound; ++i) {
+        chain.world.step();
+        found.sound = chain.sound();
+        found.gap = std::max(found.gap, chain.gap());
+        found.energy = std::max(found.energy, (chain.energy() - chain.start_energy) / unit);
+    }
+    return found;
+}
+
 class ViolentStart : public testing::TestWithParam<Seeds> {};
 
-// Turned by up to 30 degrees, velocities that the joints contradict (study/damping.md, section 6), six seconds.
-TEST_P(ViolentStart, NeverFails) {
+// Turned by up to 30 degrees, velocities that the joints contradict (study/damping.md, section 6), ten seconds. Slack
+// chains that snap taut are among them.
+TEST_P(ViolentStart, KeepsItsJointsAndGainsNoEnergy) {
     const Seeds& seeds = GetParam();
     double worst_gap = 0, worst_energy = 0;
+    int lost = 0;
+    std::string which;
     for (uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
-        scenes::Options options;
-        options.seed = seed;
-        scenes::Scene scene = scenes::make_scene(name_of("chain10_r", seeds.ratio), options);
-        if (seeds.adaptive) scene.world.adaptive_damping = 1, scene.world.velocity_filter = 0;
-        RunningChain chain(scene);
-        const double unit = std::max(chain.start_energy, 0.01 * chain.fall);
-        double gap = 0, most = chain.start_energy;
-        bool sound = true;
-        for (int i = 0; i < 360 && sound; ++i) {
-            chain.world.step();
-            sound = chain.sound();
-            gap = std::max(gap, chain.gap());
-            most = std::max(most, chain.energy());
-        }
-        EXPECT_TRUE(sound) << "seed " << seed;
-        EXPECT_LE(gap, 0.25) << "seed " << seed;
-        EXPECT_LE((most - chain.start_energy) / unit, 0.02) << "seed " << seed;
-        worst_gap = std::max(worst_gap, gap);
-        worst_energy = std::max(worst_energy, (most - chain.start_energy) / unit);
+        const Outcome found = start_violently(seeds, seed);
+        worst_gap = std::max(worst_gap, found.gap);
+        worst_energy = std::max(worst_energy, found.energy);
+        if (found.lost()) ++lost, which.append(" ").append(std::to_string(seed));
     }
+    EXPECT_LE(lost, seeds.lost) << "seeds" << which;
+    RecordProperty("lost", std::to_string(lost));
     RecordProperty("worst_gap_pct", std::to_string(100 * worst_gap));
     RecordProperty("worst_energy_rise_pct", std::to_string(100 * worst_energy));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ViolentStart,
-                         testing::Values(Seeds{1, 1, 16}, Seeds{100, 1, 16}, Seeds{1000, 1, 16}, Seeds{10000, 1, 16},
-                                         Seeds{1, 1001, 1008}, Seeds{100, 1001, 1008}, Seeds{1000, 1001, 1008},
-                                         Seeds{10000, 1001, 1008}, Seeds{100000, 1, 16, true},
-                                         Seeds{1000000, 1, 16, true}, Seeds{100000, 1001, 1008, true},
-                                         Seeds{1000000, 1001, 1008, true}),
+                         testing::Values(Seeds{1, 1, 16}, Seeds{100, 1, 16}, Seeds{1000, 1, 48}, Seeds{10000, 1, 48},
+                                         Seeds{1, 1001, 1008}, Seeds{100, 1001, 1016}, Seeds{1000, 1001, 1048},
+                                         Seeds{10000, 1001, 1048}, Seeds{100000, 1, 48, 2},
+                                         Seeds{100000, 1001, 1048, 2}, Seeds{100000, 1, 16, 0, true},
+                                         Seeds{1000000, 1, 16, 0, true}, Seeds{100000, 1001, 1008, 0, true},
+                                         Seeds{1000000, 1001, 1008, 0, true}),
                          [](const auto& tested) {
                              return "ratio_" + std::to_string(static_cast<int>(tested.param.ratio)) + "_from_" +
-                                    std::to_string(tested.param.first);
+                                    std::to_string(tested.param.first) + (tested.param.adaptive ? "_adaptive" : "");
                          });
 
 // A chain of 1 kg in ten links that swings gently; a tonne is joined to its end, and cut off again.
