@@ -1,0 +1,38 @@
+// Thousands of grains poured on a rough bed.
+#include "scenes/heap_slope.h"
+
+namespace {
+
+using namespace lab;
+
+struct Heap {
+    double slope = 0, speed = 0;  // [degrees], of the fastest grain [m/s]
+    uint64_t hash = 0;            // of the final state
+};
+
+Heap pour(const char* friction, uint32_t threads) {
+    scenes::Scene scene = scenes::make_scene(std::string("grains4000_r") + friction, {.seed = 1, .mesh = {}});
+    scene.world.threads = threads;
+    RunningScene run(std::move(scene));
+    for (int i = 0; i < 900 && run.sound(); ++i) run.step();
+    EXPECT_TRUE(run.sound());
+    Heap heap{slope_of(run) * 180 / kPi, run.pile_speed(), 0};
+    EXPECT_EQ(taut_world_get_state_hash(run.world.world, &heap.hash), TAUT_OK);
+    return heap;
+}
+
+TEST(FourThousandGrains, HeapAtAnAngleThatRisesWithFrictionOnAnyThreads) {
+    double before = 0;
+    for (const char* friction : {"0.1", "0.3", "0.6"}) {
+        const Heap heap = pour(friction, 1);
+        std::printf("friction %s: slope %.1f degrees, fastest grain %.4f m/s\n", friction, heap.slope, heap.speed);
+        EXPECT_GT(heap.slope, before + 1) << "friction " << friction;
+        EXPECT_LT(heap.speed, 0.1) << "friction " << friction;
+        EXPECT_EQ(heap.hash, pour(friction, 2).hash) << "friction " << friction;
+        before = heap.slope;
+    }
+    EXPECT_GT(before, 20);
+    EXPECT_LT(before, 45);
+}
+
+}  // namespace
