@@ -95,7 +95,8 @@ struct Broadphase::State {
           strays(memory),
           pairs(memory),
           fresh(memory),
-          gone(memory) {}
+          gone(memory),
+          of_id(memory) {}
 
     void mark(uint32_t id) {
         if (leaves[id].stale) return;
@@ -105,8 +106,11 @@ struct Broadphase::State {
     template <class Meet>
     void for_partners(uint32_t id, Meet&& meet) const;
     void find(uint32_t begin, uint32_t end);
+    template <class Meet>
+    void for_found(size_t i, Meet&& meet) const;
     void gather_fresh();
-    bool merge();
+    bool find_changes();
+    void merge();
 
     btDbvt tree;
     Array<Leaf> leaves;  // by id
@@ -115,8 +119,9 @@ struct Broadphase::State {
     static constexpr uint32_t kRoom = 12;
     Array<uint32_t> strays;  // those that are not any more are listed until the next step
     Array<uint64_t> pairs;   // sorted
-    Array<uint64_t> fresh;   // found by this refresh, then sorted
-    Array<uint64_t> gone;    // taken out by this refresh, sorted: those of stale leaves
+    Array<uint64_t> fresh;   // those of stale leaves now, then those of them that are new; sorted
+    Array<uint64_t> gone;    // those of stale leaves before, then those of them that are no more; sorted
+    Array<uint32_t> of_id;   // where in fresh those begin that have an id as their smaller one
 };
 
 // Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
@@ -152,42 +157,67 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
     }
 }
 
-// What find() found, those anew that found more than they had room for.
-void Broadphase::State::gather_fresh() {
-    fresh.clear();
-    reserve_more(fresh, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
-    for (size_t i = 0; i < stale.size(); ++i) {
-        const auto add = [&](uint32_t other) { fresh.push_back(pair_key(stale[i], other)); };
-        if (partner_count[i] > kRoom)
-            for_partners(stale[i], add);
-        else
-            std::for_each_n(&partners[i * kRoom], partner_count[i], add);
-    }
-    std::sort(fresh.begin(), fresh.end());
+// Calls meet(other) for all that find() found for a stale leaf, anew where there was no room.
+template <class Meet>
+void Broadphase::State::for_found(size_t i, Meet&& meet) const {
+    if (partner_count[i] > kRoom)
+        for_partners(stale[i], meet);
+    else
+        std::for_each_n(&partners[i * kRoom], partner_count[i], meet);
 }
 
-// Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. In place, from the last to the
-// first. True: the list changed.
-bool Broadphase::State::merge() {
+// What find() found, sorted: by counting, then each smaller id's few by themselves.
+void Broadphase::State::gather_fresh() {
+    of_id.assign(leaves.size() + 1, 0);
+    for (size_t i = 0; i < stale.size(); ++i)
+        for_found(i, [&](uint32_t other) { ++of_id[std::min(stale[i], other) + 1]; });
+    std::partial_sum(of_id.begin(), of_id.end(), of_id.begin());
+    fresh.clear();
+    reserve_more(fresh, of_id.back());
+    fresh.resize(of_id.back());
+    for (size_t i = 0; i < stale.size(); ++i)
+        for_found(i, [&](uint32_t other) { fresh[of_id[std::min(stale[i], other)]++] = pair_key(stale[i], other); });
+    uint32_t from = 0;  // each entry is now where its id's end
+    for (const uint32_t to : of_id) {
+        std::sort(fresh.begin() + from, fresh.begin() + to);
+        from = to;
+    }
+}
+
+// Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. True: the list changes, by what
+// is left in fresh and gone.
+bool Broadphase::State::find_changes() {
     gone.clear();
     for (const uint64_t key : pairs)
         if (leaves[uint32_t(key >> 32)].stale || leaves[uint32_t(key)].stale) gone.push_back(key);
-    if (gone == fresh) return false;
-    reserve_more(pairs, fresh.size());
-    size_t kept = 0;
-    auto next = gone.begin();
-    for (const uint64_t key : pairs) {
-        if (next != gone.end() && *next == key)
-            ++next;
+    auto kept_fresh = fresh.begin(), kept_gone = gone.begin();
+    auto was = gone.begin();
+    for (auto is = fresh.begin(); is != fresh.end(); ++is) {
+        while (was != gone.end() && *was < *is) *kept_gone++ = *was++;
+        if (was != gone.end() && *was == *is)
+            ++was;
         else
-            pairs[kept++] = key;
+            *kept_fresh++ = *is;
     }
-    pairs.resize(kept);
-    size_t from = kept, left = fresh.size();
+    kept_gone = std::copy(was, gone.end(), kept_gone);
+    fresh.erase(kept_fresh, fresh.end());
+    gone.erase(kept_gone, gone.end());
+    return !fresh.empty() || !gone.empty();
+}
+
+// In place, from the last to the first.
+void Broadphase::State::merge() {
+    reserve_more(pairs, fresh.size());
+    auto next = gone.begin();
+    std::erase_if(pairs, [&](uint64_t key) {
+        const bool is_gone = next != gone.end() && *next == key;
+        next += is_gone;
+        return is_gone;
+    });
+    size_t from = pairs.size(), left = fresh.size();
     pairs.resize(from + left);
     for (size_t to = pairs.size(); left > 0;)
         pairs[--to] = from > 0 && pairs[from - 1] > fresh[left - 1] ? pairs[--from] : fresh[--left];
-    return true;
 }
 
 Broadphase::Broadphase(Memory& memory) : state_(nullptr), memory_(memory) {
@@ -219,15 +249,15 @@ void Broadphase::remove(uint32_t id) {
 
 void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
     State& s = *state_;
-    btDbvtNode* node = s.leaves[id].node;
-    if (node->volume.Contain(tight_volume(tight))) {
-        s.leaves[id].stray = false;
-        return;
-    }
-    s.mark(id);
     s.leaves[id].stray = false;
+    if (holds(id, tight)) return;
+    s.mark(id);
     btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
-    s.tree.update(node, volume);
+    s.tree.update(s.leaves[id].node, volume);
+}
+
+bool Broadphase::holds(uint32_t id, const Box& tight) const {
+    return state_->leaves[id].node->volume.Contain(tight_volume(tight));
 }
 
 void Broadphase::set_moves(uint32_t id, bool moves) {
@@ -248,9 +278,14 @@ void Broadphase::find_pairs(uint32_t begin, uint32_t end) { state_->find(begin, 
 
 bool Broadphase::finish_refresh() {
     State& s = *state_;
-    if (s.stale.empty()) return false;
+    if (s.stale.empty()) {
+        s.fresh.clear();
+        s.gone.clear();
+        return false;
+    }
     s.gather_fresh();
-    const bool changed = s.merge();
+    const bool changed = s.find_changes();
+    if (changed) s.merge();
     for (const uint32_t id : s.stale) s.leaves[id].stale = false;
     s.stale.clear();
     return changed;
@@ -262,6 +297,8 @@ bool Broadphase::refresh_pairs() {
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }
+std::span<const uint64_t> Broadphase::arrived() const { return state_->fresh; }
+std::span<const uint64_t> Broadphase::departed() const { return state_->gone; }
 
 // ---------------------------------------------------------------- probes
 
@@ -270,10 +307,8 @@ void Broadphase::clear_strays() {
     state_->strays.clear();
 }
 
-void Broadphase::note_stray(uint32_t id, const Box& tight) {
-    Leaf& leaf = state_->leaves[id];
-    if (leaf.node->volume.Contain(tight_volume(tight))) return;
-    leaf.stray = true;
+void Broadphase::note_stray(uint32_t id) {
+    state_->leaves[id].stray = true;
     state_->strays.push_back(id);
 }
 
