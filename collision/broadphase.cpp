@@ -96,7 +96,7 @@ struct Broadphase::State {
           pairs(memory),
           fresh(memory),
           gone(memory),
-          of_id(memory) {}
+          first_of(memory) {}
 
     void mark(uint32_t id) {
         if (leaves[id].stale) return;
@@ -106,8 +106,6 @@ struct Broadphase::State {
     template <class Meet>
     void for_partners(uint32_t id, Meet&& meet) const;
     void find(uint32_t begin, uint32_t end);
-    template <class Meet>
-    void for_found(size_t i, Meet&& meet) const;
     void gather_fresh();
     bool find_changes();
     void merge();
@@ -117,11 +115,11 @@ struct Broadphase::State {
     Array<uint32_t> stale;
     Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
     static constexpr uint32_t kRoom = 12;
-    Array<uint32_t> strays;  // those that are not any more are listed until the next step
-    Array<uint64_t> pairs;   // sorted
-    Array<uint64_t> fresh;   // those of stale leaves now, then those of them that are new; sorted
-    Array<uint64_t> gone;    // those of stale leaves before, then those of them that are no more; sorted
-    Array<uint32_t> of_id;   // where in fresh those begin that have an id as their smaller one
+    Array<uint32_t> strays;    // those that are not any more are listed until the next step
+    Array<uint64_t> pairs;     // sorted
+    Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
+    Array<uint64_t> gone;      // those of stale leaves before, then those of them that are no more; sorted
+    Array<uint32_t> first_of;  // where in fresh those begin that have an id as their smaller one
 };
 
 // Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
@@ -157,29 +155,30 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
     }
 }
 
-// Calls meet(other) for all that find() found for a stale leaf, anew where there was no room.
-template <class Meet>
-void Broadphase::State::for_found(size_t i, Meet&& meet) const {
-    if (partner_count[i] > kRoom)
-        for_partners(stale[i], meet);
-    else
-        std::for_each_n(&partners[i * kRoom], partner_count[i], meet);
-}
-
-// What find() found, sorted: by counting, then each smaller id's few by themselves.
+// What find() found, those anew that found more than they had room for; sorted: by counting the pairs of each smaller
+// id, then those few by themselves.
 void Broadphase::State::gather_fresh() {
-    of_id.assign(leaves.size() + 1, 0);
-    for (size_t i = 0; i < stale.size(); ++i)
-        for_found(i, [&](uint32_t other) { ++of_id[std::min(stale[i], other) + 1]; });
-    std::partial_sum(of_id.begin(), of_id.end(), of_id.begin());
+    Array<uint64_t>& found = gone;  // has no other use yet
+    found.clear();
+    reserve_more(found, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
+    for (size_t i = 0; i < stale.size(); ++i) {
+        const auto add = [&](uint32_t other) { found.push_back(pair_key(stale[i], other)); };
+        if (partner_count[i] > kRoom)
+            for_partners(stale[i], add);
+        else
+            std::for_each_n(&partners[i * kRoom], partner_count[i], add);
+    }
+    first_of.assign(leaves.size() + 1, 0);
+    for (const uint64_t key : found) ++first_of[size_t(key >> 32) + 1];
+    std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
     fresh.clear();
-    reserve_more(fresh, of_id.back());
-    fresh.resize(of_id.back());
-    for (size_t i = 0; i < stale.size(); ++i)
-        for_found(i, [&](uint32_t other) { fresh[of_id[std::min(stale[i], other)]++] = pair_key(stale[i], other); });
-    uint32_t from = 0;  // each entry is now where its id's end
-    for (const uint32_t to : of_id) {
-        std::sort(fresh.begin() + from, fresh.begin() + to);
+    reserve_more(fresh, found.size());
+    fresh.resize(found.size());
+    for (const uint64_t key : found) fresh[first_of[size_t(key >> 32)]++] = key;
+    auto from = fresh.begin();
+    for (const uint32_t end : first_of) {  // where the next id's begin now
+        const auto to = fresh.begin() + end;
+        if (to - from > 1) std::sort(from, to);
         from = to;
     }
 }

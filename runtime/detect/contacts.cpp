@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/prefetch.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
 #include "detect/manifolds.h"
@@ -12,6 +13,7 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
+constexpr uint32_t kSoon = 4;  // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
@@ -43,20 +45,22 @@ bool lost_points(const Pairs& pairs, const NearPair& near) {
     return near.pair != kNone && pairs.list[near.pair].manifold.count == 0;
 }
 
-// Looks at all pairs, and lists those whose records come or go.
+// Looks at all pairs, and picks those whose records come or go.
 void look_at_all(Team& team, const Detection& of) {
     Pairs& pairs = of.pairs;
     std::atomic<bool> any_fast = false;
     team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[i];
+            if (i + kSoon < end && pairs.near[i + kSoon].pair != kNone)
+                prefetch(pairs.list[pairs.near[i + kSoon].pair]);
             look_at(of, near);
             near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
             if (near.fast) any_fast.store(true, std::memory_order_relaxed);
         }
     });
     pairs.any_fast = any_fast.load(std::memory_order_relaxed);
-    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.changing,
+    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
            [&](uint32_t i) { return pairs.near[i].changes; });
 }
 
@@ -64,14 +68,14 @@ void look_at_all(Team& team, const Detection& of) {
 void admit_arriving(Team& team, const Detection& of) {
     Pairs& pairs = of.pairs;
     const auto arriving =
-        std::count_if(pairs.changing.begin(), pairs.changing.end(), [&](uint32_t i) { return pairs.near[i].arrives; });
+        std::count_if(pairs.picked.begin(), pairs.picked.end(), [&](uint32_t i) { return pairs.near[i].arrives; });
     if (arriving == 0) return;
     reserve_slots(pairs, static_cast<size_t>(arriving));
-    for (const uint32_t i : pairs.changing)
+    for (const uint32_t i : pairs.picked)
         if (pairs.near[i].arrives) pairs.near[i].pair = take_slot(pairs, pairs.near[i].ends(of.colliders));
-    team.for_ranges(static_cast<uint32_t>(pairs.changing.size()), kArrivalGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kArrivalGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t k = begin; k < end; ++k) {
-            NearPair& near = pairs.near[pairs.changing[k]];
+            NearPair& near = pairs.near[pairs.picked[k]];
             if (near.arrives) find_points(of, near.fast, near, pairs.list[near.pair]);
         }
     });
@@ -79,7 +83,7 @@ void admit_arriving(Team& team, const Detection& of) {
 
 // Pairs with a surface, and those that lost their points.
 void settle_changing(const Detection& of) {
-    for (const uint32_t i : of.pairs.changing) {
+    for (const uint32_t i : of.pairs.picked) {
         NearPair& near = of.pairs.near[i];
         if (seeks_parts(near)) find_parts(of, near);
         if (lost_points(of.pairs, near)) lose_points(of, near);

@@ -19,17 +19,20 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
-// Marks what moved otherwise than its speed told before the step: further from there than a part of its thickness.
-// Whether anything did.
+// Finds all ways, and marks what moved otherwise than its speed told before the step: further from there than a part of
+// its thickness. Whether anything did.
 bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     std::atomic<bool> any = false;
+    pairs.way.resize(pairs.pace.size());
     team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             Pace& pace = pairs.pace[c];
-            if (collider.node == kNone || collider.node_b != kNone || !nodes.solved(collider.node)) continue;
+            if (collider.node == kNone) continue;
+            pairs.way[c] = way_of(nodes, collider, shapes);
+            if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
-            const Vec3 off = way_of(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
+            const Vec3 off = pairs.way[c] - pairs.reach[c].ahead.cast<double>();
             pace.astray = off.squaredNorm() > stride * stride;
             if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
@@ -38,8 +41,7 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
 }
 
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
-bool strides(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
-             const NearPair& near) {
+bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
     const Pace &one = pairs.pace[a], &other = pairs.pace[b];
     if (!(near.fast || one.astray || other.astray) || near.filtered) return false;
@@ -47,8 +49,7 @@ bool strides(const Nodes& nodes, const Colliders& colliders, const Shapes& shape
     const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                     : std::max(one.thickness, other.thickness);
     const double stride = kStride * thinner;
-    const Vec3 way = way_of(nodes, colliders.record[a], shapes) - way_of(nodes, colliders.record[b], shapes);
-    return way.squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
+    return (pairs.way[a] - pairs.way[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
 }
 
 // Whether a pair had passed; in the last round it stays where it was.
@@ -87,16 +88,16 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     for (uint8_t round = 1; again && round <= kRounds; ++round) {
         again = false;
         if (!find_astray(team, nodes, colliders, shapes, pairs) && !pairs.any_fast) return;
-        gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.fast,
-               [&](uint32_t i) { return strides(nodes, colliders, shapes, pairs, pairs.near[i]); });
-        team.for_ranges(static_cast<uint32_t>(pairs.fast.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
+        gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
+               [&](uint32_t i) { return strides(colliders, pairs, pairs.near[i]); });
+        team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
             for (uint32_t i = begin; i < end; ++i) {
-                NearPair& near = pairs.near[pairs.fast[i]];
+                NearPair& near = pairs.near[pairs.picked[i]];
                 near.passed = (round == 1 || put_back(mechanisms, near.ends(colliders), round - 1)) &&
                               excess_of(Couple(nodes, colliders, shapes, near)).share > 0;
             }
         });
-        for (const uint32_t i : pairs.fast) {
+        for (const uint32_t i : pairs.picked) {
             const NearPair& near = pairs.near[i];
             if (!near.passed && !put_back(mechanisms, near.ends(colliders), round)) continue;
             const Couple pair(nodes, colliders, shapes, near);

@@ -1,6 +1,7 @@
 // Begin, persist, end and hit: pair by pair in the order of the list, which is that of the keys.
 #include <algorithm>
 
+#include "base/prefetch.h"
 #include "publish/publish.h"
 #include "threads/gather.h"
 
@@ -149,8 +150,11 @@ void publish_contacts(World& world) {
     world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
     world.pairs.ended.clear();
     Pairs& pairs = world.pairs;
-    gather(world.team, static_cast<uint32_t>(pairs.active.size()), world.pairs.picked,
-           [&](uint32_t i) { return Touch::begins(pairs, i) && update_touching(pairs, Touch::from(pairs, i)); });
+    gather(world.team, static_cast<uint32_t>(pairs.active.size()), pairs.picked, [&](uint32_t i) {
+        constexpr uint32_t kSoon = 4;
+        if (i + kSoon < pairs.active.size()) prefetch(pairs.list[pairs.active[i + kSoon].pair]);
+        return Touch::begins(pairs, i) && update_touching(pairs, Touch::from(pairs, i));
+    });
     Publisher publisher(world);
     for (const uint32_t i : world.pairs.picked) publisher.tell(Touch::from(pairs, i));
     sort_by_slots(world.contact_end);

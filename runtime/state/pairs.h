@@ -196,14 +196,13 @@ struct Pairs {
           free(memory),
           arrived(memory),
           departed(memory),
-          changing(memory),
           active(memory),
           by_depth(memory),
           ended(memory),
           joined(memory),
           reach(memory),
           pace(memory),
-          fast(memory),
+          way(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -226,7 +225,6 @@ struct Pairs {
     Array<uint32_t> free;             // of them; room for all
     Array<uint64_t> arrived;          // keys that near does not hold yet, sorted; update_pairs()
     Array<uint64_t> departed;         // keys that it holds no more, sorted; update_pairs()
-    Array<uint32_t> changing;         // in near: those whose records come or go; find_contacts()
     Array<ActivePair> active;         // in the order of near and of parts; find_contacts()
     Array<uint32_t> by_depth;         // in active, in the order of depth; limit_contacts()
     Array<taut_contact_event> ended;  // touching pairs forgotten since the last step; one end may be gone by then
@@ -238,12 +236,12 @@ struct Pairs {
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     bool any_fast = false;            // of near, in this frame; find_contacts()
-    Array<uint32_t> fast;             // in near: pairs to look after once they moved; hold_back()
+    Array<Vec3> way;                  // by collider: of its middle in this step [m]; hold_back()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
     Array<Stance> stance;                   // by collider; place_collider()
     Array<Travel> travel;                   // by collider; place_collider(), ahead: update_bounds()
-    Array<uint32_t> picked;                 // scratch of gather()
+    Array<uint32_t> picked;                 // scratch: what gather() found last
     collision::Parts parts;                 // of the pair looked at last
 };
 
