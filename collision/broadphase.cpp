@@ -231,7 +231,8 @@ Broadphase::~Broadphase() {
 void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     State& s = *state_;
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
-    s.strays.reserve(s.leaves.capacity());  // a step takes no memory for it
+    s.strays.reserve(s.leaves.capacity());  // a step takes no memory for them
+    s.stale.reserve(s.leaves.capacity());
     s.mark(id);
     s.leaves[id].node = s.tree.insert(fat_volume(tight, Vec3f::Zero()), nullptr);
     s.leaves[id].node->dataAsInt = int(id);

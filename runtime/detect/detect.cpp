@@ -225,14 +225,16 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     pairs.placement.resize(slots);
     pairs.stance.resize(slots);
     pairs.travel.resize(slots);
+    pairs.way.resize(slots);
+    pairs.picked.resize(slots);  // nothing may fail between a new box and the broadphase's
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
+            pairs.reach[c].left = false;
             if (collider.node == kNone) continue;
             pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape], time_step);
             look_ahead(nodes, collider, pairs.pace[c], time_step, pairs.travel[c]);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
-            pairs.reach[c].left = false;
             if (!moves(nodes, collider) || box_holds(pairs.reach[c], pairs.travel[c])) continue;
             make_box(nodes, collider, c, shapes, pairs, time_step);
             pairs.reach[c].left = !broadphase.holds(c, pairs.reach[c].box);

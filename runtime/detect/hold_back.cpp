@@ -23,7 +23,6 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
 // its thickness. Whether anything did.
 bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     std::atomic<bool> any = false;
-    pairs.way.resize(pairs.pace.size());
     team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
