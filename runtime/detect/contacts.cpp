@@ -13,7 +13,7 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
-constexpr uint32_t kSoon = 4;  // pairs that a loop asks the memory for ahead of itself
+constexpr uint32_t kSoon = 4;                       // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
@@ -94,9 +94,9 @@ void settle_changing(const Detection& of) {
 void list_active(Team& team, Pairs& pairs) {
     const auto count_of = [&](uint32_t index) {
         const NearPair& near = pairs.near[index];
-        uint32_t count = near.pair != kNone;
-        if (near.on_surface)
-            for_parts(pairs, near, [&, first = near.pair](const Pair& pair) { count += &pair != &pairs.list[first]; });
+        if (!near.on_surface) return near.pair != kNone ? 1u : 0u;  // without a look at the record
+        uint32_t count = 0;
+        for_parts(pairs, near, [&](const Pair&) { ++count; });
         return count;
     };
     write_list(team, static_cast<uint32_t>(pairs.near.size()), pairs.active, count_of,
