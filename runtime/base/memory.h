@@ -51,7 +51,7 @@ private:
     static constexpr size_t kLeast = 64, kAlignment = 64;  // of pieces that are kept
     static constexpr int kSizes = 44;                      // 64 bytes to 256 KiB, four to an octave
     static constexpr size_t kLarge = 16384;                // bytes; smaller ones stay as long as the world
-    static constexpr uint64_t kPatience = 128;             // steps
+    static constexpr uint64_t kPatience = 128;             // steps; grows with the world's age
 
     static int size_class(size_t size, size_t alignment);  // or kSizes: not kept
     static size_t size_of_class(int size_class);
