@@ -95,7 +95,8 @@ struct Broadphase::State {
           strays(memory),
           pairs(memory),
           fresh(memory),
-          gone(memory) {}
+          gone(memory),
+          first_of(memory) {}
 
     void mark(uint32_t id) {
         if (leaves[id].stale) return;
@@ -106,17 +107,19 @@ struct Broadphase::State {
     void for_partners(uint32_t id, Meet&& meet) const;
     void find(uint32_t begin, uint32_t end);
     void gather_fresh();
-    bool merge();
+    bool find_changes();
+    void merge();
 
     btDbvt tree;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
     Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
     static constexpr uint32_t kRoom = 12;
-    Array<uint32_t> strays;  // those that are not any more are listed until the next step
-    Array<uint64_t> pairs;   // sorted
-    Array<uint64_t> fresh;   // found by this refresh, then sorted
-    Array<uint64_t> gone;    // taken out by this refresh, sorted: those of stale leaves
+    Array<uint32_t> strays;    // those that are not any more are listed until the next step
+    Array<uint64_t> pairs;     // sorted
+    Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
+    Array<uint64_t> gone;      // those of stale leaves before, then those of them that are no more; sorted
+    Array<uint32_t> first_of;  // where in fresh those begin that have an id as their smaller one
 };
 
 // Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
@@ -152,42 +155,68 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
     }
 }
 
-// What find() found, those anew that found more than they had room for.
+// What find() found, those anew that found more than they had room for; sorted: by counting the pairs of each smaller
+// id, then those few by themselves.
 void Broadphase::State::gather_fresh() {
-    fresh.clear();
-    reserve_more(fresh, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
+    Array<uint64_t>& found = gone;  // has no other use yet
+    found.clear();
+    reserve_more(found, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
     for (size_t i = 0; i < stale.size(); ++i) {
-        const auto add = [&](uint32_t other) { fresh.push_back(pair_key(stale[i], other)); };
+        const auto add = [&](uint32_t other) { found.push_back(pair_key(stale[i], other)); };
         if (partner_count[i] > kRoom)
             for_partners(stale[i], add);
         else
             std::for_each_n(&partners[i * kRoom], partner_count[i], add);
     }
-    std::sort(fresh.begin(), fresh.end());
+    first_of.assign(leaves.size() + 1, 0);
+    for (const uint64_t key : found) ++first_of[size_t(key >> 32) + 1];
+    std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
+    fresh.clear();
+    reserve_more(fresh, found.size());
+    fresh.resize(found.size());
+    for (const uint64_t key : found) fresh[first_of[size_t(key >> 32)]++] = key;
+    auto from = fresh.begin();
+    for (const uint32_t end : first_of) {  // where the next id's begin now
+        const auto to = fresh.begin() + end;
+        if (to - from > 1) std::sort(from, to);
+        from = to;
+    }
 }
 
-// Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. In place, from the last to the
-// first. True: the list changed.
-bool Broadphase::State::merge() {
+// Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. True: the list changes, by what
+// is left in fresh and gone.
+bool Broadphase::State::find_changes() {
     gone.clear();
     for (const uint64_t key : pairs)
         if (leaves[uint32_t(key >> 32)].stale || leaves[uint32_t(key)].stale) gone.push_back(key);
-    if (gone == fresh) return false;
-    reserve_more(pairs, fresh.size());
-    size_t kept = 0;
-    auto next = gone.begin();
-    for (const uint64_t key : pairs) {
-        if (next != gone.end() && *next == key)
-            ++next;
+    auto kept_fresh = fresh.begin(), kept_gone = gone.begin();
+    auto was = gone.begin();
+    for (auto is = fresh.begin(); is != fresh.end(); ++is) {
+        while (was != gone.end() && *was < *is) *kept_gone++ = *was++;
+        if (was != gone.end() && *was == *is)
+            ++was;
         else
-            pairs[kept++] = key;
+            *kept_fresh++ = *is;
     }
-    pairs.resize(kept);
-    size_t from = kept, left = fresh.size();
+    kept_gone = std::copy(was, gone.end(), kept_gone);
+    fresh.erase(kept_fresh, fresh.end());
+    gone.erase(kept_gone, gone.end());
+    return !fresh.empty() || !gone.empty();
+}
+
+// In place, from the last to the first.
+void Broadphase::State::merge() {
+    reserve_more(pairs, fresh.size());
+    auto next = gone.begin();
+    std::erase_if(pairs, [&](uint64_t key) {
+        const bool is_gone = next != gone.end() && *next == key;
+        next += is_gone;
+        return is_gone;
+    });
+    size_t from = pairs.size(), left = fresh.size();
     pairs.resize(from + left);
     for (size_t to = pairs.size(); left > 0;)
         pairs[--to] = from > 0 && pairs[from - 1] > fresh[left - 1] ? pairs[--from] : fresh[--left];
-    return true;
 }
 
 Broadphase::Broadphase(Memory& memory) : state_(nullptr), memory_(memory) {
@@ -202,7 +231,8 @@ Broadphase::~Broadphase() {
 void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     State& s = *state_;
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
-    s.strays.reserve(s.leaves.capacity());  // a step takes no memory for it
+    s.strays.reserve(s.leaves.capacity());  // a step takes no memory for them
+    s.stale.reserve(s.leaves.capacity());
     s.mark(id);
     s.leaves[id].node = s.tree.insert(fat_volume(tight, Vec3f::Zero()), nullptr);
     s.leaves[id].node->dataAsInt = int(id);
@@ -219,15 +249,15 @@ void Broadphase::remove(uint32_t id) {
 
 void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
     State& s = *state_;
-    btDbvtNode* node = s.leaves[id].node;
-    if (node->volume.Contain(tight_volume(tight))) {
-        s.leaves[id].stray = false;
-        return;
-    }
-    s.mark(id);
     s.leaves[id].stray = false;
+    if (holds(id, tight)) return;
+    s.mark(id);
     btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
-    s.tree.update(node, volume);
+    s.tree.update(s.leaves[id].node, volume);
+}
+
+bool Broadphase::holds(uint32_t id, const Box& tight) const {
+    return state_->leaves[id].node->volume.Contain(tight_volume(tight));
 }
 
 void Broadphase::set_moves(uint32_t id, bool moves) {
@@ -248,9 +278,14 @@ void Broadphase::find_pairs(uint32_t begin, uint32_t end) { state_->find(begin, 
 
 bool Broadphase::finish_refresh() {
     State& s = *state_;
-    if (s.stale.empty()) return false;
+    if (s.stale.empty()) {
+        s.fresh.clear();
+        s.gone.clear();
+        return false;
+    }
     s.gather_fresh();
-    const bool changed = s.merge();
+    const bool changed = s.find_changes();
+    if (changed) s.merge();
     for (const uint32_t id : s.stale) s.leaves[id].stale = false;
     s.stale.clear();
     return changed;
@@ -262,6 +297,8 @@ bool Broadphase::refresh_pairs() {
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }
+std::span<const uint64_t> Broadphase::arrived() const { return state_->fresh; }
+std::span<const uint64_t> Broadphase::departed() const { return state_->gone; }
 
 // ---------------------------------------------------------------- probes
 
@@ -270,10 +307,8 @@ void Broadphase::clear_strays() {
     state_->strays.clear();
 }
 
-void Broadphase::note_stray(uint32_t id, const Box& tight) {
-    Leaf& leaf = state_->leaves[id];
-    if (leaf.node->volume.Contain(tight_volume(tight))) return;
-    leaf.stray = true;
+void Broadphase::note_stray(uint32_t id) {
+    state_->leaves[id].stray = true;
     state_->strays.push_back(id);
 }
 

@@ -130,6 +130,8 @@ public:
     // Re-inserts the leaf if the tight box (already grown by the contact margin) left its fat box; displacement [m]
     // is the motion to expect, by which the new fat box reaches ahead.
     void update(uint32_t id, const Box& tight, const Vec3f& displacement);
+    // Whether its fat box still holds a tight one.
+    bool holds(uint32_t id, const Box& tight) const;
     void set_moves(uint32_t id, bool moves);
 
     // Brings the pair list up to date: find_pairs() for ranges that cover [0, start_refresh()), any number at once,
@@ -141,11 +143,14 @@ public:
     bool refresh_pairs();
     // Sorted keys (smaller id << 32 | larger id) of overlapping fat boxes; independent of the tree's history.
     std::span<const uint64_t> pairs() const;
+    // What the last refresh added to them and took away, sorted likewise.
+    std::span<const uint64_t> arrived() const;
+    std::span<const uint64_t> departed() const;
 
     // Where bodies are after a step may be outside the fat boxes that foresaw it: such strays keep their leaves, on
-    // which the pairs depend, but every probe visits them. Noted anew after each step, all that move.
+    // which the pairs depend, but every probe visits them. Noted anew after each step: those that it does not hold.
     void clear_strays();
-    void note_stray(uint32_t id, const Box& tight);
+    void note_stray(uint32_t id);
     // Visits each id whose box the probe may meet, roughly the nearest first; in an order that depends on the tree's
     // history. Any number of threads at once.
     void visit(Probe probe, Visitor& visitor) const;

@@ -22,10 +22,20 @@ void tell(World& w, const StageEnd& end) {
     if (w.observer) w.observer->after(w, end);
 }
 
-void remember_poses(Nodes& nodes) {
-    for (uint32_t node = 0; node < nodes.slots(); ++node)
-        if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
-            nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
+constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
+
+void remember_poses(Team& team, Nodes& nodes) {
+    team.for_ranges(nodes.slots(), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t node = begin; node < end; ++node)
+            if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
+                nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
+    });
+}
+
+void clear_loads(Team& team, Nodes& nodes) {
+    team.for_ranges(nodes.slots(), kGrain, [&](uint32_t begin, uint32_t end) {
+        std::fill(nodes.load.begin() + begin, nodes.load.begin() + end, NodeLoad{});
+    });
 }
 
 void detect(World& w, Stopwatch& watch) {
@@ -156,7 +166,7 @@ void step(World& w) {
     w.profile.struct_size = sizeof(taut_profile);
     w.frozen.clear();
     reel_cables(w);
-    remember_poses(w.nodes);
+    remember_poses(w.team, w.nodes);
     detect(w, watch);
     watch_contacts(w.nodes, w.pairs, w.watch);
     const Solver& solver = *solvers()[w.def.solver];
@@ -165,10 +175,10 @@ void step(World& w) {
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
-    hold_back(w.colliders, w.shapes, w.joints, w.pairs, w.nodes);
+    hold_back(w.team, w.colliders, w.shapes, w.joints, w.pairs, w.nodes);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.sensors);
-    std::fill(w.nodes.load.begin(), w.nodes.load.end(), NodeLoad{});
+    clear_loads(w.team, w.nodes);
     publish_contacts(w);
     publish_motion(w, w.frozen);
     publish_profile(w);

@@ -7,11 +7,28 @@
 namespace taut {
 
 Memory::~Memory() {
-    for (int c = 0; c < kSizes; ++c)
-        while (Piece* piece = kept_[c]) {
-            kept_[c] = piece->next;
-            give_to_host(piece, size_of_class(c), kAlignment);
-        }
+    for (int c = 0; c < kSizes; ++c) take_out(c, kept_[c].count);
+}
+
+void Memory::take_out(int size_class, uint32_t count) noexcept {
+    Kept& kept = kept_[size_class];
+    for (uint32_t i = 0; i < count; ++i) {
+        Piece* const piece = kept.first;
+        kept.first = piece->next;
+        give_to_host(piece, size_of_class(size_class), kAlignment);
+    }
+    kept.count -= count;
+}
+
+// At the steps 128, 256, 512, ...: with patience that grows with the world's age, what comes and goes is asked of the
+// host anew a few times at most.
+void Memory::end_step() noexcept {
+    keeping_ = false;
+    if (++steps_ < kPatience || !std::has_single_bit(steps_)) return;
+    for (int c = 0; c < kSizes; ++c) {
+        if (size_of_class(c) >= kLarge) take_out(c, kept_[c].least);
+        kept_[c].least = kept_[c].count;
+    }
 }
 
 int Memory::size_class(size_t size, size_t alignment) {
@@ -35,9 +52,12 @@ size_t Memory::whole(size_t size, size_t alignment) {
 void* Memory::allocate(size_t size, size_t alignment) {
     const int c = size_class(size, alignment);
     if (c == kSizes) return take_from_host(size, alignment);
-    Piece* piece = keeping_ ? kept_[c] : nullptr;  // what steps let go is for steps
-    if (!piece) return take_from_host(size_of_class(c), kAlignment);
-    kept_[c] = piece->next;
+    Kept& kept = kept_[c];
+    if (!keeping_ || !kept.first)
+        return take_from_host(size_of_class(c), kAlignment);  // what steps let go is for steps
+    Piece* const piece = kept.first;
+    kept.first = piece->next;
+    kept.least = std::min(kept.least, --kept.count);
     return piece;
 }
 
@@ -48,8 +68,10 @@ void Memory::release(void* pointer, size_t size, size_t alignment) noexcept {
         give_to_host(pointer, size, alignment);
     else if (!keeping_)
         give_to_host(pointer, size_of_class(c), kAlignment);
-    else
-        kept_[c] = new (pointer) Piece{kept_[c]};
+    else {
+        kept_[c].first = new (pointer) Piece{kept_[c].first};
+        ++kept_[c].count;
+    }
 }
 
 void* Memory::take_from_host(size_t size, size_t alignment) {

@@ -11,8 +11,8 @@
 namespace taut {
 
 // Pieces that a step lets go stay with the world for the next one of their size, so that a world whose blocks and lists
-// come and go asks the host for nothing once it is warm. What is let go between steps, as by arrays that grow with what
-// the host adds, goes back to it.
+// come and go asks the host for nothing once it is warm. Large ones that no step asked for in a while, such as arrays
+// leave behind when they grow, go back to the host, and so does what is let go between steps.
 class Memory {
 public:
     explicit Memory(const taut_hooks& hooks) : hooks_(hooks) {}
@@ -29,7 +29,7 @@ public:
     class Keeping {
     public:
         explicit Keeping(Memory& memory) : memory_(memory) { memory_.keeping_ = true; }
-        ~Keeping() { memory_.keeping_ = false; }
+        ~Keeping() { memory_.end_step(); }
         Keeping(const Keeping&) = delete;
         Keeping& operator=(const Keeping&) = delete;
 
@@ -44,18 +44,27 @@ private:
     struct Piece {  // one that is kept, in the piece itself
         Piece* next;
     };
+    struct Kept {  // pieces of one size
+        Piece* first = nullptr;
+        uint32_t count = 0, least = 0;  // how many there are, and at least were since those too many went back
+    };
     static constexpr size_t kLeast = 64, kAlignment = 64;  // of pieces that are kept
     static constexpr int kSizes = 44;                      // 64 bytes to 256 KiB, four to an octave
+    static constexpr size_t kLarge = 16384;                // bytes; smaller ones stay as long as the world
+    static constexpr uint64_t kPatience = 128;             // steps; grows with the world's age
 
     static int size_class(size_t size, size_t alignment);  // or kSizes: not kept
     static size_t size_of_class(int size_class);
     void* take_from_host(size_t size, size_t alignment);
     void give_to_host(void* pointer, size_t size, size_t alignment) noexcept;
+    void take_out(int size_class, uint32_t count) noexcept;
+    void end_step() noexcept;
 
     taut_hooks hooks_;
     uint64_t bytes_ = 0;
     uint64_t calls_ = 0;
-    Piece* kept_[kSizes] = {};
+    uint64_t steps_ = 0;
+    Kept kept_[kSizes];
     bool keeping_ = false;
 };
 

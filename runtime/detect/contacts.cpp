@@ -1,15 +1,19 @@
 // Contacts of all pairs: who is asked, who gets and loses records, and the list of those with points.
 #include <algorithm>
+#include <atomic>
 
+#include "base/prefetch.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
 #include "detect/manifolds.h"
 #include "detect/reuse.h"
+#include "threads/gather.h"
 
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 64;  // pairs that a thread takes at a time
+constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
+constexpr uint32_t kSoon = 4;                       // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
@@ -36,34 +40,75 @@ void look_at(const Detection& of, NearPair& near) {
     find_points(of, near.fast, near, pair);
 }
 
+bool seeks_parts(const NearPair& near) { return near.on_surface && !near.reused && !near.filtered; }
+bool lost_points(const Pairs& pairs, const NearPair& near) {
+    return near.pair != kNone && pairs.list[near.pair].manifold.count == 0;
+}
+
+// Looks at all pairs, and picks those whose records come or go.
+void look_at_all(Team& team, const Detection& of) {
+    Pairs& pairs = of.pairs;
+    std::atomic<bool> any_fast = false;
+    team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            NearPair& near = pairs.near[i];
+            if (i + kSoon < end && pairs.near[i + kSoon].pair != kNone)
+                prefetch(pairs.list[pairs.near[i + kSoon].pair]);
+            look_at(of, near);
+            near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
+            if (near.fast) any_fast.store(true, std::memory_order_relaxed);
+        }
+    });
+    pairs.any_fast = any_fast.load(std::memory_order_relaxed);
+    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
+           [&](uint32_t i) { return pairs.near[i].changes; });
+}
+
 // Records of pairs that got their first points: given in the order of keys, filled side by side.
 void admit_arriving(Team& team, const Detection& of) {
     Pairs& pairs = of.pairs;
-    Array<uint32_t>& arriving = pairs.arriving;
-    arriving.clear();
-    for (uint32_t i = 0; i < pairs.near.size(); ++i)
-        if (pairs.near[i].arrives) arriving.push_back(i);
-    reserve_slots(pairs, arriving.size());
-    for (const uint32_t i : arriving) pairs.near[i].pair = take_slot(pairs, pairs.near[i].ends(of.colliders));
-    team.for_ranges(static_cast<uint32_t>(arriving.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    const auto arriving =
+        std::count_if(pairs.picked.begin(), pairs.picked.end(), [&](uint32_t i) { return pairs.near[i].arrives; });
+    if (arriving == 0) return;
+    reserve_slots(pairs, static_cast<size_t>(arriving));
+    for (const uint32_t i : pairs.picked)
+        if (pairs.near[i].arrives) pairs.near[i].pair = take_slot(pairs, pairs.near[i].ends(of.colliders));
+    team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kArrivalGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t k = begin; k < end; ++k) {
-            NearPair& near = pairs.near[arriving[k]];
-            find_points(of, near.fast, near, pairs.list[near.pair]);
+            NearPair& near = pairs.near[pairs.picked[k]];
+            if (near.arrives) find_points(of, near.fast, near, pairs.list[near.pair]);
         }
     });
 }
 
-// The records of a near pair as it is now.
-void list_active(const Detection& of, uint32_t index) {
-    Pairs& pairs = of.pairs;
-    NearPair& near = pairs.near[index];
-    if (near.pair != kNone && pairs.list[near.pair].manifold.count == 0) lose_points(of, near);
-    for (uint32_t p = near.pair; p != kNone; p = pairs.list[p].next) {
-        const Pair& pair = pairs.list[p];
-        near.asks = pair.asks;
-        pairs.active.push_back(
-            {pair.a, pair.b, p, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks, index});
+// Pairs with a surface, and those that lost their points.
+void settle_changing(const Detection& of) {
+    for (const uint32_t i : of.pairs.picked) {
+        NearPair& near = of.pairs.near[i];
+        if (seeks_parts(near)) find_parts(of, near);
+        if (lost_points(of.pairs, near)) lose_points(of, near);
     }
+}
+
+// The records of all near pairs as they are now.
+void list_active(Team& team, Pairs& pairs) {
+    const auto count_of = [&](uint32_t index) {
+        const NearPair& near = pairs.near[index];
+        if (!near.on_surface) return near.pair != kNone ? 1u : 0u;  // without a look at the record
+        uint32_t count = 0;
+        for_parts(pairs, near, [&](const Pair&) { ++count; });
+        return count;
+    };
+    write_list(team, static_cast<uint32_t>(pairs.near.size()), pairs.active, count_of,
+               [&](uint32_t index, ActivePair* to) {
+                   NearPair& near = pairs.near[index];
+                   for (uint32_t p = near.pair; p != kNone; p = pairs.list[p].next) {
+                       const Pair& pair = pairs.list[p];
+                       near.asks = pair.asks;
+                       *to++ = {pair.a,  pair.b,  p,         static_cast<uint32_t>(pair.manifold.count),
+                                pair.a2, pair.b2, pair.asks, index};
+                   }
+               });
 }
 
 // All pairs, resting ones too, take over what the host changed of colliders since they were asked last.
@@ -103,18 +148,10 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                    double time_step) {
     const Detection of{nodes, colliders, shapes, pairs, time_step};
     note_changes(colliders, pairs);
-    team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i) look_at(of, pairs.near[i]);
-    });
+    look_at_all(team, of);
     admit_arriving(team, of);
-    pairs.active.clear();
-    reserve_more(pairs.active, pairs.list.size() - pairs.free.size());
-    for (uint32_t i = 0; i < pairs.near.size(); ++i) {
-        NearPair& near = pairs.near[i];
-        if (near.filtered) continue;
-        if (near.on_surface && !near.reused) find_parts(of, near);
-        list_active(of, i);
-    }
+    settle_changing(of);
+    list_active(team, pairs);
 }
 
 }  // namespace taut

@@ -1,8 +1,10 @@
 #include "detect/detect.h"
 
-#include "detect/impact.h"
-
 #include <algorithm>
+#include <limits>
+
+#include "detect/impact.h"
+#include "threads/gather.h"
 
 namespace taut {
 namespace {
@@ -68,26 +70,41 @@ bool stays_within(const Nodes& nodes, const Collider& collider, const collision:
     return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin) - kBoxLag;
 }
 
-// Keys of the broadphase of which there is no record.
-void find_arrived(std::span<const uint64_t> keys, Pairs& pairs) {
-    const auto has = [](const Array<NearPair>& list, size_t& at, uint64_t key) {
-        while (at < list.size() && list[at].key < key) ++at;
-        return at < list.size() && list[at].key == key;
-    };
-    size_t listed = 0, resting = 0;
+const NearPair* find_pair(const Array<NearPair>& list, uint64_t key) {
+    const auto at = std::ranges::lower_bound(list, key, {}, &NearPair::key);
+    return at != list.end() && at->key == key ? &*at : nullptr;
+}
+
+// What came and went: as the broadphase tells, or, where records were forgotten before, found anew.
+void find_news(const collision::Broadphase& broadphase, bool was_complete, Pairs& pairs) {
+    const std::span<const uint64_t> keys = broadphase.pairs();
     pairs.arrived.clear();
-    for (const uint64_t key : keys)
-        if (!has(pairs.near, listed, key) && !has(pairs.resting, resting, key)) pairs.arrived.push_back(key);
+    pairs.departed.clear();
+    if (was_complete) {
+        pairs.arrived.assign(broadphase.arrived().begin(), broadphase.arrived().end());
+        pairs.departed.assign(broadphase.departed().begin(), broadphase.departed().end());
+    } else {
+        for (const uint64_t key : keys)
+            if (!find_pair(pairs.near, key)) pairs.arrived.push_back(key);
+        for (const NearPair& near : pairs.near)
+            if (!std::binary_search(keys.begin(), keys.end(), near.key)) pairs.departed.push_back(near.key);
+    }
+    std::erase_if(pairs.arrived, [&](uint64_t key) { return find_pair(pairs.resting, key) != nullptr; });
 }
 
 // Records whose keys have left the broadphase leave the list.
-void drop_departed(const Nodes& nodes, const Colliders& colliders, std::span<const uint64_t> keys, Pairs& pairs) {
-    reserve_ended(pairs, [&](const PairEnds& ends) { return !std::binary_search(keys.begin(), keys.end(), ends.key); });
-    auto key = keys.begin();
+void drop_departed(const Nodes& nodes, const Colliders& colliders, Pairs& pairs) {
+    if (pairs.departed.empty()) return;
+    const auto touches = [&](uint64_t key) {
+        const NearPair* near = find_pair(pairs.near, key);
+        return near && near->touching;
+    };
+    reserve_more(pairs.ended, static_cast<size_t>(std::ranges::count_if(pairs.departed, touches)));
+    auto next = pairs.departed.begin();
     size_t kept = 0;
     for (NearPair& near : pairs.near) {
-        while (key != keys.end() && *key < near.key) ++key;
-        if (key != keys.end() && *key == near.key) {
+        while (next != pairs.departed.end() && *next < near.key) ++next;
+        if (next == pairs.departed.end() || *next != near.key) {
             NearPair& place = pairs.near[kept++];
             if (&place != &near) place = near;
             continue;
@@ -150,7 +167,9 @@ void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& 
     box.lo += least;
     box.hi += most;
     if (!spans) grow_turning(pairs.pace[c], box);  // else its ends tell
-    pairs.reach[c] = {box, ahead};
+    pairs.reach[c].box = box;
+    pairs.reach[c].ahead = ahead;
+    pairs.reach[c].made = std::numeric_limits<double>::infinity();
     if (!spans) pairs.reach[c].made = pairs.travel[c].way;
 }
 
@@ -187,7 +206,7 @@ void place_collider(const Nodes& nodes, const Shapes& shapes, const Collider& co
     stance.velocity = (m.v + m.w.cross(at.position - pose.x)).cast<float>();
     stance.spin = m.w.cast<float>();
     stance.from_node = collider.at_origin() ? Vec3f(Vec3f::Zero()) : Vec3f((pose.q * collider.position).cast<float>());
-    stance.reach = shapes.record[collider.shape].reach;
+    stance.reach = static_cast<float>(shapes.record[collider.shape].reach);
     stance.size = shapes.record[collider.shape].size;
     const float turned = 2 * stance.reach * (stance.turn.coeffs() - was.coeffs()).norm();
     if (stance.placed) pairs.travel[index].way += (at.position - was_at).norm() + static_cast<double>(turned);
@@ -206,19 +225,23 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     pairs.placement.resize(slots);
     pairs.stance.resize(slots);
     pairs.travel.resize(slots);
+    pairs.way.resize(slots);
+    pairs.picked.resize(slots);  // nothing may fail between a new box and the broadphase's
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
+            pairs.reach[c].left = false;
             if (collider.node == kNone) continue;
-            pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape].shape, time_step);
+            pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape], time_step);
             look_ahead(nodes, collider, pairs.pace[c], time_step, pairs.travel[c]);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
-            if (!moves(nodes, collider)) continue;
-            if (!box_holds(pairs.reach[c], pairs.travel[c])) make_box(nodes, collider, c, shapes, pairs, time_step);
+            if (!moves(nodes, collider) || box_holds(pairs.reach[c], pairs.travel[c])) continue;
+            make_box(nodes, collider, c, shapes, pairs, time_step);
+            pairs.reach[c].left = !broadphase.holds(c, pairs.reach[c].box);
         }
     });
-    for (uint32_t c = 0; c < slots; ++c)
-        if (moves(nodes, colliders.record[c])) broadphase.update(c, pairs.reach[c].box, pairs.reach[c].ahead);
+    gather(team, slots, pairs.picked, [&](uint32_t c) { return pairs.reach[c].left; });
+    for (const uint32_t c : pairs.picked) broadphase.update(c, pairs.reach[c].box, pairs.reach[c].ahead);
 }
 
 void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
@@ -227,14 +250,17 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
-            if (!moves(nodes, collider) || stays_within(nodes, collider, pairs.reach[c].box)) continue;
-            const collision::Placement at = placement_of(nodes, collider);
-            pairs.reach[c] = {collision::bounds(shapes.record[collider.shape].shape, at), Vec3f::Zero()};
+            Reach& reach = pairs.reach[c];
+            reach.left = false;
+            if (!moves(nodes, collider) || stays_within(nodes, collider, reach.box)) continue;
+            reach = {collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)),
+                     Vec3f::Zero()};
+            reach.left = !broadphase.holds(c, reach.box);
         }
     });
     broadphase.clear_strays();
-    for (uint32_t c = 0; c < slots; ++c)
-        if (moves(nodes, colliders.record[c])) broadphase.note_stray(c, pairs.reach[c].box);
+    gather(team, slots, pairs.picked, [&](uint32_t c) { return pairs.reach[c].left; });
+    for (const uint32_t c : pairs.picked) broadphase.note_stray(c);
     for (const uint32_t node : frozen)
         for_colliders(nodes, colliders, node, [&](uint32_t c) {
             broadphase.update(c, contact_box(nodes, shapes, colliders.record[c]), Vec3f::Zero());
@@ -246,12 +272,12 @@ void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, co
     refresh_joined(joints, pairs);
     team.for_ranges(broadphase.start_refresh(), kGrain,
                     [&](uint32_t begin, uint32_t end) { broadphase.find_pairs(begin, end); });
+    const bool was_complete = pairs.complete;
     if (broadphase.finish_refresh()) pairs.complete = false;
     if (pairs.complete) return;
-    const std::span<const uint64_t> keys = broadphase.pairs();
-    find_arrived(keys, pairs);
+    find_news(broadphase, was_complete, pairs);
     reserve_more(pairs.near, pairs.arrived.size());
-    drop_departed(nodes, colliders, keys, pairs);
+    drop_departed(nodes, colliders, pairs);
     merge_pairs(
         pairs.near, pairs.arrived.size(), [&] { return pairs.arrived.back(); },
         [&] {

@@ -1,90 +1,17 @@
-#include <algorithm>
+#include <atomic>
 #include <cmath>
 
-#include "detect/detect.h"
 #include "detect/impact.h"
+#include "detect/mechanism.h"
+#include "detect/passage.h"
+#include "threads/gather.h"
 
 namespace taut {
 namespace {
 
-// Parts of the ball inside a shape.
-constexpr double kStride = 0.25;              // who moved less against each other is not looked after
-constexpr double kCores[] = {0.8, 0.4, 0.2};  // the largest that is free at the start is what may not pass
-constexpr double kSkin = 0.02;                // where none is, the middle stays so far off
-constexpr double kSlack = 0.01;               // less is not put back
-constexpr int kRounds = 3;                    // where a mechanism was put back, other parts of it may have passed
-constexpr double kTurn = 0.02;                // a smaller turn moves no middle worth the name: sine of half of it
-
-// ---------------------------------------------------------------- ways
-
-// Of a collider's middle in this step, but for the turn of a slow one [m].
-inline Vec3 way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
-    const NodePose& before = nodes.before[collider.node];
-    const NodeMotion& now = nodes.motion[collider.node];
-    const Vec3& centre = nodes.mass[collider.node].centre;
-    Vec3 way = now.x - before.position;
-    if (centre != Vec3::Zero()) way -= before.rotation * centre;
-    if ((now.q.coeffs() - before.rotation.coeffs()).squaredNorm() < kTurn * kTurn) return way;
-    const Vec3 middle = collision::middle(shapes.record[collider.shape].shape);
-    const Vec3 lever = collider.position + collider.rotation * middle - centre;
-    return way + now.q * lever - before.rotation * lever;
-}
-
-// A collider in a step: where it was and is.
-struct Passage {
-    Passage(const Nodes& nodes, const Collider& c, const collision::Shape& s)
-        : collider(c), shape(s), before(placed_before(nodes, c)), now(placement_of(nodes, c)) {}
-
-    static collision::Placement placed_before(const Nodes& nodes, const Collider& collider) {
-        const NodePose& pose = nodes.before[collider.node];
-        if (collider.node_b != kNone) return place_between(pose.position, nodes.before[collider.node_b].position);
-        return {pose.position + pose.rotation * collider.position,
-                (pose.rotation * collider.rotation).toRotationMatrix().cast<float>()};
-    }
-    Vec3 middle(const collision::Placement& at) const {
-        return at.position + at.rotation.cast<double>() * collision::middle(shape);
-    }
-    Vec3 way() const { return middle(now) - middle(before); }
-
-    const Collider& collider;
-    const collision::Shape& shape;
-    collision::Placement before, now;
-};
-
-// What is too much of two ways.
-struct Excess {
-    double share = 0;            // of each
-    Vec3 normal = Vec3::Zero();  // of the surface met, at the present poses
-};
-
-// The part of b's way along which its core is free of a, up to 1.
-double free_part(const Passage& a, const Passage& b, const Vec3& from, const Vec3& along, collision::Hit& hit) {
-    const double inside = collision::thickness(b.shape);
-    for (const double core : kCores) {
-        collision::Shape ball;
-        ball.size.x() = static_cast<float>(core * inside);
-        if (!collision::cast_shape(ball, {from, Mat3f::Identity()}, along, a.shape, a.before, 1, hit)) return 1;
-        if (!hit.inside) return hit.fraction;
-    }
-    if (!collision::cast_ray(a.shape, a.before, from, along, 1, hit) || hit.inside) return 1;
-    return std::max(0.0, hit.fraction - kSkin * inside / -hit.normal.dot(along));
-}
-
-// Of b's way as a sees it, which turns as well.
-Excess excess_of(const Passage& a, const Passage& b) {
-    const Mat3 then = a.before.rotation.cast<double>(), to_now = a.now.rotation.cast<double>() * then.transpose();
-    const Vec3 from = b.middle(b.before);
-    const Vec3 to = a.before.position + to_now.transpose() * (b.middle(b.now) - a.now.position);
-    const Vec3 along = to - from;
-    const double slack = kSlack * collision::thickness(b.shape);
-    if (along.norm() < slack) return {};
-    collision::Hit hit;
-    const double met = free_part(a, b, from, along, hit);
-    if ((1 - met) * along.norm() < slack) return {};
-    return {1 - met, to_now * hit.normal};
-}
-
-// ---------------------------------------------------------------- pairs
+constexpr double kStride = 0.25;  // of the ball inside a shape: who moved less against each other is not looked after
+constexpr uint8_t kRounds = 3;    // where a mechanism was put back, other parts of it may have passed
+constexpr uint32_t kGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // By the host's function or a one-way direction: what goes through on purpose is not held back.
 bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
@@ -92,141 +19,89 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
-// Marks what moved otherwise than its speed told before the step: further from there than a part of its thickness.
-// Whether anything did.
-bool find_astray(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
-    bool any = false;
-    for (uint32_t c = 0; c < pairs.pace.size(); ++c) {
-        const Collider& collider = colliders.record[c];
-        Pace& pace = pairs.pace[c];
-        if (collider.node == kNone || collider.node_b != kNone || !nodes.solved(collider.node)) continue;
-        const double stride = kStride * pace.thickness;
-        const Vec3 off = way_of(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
-        pace.astray = off.squaredNorm() > stride * stride;
-        any = any || pace.astray;
-    }
-    return any;
-}
-
-// The pairs of these and those that were fast, where they moved further against each other than a part of the
-// thickness.
-void find_fast(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, bool any_astray, Pairs& pairs) {
-    const auto way = [&](uint32_t c) { return way_of(nodes, colliders.record[c], shapes); };
-    pairs.fast.clear();
-    for (const NearPair& near : pairs.near) {
-        if (!near.fast && !any_astray) continue;
-        const uint32_t a = near.collider_a(), b = near.collider_b();
-        const Pace &one = pairs.pace[a], &other = pairs.pace[b];
-        if (!(near.fast || one.astray || other.astray) || near.filtered) continue;
-        if (std::isinf(one.thickness + other.thickness)) continue;  // not to be looked for
-        const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
-                                                                        : std::max(one.thickness, other.thickness);
-        const double stride = kStride * thinner;
-        if ((way(a) - way(b)).squaredNorm() > stride * stride && !may_be_ignored(colliders, near))
-            pairs.fast.push_back(near.key);
-    }
-}
-
-// ---------------------------------------------------------------- mechanisms
-
-// By node: the least of those that joints tie together.
-void find_mechanisms(const Nodes& nodes, const Joints& joints, Array<uint32_t>& least) {
-    least.resize(nodes.slots());
-    for (uint32_t node = 0; node < nodes.slots(); ++node) least[node] = node;
-    const auto root = [&](uint32_t node) {
-        while (least[node] != node) node = least[node] = least[least[node]];
-        return node;
-    };
-    for (const Joint& joint : joints.record) {
-        uint32_t last = kNone;
-        for (const uint32_t node : joint.nodes()) {
-            if (node == kNone || !nodes.solved(node)) continue;
-            const uint32_t one = root(node), other = last == kNone ? one : root(last);
-            least[std::max(one, other)] = std::min(one, other);
-            last = node;
+// Finds all ways, and marks what moved otherwise than its speed told before the step: further from there than a part of
+// its thickness. Whether anything did.
+bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
+    std::atomic<bool> any = false;
+    team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c) {
+            const Collider& collider = colliders.record[c];
+            Pace& pace = pairs.pace[c];
+            if (collider.node == kNone) continue;
+            pairs.way[c] = way_of(nodes, collider, shapes);
+            if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
+            const double stride = kStride * pace.thickness;
+            const Vec3 off = pairs.way[c] - pairs.reach[c].ahead.cast<double>();
+            pace.astray = off.squaredNorm() > stride * stride;
+            if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
-    }
-    for (uint32_t node = 0; node < nodes.slots(); ++node) least[node] = root(node);
+    });
+    return any.load(std::memory_order_relaxed);
 }
 
-// What is put back as one: a body and what joints tie to it, so that they stay as they are against each other.
-class Mechanism {
-public:
-    Mechanism(Nodes& nodes, const Joints& joints, const Array<uint32_t>& least, uint32_t node)
-        : nodes_(nodes), least_(least), root_(least[node]), moves_(nodes.solved(node)) {
-        for (const Joint& joint : joints.record) {
-            const auto ends = joint.nodes();
-            const auto own = std::count_if(ends.begin(), ends.end(), [&](uint32_t end) { return has(end); });
-            jointed_ = jointed_ || own > 0;
-            anchored_ = anchored_ || (own > 0 && static_cast<size_t>(own) < ends.size());
-        }
-    }
-
-    bool has(uint32_t node) const { return node != kNone && nodes_.solved(node) && least_[node] == root_; }
-    bool moves() const { return moves_; }
-
-    // One body along its way, which is free; more of them only as far as they must.
-    void go_back(const Vec3& way, const Vec3& normal) {
-        if (anchored_) return stay();
-        const Vec3 back = jointed_ ? Vec3(normal.dot(way) * normal) : way;
-        for_each([&](uint32_t node) { nodes_.motion[node].x -= back; });
-    }
-    // Where they were before the step.
-    void stay() {
-        for_each([&](uint32_t node) {
-            const NodePose& before = nodes_.before[node];
-            nodes_.motion[node].q = before.rotation;
-            nodes_.motion[node].x = before.position + before.rotation * nodes_.mass[node].centre;
-        });
-    }
-
-private:
-    template <class Act>
-    void for_each(Act&& act) {
-        for (uint32_t node = 0; moves_ && node < nodes_.slots(); ++node)
-            if (has(node)) act(node);
-    }
-
-    Nodes& nodes_;
-    const Array<uint32_t>& least_;
-    uint32_t root_;
-    bool moves_, jointed_ = false, anchored_ = false;
-};
+// Whether a pair that may have passed moved further against each other than a part of its thickness.
+bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
+    const uint32_t a = near.collider_a(), b = near.collider_b();
+    const Pace &one = pairs.pace[a], &other = pairs.pace[b];
+    if (!(near.fast || one.astray || other.astray) || near.filtered) return false;
+    if (std::isinf(one.thickness + other.thickness)) return false;  // not to be looked for
+    const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
+                                                                    : std::max(one.thickness, other.thickness);
+    const double stride = kStride * thinner;
+    return (pairs.way[a] - pairs.way[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
+}
 
 // Whether a pair had passed; in the last round it stays where it was.
-bool part(const Colliders& colliders, const Shapes& shapes, const Joints& joints, uint64_t key, bool last, Pairs& pairs,
+bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_t round, Mechanisms& mechanisms,
           Nodes& nodes) {
-    const Collider &one = colliders.record[key >> 32], &other = colliders.record[static_cast<uint32_t>(key)];
-    const collision::Shape &shape_one = shapes.record[one.shape].shape, &shape_other = shapes.record[other.shape].shape;
-    const bool swapped = collision::spin_radius(shape_one, 0) < collision::spin_radius(shape_other, 0);
-    const Passage a(nodes, swapped ? other : one, swapped ? shape_other : shape_one);
-    const Passage b(nodes, swapped ? one : other, swapped ? shape_one : shape_other);
-    const Excess excess = excess_of(a, b);
     if (!(excess.share > 0)) return false;
-    if (pairs.mechanism.empty()) find_mechanisms(nodes, joints, pairs.mechanism);
-    Mechanism of_a(nodes, joints, pairs.mechanism, a.collider.node);
-    Mechanism of_b(nodes, joints, pairs.mechanism, b.collider.node);
-    if (of_a.has(b.collider.node)) return false;
-    if (last) {
-        of_a.stay();
-        of_b.stay();
+    if (mechanisms.root.empty()) find_mechanisms(nodes, joints, mechanisms);
+    Mechanism of_a(nodes, mechanisms, pair.a.collider.node), of_b(nodes, mechanisms, pair.b.collider.node);
+    if (of_a.has(pair.b.collider.node)) return false;
+    if (round == kRounds) {
+        of_a.stay(round);
+        of_b.stay(round);
     } else {
-        of_a.go_back(excess.share * a.way(), excess.normal);
-        of_b.go_back(excess.share * b.way(), excess.normal);
+        of_a.go_back(excess.share * pair.a.way(), excess.normal, round);
+        of_b.go_back(excess.share * pair.b.way(), excess.normal, round);
     }
     return true;
 }
 
+bool put_back(const Mechanisms& mechanisms, const PairEnds& pair, uint8_t round) {
+    if (mechanisms.root.empty()) return false;
+    const auto sides = {pair.a, pair.b, pair.a2, pair.b2};
+    return std::any_of(sides.begin(), sides.end(),
+                       [&](uint32_t node) { return node != kNone && mechanisms.put_back[node] == round; });
+}
+
 }  // namespace
 
-void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs, Nodes& nodes) {
-    pairs.mechanism.clear();
+// Who passed is found for all pairs at once, after the first round for those alone of which a side was put back in the
+// last. They are put back one after the other, where those of which a side was put back already are asked again.
+void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
+               Nodes& nodes) {
+    Mechanisms& mechanisms = pairs.mechanisms;
+    mechanisms.root.clear();
     bool again = true;
-    for (int round = 1; again && round <= kRounds; ++round) {
+    for (uint8_t round = 1; again && round <= kRounds; ++round) {
         again = false;
-        find_fast(nodes, colliders, shapes, find_astray(nodes, colliders, shapes, pairs), pairs);
-        for (const uint64_t key : pairs.fast)
-            again = part(colliders, shapes, joints, key, round == kRounds, pairs, nodes) || again;
+        if (!find_astray(team, nodes, colliders, shapes, pairs) && !pairs.any_fast) return;
+        gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
+               [&](uint32_t i) { return strides(colliders, pairs, pairs.near[i]); });
+        team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
+            for (uint32_t i = begin; i < end; ++i) {
+                NearPair& near = pairs.near[pairs.picked[i]];
+                near.passed = (round == 1 || put_back(mechanisms, near.ends(colliders), round - 1)) &&
+                              excess_of(Couple(nodes, colliders, shapes, near)).share > 0;
+            }
+        });
+        for (const uint32_t i : pairs.picked) {
+            const NearPair& near = pairs.near[i];
+            if (!near.passed && !put_back(mechanisms, near.ends(colliders), round)) continue;
+            const Couple pair(nodes, colliders, shapes, near);
+            again = part(pair, excess_of(pair), joints, round, mechanisms, nodes) || again;
+        }
     }
 }
 

@@ -10,13 +10,14 @@
 #include "state/joints.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
+#include "threads/team.h"
 
 namespace taut {
 
 // Forces of the frame may speed up what is under way: so many frames are looked ahead.
 constexpr double kAhead = 1.25;
 
-Pace pace_of(const Nodes& nodes, const Collider& collider, const collision::Shape& shape, double time);
+Pace pace_of(const Nodes& nodes, const Collider& collider, const ShapeRecord& record, double time);
 
 // Whether two colliders move further against each other in time [s] than they are thick.
 bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time);
@@ -28,7 +29,8 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 // they are, and only across the surface; where it hangs on the world, or still passes something, it stays where it was
 // before the step. Velocities stay: the next frame finds the contact. Cables of particles are not moved, and no pair is
 // looked after that the host or a one-way collider may ignore.
-void hold_back(const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs, Nodes& nodes);
+void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
+               Nodes& nodes);
 
 // Two colliders under way.
 class Encounter {

@@ -1,18 +1,28 @@
 #include "publish/publish.h"
 #include "sleep/wake.h"
 #include "state/joint_reading.h"
+#include "threads/gather.h"
 
 namespace taut {
+namespace {
 
-// In ascending slot order, which also orders the events.
+bool overloaded(const Nodes& nodes, const Joint& joint) {
+    if (!joint.type || (std::isinf(joint.break_force) && std::isinf(joint.break_torque))) return false;
+    if (asleep(nodes, joint)) return false;
+    const Wrench load = wrench_of(joint, read_joint(nodes, joint));
+    return load.force.norm() > joint.break_force || load.torque.norm() > joint.break_torque;
+}
+
+}  // namespace
+
+// In ascending slot order, which also orders the events. What a break wakes may break in the next step.
 void break_joints(World& world) {
     world.broken.clear();
-    for (uint32_t index = 0; index < world.joints.record.size(); ++index) {
+    gather(world.team, static_cast<uint32_t>(world.joints.record.size()), world.pairs.picked,
+           [&](uint32_t index) { return overloaded(world.nodes, world.joints.record[index]); });
+    for (const uint32_t index : world.pairs.picked) {
         const Joint& joint = world.joints.record[index];
-        if (!joint.type || (std::isinf(joint.break_force) && std::isinf(joint.break_torque))) continue;
-        if (asleep(world.nodes, joint)) continue;
         const Wrench load = wrench_of(joint, read_joint(world.nodes, joint));
-        if (!(load.force.norm() > joint.break_force || load.torque.norm() > joint.break_torque)) continue;
         const Vec3f force = load.force.cast<float>(), torque = load.torque.cast<float>();
         // What may fail comes first.
         world.broken.push_back({world.joint_handle(index),

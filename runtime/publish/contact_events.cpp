@@ -1,7 +1,9 @@
 // Begin, persist, end and hit: pair by pair in the order of the list, which is that of the keys.
 #include <algorithm>
 
+#include "base/prefetch.h"
 #include "publish/publish.h"
+#include "threads/gather.h"
 
 namespace taut {
 namespace {
@@ -15,8 +17,35 @@ bool touches(const Pair& pair) {
 // Active pairs with one key: a pair, or the parts of one with a surface.
 struct Touch {
     NearPair& pair;
-    size_t begin, end;
+    uint32_t begin, end;
+
+    static Touch from(Pairs& pairs, uint32_t begin) {
+        const Array<ActivePair>& active = pairs.active;
+        uint32_t end = begin + 1;
+        while (end < active.size() && active[end].near == active[begin].near) ++end;
+        return {pairs.near[active[begin].near], begin, end};
+    }
+    static bool begins(const Pairs& pairs, uint32_t i) {
+        return i == 0 || pairs.active[i - 1].near != pairs.active[i].near;
+    }
 };
+
+// Notes whether a pair touches, by any of its parts. True: there is something to tell, or a hit to forget.
+bool update_touching(Pairs& pairs, const Touch& touch) {
+    bool now = false;
+    for (uint32_t i = touch.begin; i < touch.end; ++i) {
+        Pair& part = pairs.list[pairs.active[i].pair];
+        part.touching = touches(part);
+        now = now || part.touching;
+    }
+    NearPair& pair = touch.pair;
+    pair.touched = pair.touching;
+    pair.touching = now;
+    if (!now && !pair.touched) return false;
+    const uint32_t news = now != pair.touched ? TAUT_CONTACT_EVENTS_BEGIN_END : TAUT_CONTACT_EVENTS_PERSIST;
+    const uint32_t asks = pairs.active[touch.begin].asks;
+    return pair.hit || (asks & news) || (now && (asks & TAUT_CONTACT_EVENTS_HIT));
+}
 
 class Publisher {
 public:
@@ -25,8 +54,9 @@ public:
     // Sums of a body in quarantine may be no numbers.
     static float finite(float x) { return std::isfinite(x) ? x : 0.0f; }
 
-    void tell(const Touch& touch, bool before) {
+    void tell(const Touch& touch) {
         const NearPair& pair = touch.pair;
+        const bool before = pair.touched;
         const PairEnds ends = pair.ends(world_.colliders);
         const uint32_t asks = world_.pairs.active[touch.begin].asks;
         taut_contact_event event{world_.body_handle(ends.a),
@@ -119,20 +149,14 @@ void publish_contacts(World& world) {
     world.hits.clear();
     world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
     world.pairs.ended.clear();
-    const Array<ActivePair>& active = world.pairs.active;
+    Pairs& pairs = world.pairs;
+    gather(world.team, static_cast<uint32_t>(pairs.active.size()), pairs.picked, [&](uint32_t i) {
+        constexpr uint32_t kSoon = 4;
+        if (i + kSoon < pairs.active.size()) prefetch(pairs.list[pairs.active[i + kSoon].pair]);
+        return Touch::begins(pairs, i) && update_touching(pairs, Touch::from(pairs, i));
+    });
     Publisher publisher(world);
-    for (size_t i = 0, next = 0; i < active.size(); i = next) {
-        NearPair& pair = world.pairs.near[active[i].near];
-        const bool before = pair.touching;
-        bool now = false;  // by any of the pair's parts
-        for (; next < active.size() && active[next].near == active[i].near; ++next) {
-            Pair& part = world.pairs.list[active[next].pair];
-            part.touching = touches(part);
-            now = now || part.touching;
-        }
-        pair.touching = now;
-        if (now || before) publisher.tell({pair, i, next}, before);
-    }
+    for (const uint32_t i : world.pairs.picked) publisher.tell(Touch::from(pairs, i));
     sort_by_slots(world.contact_end);
 }
 

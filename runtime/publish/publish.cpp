@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "state/joint_reading.h"
+#include "threads/gather.h"
 
 namespace taut {
 namespace {
@@ -15,41 +16,80 @@ taut_pose public_pose(const Vec3& position, const Quat& q) {
     return pose;
 }
 
+// How much there is, and how wrong it is.
+struct Tally {
+    uint32_t points = 0, bodies = 0, joints = 0;
+    float penetration = 0, joint_error = 0;
+
+    static Tally sum(const Tally& a, const Tally& b) {
+        return {a.points + b.points, a.bodies + b.bodies, a.joints + b.joints, std::max(a.penetration, b.penetration),
+                std::max(a.joint_error, b.joint_error)};
+    }
+};
+
+// add(tally, element) over a list.
+template <class List, class Add>
+Tally tally(Team& team, const List& list, Add&& add) {
+    const auto of = [&](uint32_t begin, uint32_t end) {
+        Tally part;
+        for (uint32_t i = begin; i < end; ++i) add(part, list[i]);
+        return part;
+    };
+    return reduce(team, static_cast<uint32_t>(list.size()), Tally{}, of, Tally::sum);
+}
+
+Tally tally(World& world) {
+    const auto add_pair = [&](Tally& t, const ActivePair& active) {
+        t.points += active.points;
+        const collision::Manifold& manifold = world.pairs.list[active.pair].manifold;
+        for (uint32_t k = 0; k < active.points; ++k)
+            t.penetration = std::max(t.penetration, -manifold.points[k].separation);
+    };
+    const auto add_node = [](Tally& t, const NodeInfo& info) { t.bodies += moves_by_forces(info.kind); };
+    const auto add_joint = [&](Tally& t, const Joint& joint) {
+        if (!joint.type) return;
+        ++t.joints;
+        if (asleep(world.nodes, joint)) return;
+        t.joint_error = std::max(t.joint_error, static_cast<float>(error_of(world.nodes, joint).linear));
+    };
+    const Tally of_pairs = tally(world.team, world.pairs.active, add_pair);
+    const Tally of_nodes = tally(world.team, world.nodes.info, add_node);
+    return Tally::sum(Tally::sum(of_pairs, of_nodes), tally(world.team, world.joints.record, add_joint));
+}
+
+bool has_moved(const Nodes& nodes, uint32_t node) {
+    const NodeKind kind = nodes.info[node].kind;
+    if (nodes.rest[node] != Rest::awake || kind == NodeKind::dead || kind == NodeKind::fixed) return false;
+    const NodePose& before = nodes.before[node];
+    return nodes.motion[node].q.coeffs() != before.rotation.coeffs() || nodes.origin(node) != before.position;
+}
+
 }  // namespace
 
 void publish_motion(World& world, const Array<uint32_t>& frozen) {
     const Nodes& nodes = world.nodes;
-    world.moved.clear();
+    gather(world.team, nodes.slots(), world.pairs.picked, [&](uint32_t node) { return has_moved(nodes, node); });
+    write_list(
+        world.team, static_cast<uint32_t>(world.pairs.picked.size()), world.moved, [](uint32_t) { return 1u; },
+        [&](uint32_t i, taut_moved_event* to) {
+            const uint32_t node = world.pairs.picked[i];
+            *to = {world.body_handle(node), nodes.info[node].user_data,
+                   public_pose(nodes.origin(node), nodes.motion[node].q)};
+        });
     world.quarantined.clear();
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
-        const NodeInfo& info = nodes.info[node];
-        if (nodes.rest[node] != Rest::awake) continue;
-        if (info.kind == NodeKind::dead || info.kind == NodeKind::fixed) continue;
-        const Vec3 origin = nodes.origin(node);
-        const Quat& q = nodes.motion[node].q;
-        if (origin == nodes.before[node].position && q.coeffs() == nodes.before[node].rotation.coeffs()) continue;
-        world.moved.push_back({world.body_handle(node), info.user_data, public_pose(origin, q)});
-    }
     for (uint32_t node : frozen) world.quarantined.push_back({world.body_handle(node), nodes.info[node].user_data});
 }
 
 void publish_profile(World& world) {
     taut_profile& p = world.profile;
+    const Tally counts = tally(world);
     p.pairs = static_cast<uint32_t>(world.broadphase.pairs().size());
     p.touching = static_cast<uint32_t>(world.pairs.active.size());
-    for (const ActivePair& active : world.pairs.active) {
-        p.points += active.points;
-        for (uint32_t k = 0; k < active.points; ++k)
-            p.penetration = std::max(p.penetration, -world.pairs.list[active.pair].manifold.points[k].separation);
-    }
-    for (const NodeInfo& info : world.nodes.info) p.bodies += moves_by_forces(info.kind);
-    for (const Joint& joint : world.joints.record) {
-        if (!joint.type) continue;
-        ++p.joints;
-        if (asleep(world.nodes, joint)) continue;
-        const JointError error = error_of(world.nodes, joint);
-        p.joint_error = std::max(p.joint_error, static_cast<float>(error.linear));
-    }
+    p.points = counts.points;
+    p.penetration = counts.penetration;
+    p.bodies = counts.bodies;
+    p.joints = counts.joints;
+    p.joint_error = counts.joint_error;
     p.islands = world.partition.islands;
     p.blocks = static_cast<uint32_t>(world.partition.blocks.size());
     p.colours = world.partition.colours;

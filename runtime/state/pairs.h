@@ -46,8 +46,11 @@ struct NearPair {
     bool filtered : 1 = false;    // never collides (filter, joint); kept to remember the answer
     bool on_surface : 1 = false;  // a shape has parts
     bool fast : 1 = false;        // looked for along its way in this frame; detect/impact.h
+    bool passed : 1 = false;      // went through each other in this frame; hold_back()
     bool arrives : 1 = false;     // got its first points in this frame; find_contacts()
+    bool changes : 1 = false;     // its records come or go in this frame; find_contacts()
     bool touching : 1 = false;    // had a point at the end of the last step, on any part
+    bool touched : 1 = false;     // the same of the step before
     bool hit : 1 = false;         // gave a hit event in the last step
     bool kept : 1 = false;        // all its records hold their manifolds as found; detect/reuse.h
     bool reused : 1 = false;      // and these go on in this frame
@@ -146,6 +149,7 @@ struct ActivePair {
 struct Reach {
     collision::Box box;  // tight, grown by the contact margin, of which kBoxLag may be used up, and the motion [m]
     Vec3f ahead;         // the motion [m]
+    bool left = false;   // is outside its fat box
     double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
 };
 
@@ -174,6 +178,16 @@ struct Pace {
     bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
 };
 
+// Nodes that joints tie together, by node; hold_back().
+struct Mechanisms {
+    explicit Mechanisms(Memory& memory) : root(memory), next(memory), ties(memory), put_back(memory) {}
+
+    Array<uint32_t> root;     // the least of them; empty: not found yet
+    Array<uint32_t> next;     // of the ring of them
+    Array<uint8_t> ties;      // of a root; detect/mechanism.h
+    Array<uint8_t> put_back;  // the last round in which it was; 0: none
+};
+
 struct Pairs {
     explicit Pairs(Memory& memory)
         : near(memory),
@@ -181,18 +195,19 @@ struct Pairs {
           list(memory),
           free(memory),
           arrived(memory),
-          arriving(memory),
+          departed(memory),
           active(memory),
           by_depth(memory),
           ended(memory),
           joined(memory),
           reach(memory),
           pace(memory),
-          fast(memory),
-          mechanism(memory),
+          way(memory),
+          mechanisms(memory),
           placement(memory),
           stance(memory),
           travel(memory),
+          picked(memory),
           parts(memory) {}
 
     // Of a new collider in a slot, or of one that gets another shape.
@@ -203,28 +218,30 @@ struct Pairs {
         reach[collider].made = std::numeric_limits<double>::infinity();
     }
 
-    Array<NearPair> near;                   // sorted by key
-    Array<NearPair> resting;                // sorted likewise: pairs of which no side moves and one is asleep
-    bool complete = false;                  // all pairs of the broadphase are in one of the two
-    Array<Pair> list;                       // slots, in no order; free ones have no points
-    Array<uint32_t> free;                   // of them; room for all
-    Array<uint64_t> arrived;                // keys that near does not hold yet, sorted; update_pairs()
-    Array<uint32_t> arriving;               // in near: those that got their first points; find_contacts()
-    Array<ActivePair> active;               // in the order of near and of parts; find_contacts()
-    Array<uint32_t> by_depth;               // in active, in the order of depth; limit_contacts()
-    Array<taut_contact_event> ended;        // touching pairs forgotten since the last step; one end may be gone by then
-    uint32_t world = 0;                     // id of the world, for the handles in ended
-    uint8_t asks = 0;                       // of all pairs: the world's contact events
-    Array<uint64_t> joined;                 // keys of nodes whose joint forbids contacts, sorted
-    uint64_t joined_version = 0;            // of the joints that they were taken from
-    uint64_t colliders_version = 0;         // that NearPair::changed knows
-    Array<Reach> reach;                     // by collider; update_bounds()
-    Array<Pace> pace;                       // by collider; update_bounds()
-    Array<uint64_t> fast;                   // keys of pairs to look after once they moved; hold_back()
-    Array<uint32_t> mechanism;              // by node: the least of those that joints tie together; hold_back()
+    Array<NearPair> near;             // sorted by key
+    Array<NearPair> resting;          // sorted likewise: pairs of which no side moves and one is asleep
+    bool complete = false;            // all pairs of the broadphase are in one of the two
+    Array<Pair> list;                 // slots, in no order; free ones have no points
+    Array<uint32_t> free;             // of them; room for all
+    Array<uint64_t> arrived;          // keys that near does not hold yet, sorted; update_pairs()
+    Array<uint64_t> departed;         // keys that it holds no more, sorted; update_pairs()
+    Array<ActivePair> active;         // in the order of near and of parts; find_contacts()
+    Array<uint32_t> by_depth;         // in active, in the order of depth; limit_contacts()
+    Array<taut_contact_event> ended;  // touching pairs forgotten since the last step; one end may be gone by then
+    uint32_t world = 0;               // id of the world, for the handles in ended
+    uint8_t asks = 0;                 // of all pairs: the world's contact events
+    Array<uint64_t> joined;           // keys of nodes whose joint forbids contacts, sorted
+    uint64_t joined_version = 0;      // of the joints that they were taken from
+    uint64_t colliders_version = 0;   // that NearPair::changed knows
+    Array<Reach> reach;               // by collider; update_bounds()
+    Array<Pace> pace;                 // by collider; update_bounds()
+    bool any_fast = false;            // of near, in this frame; find_contacts()
+    Array<Vec3> way;                  // by collider: of its middle in this step [m]; hold_back()
+    Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
     Array<Stance> stance;                   // by collider; place_collider()
     Array<Travel> travel;                   // by collider; place_collider(), ahead: update_bounds()
+    Array<uint32_t> picked;                 // scratch: what gather() found last
     collision::Parts parts;                 // of the pair looked at last
 };
 

@@ -8,9 +8,10 @@ namespace taut {
 
 struct ShapeRecord {
     collision::Shape shape;
-    uint32_t users = 0;  // bodies that use it
-    float reach = 0;     // of its core about its origin: collision::spin_radius() [m]
-    float size = 0;      // the same of the shape itself, at most [m]
+    uint32_t users = 0;                                   // bodies that use it
+    double reach = 0;                                     // of its core about its origin: collision::spin_radius() [m]
+    float size = 0;                                       // the same of the shape itself, at most [m]
+    collision::Box box = {Vec3f::Zero(), Vec3f::Zero()};  // about it, in its frame [m]
 };
 
 struct Shapes {
@@ -21,9 +22,10 @@ struct Shapes {
         if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
         const uint32_t index = ids.create();
         if (index == record.size()) record.emplace_back();
-        const auto reach = static_cast<float>(collision::spin_radius(shape, 0));
-        const float size = reach + static_cast<float>(collision::ball_radius(shape));
-        record[index] = {std::move(shape), 0, reach, size};
+        const double reach = collision::spin_radius(shape, 0);
+        const float size = static_cast<float>(reach) + static_cast<float>(collision::ball_radius(shape));
+        const collision::Box box = collision::bounds(shape, {Vec3::Zero(), Mat3f::Identity()});
+        record[index] = {std::move(shape), 0, reach, size, box};
         return index;
     }
     void remove(uint32_t index) {

@@ -133,6 +133,31 @@ TEST(CollisionBroadphase, OrderOfInsertionDoesNotMatterAndNothingIsMissed) {
     EXPECT_GT(reinserted, 100u);
 }
 
+// The list before, without what departed and with what arrived, is the list now.
+TEST(CollisionBroadphase, TellsWhatCameAndWent) {
+    Crowd crowd(107);
+    Memory memory(taut_hooks{});
+    Broadphase broadphase(memory);
+    for (uint32_t i = 0; i < kBodies; ++i) broadphase.add(i, crowd.tight(i), crowd.moves[i]);
+    std::vector<uint64_t> before;
+    int changes = 0;
+    for (int step = 0; step < 200; ++step) {
+        for (uint32_t i = 0; i < kBodies; ++i) broadphase.update(i, crowd.tight(i), Vec3f::Zero());
+        const bool changed = refresh_by_ranges(broadphase);
+        const std::vector<uint64_t> now = copy(broadphase);
+        std::vector<uint64_t> arrived, departed;
+        std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(arrived));
+        std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(departed));
+        EXPECT_TRUE(std::ranges::equal(arrived, broadphase.arrived())) << "step " << step;
+        EXPECT_TRUE(std::ranges::equal(departed, broadphase.departed())) << "step " << step;
+        EXPECT_EQ(changed, !arrived.empty() || !departed.empty());
+        changes += changed && !arrived.empty() && !departed.empty();
+        before = now;
+        crowd.step();
+    }
+    EXPECT_GT(changes, 50);
+}
+
 TEST(CollisionBroadphase, OneMayMeetAny) {
     Memory memory(taut_hooks{});
     Broadphase broadphase(memory);

@@ -51,7 +51,7 @@ struct Host {
     }
 };
 
-// Pieces of 64 bytes and more stay for the next of their size; larger ones go back at once.
+// Pieces of 64 bytes and more stay for the next of their size; those above 256 KiB go back at once.
 TEST(Memory, KeepsTheBooksOfItsHost) {
     Host host;
     {
@@ -99,6 +99,27 @@ TEST(Memory, GivesBackWhatIsLetGoWhileItKeepsNothing) {
     const Memory::Keeping keeping(memory);
     memory.release(memory.allocate(100, 16), 100, 16);
     EXPECT_EQ(memory.calls(), 2u);
+}
+
+// What arrays leave behind as they grow goes back after a while; what each step asks for, and what is small, stays.
+TEST(Memory, GivesBackLargePiecesThatNobodyAsksFor) {
+    constexpr size_t kLarge = 100000, kUsed = 50000, kSmall = 1000;
+    Host host;
+    Memory memory(host.hooks());
+    size_t unused = 0;
+    for (int step = 0; step < 1000; ++step) {
+        const Memory::Keeping keeping(memory);
+        if (step == 0) memory.release(memory.allocate(kLarge, 16), kLarge, 16);
+        if (step == 0) memory.release(memory.allocate(kSmall, 16), kSmall, 16);
+        memory.release(memory.allocate(kUsed, 16), kUsed, 16);
+        unused = memory.bytes() - Memory::whole(kUsed, 16) - Memory::whole(kSmall, 16);
+        EXPECT_EQ(memory.bytes(), host.bytes());
+        if (step < 100 || step > 300) {
+            EXPECT_EQ(unused, step < 100 ? Memory::whole(kLarge, 16) : 0) << step;
+        }
+    }
+    EXPECT_EQ(memory.calls(), 3u);
+    EXPECT_EQ(host.frees, 1u);
 }
 
 // From 256 bytes on by at most a quarter.

@@ -1,0 +1,44 @@
+#include "detect/mechanism.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace taut {
+
+void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
+    const uint32_t slots = nodes.slots();
+    Array<uint32_t>& root = of.root;
+    root.resize(slots);
+    std::iota(root.begin(), root.end(), 0u);
+    const auto find = [&](uint32_t node) {
+        while (root[node] != node) node = root[node] = root[root[node]];
+        return node;
+    };
+    const auto held = [&](uint32_t node) { return node == kNone || !nodes.solved(node); };
+    for (const Joint& joint : joints.record) {
+        uint32_t last = kNone;
+        for (const uint32_t node : joint.nodes()) {
+            if (held(node)) continue;
+            const uint32_t one = find(node), other = last == kNone ? one : find(last);
+            root[std::max(one, other)] = std::min(one, other);
+            last = node;
+        }
+    }
+    of.next.resize(slots);
+    std::iota(of.next.begin(), of.next.end(), 0u);
+    for (uint32_t node = 0; node < slots; ++node) {
+        root[node] = find(node);
+        if (root[node] != node) of.next[node] = std::exchange(of.next[root[node]], node);
+    }
+    of.ties.assign(slots, 0);
+    for (const Joint& joint : joints.record) {
+        const auto ends = joint.nodes();
+        const bool anchored = std::any_of(ends.begin(), ends.end(), held);
+        for (const uint32_t node : ends)
+            if (!held(node)) of.ties[root[node]] |= anchored ? kJointed | kAnchored : kJointed;
+    }
+    of.put_back.assign(slots, 0);
+}
+
+}  // namespace taut

@@ -1,0 +1,55 @@
+// What is put back as one where something passed.
+#pragma once
+
+#include "state/joints.h"
+#include "state/nodes.h"
+#include "state/pairs.h"
+
+namespace taut {
+
+constexpr uint8_t kJointed = 1, kAnchored = 2;  // Mechanisms::ties; anchored: also to what does not move by forces
+
+void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
+
+// A body and what joints tie to it, which stay as they are against each other.
+class Mechanism {
+public:
+    Mechanism(Nodes& nodes, Mechanisms& all, uint32_t node)
+        : nodes_(nodes), all_(all), root_(all.root[node]), moves_(nodes.solved(node)) {}
+
+    bool has(uint32_t node) const { return node != kNone && nodes_.solved(node) && all_.root[node] == root_; }
+
+    // One body along its way, which is free; more of them only as far as they must.
+    void go_back(const Vec3& way, const Vec3& normal, uint8_t round) {
+        if (all_.ties[root_] & kAnchored) return stay(round);
+        const Vec3 back = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
+        for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
+    }
+    // Where they were before the step.
+    void stay(uint8_t round) {
+        for_each(round, [&](uint32_t node) {
+            const NodePose& before = nodes_.before[node];
+            nodes_.motion[node].q = before.rotation;
+            nodes_.motion[node].x = before.position + before.rotation * nodes_.mass[node].centre;
+        });
+    }
+
+private:
+    template <class Act>
+    void for_each(uint8_t round, Act&& act) {
+        if (!moves_) return;
+        uint32_t node = root_;
+        do {
+            act(node);
+            all_.put_back[node] = round;
+            node = all_.next[node];
+        } while (node != root_);
+    }
+
+    Nodes& nodes_;
+    Mechanisms& all_;
+    uint32_t root_;
+    bool moves_;
+};
+
+}  // namespace taut
