@@ -48,6 +48,13 @@ struct Boxes {
         return apart > least ? apart / std::sqrt(sine_squared) : -1e30f;
     }
     float face(int axis) const { return axis < 3 ? face_a(axis) : face_b(axis - 3); }
+    // Of an axis, without its sign; zero for parallel edges.
+    Vec3f normal(int axis) const {
+        if (axis < 3) return Vec3f::Unit(axis);
+        if (axis < kFirstEdge) return r.col(axis - 3);
+        const Vec3f n = Vec3f::Unit((axis - kFirstEdge) / 3).cross(r.col((axis - kFirstEdge) % 3));
+        return n.squaredNorm() < kParallel ? Vec3f(Vec3f::Zero()) : n.normalized();
+    }
     float size() const { return std::min(a.minCoeff(), b.minCoeff()); }
 };
 
@@ -87,6 +94,27 @@ Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& pre
         if (s > axes.edge.separation) axes.edge = {axis, s};
     }
     return axes;
+}
+
+// The face axis of either box that looks most along a normal.
+int facing(const Boxes& boxes, const Vec3f& normal) {
+    const Vec3f in_b = boxes.r.transpose() * normal;
+    int a = 0, b = 0;
+    normal.cwiseAbs().maxCoeff(&a);
+    in_b.cwiseAbs().maxCoeff(&b);
+    return std::fabs(normal[a]) >= std::fabs(in_b[b]) ? a : 3 + b;
+}
+
+// A long box that tilts over another's rim soon overlaps far beyond the face that it lay on: what bears it are edges
+// that cross nearly in that face's plane. They are as good as another face then, and preferred to it where the pair
+// touched that way before; else a link's end face catches on the rim. kept: last frame's normal, or zero.
+bool edges_bear(const Boxes& boxes, const Axes& axes, const Vec3f& kept, const Preference& preference) {
+    const float gain = axes.edge.separation - axes.face.separation;
+    if (gain <= -preference.keep) return false;
+    const auto same = [](const Vec3f& one, const Vec3f& other) { return std::fabs(one.dot(other)) > kSamePlane; };
+    const Vec3f edges = boxes.normal(axes.edge.axis);
+    if (same(edges, boxes.normal(axes.face.axis)) || !same(edges, boxes.normal(facing(boxes, edges)))) return false;
+    return same(edges, kept) || gain > preference.keep;
 }
 
 // The two edges that support the axis, their nearest points and the point between.
@@ -163,15 +191,6 @@ void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out)
     move_to_a(pair.b_in_a, out);
 }
 
-// The face axis of either box that looks most along a normal.
-int facing(const Boxes& boxes, const Vec3f& normal) {
-    const Vec3f in_b = boxes.r.transpose() * normal;
-    int a = 0, b = 0;
-    normal.cwiseAbs().maxCoeff(&a);
-    in_b.cwiseAbs().maxCoeff(&b);
-    return std::fabs(normal[a]) >= std::fabs(in_b[b]) ? a : 3 + b;
-}
-
 // Points of the face next to the edges, where they cross nearly in its plane. That face need not separate best: the
 // other edge may run far under it.
 void add_face_beside(const Pair& pair, const Boxes& boxes, Manifold& out) {
@@ -215,7 +234,9 @@ float box_box(const Pair& pair, Manifold& out) {
         return axes.separating.separation;
     }
     const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
-    bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge);
+    const Vec3f last = word & kTouching ? boxes.normal(kept) : Vec3f(Vec3f::Zero());
+    bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge) ||
+                   edges_bear(boxes, axes, last, preference);
     Manifold face;
     face_contact(pair, boxes, axes.face.axis, face);
     if (!on_edge) on_edge = preference.face_misses(deepest(face), axes.edge.separation, axes.face.separation);

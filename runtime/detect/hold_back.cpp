@@ -55,6 +55,9 @@ struct Passage {
 struct Excess {
     double share = 0;            // of each
     Vec3 normal = Vec3::Zero();  // of the surface met, at the present poses
+    Vec3 way = Vec3::Zero();     // of the point that met it [m]
+
+    double depth() const { return share * std::abs(normal.dot(way)); }
 };
 
 // The part of b's way along which its core is free of a, up to 1.
@@ -70,18 +73,30 @@ double free_part(const Passage& a, const Passage& b, const Vec3& from, const Vec
     return std::max(0.0, hit.fraction - kSkin * inside / -hit.normal.dot(along));
 }
 
-// Of b's way as a sees it, which turns as well.
-Excess excess_of(const Passage& a, const Passage& b) {
+// Of the way of a point of b as a sees it, which turns as well.
+Excess excess_along(const Passage& a, const Passage& b, const Vec3& before, const Vec3& now) {
     const Mat3 then = a.before.rotation.cast<double>(), to_now = a.now.rotation.cast<double>() * then.transpose();
-    const Vec3 from = b.middle(b.before);
-    const Vec3 to = a.before.position + to_now.transpose() * (b.middle(b.now) - a.now.position);
+    const Vec3& from = before;
+    const Vec3 to = a.before.position + to_now.transpose() * (now - a.now.position);
     const Vec3 along = to - from;
     const double slack = kSlack * collision::thickness(b.shape);
     if (along.norm() < slack) return {};
     collision::Hit hit;
     const double met = free_part(a, b, from, along, hit);
     if ((1 - met) * along.norm() < slack) return {};
-    return {1 - met, to_now * hit.normal};
+    return {1 - met, to_now * hit.normal, now - before};
+}
+
+// Of b's middle; of a segment between two particles also of its ends: one that hits by its end is stopped there, and
+// what keeps its length pushes it on.
+Excess excess_of(const Nodes& nodes, const Passage& a, const Passage& b) {
+    Excess most = excess_along(a, b, b.middle(b.before), b.middle(b.now));
+    if (b.collider.node_b == kNone) return most;
+    for (const uint32_t end : {b.collider.node, b.collider.node_b}) {
+        const Excess of_end = excess_along(a, b, nodes.before[end].position, nodes.motion[end].x);
+        if (of_end.depth() > most.depth()) most = of_end;
+    }
+    return most;
 }
 
 // ---------------------------------------------------------------- pairs
@@ -201,7 +216,7 @@ bool part(const Colliders& colliders, const Shapes& shapes, const Joints& joints
     const bool swapped = collision::spin_radius(shape_one, 0) < collision::spin_radius(shape_other, 0);
     const Passage a(nodes, swapped ? other : one, swapped ? shape_other : shape_one);
     const Passage b(nodes, swapped ? one : other, swapped ? shape_one : shape_other);
-    const Excess excess = excess_of(a, b);
+    const Excess excess = excess_of(nodes, a, b);
     if (!(excess.share > 0)) return false;
     if (pairs.mechanism.empty()) find_mechanisms(nodes, joints, pairs.mechanism);
     Mechanism of_a(nodes, joints, pairs.mechanism, a.collider.node);
@@ -212,7 +227,7 @@ bool part(const Colliders& colliders, const Shapes& shapes, const Joints& joints
         of_b.stay();
     } else {
         of_a.go_back(excess.share * a.way(), excess.normal);
-        of_b.go_back(excess.share * b.way(), excess.normal);
+        of_b.go_back(excess.share * excess.way, excess.normal);
     }
     return true;
 }
