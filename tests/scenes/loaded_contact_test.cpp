@@ -88,12 +88,12 @@ TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {
 
 INSTANTIATE_TEST_SUITE_P(Seed, LightWeightOverEdge, testing::Values(1, 2));
 
-// Of 16 random starts, and the link over the edge leans on it: none is caught on the rim by its end face, from where
+// Of eight random starts, and the link over the edge leans on it: none is caught on the rim by its end face, from where
 // the weight would hang free and swing on for ever.
 class LightWeightLeans : public testing::TestWithParam<const char*> {};
 
 TEST_P(LightWeightLeans, AndComesToRestWithinAMinute) {
-    constexpr int kStarts = 16;
+    constexpr int kStarts = 8;
     int rest = 0;
     for (uint64_t seed = 901; seed < 901 + kStarts; ++seed) {
         SCOPED_TRACE(seed);
@@ -112,7 +112,7 @@ TEST_P(LightWeightLeans, AndComesToRestWithinAMinute) {
         EXPECT_LE(penetration(run.world.world), 3e-3);
         rest += fastest < 0.01;
     }
-    EXPECT_GE(rest, kStarts - 2);
+    EXPECT_GE(rest, kStarts - 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ratio, LightWeightLeans, testing::Values("10", "30"),
