@@ -131,6 +131,13 @@ void note_turn(System& system, uint32_t node, const Quat& q) {
     system.shift[node + 1].dq[3] = 1;
 }
 
+// The spin of a body that turned in this substep, found for the pose that it turned from: it is that spin as seen from
+// the body. Kept in the world, what contacts changed of it since the body was moved would turn about axes of another
+// inertia (measured: thin rods and cylinders that bounce gained up to 5000 times their energy).
+Vec3 spin_after(const Pose& from, const Velocity& u, const NodeMotion& now) {
+    return now.q * (from.R.transpose() * u.w);
+}
+
 constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
 
 template <class Act>
@@ -217,13 +224,6 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
         for (uint32_t node : blocks[b].nodes)
             displace(system, nodes, node, system.correction[node + 1].v, system.correction[node + 1].w);
     }
-}
-
-// The spin of a body that turned in this substep, found for the pose that it turned from: it is that spin as seen from
-// the body. Kept in the world, what contacts changed of it since the body was moved would turn about axes of another
-// inertia (measured: thin rods and cylinders that bounce gained up to 5000 times their energy).
-Vec3 spin_after(const Pose& from, const Velocity& u, const NodeMotion& now) {
-    return now.q * (from.R.transpose() * u.w);
 }
 
 void store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <span>
 
 #include "state/levers.h"

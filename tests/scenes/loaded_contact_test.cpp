@@ -88,12 +88,12 @@ TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {
 
 INSTANTIATE_TEST_SUITE_P(Seed, LightWeightOverEdge, testing::Values(1, 2));
 
-// Of eight random starts, and the link over the edge leans on it: none is caught on the rim by its end face, from where
+// Of four random starts, and the link over the edge leans on it: none is caught on the rim by its end face, from where
 // the weight would hang free and swing on for ever.
 class LightWeightLeans : public testing::TestWithParam<const char*> {};
 
 TEST_P(LightWeightLeans, AndComesToRestWithinAMinute) {
-    constexpr int kStarts = 8;
+    constexpr int kStarts = 4;
     int rest = 0;
     for (uint64_t seed = 901; seed < 901 + kStarts; ++seed) {
         SCOPED_TRACE(seed);
