@@ -63,8 +63,12 @@ struct Best {
     float separation = -1e30f;
 };
 
+// Whether two axes look about the same way.
+bool same_way(const Vec3f& one, const Vec3f& other) { return std::fabs(one.dot(other)) > kSamePlane; }
+
 struct Axes {
     Best face, edge;
+    Best across;      // of the edges whose axes do not look the face's way
     Best separating;  // an axis further apart than the margin; the rest is unset then
 };
 
@@ -92,6 +96,8 @@ Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& pre
             return axes;
         }
         if (s > axes.edge.separation) axes.edge = {axis, s};
+        if (s > std::max(least, axes.across.separation) && !same_way(boxes.normal(axis), boxes.normal(axes.face.axis)))
+            axes.across = {axis, s};
     }
     return axes;
 }
@@ -109,12 +115,11 @@ int facing(const Boxes& boxes, const Vec3f& normal) {
 // that cross nearly in that face's plane. They are as good as another face then, and preferred to it where the pair
 // touched that way before; else a link's end face catches on the rim. kept: last frame's normal, or zero.
 bool edges_bear(const Boxes& boxes, const Axes& axes, const Vec3f& kept, const Preference& preference) {
-    const float gain = axes.edge.separation - axes.face.separation;
+    const float gain = axes.across.separation - axes.face.separation;
     if (gain <= -preference.keep) return false;
-    const auto same = [](const Vec3f& one, const Vec3f& other) { return std::fabs(one.dot(other)) > kSamePlane; };
-    const Vec3f edges = boxes.normal(axes.edge.axis);
-    if (same(edges, boxes.normal(axes.face.axis)) || !same(edges, boxes.normal(facing(boxes, edges)))) return false;
-    return same(edges, kept) || gain > preference.keep;
+    const Vec3f edges = boxes.normal(axes.across.axis);
+    if (!same_way(edges, boxes.normal(facing(boxes, edges)))) return false;
+    return same_way(edges, kept) || gain > preference.keep;
 }
 
 // The two edges that support the axis, their nearest points and the point between.
@@ -235,18 +240,22 @@ float box_box(const Pair& pair, Manifold& out) {
     }
     const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
     const Vec3f last = word & kTouching ? boxes.normal(kept) : Vec3f(Vec3f::Zero());
-    bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge) ||
-                   edges_bear(boxes, axes, last, preference);
+    Best edge = axes.edge;
+    bool on_edge = preference.edge_wins(edge.separation, axes.face.separation, was_edge);
+    if (!on_edge && edges_bear(boxes, axes, last, preference)) {
+        on_edge = true;
+        edge = axes.across;
+    }
     Manifold face;
     face_contact(pair, boxes, axes.face.axis, face);
     if (!on_edge) on_edge = preference.face_misses(deepest(face), axes.edge.separation, axes.face.separation);
     if (on_edge) {
-        edge_contact(boxes, axes.edge, out);
+        edge_contact(boxes, edge, out);
         add_face_beside(pair, boxes, out);
     } else {
         out = face;
     }
-    word = uint32_t((on_edge ? axes.edge.axis : axes.face.axis) + 1) | kTouching;
+    word = uint32_t((on_edge ? edge.axis : axes.face.axis) + 1) | kTouching;
     return 0;
 }
 

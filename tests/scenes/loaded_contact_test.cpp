@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
 // Ten links' weight swings out for more than ten seconds: at that weight the links slide little on the edge, and
 // nothing else damps it. Not an error of coarse steps: with sixteen times as many substeps it swings on as well,
 // centimetres to and fro, and is below 1 cm/s after 27 to 60 s (seeds 501 to 512, median 49). With four substeps the
-// median is 25 s, and 46 of 48 seeds are there within a minute.
+// median is 26 s, and 46 of 48 seeds are there within a minute.
 class LightWeightOverEdge : public testing::TestWithParam<uint64_t> {};
 
 TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {
