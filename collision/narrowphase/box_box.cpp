@@ -48,6 +48,13 @@ struct Boxes {
         return apart > least ? apart / std::sqrt(sine_squared) : -1e30f;
     }
     float face(int axis) const { return axis < 3 ? face_a(axis) : face_b(axis - 3); }
+    // Of an axis, without its sign; zero for parallel edges.
+    Vec3f normal(int axis) const {
+        if (axis < 3) return Vec3f::Unit(axis);
+        if (axis < kFirstEdge) return r.col(axis - 3);
+        const Vec3f n = Vec3f::Unit((axis - kFirstEdge) / 3).cross(r.col((axis - kFirstEdge) % 3));
+        return n.squaredNorm() < kParallel ? Vec3f(Vec3f::Zero()) : n.normalized();
+    }
     float size() const { return std::min(a.minCoeff(), b.minCoeff()); }
 };
 
@@ -56,8 +63,12 @@ struct Best {
     float separation = -1e30f;
 };
 
+// Whether two axes look about the same way.
+bool same_way(const Vec3f& one, const Vec3f& other) { return std::fabs(one.dot(other)) > kSamePlane; }
+
 struct Axes {
     Best face, edge;
+    Best across;      // of the edges whose axes do not look the face's way
     Best separating;  // an axis further apart than the margin; the rest is unset then
 };
 
@@ -85,8 +96,30 @@ Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& pre
             return axes;
         }
         if (s > axes.edge.separation) axes.edge = {axis, s};
+        if (s > std::max(least, axes.across.separation) && !same_way(boxes.normal(axis), boxes.normal(axes.face.axis)))
+            axes.across = {axis, s};
     }
     return axes;
+}
+
+// The face axis of either box that looks most along a normal.
+int facing(const Boxes& boxes, const Vec3f& normal) {
+    const Vec3f in_b = boxes.r.transpose() * normal;
+    int a = 0, b = 0;
+    normal.cwiseAbs().maxCoeff(&a);
+    in_b.cwiseAbs().maxCoeff(&b);
+    return std::fabs(normal[a]) >= std::fabs(in_b[b]) ? a : 3 + b;
+}
+
+// A long box that tilts over another's rim soon overlaps far beyond the face that it lay on: what bears it are edges
+// that cross nearly in that face's plane. They are as good as another face then, and preferred to it where the pair
+// touched that way before; else a link's end face catches on the rim. kept: last frame's normal, or zero.
+bool edges_bear(const Boxes& boxes, const Axes& axes, const Vec3f& kept, const Preference& preference) {
+    const float gain = axes.across.separation - axes.face.separation;
+    if (gain <= -preference.keep) return false;
+    const Vec3f edges = boxes.normal(axes.across.axis);
+    if (!same_way(edges, boxes.normal(facing(boxes, edges)))) return false;
+    return same_way(edges, kept) || gain > preference.keep;
 }
 
 // The two edges that support the axis, their nearest points and the point between.
@@ -163,15 +196,6 @@ void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out)
     move_to_a(pair.b_in_a, out);
 }
 
-// The face axis of either box that looks most along a normal.
-int facing(const Boxes& boxes, const Vec3f& normal) {
-    const Vec3f in_b = boxes.r.transpose() * normal;
-    int a = 0, b = 0;
-    normal.cwiseAbs().maxCoeff(&a);
-    in_b.cwiseAbs().maxCoeff(&b);
-    return std::fabs(normal[a]) >= std::fabs(in_b[b]) ? a : 3 + b;
-}
-
 // Points of the face next to the edges, where they cross nearly in its plane. That face need not separate best: the
 // other edge may run far under it.
 void add_face_beside(const Pair& pair, const Boxes& boxes, Manifold& out) {
@@ -215,17 +239,23 @@ float box_box(const Pair& pair, Manifold& out) {
         return axes.separating.separation;
     }
     const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
-    bool on_edge = preference.edge_wins(axes.edge.separation, axes.face.separation, was_edge);
+    const Vec3f last = word & kTouching ? boxes.normal(kept) : Vec3f(Vec3f::Zero());
+    Best edge = axes.edge;
+    bool on_edge = preference.edge_wins(edge.separation, axes.face.separation, was_edge);
+    if (!on_edge && edges_bear(boxes, axes, last, preference)) {
+        on_edge = true;
+        edge = axes.across;
+    }
     Manifold face;
     face_contact(pair, boxes, axes.face.axis, face);
     if (!on_edge) on_edge = preference.face_misses(deepest(face), axes.edge.separation, axes.face.separation);
     if (on_edge) {
-        edge_contact(boxes, axes.edge, out);
+        edge_contact(boxes, edge, out);
         add_face_beside(pair, boxes, out);
     } else {
         out = face;
     }
-    word = uint32_t((on_edge ? axes.edge.axis : axes.face.axis) + 1) | kTouching;
+    word = uint32_t((on_edge ? edge.axis : axes.face.axis) + 1) | kTouching;
     return 0;
 }
 

@@ -98,6 +98,20 @@ void add_face_beside(const PolytopePair& pair, Axis edges, float margin, Manifol
     add_beside(clipped, out);
 }
 
+bool same_way(const Vec3f& one, const Vec3f& other) { return one.dot(other) > kSamePlane; }
+
+// As of boxes: a long polytope that tilts over another's rim is borne by edges that cross nearly in the plane of the
+// face that it lay on. last: the normal along which the pair touched before, or zero.
+bool edges_bear(const PolytopePair& pair, const Separation& edges, const Separation& face, const Vec3f& last,
+                const Preference& preference) {
+    const float gain = edges.distance - face.distance;
+    if (gain <= -preference.keep) return false;
+    const Vec3f normal = pair.normal(edges.axis);
+    if (same_way(normal, pair.normal(face.axis)) || face_beside(pair, edges.axis, normal).along < kSamePlane)
+        return false;
+    return same_way(normal, last) || gain > preference.keep;
+}
+
 // Whether no axis separates by clearly more than the given one.
 bool decides(const PolytopePair& pair, Axis axis) {
     const Preference preference(pair.size());
@@ -148,11 +162,13 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const float ask = preference.ask(was_edge);
     // Where the faces lie over each other the two are at most so far apart.
     const float most = deepest(out);
-    if (std::max(most, 0.0f) <= face.distance + slack || view.decides(view.lowest(), ask, slack)) {
+    const Vec3f last = kept.touching && pair.valid(kept.axis) ? pair.normal(kept.axis) : Vec3f(Vec3f::Zero());
+    const bool other_way = last != Vec3f::Zero() && !same_way(last, pair.normal(face.axis));
+    if (!other_way && (std::max(most, 0.0f) <= face.distance + slack || view.decides(view.lowest(), ask, slack))) {
         write(face.axis, true, pair, shapes.cache);
         return 0;
     }
-    const float depth = std::max(std::min(margin, most + slack), -face.distance);
+    const float depth = std::max(std::min(margin, most + slack), -face.distance + (other_way ? preference.keep : 0.0f));
     Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
     if (edges.distance > margin) {
         out.count = 0;
@@ -160,7 +176,8 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
         return edges.distance;
     }
     if (preference.edge_wins(edges.distance, face.distance, was_edge) ||
-        preference.face_misses(deepest(out), edges.distance, face.distance)) {
+        preference.face_misses(deepest(out), edges.distance, face.distance) ||
+        edges_bear(pair, edges, face, last, preference)) {
         out.count = 0;
         face.axis = edges.axis;
         contact(pair, edges.axis, false, margin, out);

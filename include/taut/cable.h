@@ -23,7 +23,7 @@ typedef enum taut_cable_kind {
     TAUT_CABLE_PARTICLES = 0, /**< n + 1 points at the distances of n segments, which collide as capsules between their
                                    points: the cheaper one. No twist. A segment holds against pull and push.
                                    Looked for along its way as taut_body_set_continuous of both points says; what
-                                   hits a wall by an end, at 20 m/s and more, may push itself through */
+                                   hits a wall by an end stays on its side as well */
     TAUT_CABLE_LINKS = 1,     /**< n capsules tied end to end: bodies that turn, and roll on what they touch */
     TAUT_CABLE_KIND_MAX = 0x7fffffff
 } taut_cable_kind;

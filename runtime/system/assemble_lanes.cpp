@@ -1,3 +1,4 @@
+#include <cmath>
 #include <span>
 
 #include "state/levers.h"
@@ -195,22 +196,31 @@ void turn_side(const Quat& turn, const Vec3f& skin, bool rolls, float (&r)[3][kL
     p.gap0[lane] += sign * normal.dot(turned - core);
 }
 
+// An impulse that fitted the levers and masses of the last substep throws a thin body about where these have changed:
+// beyond this share of the mass along the normal it is not carried on (measured: of thin spinning cylinders that
+// hit a wall at 100 m/s one in four gained energy, up to 6 times).
+constexpr float kOtherMass = 0.2f;
+
 // What was hit already keeps the approach speed that it had.
 void renew_masses(ContactLanes& lanes, uint32_t group, const System& system, const ContactKernels& kernels) {
     const LaneGroup& g = lanes.group[group];
-    float approach[4][kLanes];
+    float approach[4][kLanes], mass[4][kLanes];
     for (uint32_t k = 0; k < g.points; ++k) {
         LanePoint& p = lanes.point[g.first_point + k];
         for (int lane = 0; lane < kLanes; ++lane) {
             approach[k][lane] = p.approach[lane];
-            p.normal_mass[lane] = p.normal_mass[lane] > 0 ? 1 : 0;  // in use
+            mass[k][lane] = p.normal_mass[lane];
+            p.normal_mass[lane] = mass[k][lane] > 0 ? 1 : 0;  // in use
         }
     }
     kernels.prepare(lanes.view(), group, group + 1, system.velocity.data(), system.inverse_mass.data());
     for (uint32_t k = 0; k < g.points; ++k) {
         LanePoint& p = lanes.point[g.first_point + k];
-        for (int lane = 0; lane < kLanes; ++lane)
+        for (int lane = 0; lane < kLanes; ++lane) {
             if (p.peak[lane] > 0) p.approach[lane] = approach[k][lane];
+            if (std::abs(p.normal_mass[lane] - mass[k][lane]) <= kOtherMass * mass[k][lane]) continue;
+            for (auto& impulse : p.impulse) impulse[lane] = 0;
+        }
     }
 }
 

@@ -23,14 +23,12 @@ taut_cable straight(const CableLab& lab, const Vec& middle, const Vec& along, in
     return lab.cable(d);
 }
 
-void launch(taut_cable cable, const Vec& velocity) {
-    for (taut_body body : bodies_of(cable)) ok(taut_body_set_velocity(body, velocity.narrow(), {0, 0, 0}));
-}
-
 struct Throw {
     const char* name;
     Wall wall;
     int segments;
+    bool loaded = false;      // by a ball of 1 kg at an end
+    bool wall_first = false;  // made before the cable
 };
 
 void PrintTo(const Throw& t, std::ostream* out) { *out << t.name; }
@@ -38,14 +36,34 @@ void PrintTo(const Throw& t, std::ostream* out) { *out << t.name; }
 struct ThrownCable : testing::TestWithParam<Throw> {};
 
 struct Outcome {
-    int lost = 0;       // of the cables, those whose middle came through
+    int lost = 0;       // of the cables, those of which any point came through
     double growth = 0;  // of the kinetic energy, at most
 };
 
-double kinetic(taut_cable cable) {
+double kinetic(const std::vector<taut_body>& bodies) {
     double sum = 0;
-    for (taut_body body : bodies_of(cable)) sum += 0.5 * mass_of(body).mass * dot(velocity(body), velocity(body));
+    for (taut_body body : bodies) sum += 0.5 * mass_of(body).mass * dot(velocity(body), velocity(body));
     return sum;
+}
+
+// Of what is over the wall, as far as a point gets that lies behind it.
+bool any_behind(const std::vector<taut_body>& bodies, double behind) {
+    return std::any_of(bodies.begin(), bodies.end(), [&](taut_body body) {
+        const Vec p = position(body);
+        return !finite(p) || (p.x > behind && std::abs(p.y) < 5.9 && std::abs(p.z) < 5.9);
+    });
+}
+
+std::vector<taut_body> cable_of(const CableLab& lab, const Throw& row, const Vec& middle, const Vec& along) {
+    constexpr double kBall = 0.05, kGap = 0.01;  // [m]
+    const double segment = row.segments == 1 ? 0.5 : 0.25;
+    const taut_cable cable = straight(lab, middle, along, row.segments, segment);
+    std::vector<taut_body> bodies = bodies_of(cable);
+    if (!row.loaded) return bodies;
+    const Vec lever = (kBall + kGap) * along;
+    bodies.push_back(lab.add({.shape = lab.sphere(kBall), .position = position(bodies.back()) + lever, .mass = 1}));
+    lab.ball(bodies[bodies.size() - 2], {}, bodies.back(), -1 * lever);
+    return bodies;
 }
 
 // 20 cables thrown at a wall.
@@ -54,47 +72,97 @@ Outcome outcome(const Throw& row, double speed) {
     Outcome out;
     for (int shot = 0; shot < 20; ++shot) {
         CableLab lab(weightless);
-        lab.add({.kind = TAUT_BODY_STATIC, .shape = shape_of(lab, row.wall)});
+        const auto add_wall = [&] { lab.add({.kind = TAUT_BODY_STATIC, .shape = shape_of(lab, row.wall)}); };
         const double angle = between(random, 0, 0.5), round = between(random, 0, 2 * kPi),
                      far = between(random, 1.2, 3);
         const Vec way(std::cos(angle), std::sin(angle) * std::cos(round), std::sin(angle) * std::sin(round));
-        const taut_cable cable =
-            straight(lab, -far * way, direction(random), row.segments, row.segments == 1 ? 0.5 : 0.25);
-        launch(cable, speed * way);
-        const double before = kinetic(cable);
+        if (row.wall_first) add_wall();
+        const std::vector<taut_body> bodies = cable_of(lab, row, -far * way, direction(random));
+        if (!row.wall_first) add_wall();
+        for (taut_body body : bodies) ok(taut_body_set_velocity(body, (speed * way).narrow(), {0, 0, 0}));
+        const double before = kinetic(bodies);
         bool passed = false;
-        for (int frame = 0; frame * lab.frame() * speed < 5; ++frame) {
+        for (int frame = 0; frame < 30 || frame * lab.frame() * speed < 5; ++frame) {
             lab.step();
-            Vec middle;
-            const auto points = points_of(cable);
-            for (const Vec& p : points) middle += 1.0 / static_cast<double>(points.size()) * p;
-            passed = passed || !finite(middle) || middle.x > 0.5 * kDiameter;
-            out.growth = std::max(out.growth, kinetic(cable) / before - 1);
+            passed = passed || any_behind(bodies, half_thickness(row.wall) + 0.5 * kDiameter);
+            out.growth = std::max(out.growth, kinetic(bodies) / before - 1);
         }
         out.lost += passed;
     }
     return out;
 }
 
-// What hits a wall by its end pushes itself on: its contact and what holds its length are not solved as one. Of those
-// that are not looked for along their way, nearly all come through at 100 m/s.
-TEST_P(ThrownCable, MostlyStaysOnItsSideOfTheWallAndGainsNoEnergy) {
-    const std::pair<double, int> most_lost[] = {{5, 0}, {20, 2}, {50, 6}, {100, 10}};
-    for (const auto& [speed, most] : most_lost) {
+// What hits a wall by its end is stopped there and pushed on by what holds its length, in the same step.
+TEST_P(ThrownCable, StaysOnItsSideOfTheWallAndGainsNoEnergy) {
+    for (double speed : kSpeeds) {
+        if (GetParam().loaded && speed > 300) continue;  // a cable on a weight that turns by more than a substep bears
         const Outcome out = outcome(GetParam(), speed);
-        EXPECT_LE(out.lost, most) << speed << " m/s";
+        EXPECT_EQ(out.lost, 0) << speed << " m/s";
         EXPECT_LE(out.growth, 0.01) << speed << " m/s";
     }
 }
 
-constexpr Throw kThrows[] = {{"segment_plate", Wall::plate, 1}, {"segment_sheet", Wall::sheet, 1},
-                             {"segment_mesh", Wall::mesh, 1},   {"segment_plane", Wall::plane, 1},
-                             {"cable_plate", Wall::plate, 6},   {"cable_sheet", Wall::sheet, 6},
-                             {"cable_mesh", Wall::mesh, 6},     {"cable_plane", Wall::plane, 6}};
+constexpr Throw kThrows[] = {{"segment_thick", Wall::thick, 1},
+                             {"segment_plate", Wall::plate, 1},
+                             {"segment_plate_made_first", Wall::plate, 1, false, true},
+                             {"segment_sheet", Wall::sheet, 1},
+                             {"segment_mesh", Wall::mesh, 1},
+                             {"segment_plane", Wall::plane, 1},
+                             {"cable_thick", Wall::thick, 6},
+                             {"cable_plate", Wall::plate, 6},
+                             {"cable_plate_made_first", Wall::plate, 6, false, true},
+                             {"cable_sheet", Wall::sheet, 6},
+                             {"cable_mesh", Wall::mesh, 6},
+                             {"cable_plane", Wall::plane, 6},
+                             {"loaded_plate", Wall::plate, 6, true},
+                             {"loaded_sheet", Wall::sheet, 6, true},
+                             {"loaded_mesh", Wall::mesh, 6, true}};
 
 std::string throw_name(const testing::TestParamInfo<Throw>& tested) { return tested.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Of, ThrownCable, testing::ValuesIn(kThrows), throw_name);
+
+struct ThrownGrain : testing::TestWithParam<Wall> {};
+
+TEST_P(ThrownGrain, StaysOnItsSideOfTheWall) {
+    constexpr double kRadius = 0.01;
+    for (double speed : kSpeeds)
+        for (const bool wall_first : {false, true}) {
+            std::mt19937 random(11);
+            int lost = 0;
+            for (int shot = 0; shot < 20; ++shot) {
+                World world(weightless);
+                const auto add_wall = [&] {
+                    world.add({.kind = TAUT_BODY_STATIC, .shape = shape_of(world, GetParam())});
+                };
+                if (wall_first) add_wall();
+                const Vec way = unit(Vec(1, between(random, -0.5, 0.5), between(random, -0.5, 0.5)));
+                taut_particle_def def;
+                taut_particle_def_init(&def);
+                def.mass = 0.05f;
+                def.position = (-between(random, 0.5, 3) * way).pos();
+                def.velocity = (speed * way).narrow();
+                def.shape = world.sphere(kRadius);
+                taut_body grain{};
+                ok(taut_world_add_particle(world.handle, &def, &grain));
+                if (!wall_first) add_wall();
+                bool passed = false;
+                for (int frame = 0; frame < 30 || frame * world.frame() * speed < 5; ++frame) {
+                    world.step();
+                    passed = passed || any_behind({grain}, half_thickness(GetParam()) + kRadius);
+                }
+                lost += passed;
+            }
+            EXPECT_EQ(lost, 0) << speed << " m/s";
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(At, ThrownGrain,
+                         testing::Values(Wall::thick, Wall::plate, Wall::sheet, Wall::mesh, Wall::plane));
+
+void launch(taut_cable cable, const Vec& velocity) {
+    for (taut_body body : bodies_of(cable)) ok(taut_body_set_velocity(body, velocity.narrow(), {0, 0, 0}));
+}
 
 // A free segment takes along what hits it about its middle, and momentum is kept.
 TEST(ThinCable, StopsABall) {

@@ -22,11 +22,13 @@ inline Vec direction(std::mt19937& random) {
 
 enum class Wall { thick, plate, sheet, mesh, plane };
 
+inline double half_thickness(Wall wall) {  // [m]
+    return wall == Wall::thick ? 0.2 : wall == Wall::plate ? 0.01 : wall == Wall::sheet ? 0.001 : 0;
+}
+
 // Across x = 0; bodies come from the side of negative x.
 inline taut_shape shape_of(const World& world, Wall wall) {
-    if (wall == Wall::thick) return world.box({0.2, 6, 6});
-    if (wall == Wall::plate) return world.box({0.01, 6, 6});
-    if (wall == Wall::sheet) return world.box({0.001, 6, 6});
+    if (half_thickness(wall) > 0) return world.box({half_thickness(wall), 6, 6});
     if (wall == Wall::plane) return world.plane({-1, 0, 0});
     Triangles triangles;
     for (int i = -6; i < 6; ++i)

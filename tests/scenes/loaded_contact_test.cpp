@@ -41,7 +41,7 @@ TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdge) {
     const auto weight = static_cast<size_t>(run.scene.roles.chain->bodies.back());
     EXPECT_GT(run.body(weight).position.y, 1) << "slid off";
     const bool light = std::string(GetParam().ratio) == "10";  // swings on, see below
-    EXPECT_LT(norm(run.body(weight).velocity), light ? 0.3 : 0.01);
+    EXPECT_LT(norm(run.body(weight).velocity), light ? 0.1 : 0.01);
     RecordProperty("gap_mm", std::to_string(1e3 * gap));
     RecordProperty("penetration_mm", std::to_string(1e3 * penetration(run.world.world)));
 }
@@ -56,9 +56,8 @@ INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
 
 // Ten links' weight swings out for more than ten seconds: at that weight the links slide little on the edge, and
 // nothing else damps it. Not an error of coarse steps: with sixteen times as many substeps it swings on as well,
-// centimetres to and fro, and dies down further in the ten seconds that follow; below 1 cm/s it is after 22 to 60 (seeds
-// 1 to 4). With four substeps 9 of 36 are there within a minute. Below the others a link juts out over the edge, its
-// corner on that of the box, and the weight hangs free: it swings on at up to 0.3 m/s.
+// centimetres to and fro, and is below 1 cm/s after 27 to 60 s (seeds 501 to 512, median 49). With four substeps the
+// median is 26 s, and 46 of 48 seeds are there within a minute.
 class LightWeightOverEdge : public testing::TestWithParam<uint64_t> {};
 
 TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {
@@ -88,6 +87,36 @@ TEST_P(LightWeightOverEdge, SwingsOnInFineStepsTooAndDiesDown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seed, LightWeightOverEdge, testing::Values(1, 2));
+
+// Of four random starts, and the link over the edge leans on it: none is caught on the rim by its end face, from where
+// the weight would hang free and swing on for ever.
+class LightWeightLeans : public testing::TestWithParam<const char*> {};
+
+TEST_P(LightWeightLeans, AndComesToRestWithinAMinute) {
+    constexpr int kStarts = 4;
+    int rest = 0;
+    for (uint64_t seed = 901; seed < 901 + kStarts; ++seed) {
+        SCOPED_TRACE(seed);
+        scenes::Options options;
+        options.seed = seed;
+        RunningScene run(scenes::make_scene(std::string("chain_over_edge_r") + GetParam(), options));
+        const auto& links = run.scene.roles.chain->bodies;
+        double fastest = 0;
+        for (int frame = 0; frame < 3600; ++frame) {
+            run.step();
+            const double speed = norm(run.body(static_cast<size_t>(links.back())).velocity);
+            if (frame >= 3540) fastest = std::max(fastest, speed);
+        }
+        const Quat turn = run.body(static_cast<size_t>(links[10])).rotation;
+        EXPECT_LT(turn.rotate({1, 0, 0}).y, -0.7) << "caught on the rim";
+        EXPECT_LE(penetration(run.world.world), 3e-3);
+        rest += fastest < 0.01;
+    }
+    EXPECT_GE(rest, kStarts - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ratio, LightWeightLeans, testing::Values("10", "30"),
+                         [](const auto& tested) { return std::string("r") + tested.param; });
 
 // Drag of 2 / s, applied by the host as forces.
 TEST(LightWeightInDrag, ComesToRestOnTheEdge) {

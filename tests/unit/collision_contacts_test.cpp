@@ -35,6 +35,13 @@ Shape cube_hull(float half) {
     return oracle::hull(points);
 }
 
+Shape hull_of(const Shape& box) {
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 8; ++i)
+        points.push_back(box.size.cwiseProduct(Vec3f(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+    return oracle::hull(points);
+}
+
 // Every expected point is there, in any order.
 void expect_points(const Manifold& m, const std::vector<Vec3f>& expected, float tolerance) {
     ASSERT_EQ(m.count, int(expected.size()));
@@ -100,12 +107,6 @@ TEST(CollisionContacts, EdgeAcrossEdgeIsOnePoint) {
 // the table's own sides do, yet it is that side which lies on the rim, from one of its long edges to the other.
 TEST(CollisionContacts, TwistedBeamOverALongRimTouchesOnBothSides) {
     const Shape boxes[2] = {oracle::box(4, 2.5f, 2), oracle::box(0.15f, 0.03f, 0.03f)};
-    const auto hull_of = [](const Shape& box) {
-        std::vector<Vec3f> points;
-        for (int i = 0; i < 8; ++i)
-            points.push_back(box.size.cwiseProduct(Vec3f(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
-        return oracle::hull(points);
-    };
     const Shape hulls[2] = {hull_of(boxes[0]), hull_of(boxes[1])};
     for (const Shape* shape : {boxes, hulls})
         for (double steep : {20.0, 45.0, 64.0, 75.0})
@@ -131,6 +132,29 @@ TEST(CollisionContacts, TwistedBeamOverALongRimTouchesOnBothSides) {
                     EXPECT_GT(most, 0.025f);
                 }
             }
+}
+
+// A link that comes down on a table with its end at the rim tilts over it, twisted a little and some tenths of a
+// millimetre deep. It overlaps the table less beyond the rim's side than below its top then, but lies on the rim.
+TEST(CollisionContacts, LinkThatTiltsOverTheRimDoesNotCatchOnIt) {
+    constexpr double kHalf = 0.15, kThick = 0.03;
+    const Shape boxes[2] = {oracle::box(4, 2.5f, 2), oracle::box(float(kHalf), float(kThick), float(kThick))};
+    for (const bool hulls : {false, true}) {
+        const Shape table = hulls ? hull_of(boxes[0]) : boxes[0], link = hulls ? hull_of(boxes[1]) : boxes[1];
+        PairCache cache;
+        Random random(5);
+        for (int step = 0; step < 40; ++step) {
+            const double angle = 0.002 * step, twist = 0.004 * random.uniform(-1, 1);
+            const Mat3f rotation = turned(Vec3(0, 0, -angle)) * turned(Vec3(twist, 0, 0));
+            // The end's middle stays over the rim, at x = 0 and y = 0, once it has come down.
+            const Vec3 end(0, kThick + (step == 0 ? 1e-3 : -3e-4), 0);
+            const Placement at = {end + rotation.cast<double>() * Vec3(kHalf, 0, 0), rotation};
+            Manifold m;
+            collide(table, {Vec3(-4, -2.5, 0), kUpright}, link, at, kMargin, cache, m);
+            ASSERT_GT(m.count, 0) << step;
+            EXPECT_GT(m.normal.y(), 0.9f) << (hulls ? "hulls, " : "boxes, ") << angle << " rad";
+        }
+    }
 }
 
 TEST(CollisionContacts, CapsuleLiesOnTwoPoints) {
