@@ -63,7 +63,7 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
         of_b.stay(round);
     } else {
         of_a.go_back(excess.share * pair.a.way(), excess.normal, round);
-        of_b.go_back(excess.share * pair.b.way(), excess.normal, round);
+        of_b.go_back(excess.share * excess.way, excess.normal, round);
     }
     return true;
 }
@@ -93,14 +93,14 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
             for (uint32_t i = begin; i < end; ++i) {
                 NearPair& near = pairs.near[pairs.picked[i]];
                 near.passed = (round == 1 || put_back(mechanisms, near.ends(colliders), round - 1)) &&
-                              excess_of(Couple(nodes, colliders, shapes, near)).share > 0;
+                              excess_of(nodes, Couple(nodes, colliders, shapes, near)).share > 0;
             }
         });
         for (const uint32_t i : pairs.picked) {
             const NearPair& near = pairs.near[i];
             if (!near.passed && !put_back(mechanisms, near.ends(colliders), round)) continue;
             const Couple pair(nodes, colliders, shapes, near);
-            again = part(pair, excess_of(pair), joints, round, mechanisms, nodes) || again;
+            again = part(pair, excess_of(nodes, pair), joints, round, mechanisms, nodes) || again;
         }
     }
 }

@@ -56,20 +56,31 @@ double free_part(const Passage& a, const Passage& b, const Vec3& from, const Vec
     return std::max(0.0, hit.fraction - kSkin * inside / -hit.normal.dot(along));
 }
 
-}  // namespace
-
-Excess excess_of(const Couple& couple) {
+// Of a point of b, from before to now.
+Excess excess_along(const Couple& couple, const Vec3& before, const Vec3& now) {
     const Passage &a = couple.a, &b = couple.b;
     const Mat3 then = a.before.rotation.cast<double>(), to_now = a.now.rotation.cast<double>() * then.transpose();
-    const Vec3 from = b.middle(b.before);
-    const Vec3 to = a.before.position + to_now.transpose() * (b.middle(b.now) - a.now.position);
-    const Vec3 along = to - from;
+    const Vec3 to = a.before.position + to_now.transpose() * (now - a.now.position);
+    const Vec3 along = to - before;
     const double slack = kSlack * collision::thickness(b.record.shape);
-    if (along.norm() < slack || !comes_by(a, collision::thickness(b.record.shape), from, along)) return {};
+    if (along.norm() < slack || !comes_by(a, collision::thickness(b.record.shape), before, along)) return {};
     collision::Hit hit;
-    const double met = free_part(a, b, from, along, hit);
+    const double met = free_part(a, b, before, along, hit);
     if ((1 - met) * along.norm() < slack) return {};
-    return {1 - met, to_now * hit.normal};
+    return {1 - met, to_now * hit.normal, now - before};
+}
+
+}  // namespace
+
+Excess excess_of(const Nodes& nodes, const Couple& couple) {
+    const Passage& b = couple.b;
+    Excess most = excess_along(couple, b.middle(b.before), b.middle(b.now));
+    if (b.collider.node_b == kNone) return most;
+    for (const uint32_t end : {b.collider.node, b.collider.node_b}) {
+        const Excess of_end = excess_along(couple, nodes.before[end].position, nodes.motion[end].x);
+        if (of_end.depth() > most.depth()) most = of_end;
+    }
+    return most;
 }
 
 Vec3 way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {

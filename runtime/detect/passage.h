@@ -1,6 +1,8 @@
 // Two colliders in a step, from where they were to where they are, and how far one passed the other.
 #pragma once
 
+#include <cmath>
+
 #include "collision/collide.h"
 #include "state/colliders.h"
 #include "state/pairs.h"
@@ -46,9 +48,13 @@ private:
 struct Excess {
     double share = 0;            // of each
     Vec3 normal = Vec3::Zero();  // of the surface met, at the present poses
+    Vec3 way = Vec3::Zero();     // of the point of b that met it [m]
+
+    double depth() const { return share * std::abs(normal.dot(way)); }
 };
 
-// Of b's core, whose way is as a sees it, which turns as well.
-Excess excess_of(const Couple& couple);
+// Of b's core, whose way is as a sees it, which turns as well; about its middle, and of a segment between two particles
+// also about its ends: one that hits by its end is stopped there, and what keeps its length pushes it on.
+Excess excess_of(const Nodes& nodes, const Couple& couple);
 
 }  // namespace taut
