@@ -189,12 +189,15 @@ public:
         turn(r, angle_of(s.cosine, s.sine), -s.axis);
     }
 
+    void outer_turn(int r, const OuterTurn<V>& a, const V& q) {
+        const F one = F::all(1), s = unlocked(dot(a.axis, q));
+        turn(r, angle_of(dot(a.sine, q), dot(a.cosine, q)), (one / (one - s * s)) * (a.axis - s * q));
+    }
+
     void outer_turns(int first, const OuterTurn<V>& a, int last, const OuterTurn<V>& b) {
-        const F one = F::all(1), lock = F::all(kLock);
+        const F one = F::all(1);
         const V &p = a.axis, &q = b.axis;
-        F s = dot(p, q);
-        s = F::if_greater(lock, one - s * s, F::all(1 - kLock) * s, s);
-        const F inverse = one / (one - s * s);
+        const F s = unlocked(dot(p, q)), inverse = one / (one - s * s);
         turn(first, angle_of(dot(a.sine, q), dot(a.cosine, q)), inverse * (p - s * q));
         turn(last, angle_of(dot(p, b.sine), dot(p, b.cosine)), inverse * (q - s * p));
     }
@@ -214,6 +217,7 @@ private:
         V axis;
     };
 
+    static F unlocked(const F& s) { return F::if_greater(F::all(kLock), F::all(1) - s * s, F::all(1 - kLock) * s, s); }
     // As half_way().
     V half_way() const {
         const V sum = F::all(0.5f) * (f_.xa() + f_.xb());

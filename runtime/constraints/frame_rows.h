@@ -183,6 +183,11 @@ public:
         turn(r, {angle_of(a.dot(b), a.cross(b).norm()), -swing_axis(a, b, across)});
     }
 
+    // The first of three turns alone, of an axis q of body b.
+    void outer_turn(int r, const OuterTurn<Vec3>& a, const Vec3& q) {
+        turn(r, {angle_of(a.sine.dot(q), a.cosine.dot(q)), OuterTurns(a.axis, q).first});
+    }
+
     void outer_turns(int first, const OuterTurn<Vec3>& a, int last, const OuterTurn<Vec3>& b) {
         const OuterTurns t(a.axis, b.axis);
         turn(first, {angle_of(a.sine.dot(t.q), a.cosine.dot(t.q)), t.first});

@@ -95,6 +95,12 @@ public:
     void rise(int r, const Vec3& a, const Vec3& b, const Vec3& across) { bend(a, b, across, -lambda_[r]); }
 
     // With m = q x p:  sym(dg/dw_b) = sym((2 s g - q) m^T)/k of the first, sym((2 s g - p) m^T)/k of the last
+    void outer_turn(int r, const OuterTurn<Vec3>& a, const Vec3& q) {
+        const OuterTurns t(a.axis, q);
+        torque_ += lambda_[r] * t.first;
+        s_ += dyad(-lambda_[r] / t.k * (2 * t.s * t.first - t.q), t.q.cross(t.p), part_);
+    }
+
     void outer_turns(int first, const OuterTurn<Vec3>& a, int last, const OuterTurn<Vec3>& b) {
         const OuterTurns t(a.axis, b.axis);
         const Vec3 u = lambda_[first] * (2 * t.s * t.first - t.q) + lambda_[last] * (2 * t.s * t.last - t.p);
