@@ -91,7 +91,8 @@ TEST_P(EveryFrameType, PositiveStiffnessIsOfTheOrderOfTheExactOne) {
         const Eigen::SelfAdjointEigenSolver<Matrix> bound(symmetric(at.stiffness(Curvature::positive)));
         worst = std::max(worst, bound.eigenvalues().maxCoeff() / exact.eigenvalues().cwiseAbs().maxCoeff());
     }
-    EXPECT_LE(worst, slides(*GetParam()) ? 4 : 2);
+    // Those of a cone's swing and its direction, which are held one by one, cancel in part.
+    EXPECT_LE(worst, slides(*GetParam()) || GetParam() == &kConeTwist ? 4 : 2);
 }
 
 // Anchor rows are a ball joint: a chain's tension is as stiff whatever joints it is made of.
