@@ -158,6 +158,6 @@ Scene bridge(const Strength& strength, const Options& options) {
 
 Scene build_bridge(double, double, const Options& options) { return bridge({}, options); }
 
-Scene build_bridge_breaking(double, double, const Options& options) { return bridge({45e3, 3e6, 800e3}, options); }
+Scene build_bridge_breaking(double, double, const Options& options) { return bridge({45e3, 3e6, 500e3}, options); }
 
 }  // namespace scenes

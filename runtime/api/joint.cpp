@@ -134,7 +134,7 @@ taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axi
         if (!check) return check.result();
         const Axis wanted = make_axis(place, *def, inverse_mass);
         if (!same(wanted, joint.axis[place.row])) wake_ends(world, joint);
-        change_axis(joint, place.row, wanted);
+        change_axis(joint, place, wanted);
         return TAUT_OK;
     });
 }

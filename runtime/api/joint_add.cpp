@@ -167,11 +167,11 @@ void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, 
     if (kind.axes.empty()) return;
     const JointReading reading = read_joint(world.nodes, joint);
     for (size_t i = 0; i < kind.axes.size(); ++i)  // which rows are locked decides about the masses of the others
-        joint.axis[kind.axes[i].row].mode = make_axis(kind.axes[i], *axes[i].def, 1).mode;
+        change_axis(joint, kind.axes[i], make_axis(kind.axes[i], *axes[i].def, 1));
     for (size_t i = 0; i < kind.axes.size(); ++i) {
         const JointAxis& place = kind.axes[i];
         const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
-        change_axis(joint, place.row, make_axis(place, *axes[i].def, inverse_mass));
+        change_axis(joint, place, make_axis(place, *axes[i].def, inverse_mass));
     }
 }
 
@@ -234,7 +234,7 @@ Check& set_distance(Check& check, const World& world, const taut_distance_joint_
     axis.limit_damping = static_cast<float>(joint.damping);
     set_drive(axis, def.drive, inverse_mass);
     axis.friction = def.friction;
-    change_axis(joint, 0, axis);
+    change_axis(joint, {0}, axis);
     return check;
 }
 

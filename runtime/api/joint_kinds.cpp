@@ -6,7 +6,7 @@ namespace taut {
 namespace {
 
 constexpr JointAxis kFirst[] = {{0}}, kAngle[] = {{5}}, kSlideAngle[] = {{0}, {5}}, kTwoAngles[] = {{4}, {5}},
-                    kSwingTwist[] = {{3, true}, {4}}, kSix[] = {{0}, {1}, {2}, {3}, {4}, {5}};
+                    kSwingTwist[] = {{3, true, 5}, {4}}, kSix[] = {{0}, {1}, {2}, {3}, {4}, {5}};
 
 // In the order of taut_joint_kind.
 const JointKind kKinds[] = {

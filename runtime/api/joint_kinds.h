@@ -13,6 +13,7 @@ namespace taut {
 struct JointAxis {
     int row;
     bool swing = false;  // a coordinate that is never negative: has an upper stop alone, and no drive
+    int around = -1;     // of a swing: the row of its direction, which its friction holds too
 };
 
 struct JointKind {

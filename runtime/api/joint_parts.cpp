@@ -155,7 +155,9 @@ Axis make_axis(const JointAxis& place, const taut_axis_def& def, double inverse_
     return axis;
 }
 
-void change_axis(Joint& joint, int row, const Axis& axis) {
+namespace {
+
+void change_row(Joint& joint, int row, const Axis& axis) {
     Axis& now = joint.axis[row];
     AxisMemory& memory = joint.memory[row];
     if (now.mode != axis.mode || now.lower != axis.lower || now.upper != axis.upper) {
@@ -165,6 +167,18 @@ void change_axis(Joint& joint, int row, const Axis& axis) {
     if (!has_drive(axis)) memory.drive = 0;
     if (axis.friction == 0) memory.friction = 0;
     now = axis;
+}
+
+}  // namespace
+
+void change_axis(Joint& joint, const JointAxis& place, const Axis& axis) {
+    change_row(joint, place.row, axis);
+    if (place.around >= 0) {
+        Axis around;
+        around.mode = AxisMode::free;
+        around.friction = axis.friction;
+        change_row(joint, place.around, around);
+    }
     joint.plain = true;
     for (int r = 0; r < joint.type->rows; ++r) joint.plain = joint.plain && is_locked(joint, r);
 }

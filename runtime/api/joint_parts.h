@@ -81,8 +81,8 @@ Spring spring_of(double frequency, double damping_ratio, double inverse_mass);
 void set_drive(Axis& axis, const taut_drive& drive, double inverse_mass);
 // The axis that a checked def asks for. inverse_mass: of its row, see held_inverse_mass_of().
 Axis make_axis(const JointAxis& place, const taut_axis_def& def, double inverse_mass);
-// Changes one row and what it carries.
-void change_axis(Joint& joint, int row, const Axis& axis);
+// Changes an axis' rows and what they carry.
+void change_axis(Joint& joint, const JointAxis& place, const Axis& axis);
 
 // Of what a joint breaks at: 0 stands for never.
 inline double or_never(float threshold) { return threshold == 0 ? std::numeric_limits<double>::infinity() : threshold; }

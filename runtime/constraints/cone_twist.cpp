@@ -2,6 +2,7 @@
 //   0-2  p_b - p_a, world axes                   [m]    locked
 //   3    swing: angle between X_a and X_b        [rad]  in [0, pi]; its direction at 0 is Y_a
 //   4    twist from A to B about X               [rad]  in (-pi, pi]; swing-twist decomposition
+//   5    azimuth of X_b about X_a from Y_a       [rad]  in (-pi, pi], any where there is no swing; for friction alone
 #include "constraints/frame_joint.h"
 
 namespace taut {
@@ -13,6 +14,7 @@ struct ConeTwist {
         out.anchors();
         out.swing(3, f.xa(), f.xb(), f.ya());
         out.twist(4);
+        out.outer_turn(5, {f.xa(), f.za(), f.ya()}, f.xb());
     }
 };
 
@@ -24,6 +26,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kConeTwist = frame_joint<ConeTwist, 5>("cone_twist", sample);
+const ConstraintType kConeTwist = frame_joint<ConeTwist, 6>("cone_twist", sample);
 
 }  // namespace taut

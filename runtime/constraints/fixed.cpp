@@ -1,7 +1,6 @@
 // Fixed joint.
-//   0-2  p_b - p_a, world axes                                     [m]    locked
-//   3-5  sin(angle) times the axis of B in A, components of both   [1]    locked; the rotation vector to first order
-// Zero at 180 degrees too, nowhere between.
+//   0-2  p_b - p_a, world axes                             [m]    locked
+//   3-5  4 tan(angle/4) times the axis of B in A, of both  [rad]  locked; the rotation vector to first order
 #include "constraints/frame_joint.h"
 
 namespace taut {

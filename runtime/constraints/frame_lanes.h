@@ -80,6 +80,13 @@ public:
     const V& yb() const { return b_.y; }
     const V& zb() const { return b_.z; }
 
+    // sigma, as half_tangents().
+    V half_tangents() const {
+        const QuatLanes<F> q = QuatLanes<F>{-turn_a_.v, turn_a_.w} * turn_b_;
+        const F zero = F::all(0), one = F::all(1);
+        return (one / F::if_greater(zero, q.w, q.w - one, q.w + one)) * q.v;
+    }
+
     V ra, rb, d;
 
 private:
@@ -98,8 +105,10 @@ private:
         : ra(a.q.turn(load(joint.anchor[0]))),
           rb(b.q.turn(load(joint.anchor[1]))),
           d(load(joint.apart) + (b.dx - a.dx) + (rb - ra)),
-          a_(a.q * frame(joint, 0)),
-          b_(b.q * frame(joint, 1)) {}
+          turn_a_(a.q * frame(joint, 0)),
+          turn_b_(b.q * frame(joint, 1)),
+          a_(turn_a_),
+          b_(turn_b_) {}
 
     static V load(const float (&from)[3][kLanes]) { return {F::load(from[0]), F::load(from[1]), F::load(from[2])}; }
     static QuatLanes<F> frame(const LaneFrames& joint, int end) {
@@ -107,6 +116,7 @@ private:
         return {{F::load(q[0]), F::load(q[1]), F::load(q[2])}, F::load(q[3])};
     }
 
+    QuatLanes<F> turn_a_, turn_b_;
     AxesLanes<F> a_, b_;
 };
 
@@ -143,26 +153,30 @@ public:
     }
 
     void alignment(int r) {
-        const F half = F::all(0.5f);
-        const V a[3] = {f_.xa(), f_.ya(), f_.za()}, b[3] = {f_.xb(), f_.yb(), f_.zb()};
-        for (int k = 0; k < 3; ++k) {
-            const int i = (k + 1) % 3, j = (k + 2) % 3;
-            turn(r + k, half * (dot(a[j], b[i]) - dot(a[i], b[j])), half * (cross(b[i], a[j]) - cross(b[j], a[i])));
-        }
+        const F two = F::all(2);
+        const V axis[3] = {f_.xa(), f_.ya(), f_.za()}, local = f_.half_tangents();
+        const F sigma[3] = {local.x, local.y, local.z}, along = F::all(1) - dot(local, local);
+        const V turned = sigma[0] * axis[0] + sigma[1] * axis[1] + sigma[2] * axis[2];
+        for (int k = 0; k < 3; ++k)
+            turn(r + k, F::all(4) * sigma[k], along * axis[k] + two * (cross(turned, axis[k]) + sigma[k] * turned));
     }
 
     void axis_alignment(int r) {
-        misalignment(r, f_.ya(), f_.xb());
-        misalignment(r + 1, f_.za(), f_.xb());
+        const F one = F::all(1), two = F::all(2);
+        const V m = half_way(), xb = two * m - f_.xa();
+        const F w = F::sqrt(dot(m, m)), h = two / (w + w * w);
+        const F slope = (F::all(-0.5f) * (one + w + w)) / (w * w * w * ((one + w) * (one + w)));
+        const V e[2] = {f_.ya(), f_.za()};
+        for (int k = 0; k < 2; ++k) {
+            const F y = dot(e[k], xb);
+            turn(r + k, h * y, cross(xb, h * e[k] + slope * y * f_.xa()));
+        }
     }
 
-    void misalignment(int r, const V& a, const V& b) { turn(r, dot(a, b), cross(b, a)); }
-
     void twist(int r) {
-        const F one = F::all(1), reversed = F::all(kReversedLanes), n = one + dot(f_.xa(), f_.xb());
-        const V sum = (one / F::max(n, reversed)) * (f_.xa() + f_.xb());
+        const V m = half_way();
         const F y = dot(f_.yb(), f_.za()) - dot(f_.zb(), f_.ya()), x = dot(f_.ya(), f_.yb()) + dot(f_.za(), f_.zb());
-        turn(r, angle_of(y, x), if_greater(n, reversed, sum, f_.xa()));
+        turn(r, angle_of(y, x), (F::all(1) / dot(m, m)) * m);
     }
 
     void swing(int r, const V& a, const V& b, const V& across) {
@@ -175,19 +189,22 @@ public:
         turn(r, angle_of(s.cosine, s.sine), -s.axis);
     }
 
+    void outer_turn(int r, const OuterTurn<V>& a, const V& q) {
+        const F one = F::all(1), s = unlocked(dot(a.axis, q));
+        turn(r, angle_of(dot(a.sine, q), dot(a.cosine, q)), (one / (one - s * s)) * (a.axis - s * q));
+    }
+
     void outer_turns(int first, const OuterTurn<V>& a, int last, const OuterTurn<V>& b) {
-        const F one = F::all(1), lock = F::all(kLock);
+        const F one = F::all(1);
         const V &p = a.axis, &q = b.axis;
-        F s = dot(p, q);
-        s = F::if_greater(lock, one - s * s, F::all(1 - kLock) * s, s);
-        const F inverse = one / (one - s * s);
+        const F s = unlocked(dot(p, q)), inverse = one / (one - s * s);
         turn(first, angle_of(dot(a.sine, q), dot(a.cosine, q)), inverse * (p - s * q));
         turn(last, angle_of(dot(p, b.sine), dot(p, b.cosine)), inverse * (q - s * p));
     }
 
 private:
     // Below what floats tell from 0 no axis is known.
-    static constexpr float kReversedLanes = 1e-6f, kParallel = 1e-6f, kLock = 1e-5f;
+    static constexpr float kParallel = 1e-6f, kLock = 1e-5f;
 
     struct Swing {
         Swing(const V& a, const V& b, const V& across) : cosine(dot(a, b)) {
@@ -199,6 +216,15 @@ private:
         F cosine, sine;
         V axis;
     };
+
+    static F unlocked(const F& s) { return F::if_greater(F::all(kLock), F::all(1) - s * s, F::all(1 - kLock) * s, s); }
+    // As half_way().
+    V half_way() const {
+        const V sum = F::all(0.5f) * (f_.xa() + f_.xb());
+        const F size = F::sqrt(dot(sum, sum)), reversed = F::all(float(kReversed)), least = F::all(kParallel);
+        const V bent = if_greater(size, least, (reversed / F::max(size, least)) * sum, reversed * f_.ya());
+        return if_greater(size, reversed, sum, bent);
+    }
 
     static V if_greater(const F& a, const F& b, const V& yes, const V& no) {
         return {F::if_greater(a, b, yes.x, no.x), F::if_greater(a, b, yes.y, no.y), F::if_greater(a, b, yes.z, no.z)};

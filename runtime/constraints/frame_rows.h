@@ -38,29 +38,60 @@ struct FramePair {
 
 // A coordinate of the relative rotation.
 struct Turn {
-    double value;   // C [rad, or 1 for misalignments]
+    double value;   // C [rad]
     Vec3 gradient;  // g
 };
 
-// Misalignment of two axes that ought to be perpendicular.  C = a . b
-inline Turn misalignment(const Vec3& a, const Vec3& b) { return {a.dot(b), b.cross(a)}; }
-
-// Misalignment of the frames about axis k of three, i and j being the next two.  C = (a_j . b_i - a_i . b_j)/2, which
-// is component k of sin(angle) times the axis of the relative rotation: zero at 0 and 180 degrees only.
-inline Turn frame_misalignment(const FramePair& f, int k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    return {0.5 * (f.a.col(j).dot(f.b.col(i)) - f.a.col(i).dot(f.b.col(j))),
-            0.5 * (f.b.col(i).cross(f.a.col(j)) - f.b.col(j).cross(f.a.col(i)))};
+// The relative rotation by 4 sigma, sigma = tan(theta/4) n for the angle theta about n: v/(1 + w) of its quaternion (w,
+// v) with w >= 0 (modified Rodrigues parameters). It is the rotation vector to first order and grows up to half a turn,
+// where it is 4: zero where the frames coincide and nowhere else.  For axis k of A, sigma in the world's axes:
+//   C = 4 sigma_k;  g = (1 - s^2) A_k + 2 sigma x A_k + 2 sigma_k sigma,  s = |sigma|
+// which is 1 + s^2 times axis k of the frame half-way from A to B: rows are as independent at any angle.
+inline Vec3 half_tangents(const FramePair& f) {  // sigma, the same in A and B
+    const Quat q(Mat3(f.a.transpose() * f.b));
+    return q.vec() / (q.w() < 0 ? q.w() - 1 : q.w() + 1);
+}
+inline Turn alignment(const FramePair& f, const Vec3& sigma, int k) {
+    const Vec3 axis = f.a.col(k), turned = f.a * sigma;
+    return {4 * sigma[k], (1 - sigma.squaredNorm()) * axis + 2 * turned.cross(axis) + 2 * sigma[k] * turned};
 }
 
-constexpr double kReversed = 1e-12;  // of 1 + X_a . X_b: where the axes oppose each other there is no twist
+// Of cos(c/2) for an angle c between axes: nearer to opposed than this, within 0.6 degrees, they are taken to be that
+// far from it, towards Y_a if nothing else is known. What turns about half-way axes is without bound there.
+constexpr double kReversed = 5e-3;
+
+// Half-way from X_a to X_b, of length cos(c/2).
+inline Vec3 half_way(const FramePair& f) {
+    const Vec3 sum = 0.5 * (f.xa() + f.xb());
+    const double size = sum.norm();
+    if (size > kReversed) return sum;
+    return kReversed * (size > 1e-12 ? Vec3(sum / size) : Vec3(f.ya()));
+}
+
+// X_b along X_a, by 4 tan(c/4) along the swing's direction from X_a: zero where they coincide and nowhere else.
+//   C = h e . X_b with e = Y_a, Z_a;  h = 2/(w + w^2),  w = cos(c/2) = sqrt((1 + X_a . X_b)/2)
+//   g = X_b x (h e + h' (e . X_b) X_a),  h' = dh/d(X_a . X_b)
+struct AxisAlignment {
+    explicit AxisAlignment(const FramePair& f) : AxisAlignment(f.xa(), half_way(f)) {}
+    AxisAlignment(const Vec3& x, const Vec3& m) : xa(x), xb(2 * m - x) {
+        const double w = m.norm(), a = (1 + 2 * w) / (w * w * w * (1 + w) * (1 + w));
+        h = 2 / (w + w * w);
+        slope = -0.5 * a;
+        bend = a / (8 * w) * (3 / w + 2 / (1 + w) - 2 / (1 + 2 * w));
+    }
+    Turn along(const Vec3& e) const {
+        const double y = e.dot(xb);
+        return {h * y, xb.cross(h * e + slope * y * xa)};
+    }
+    Vec3 xa, xb;
+    double h, slope, bend;  // h, h', h''
+};
 
 // Twist from A to B about X, that of the swing-twist decomposition.
 //   C = atan2(Y_b . Z_a - Z_b . Y_a, Y_a . Y_b + Z_a . Z_b) = 2 atan2(q_x, q_w);  g = (X_a + X_b) / (1 + X_a . X_b)
 inline Vec3 twist_axis(const FramePair& f) {
-    const double n = 1 + f.xa().dot(f.xb());
-    if (n < kReversed) return f.xa();
-    return (f.xa() + f.xb()) / n;
+    const Vec3 m = half_way(f);
+    return m / m.squaredNorm();
 }
 inline Turn twist(const FramePair& f) {
     return {angle_of(f.yb().dot(f.za()) - f.zb().dot(f.ya()), f.ya().dot(f.yb()) + f.za().dot(f.zb())), twist_axis(f)};
@@ -133,22 +164,28 @@ public:
 
     // Rows r to r+2: the frames coincide.
     void alignment(int r) {
-        for (int k = 0; k < 3; ++k) turn(r + k, frame_misalignment(f_, k));
+        const Vec3 sigma = half_tangents(f_);
+        for (int k = 0; k < 3; ++k) turn(r + k, taut::alignment(f_, sigma, k));
     }
 
     // Rows r and r+1: X_b along X_a.
     void axis_alignment(int r) {
-        misalignment(r, f_.ya(), f_.xb());
-        misalignment(r + 1, f_.za(), f_.xb());
+        const AxisAlignment x(f_);
+        turn(r, x.along(f_.ya()));
+        turn(r + 1, x.along(f_.za()));
     }
 
-    void misalignment(int r, const Vec3& a, const Vec3& b) { turn(r, taut::misalignment(a, b)); }
     void twist(int r) { turn(r, taut::twist(f_)); }
     void swing(int r, const Vec3& a, const Vec3& b, const Vec3& across) { turn(r, taut::swing(a, b, across)); }
 
     // pi/2 - swing
     void rise(int r, const Vec3& a, const Vec3& b, const Vec3& across) {
         turn(r, {angle_of(a.dot(b), a.cross(b).norm()), -swing_axis(a, b, across)});
+    }
+
+    // The first of three turns alone, of an axis q of body b.
+    void outer_turn(int r, const OuterTurn<Vec3>& a, const Vec3& q) {
+        turn(r, {angle_of(a.sine.dot(q), a.cosine.dot(q)), OuterTurns(a.axis, q).first});
     }
 
     void outer_turns(int first, const OuterTurn<Vec3>& a, int last, const OuterTurn<Vec3>& b) {

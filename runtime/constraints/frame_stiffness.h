@@ -24,6 +24,19 @@ inline Mat3 dyad(const Vec3& u, const Vec3& v, Curvature part) {
     return (0.25 * uu * vv) * e * e.transpose();
 }
 
+// (u . v)/2 I - sym(u v^T): eigenvalues -+|u||v|/2 along u/|u| +- v/|v|, and u . v / 2 across both.
+inline Mat3 spread(const Vec3& u, const Vec3& v, Curvature part) {
+    const double uv = 0.5 * u.dot(v);
+    if (part == Curvature::raw) return uv * Mat3::Identity() - 0.5 * (u * v.transpose() + v * u.transpose());
+    const double uu = u.norm(), vv = v.norm(), size = 0.5 * uu * vv;
+    if (!(uu > kNoForce && vv > kNoForce)) return Mat3::Zero();
+    const Vec3 uh = u / uu, vh = v / vv, d = uh - vh, n = uh.cross(vh);
+    if (d.squaredNorm() < 1e-8) return size * (Mat3::Identity() - uh * uh.transpose());
+    Mat3 k = size / d.squaredNorm() * d * d.transpose();
+    if (uv > 0) k += uv / n.squaredNorm() * n * n.transpose();
+    return k;
+}
+
 class StiffnessWriter {
 public:
     // lambda: of all rows; k: 12 x 12, complete once finish() has run.
@@ -50,40 +63,44 @@ public:
             turning_force_bound(force, l, f_.rb);
     }
 
-    // C = a . b: the force lambda a at the lever b.
-    void misalignment(int r, const Vec3& a, const Vec3& b) { bilinear(lambda_[r] * a, b); }
-
-    // sum lambda C = tr M, M = sum lambda b a^T = -B hat(lambda) A^T / 2;  S = tr(M) I - sym M, t from M - M^T = -hat
-    // t. For B A^T a turn by c about n and u = A lambda this is
-    //   S = ((n . z) I + sym(n z^T))/2,  z = sin c u + (1 - cos c) n x u:  zero where the frames coincide,
-    // with eigenvalues n . z / 2 and (3 n . z +- |z|)/4; trace 2 n . z and squares' sum (11 (n . z)^2 + |z|^2)/8 give
-    // the largest, which bounds S in every direction.
+    // With the torque t = sum lambda g, S = (sigma . t)/2 I - sym(sigma t^T): zero where the frames coincide.
     void alignment(int r) {
-        const Mat3 m = -0.5 * f_.b * hat(Vec3::Map(lambda_ + r)) * f_.a.transpose();
-        const Mat3 s = m.trace() * Mat3::Identity() - 0.5 * (m + m.transpose());
-        torque_ -= Vec3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
-        if (part_ == Curvature::raw) {
-            s_ += s;
-            return;
-        }
-        const double nz = 0.5 * s.trace(), zz = std::max(8 * s.squaredNorm() - 11 * nz * nz, nz * nz);
-        s_ += std::max(0.0, 0.75 * nz + 0.25 * std::sqrt(zz)) * Mat3::Identity();
+        const Vec3 local = half_tangents(f_), sigma = f_.a * local, force = Vec3::Map(lambda_ + r);
+        const Vec3 torque =
+            f_.a * ((1 - local.squaredNorm()) * force + 2 * local.cross(force)) + 2 * local.dot(force) * sigma;
+        torque_ += torque;
+        s_ += spread(sigma, torque, part_);
     }
 
-    void axis_alignment(int r) { bilinear(lambda_[r] * f_.ya() + lambda_[r + 1] * f_.za(), f_.xb()); }
+    // sum lambda C = h f . X_b,  f = lambda_r Y_a + lambda_r+1 Z_a: with x = X_a . X_b, the force h f + h' (f . X_b)
+    // X_a at the lever X_b, and what h adds, -sym(u (h'' (f . X_b) u + 2 h' v)^T) with the gradients u of x, v of f .
+    // X_b.
+    void axis_alignment(int r) {
+        const AxisAlignment x(f_);
+        const Vec3 force = lambda_[r] * f_.ya() + lambda_[r + 1] * f_.za();
+        const double along = force.dot(x.xb);
+        const Vec3 u = x.xb.cross(x.xa), v = x.xb.cross(force);
+        bilinear(x.h * force + x.slope * along * x.xa, x.xb);
+        s_ += dyad(-u, x.bend * along * u + 2 * x.slope * v, part_);
+    }
 
-    // sym(dg/dw_b) = sym(g v^T)/n,  v = X_a x X_b,  n = 1 + X_a . X_b
+    // sym(dg/dw_b) = sym(g v^T)/n,  v = X_a x X_b,  n = 1 + X_a . X_b = 2/|g|^2
     void twist(int r) {
         const Vec3 g = twist_axis(f_), v = f_.xa().cross(f_.xb());
-        const double n = std::max(1 + f_.xa().dot(f_.xb()), kReversed), lambda = lambda_[r];
-        torque_ += lambda * g;
-        s_ += dyad(-lambda / n * g, v, part_);
+        torque_ += lambda_[r] * g;
+        s_ += dyad(-0.5 * lambda_[r] * g.squaredNorm() * g, v, part_);
     }
 
     void swing(int r, const Vec3& a, const Vec3& b, const Vec3& across) { bend(a, b, across, lambda_[r]); }
     void rise(int r, const Vec3& a, const Vec3& b, const Vec3& across) { bend(a, b, across, -lambda_[r]); }
 
     // With m = q x p:  sym(dg/dw_b) = sym((2 s g - q) m^T)/k of the first, sym((2 s g - p) m^T)/k of the last
+    void outer_turn(int r, const OuterTurn<Vec3>& a, const Vec3& q) {
+        const OuterTurns t(a.axis, q);
+        torque_ += lambda_[r] * t.first;
+        s_ += dyad(-lambda_[r] / t.k * (2 * t.s * t.first - t.q), t.q.cross(t.p), part_);
+    }
+
     void outer_turns(int first, const OuterTurn<Vec3>& a, int last, const OuterTurn<Vec3>& b) {
         const OuterTurns t(a.axis, b.axis);
         const Vec3 u = lambda_[first] * (2 * t.s * t.first - t.q) + lambda_[last] * (2 * t.s * t.last - t.p);
@@ -113,7 +130,7 @@ private:
         const Vec3 e = swing_axis(a, b, across), t = e.cross(a);
         const double cosine = 0.5 * (a + b).norm(), sine = 0.5 * (b - a).norm();  // of c/2
         const Vec3 m = cosine * a + sine * t, p = cosine * t - sine * a;
-        double along_m = 0.5 * lambda * sine / std::max(cosine, kSmall);
+        double along_m = 0.5 * lambda * sine / std::max(cosine, kReversed);
         double along_p = -0.5 * lambda * cosine / std::max(sine, kSmall);
         if (part_ == Curvature::positive) along_m = std::max(along_m, 0.0), along_p = std::max(along_p, 0.0);
         torque_ += lambda * e;

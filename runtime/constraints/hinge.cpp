@@ -1,7 +1,7 @@
 // Hinge about X.
-//   0-2  p_b - p_a, world axes             [m]    locked
-//   3,4  X_b . Y_a, X_b . Z_a              [1]    locked; angles about Z_a and -Y_a to first order
-//   5    angle from A to B about X         [rad]  in (-pi, pi]
+//   0-2  p_b - p_a, world axes                               [m]    locked
+//   3,4  4 tan(swing/4) of X_b from X_a, along Y_a and Z_a   [rad]  locked; angles about Z_a and -Y_a to first order
+//   5    angle from A to B about X                           [rad]  in (-pi, pi]
 #include "constraints/frame_joint.h"
 
 namespace taut {

@@ -55,6 +55,8 @@ struct alignas(32) LaneCoordinate {
     float damped_drift[kLanes];  // ... and what damping adds; see evaluate_rows()
 };
 
+constexpr uint32_t kRubbing = 3;  // AxisRow::part
+
 // A stop, drive or friction along a row: sign J v + c mu = target, least <= mu <= most. Empty places have no mass.
 struct alignas(64) LaneAxis {
     float sign[kLanes];
@@ -77,6 +79,7 @@ struct alignas(32) LaneAxisLaw {
     float at[kLanes];                                     // [m or rad]
     float base[kLanes], push[kLanes];                     // [m/s]
     float open[kLanes], closed[kLanes], relaxed[kLanes];  // [1/s]
+    float friction[kLanes];                               // of a part that is one: most torque or force, by h [N s]
     float reach[kLanes];                                  // with a larger gap and no impulse it does nothing [m or rad]
 };
 

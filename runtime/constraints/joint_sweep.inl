@@ -140,6 +140,13 @@ struct JointSweep {
         for (float mass : axis.mass) axis.used |= mass > 0 ? 1u : 0u;
     }
 
+    // Friction is a torque: lambda is less where the coordinate turns faster than its bodies do, |g| > 1.
+    static void bound_friction(LaneAxis& axis, const LaneAxisLaw& law, const V& g) {
+        const F most = F::load(law.friction) / F::max(F::sqrt(dot(g, g)), F::all(1e-30f));
+        most.store(axis.most);
+        (F::all(0) - most).store(axis.least);
+    }
+
     static void prepare(JointView view, uint32_t begin, uint32_t end, const SweepMass* masses, float frame_left) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
@@ -157,6 +164,8 @@ struct JointSweep {
                 const uint32_t row = view.axis[a].row;
                 set_axis(view.axis[a], view.law[a], view.coordinate[g.first_row + row],
                          F::load(view.row[g.first_row + row].own));
+                if (view.axis[a].part == kRubbing && row >= g.first_turn)  // one that turns
+                    bound_friction(view.axis[a], view.law[a], joints.angular(1, row));
             }
         }
     }

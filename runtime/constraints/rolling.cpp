@@ -1,7 +1,7 @@
 // Relative rotation of two bodies in contact about the contact's axes since the frames were aligned.
 //   0    spinning, about the normal                      [rad]
 //   1-2  rolling, about the tangents                     [rad]
-// sin(angle) times the axis of B in A, as the fixed joint's: where the frames coincide, J w is the relative angular
+// 4 tan(angle/4) times the axis of B in A, as the fixed joint's: where the frames coincide, J w is the relative angular
 // velocity about the axes. C is not enforced, only J w = 0 within the bound: a torque of at most an arm times the
 // normal force (Coulomb's rolling resistance; Johnson, Contact Mechanics, 1985, section 9.1).
 #include "constraints/rolling.h"

@@ -1,7 +1,7 @@
 // Slider along X.
-//   0    (p_b - p_a) . X_a                                         [m]    slide
-//   1,2  (p_b - p_a) . Y_a, (p_b - p_a) . Z_a                      [m]    locked
-//   3-5  sin(angle) times the axis of B in A, components of both   [1]    locked, as of a fixed joint
+//   0    (p_b - p_a) . X_a                                 [m]    slide
+//   1,2  (p_b - p_a) . Y_a, (p_b - p_a) . Z_a              [m]    locked
+//   3-5  4 tan(angle/4) times the axis of B in A, of both  [rad]  locked, as of a fixed joint
 #include "constraints/frame_joint.h"
 
 namespace taut {

@@ -1,6 +1,6 @@
 // Universal joint: a cross that turns in a about X_a and in b about Y_b.  A^T B = Rx(first) Rz(c) Ry(last)
 //   0-2  p_b - p_a, world axes                        [m]    locked
-//   3    X_a . Y_b = -sin c                           [1]    locked: the arms of the cross stay perpendicular
+//   3    asin(X_a . Y_b) = -c                         [rad]  in [-pi/2, pi/2]; locked: the cross's arms stay square
 //   4    about X_a: atan2(Z_a . Y_b, Y_a . Y_b)       [rad]  in (-pi, pi]
 //   5    about Y_b: atan2(X_a . Z_b, X_a . X_b)       [rad]  in (-pi, pi]
 #include "constraints/frame_joint.h"
@@ -12,7 +12,7 @@ struct Universal {
     template <class Writer, class Frames>
     static void rows(Writer& out, const Frames& f) {
         out.anchors();
-        out.misalignment(3, f.xa(), f.yb());
+        out.rise(3, f.xa(), f.yb(), f.ya());
         out.outer_turns(4, {f.xa(), f.za(), f.ya()}, 5, {f.yb(), f.zb(), f.xb()});
     }
 };

@@ -12,10 +12,8 @@ namespace {
 // at 10000:1, 3e-5 2.7 mm at 100000:1), as long as a manifold keeps its points; see collision/manifold.h, add_beside.
 constexpr double kContactSoftness = 3e-5;
 constexpr double kTowerSoftness = 1e-5;  // in towers, at most; a load of r times a row's own mass sinks as c r
-constexpr double kAxisSoftness = 1e-6;   // of stops, rigid drives and friction
 constexpr double kSpeculative = 5e-4;    // [m] wider gaps are not resting contacts
 constexpr double kClosing = 1e-9;        // [m]
-constexpr double kAtLimit = 1e-5;        // a box this close to its limit begins there
 // Share by which a sliding contact's c may miss |v| / (friction * push) after a round. The push on a light link of a
 // loaded cable changes tenfold from substep to substep; with c of the last one, cables slide at a third of
 // Coulomb's force.
@@ -68,32 +66,6 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
     }
     r.least = r.c = softness * r.k;
     return r;
-}
-
-void ActiveSet::gather_axes(uint32_t index) {
-    const RowBlock& block = sys_.rows.block[index];
-    if (!block.axis) return;
-    for (int row = 0; row < block.type->rows; ++row) {
-        for_each_axis_row(
-            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h, [&](const AxisRow& axis) {
-                BoundedRow& r = add(axis.stop ? Kind::push : Kind::box, index, row, axis.sign, kAxisSoftness);
-                r.least = r.c = std::max(r.least, axis.compliance);
-                r.physical = axis.physical;
-                r.target = axis.target;
-                r.relaxed_target = axis.relaxed_target;
-                r.limit = axis.limit;
-                r.force = axis.force;
-                r.mu = sys_.h * *axis.force;
-                if (axis.stop) {
-                    r.gap = axis.gap;
-                    r.speculative = axis.gap > 0;
-                    r.on = axis.gap < 0 || r.mu > 0;
-                    return;
-                }
-                r.on = true;
-                if (std::abs(r.mu) >= (1 - kAtLimit) * r.limit) r.at_limit = r.mu > 0 ? 1 : -1;
-            });
-    }
 }
 
 bool ActiveSet::loaded(const BoundedRow& lead) const {
@@ -222,14 +194,6 @@ void ActiveSet::follow_loads() {
         else
             *first.slip = -1;
     }
-}
-
-// At a limit the row lags behind its goal in the direction of its impulse; once it does not, it holds again.
-bool ActiveSet::revise_box(BoundedRow& r) const {
-    const int8_t before = r.at_limit;
-    if (before == 0 && std::abs(r.mu) > r.limit) r.at_limit = r.mu > 0 ? 1 : -1;
-    if (before != 0 && before * (r.goal - r.c * r.mu - speed(r, sys_.exact)) < 0) r.at_limit = 0;
-    return r.at_limit != before;
 }
 
 bool ActiveSet::revise() {

@@ -15,6 +15,8 @@
 
 namespace taut {
 
+struct AxisRow;  // axis_rows.h
+
 class ActiveSet {
 public:
     ActiveSet(Substep& s, Block& b) : s_(s), sys_(s.system), b_(b) {}
@@ -30,6 +32,8 @@ public:
     void take_impulses();
     // After a biased solve: true if a row came, went or left its box, or slides by another force than its loads give.
     bool revise();
+    // True if a stop that is off is passed by more than a little.
+    bool passes_stop() const;
     // True if the rows that pull do so by more than a little of what all push.
     bool pulls() const;
     // Drops rows that pull; false: none did.
@@ -46,6 +50,8 @@ public:
     double speed(const BoundedRow& row, const Array<Velocity>& velocity) const;
 
 private:
+    bool nears_stops(const RowBlock& block) const;
+    void gather_stop(BoundedRow& row, const AxisRow& axis, double curved);
     void gather_axes(uint32_t block);
     void gather_contact(uint32_t block);
     BoundedRow& add(BoundedRow::Kind kind, uint32_t index, int row, double sign, double softness);

@@ -14,7 +14,7 @@ constexpr double kStopRate = 0.2;  // share of an overlap that a stop or contact
 constexpr double kStopPush = 3;    // and the most of it [m/s or rad/s]
 
 struct AxisRow {
-    uint32_t part;          // in AxisMemory: 0 lower, 1 upper, 2 drive, 3 friction
+    uint32_t part;          // in AxisMemory: 0 lower, 1 upper, 2 drive, kRubbing
     double sign;            // of J
     bool stop;              // pushes only
     bool physical;          // c and target are meant as they are: not to be relaxed
@@ -24,6 +24,8 @@ struct AxisRow {
     double compliance;      // c [1/kg]; 0: rigid
     double limit;           // largest |mu| [N s]
     float* force;           // carried [N]
+
+    bool rubs() const { return part == kRubbing; }
 };
 
 // C in the turn that is nearest to `near`.
@@ -67,7 +69,7 @@ void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit v
     if (axis.mode == AxisMode::locked) return;
     const bool springs = axis.stiffness > 0 || axis.damping > 0;
     if (axis.max_force > 0 && springs) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
-    if (axis.friction > 0) visit(AxisRow{3, 1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
+    if (axis.friction > 0) visit(AxisRow{kRubbing, 1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
 }
 
 }  // namespace taut

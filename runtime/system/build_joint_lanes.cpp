@@ -201,6 +201,7 @@ void fill_axes(System& system, const JointGroup& g, int lane, const RowBlock& bl
         out.force[lane] = axis.force;
         LaneAxisLaw& law = lanes.law[at];
         law.filled[lane] = 1;
+        law.friction[lane] = out.most[lane];
         const auto fill = axis.stop ? fill_stop : fill_drive;
         fill(law, lane, axis, block.axis[r], block.angular(static_cast<int>(r)), times);
     });

@@ -21,6 +21,13 @@ inline const double* row_of(const System& system, const RowBlock& block, int nod
     return &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((node * block.type->rows + row) * kDof)];
 }
 
+// |g| of a row that turns, 1 of others: how much faster than its bodies the coordinate turns. Friction is a torque, and
+// lambda as much less.
+inline double gearing_of(const System& system, const RowBlock& block, int row) {
+    if (!block.angular(row)) return 1;
+    return Eigen::Map<const Vec3>(row_of(system, block, block.type->nodes - 1, row) + 3).norm();
+}
+
 inline RowVector impulse_of(const System& system, const RowBlock& block) {
     return Eigen::Map<const RowVector>(&system.rows.impulse[block.row], block.type->rows);
 }

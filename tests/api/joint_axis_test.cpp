@@ -177,7 +177,7 @@ TEST(JointError, TellsMetresFromRadians) {
     ASSERT_OK(taut_joint_get_error(fixed, &linear));
     ASSERT_OK(taut_joint_get_angular_error(fixed, &angular));
     EXPECT_NEAR(linear, 0.3, 1e-6);
-    EXPECT_NEAR(angular, std::sin(0.2), 1e-6);
+    EXPECT_NEAR(angular, 4 * std::tan(0.2 / 4), 1e-6);
     ASSERT_OK(taut_joint_get_angular_error(hinge, &angular));
     EXPECT_NEAR(angular, 0, 1e-6);
     EXPECT_NEAR(coordinate(hinge, 0), 0.2, 1e-6);

@@ -137,6 +137,37 @@ TEST_P(AxisUnder, FrictionStopsARotorAfterItsTime) {
     EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
 }
 
+// What rubs on a swing rubs on its way around the cone too: a body that goes around the rim comes to rest after
+// I u / torque.
+TEST_P(AxisUnder, FrictionOfASwingActsAroundItsCone) {
+    constexpr double kInertia = 0.5, kTorque = 2, kRate = 2, kTilt = 60 * kDegree;
+    const World world = with_solver(0);
+    const Vec along(std::cos(kTilt), std::sin(kTilt), 0), up(-std::sin(kTilt), std::cos(kTilt), 0);
+    const taut_body body = world.add({.rotation = Quat::turn({0, 0, 1}, kTilt),
+                                      .spin = kRate * up,
+                                      .mass = 1,
+                                      .inertia = {kInertia, kInertia, kInertia}});
+    taut_cone_twist_joint_def def;
+    taut_cone_twist_joint_def_init(&def);
+    def.body_b = body;
+    def.swing = limited(0, kTilt);
+    def.swing.lower = -INFINITY;
+    def.swing.friction = kTorque;
+    taut_joint joint{};
+    ok(taut_world_add_cone_twist_joint(world.handle, &def, &joint));
+    const auto rate = [&] {
+        const BodyState now = state(body);
+        return norm(cross(now.spin, now.rotation.rotate({1, 0, 0})));
+    };
+    EXPECT_NEAR(rate(), kRate, 1e-6);
+    const int half = static_cast<int>(0.5 * kRate * kInertia / kTorque / world.frame());
+    world.step(half);
+    EXPECT_NEAR(rate(), kRate - half * world.frame() * kTorque / kInertia, 0.03 * kRate);
+    EXPECT_NEAR(motion(joint).value, kTilt, 1 * kDegree);
+    world.step(half + 20);
+    EXPECT_NEAR(rate(), 0, 0.02);
+}
+
 TEST_P(AxisUnder, FrictionHoldsBelowItsForceAndSlipsAbove) {
     for (const double factor : {0.9, 1.1}) {
         const World world = with_solver();

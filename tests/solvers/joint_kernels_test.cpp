@@ -279,7 +279,9 @@ struct Written {
                 solve_row(r, 1, kStep * memory.drive, 1 / (kStep * rate), (d * axis.speed - k * at) / rate, -most,
                           most);
             }
-            const double most = kStep * axis.friction;
+            const double gearing =
+                block.type->evaluate_lanes && block.angular(r) ? jacobian.row(r).tail<3>().norm() : 1;
+            const double most = kStep * axis.friction / gearing;
             if (axis.friction > 0) solve_row(r, 1, kStep * memory.friction, 0, 0, -most, most);
         }
     }

@@ -22,7 +22,7 @@ Joint solved_hinge() {
     axis.stiffness = 10;
     axis.max_force = 5;
     axis.friction = 2;
-    change_axis(joint, kAngle, axis);
+    change_axis(joint, {kAngle}, axis);
     joint.memory[kAngle] = {1, 2, 3, 4};
     for (double& force : joint.lambda) force = 7;
     joint.fresh = false;
@@ -40,7 +40,7 @@ TEST(ChangeOfAxis, OfTargetAndGainsKeepsTheForces) {
     axis.stiffness = 20;
     axis.damping = 1;
     axis.limit_compliance = 1e-3f;
-    change_axis(joint, kAngle, axis);
+    change_axis(joint, {kAngle}, axis);
     const AxisMemory& m = joint.memory[kAngle];
     EXPECT_TRUE(keeps(m));
     EXPECT_EQ(m.drive, 3);
@@ -54,7 +54,7 @@ TEST(ChangeOfAxis, OfModeOrStopsForgetsTheForces) {
         Joint joint = solved_hinge();
         Axis axis = joint.axis[kAngle];
         change(axis);
-        change_axis(joint, kAngle, axis);
+        change_axis(joint, {kAngle}, axis);
         EXPECT_TRUE(forgot(joint.memory[kAngle]));
         EXPECT_EQ(joint.lambda[kAngle], 0);
         EXPECT_EQ(joint.lambda[0], 7);  // the other rows go on
@@ -65,23 +65,23 @@ TEST(ChangeOfAxis, WithoutDriveOrFrictionForgetsThat) {
     Joint joint = solved_hinge();
     Axis axis = joint.axis[kAngle];
     axis.max_force = 0;
-    change_axis(joint, kAngle, axis);
+    change_axis(joint, {kAngle}, axis);
     EXPECT_TRUE(keeps(joint.memory[kAngle]));
     EXPECT_EQ(joint.memory[kAngle].drive, 0);
     EXPECT_EQ(joint.memory[kAngle].friction, 4);
     axis.friction = 0;
-    change_axis(joint, kAngle, axis);
+    change_axis(joint, {kAngle}, axis);
     EXPECT_EQ(joint.memory[kAngle].friction, 0);
 }
 
 TEST(ChangeOfAxis, TellsWhetherAllIsLocked) {
     Joint joint = solved_hinge();
     EXPECT_FALSE(joint.plain);
-    change_axis(joint, kAngle, {});
+    change_axis(joint, {kAngle}, {});
     EXPECT_TRUE(joint.plain);
     Axis axis;
     axis.mode = AxisMode::free;
-    change_axis(joint, kAngle, axis);
+    change_axis(joint, {kAngle}, axis);
     EXPECT_FALSE(joint.plain);
 }
 

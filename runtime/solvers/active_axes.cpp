@@ -1,0 +1,81 @@
+// The rows of an active set that are not contacts: stops, drives and friction of joints.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/active_set.h"
+#include "solvers/curving.h"
+#include "system/axis_rows.h"
+
+namespace taut {
+namespace {
+
+constexpr double kAxisSoftness = 1e-6;  // of stops, rigid drives and friction
+constexpr double kReach = 50;           // [m/s, rad/s] faster ones are not looked for from afar
+constexpr double kPassed = 2e-3;        // [m or rad] beyond a stop that is off: worth more rounds
+constexpr double kAtLimit = 1e-5;       // a box this close to its limit begins there
+
+using Kind = BoundedRow::Kind;
+
+}  // namespace
+
+// True if a stop of the block may be reached in this substep.
+bool ActiveSet::nears_stops(const RowBlock& block) const {
+    bool near = false;
+    for (int row = 0; row < block.type->rows; ++row)
+        for_each_axis_row(block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h,
+                          [&](const AxisRow& axis) { near = near || (axis.stop && axis.gap < kReach * sys_.h); });
+    return near;
+}
+
+// A rigid stop holds at the end of the substep, where the coordinate has curved; see curving.h.
+void ActiveSet::gather_stop(BoundedRow& r, const AxisRow& axis, double curved) {
+    r.gap = axis.gap;
+    r.speculative = axis.gap > 0;
+    r.on = axis.gap < 0 || r.mu > 0;
+    if (axis.physical) return;
+    r.gap += axis.sign * curved;
+    r.target -= axis.sign * curved / sys_.h;
+}
+
+void ActiveSet::gather_axes(uint32_t index) {
+    const RowBlock& block = sys_.rows.block[index];
+    if (!block.axis) return;
+    double curved[kMaxRows] = {};
+    if (nears_stops(block)) curving(sys_, block, curved);
+    for (int row = 0; row < block.type->rows; ++row) {
+        for_each_axis_row(
+            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h, [&](const AxisRow& axis) {
+                BoundedRow& r = add(axis.stop ? Kind::push : Kind::box, index, row, axis.sign, kAxisSoftness);
+                r.least = r.c = std::max(r.least, axis.compliance);
+                r.physical = axis.physical;
+                r.target = axis.target;
+                r.relaxed_target = axis.relaxed_target;
+                r.limit = axis.rubs() ? axis.limit / gearing_of(sys_, block, row) : axis.limit;
+                r.force = axis.force;
+                r.mu = sys_.h * *axis.force;
+                if (axis.stop) {
+                    gather_stop(r, axis, curved[row]);
+                    return;
+                }
+                r.on = true;
+                if (std::abs(r.mu) >= (1 - kAtLimit) * r.limit) r.at_limit = r.mu > 0 ? 1 : -1;
+            });
+    }
+}
+
+// At a limit the row lags behind its goal in the direction of its impulse; once it does not, it holds again.
+bool ActiveSet::revise_box(BoundedRow& r) const {
+    const int8_t before = r.at_limit;
+    if (before == 0 && std::abs(r.mu) > r.limit) r.at_limit = r.mu > 0 ? 1 : -1;
+    if (before != 0 && before * (r.goal - r.c * r.mu - speed(r, sys_.exact)) < 0) r.at_limit = 0;
+    return r.at_limit != before;
+}
+
+bool ActiveSet::passes_stop() const {
+    const auto all = rows();
+    return std::any_of(all.begin(), all.end(), [&](const BoundedRow& r) {
+        return r.kind == Kind::push && r.force && !r.on && r.gap + sys_.h * speed(r, sys_.exact) < -kPassed;
+    });
+}
+
+}  // namespace taut

@@ -1,0 +1,33 @@
+#include "solvers/curving.h"
+
+#include <cmath>
+
+#include "system/row_algebra.h"
+
+namespace taut {
+
+void curving(const System& system, const RowBlock& block, double* out) {
+    constexpr double kTurn = 2 * 3.14159265358979323846;
+    const double h = system.h;
+    const int rows = block.type->rows;
+    Pose moved[kMaxNodes];
+    double straight[kMaxRows] = {};
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t node = block.node[n];
+        const Velocity& u = system.place[node] == kNone ? system.exact[node] : system.start[node];
+        const Pose& x = system.pose[node];
+        moved[n] = {x.x + h * u.v, rotation_from_vector(h * u.w) * x.R};
+        for (int r = 0; r < rows; ++r) {
+            const auto j = jacobian_of(system, block, n).row(r);
+            straight[r] += h * (j.head<3>().dot(u.v) + j.tail<3>().dot(u.w));
+        }
+    }
+    block.type->evaluate(block.data, moved, out, nullptr);
+    for (int r = 0; r < rows; ++r) {
+        out[r] -= system.rows.error[block.row + static_cast<uint32_t>(r)] + straight[r];
+        if (block.angular(r)) out[r] -= kTurn * std::round(out[r] / kTurn);
+        if (block.drift[r] != 0) out[r] = 0;
+    }
+}
+
+}  // namespace taut
