@@ -246,23 +246,42 @@ bool turned(const System& system, const LaneGroup& g, int lane) {
     return system.turned[g.a[lane]] || system.turned[g.b[lane]];
 }
 
-// What was hit already keeps the approach speed that it had, and so does what did not turn: nothing depends on who else
-// is in a group.
+// What prepare() wrote for a lane, as it was before.
+void keep_lane(LanePoint& p, const LanePoint& before, int lane) {
+    p.normal_mass[lane] = before.normal_mass[lane];
+    p.isotropic_mass[lane] = before.isotropic_mass[lane];
+    for (int i = 0; i < 3; ++i) p.friction_mass[i][lane] = before.friction_mass[i][lane];
+    for (int i = 0; i < 2; ++i) p.coupling[i][lane] = before.coupling[i][lane];
+    p.approach[lane] = before.approach[lane];
+}
+
+void keep_lane(LaneRolling& r, const LaneRolling& before, int lane) {
+    r.spin_mass[lane] = before.spin_mass[lane];
+    r.isotropic_mass[lane] = before.isotropic_mass[lane];
+    for (int i = 0; i < 3; ++i) r.roll_mass[i][lane] = before.roll_mass[i][lane];
+}
+
+// Of the lanes that turned: nothing depends on who else is in a group. What was hit already keeps the approach speed
+// that it had.
 void renew_masses(ContactLanes& lanes, uint32_t group, const System& system, const ContactKernels& kernels) {
     const LaneGroup& g = lanes.group[group];
-    float approach[4][kLanes];
+    LanePoint before[4];
+    LaneRolling rolling;
+    if (g.rolling != kNoLanes) rolling = lanes.rolling[g.rolling];
     for (uint32_t k = 0; k < g.points; ++k) {
         LanePoint& p = lanes.point[g.first_point + k];
-        for (int lane = 0; lane < kLanes; ++lane) {
-            approach[k][lane] = p.approach[lane];
-            p.normal_mass[lane] = p.normal_mass[lane] > 0 ? 1 : 0;  // in use
-        }
+        before[k] = p;
+        for (int lane = 0; lane < kLanes; ++lane) p.normal_mass[lane] = p.normal_mass[lane] > 0 ? 1 : 0;  // in use
     }
     kernels.prepare(lanes.view(), group, group + 1, system.velocity.data(), system.inverse_mass.data());
-    for (uint32_t k = 0; k < g.points; ++k) {
-        LanePoint& p = lanes.point[g.first_point + k];
-        for (int lane = 0; lane < kLanes; ++lane)
-            if (p.peak[lane] > 0 || !turned(system, g, lane)) p.approach[lane] = approach[k][lane];
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const bool renewed = turned(system, g, lane);
+        if (!renewed && g.rolling != kNoLanes) keep_lane(lanes.rolling[g.rolling], rolling, lane);
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LanePoint& p = lanes.point[g.first_point + k];
+            if (!renewed) keep_lane(p, before[k], lane);
+            if (p.peak[lane] > 0) p.approach[lane] = before[k].approach[lane];
+        }
     }
 }
 
