@@ -130,7 +130,7 @@ void solve(World& w, Stopwatch& watch) {
                                   &joint_kernels(),
                                   w.def.adaptive_damping != 0};
     SolverReport report;
-    begin_frame(w.system, w.nodes);
+    begin_frame(w.team, w.system, w.nodes);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) {
         solve_group(w, i, solver, settings, report, watch);

@@ -7,8 +7,8 @@
 
 namespace taut {
 
-// By node + 1; 32 bytes each, so that eight gather as an 8x8 transpose.
-struct alignas(32) SweepVelocity {
+// By node + 1; eight gather as an 8x8 transpose. A cache line each: threads that write to neighbours do not meet.
+struct alignas(64) SweepVelocity {
     float v[3] = {0, 0, 0}, pad0 = 0;
     float w[3] = {0, 0, 0}, pad1 = 0;
 };
@@ -72,21 +72,43 @@ struct LaneView {
     LanePoint* point;
     const LaneDrive* drive;
     LaneRolling* rolling;
+    bool shared = false;  // threads share them: what a node has is often in the cache of another core
 };
+
+// An array whose new elements hold whatever was there before: for large ones that are filled at once, each part by the
+// thread that goes on with it.
+template <class T>
+struct UnsetAllocator : HostAllocator<T> {
+    using HostAllocator<T>::HostAllocator;
+    template <class U>
+    struct rebind {
+        using other = UnsetAllocator<U>;
+    };
+    template <class U>
+    void construct(U* element) {
+        ::new (static_cast<void*>(element)) U;
+    }
+    template <class U, class... From>
+    void construct(U* element, From&&... from) {
+        ::new (static_cast<void*>(element)) U(std::forward<From>(from)...);
+    }
+};
+template <class T>
+using UnsetArray = std::vector<T, UnsetAllocator<T>>;
 
 struct ContactLanes {
     explicit ContactLanes(Memory& memory)
         : group(memory), point(memory), drive(memory), rolling(memory), colour_begin(memory) {}
 
-    Array<LaneGroup> group;
-    Array<LanePoint> point;
+    UnsetArray<LaneGroup> group;  // of a colour, in the order of place
+    UnsetArray<LanePoint> point;
     Array<LaneDrive> drive;
     Array<LaneRolling> rolling;
     Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
 
     bool bounces = false;  // some point has restitution
 
-    LaneView view() { return {group.data(), point.data(), drive.data(), rolling.data()}; }
+    LaneView view() { return {group.data(), point.data(), drive.data(), rolling.data(), false}; }
 };
 
 // Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.

@@ -18,6 +18,14 @@ struct Vec3Lanes {
     }
 };
 
+inline void prefetch_to_write(const void* at) {
+#if defined(__x86_64__) || defined(__i386__)
+    asm volatile("prefetchw %0" : : "m"(*static_cast<const char*>(at)));  // older processors take it for a nop
+#else
+    __builtin_prefetch(at, 1);
+#endif
+}
+
 // Velocities and inverse masses of kLanes nodes.
 template <class F>
 struct SweepSide {
@@ -39,6 +47,11 @@ struct SweepSide {
         F::transpose(row, mass);
         inv_mass = mass[0];
         xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
+    }
+    // Asks for what gather() will read and scatter() write soon: another core may have changed it last.
+    static void prefetch(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepShift* shifts) {
+        for (int i = 0; i < kLanes; ++i) prefetch_to_write(&velocities[node[i]]);
+        for (int i = 0; shifts && i < kLanes; ++i) __builtin_prefetch(&shifts[node[i]]);
     }
     // What no impulse moves is not written: groups on other threads read it.
     void scatter(const uint32_t node[kLanes], SweepVelocity* velocities, const SweepMass* masses) const {

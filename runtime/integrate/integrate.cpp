@@ -147,9 +147,20 @@ void for_nodes(Team& team, const Array<uint32_t>& list, Act&& act) {
     });
 }
 
+void begin_node(System& system, const Nodes& nodes, uint32_t node) {
+    const NodeMotion& m = nodes.motion[node];
+    system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
+    system.found[node + 1] = {m.x, m.q};
+    set_sweep_pose(system.sweep_pose[node + 1], Vec3::Zero(), m.q);
+    system.exact[node + 1] = {m.v, m.w};
+    set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
+    if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
+    set_sweep_velocity(system.velocity[node + 1], m.v, m.w);
+}
+
 }  // namespace
 
-void begin_frame(System& system, const Nodes& nodes) {
+void begin_frame(Team& team, System& system, const Nodes& nodes) {
     const uint32_t slots = nodes.slots();
     system.pose.resize(slots + 1);
     system.exact.resize(slots + 1);
@@ -163,18 +174,14 @@ void begin_frame(System& system, const Nodes& nodes) {
     system.in_block.assign(slots + 1, 0);
     system.place.assign(slots + 1, kNone);
     system.kinematic.clear();
-    for (uint32_t node = 0; node < slots; ++node) {
-        if (nodes.info[node].kind == NodeKind::dead || nodes.rest[node] == Rest::asleep) continue;
-        if (nodes.info[node].kind == NodeKind::kinematic) system.kinematic.push_back(node);
-        const NodeMotion& m = nodes.motion[node];
-        system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
-        system.found[node + 1] = {m.x, m.q};
-        set_sweep_pose(system.sweep_pose[node + 1], Vec3::Zero(), m.q);
-        system.exact[node + 1] = {m.v, m.w};
-        set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
-        if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
-        set_sweep_velocity(system.velocity[node + 1], m.v, m.w);
-    }
+    for (uint32_t node = 0; node < slots; ++node)
+        if (nodes.info[node].kind == NodeKind::kinematic && nodes.rest[node] != Rest::asleep)
+            system.kinematic.push_back(node);
+    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t node = begin; node < end; ++node)
+            if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
+                begin_node(system, nodes, node);
+    });
 }
 
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {

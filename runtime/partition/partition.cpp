@@ -33,6 +33,8 @@ constexpr uint8_t kSweptFor = 15;
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
+constexpr uint32_t kMostPoints = 4, kKinds = 4;  // of a pair; of pairs by their points
+
 bool moving(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.solved(node); }
 
 // The first of some nodes that moves, or kNone.
@@ -76,7 +78,9 @@ Partition::Partition(Memory& memory)
       block_of_(memory),
       spare_(memory),
       used_(memory),
-      colour_of_(memory),
+      place_(memory),
+      rank_(memory),
+      rank_begin_(memory),
       scratch_(memory),
       queue_(memory),
       adjacency_begin_(memory),
@@ -101,11 +105,13 @@ void Partition::unite(const Nodes& nodes, std::span<const uint32_t> all) {
 void Partition::build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules) {
     connect(nodes, joints, pairs);
     measure_towers(nodes, pairs);
-    if (rules.direct) {
-        find_towers();
+    if (rules.direct) find_towers();
+    const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });
+    if (rules.direct && any) {
         build_blocks(nodes, joints, pairs);
     } else {
         blocks.clear();
+        block_of_.clear();
         pair_in_block_.assign(pairs.active.size(), 0);
         joint_in_block_.assign(joints.record.size(), 0);
     }
@@ -291,12 +297,20 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
 void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
     connect_joints(nodes, joints, /*swept_too=*/true);
-    for (const ActivePair& pair : pairs.active) unite(nodes, pair.nodes());
-
     island_of_.assign(slots, kNone);
+    for (uint32_t i = 0; i < slots; ++i)
+        if (moving(nodes, i)) island_of_[i] = 0;  // one, to be numbered
+    const auto moves = [&](uint32_t node) { return node != kNone && island_of_[node] != kNone; };
+    for (const ActivePair& pair : pairs.active) {
+        if (pair.spans())
+            unite(nodes, pair.nodes());
+        else if (moves(pair.a) && moves(pair.b))
+            unite(pair.a, pair.b);
+    }
+
     island_.clear();
     for (uint32_t i = 0; i < slots; ++i) {  // roots are smallest, so each is met before its members
-        if (!moving(nodes, i)) continue;
+        if (!moves(i)) continue;
         const uint32_t root = find(i);
         if (root == i) {
             island_of_[i] = static_cast<uint32_t>(island_.size());
@@ -315,11 +329,12 @@ void Partition::connect(const Nodes& nodes, const Joints& joints, const Pairs& p
 // Levels: bodies on the shortest way down to a fixed or kinematic support, by breadth-first search over contacts.
 void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
+    const auto moves = [&](uint32_t node) { return node != kNone && island_of_[node] != kNone; };
     adjacency_begin_.assign(slots + 1, 0);
     level_.assign(slots, 0);
     queue_.clear();
     for (const ActivePair& pair : pairs.active) {
-        const bool a = moving(nodes, pair.a), b = moving(nodes, pair.b);
+        const bool a = moves(pair.a), b = moves(pair.b);
         if (a && b) {
             ++adjacency_begin_[pair.a + 1];
             ++adjacency_begin_[pair.b + 1];
@@ -333,7 +348,7 @@ void Partition::measure_towers(const Nodes& nodes, const Pairs& pairs) {
     adjacency_.resize(adjacency_begin_[slots]);
     scratch_.assign(adjacency_begin_.begin(), adjacency_begin_.end());
     for (const ActivePair& pair : pairs.active) {
-        if (!moving(nodes, pair.a) || !moving(nodes, pair.b)) continue;
+        if (!moves(pair.a) || !moves(pair.b)) continue;
         adjacency_[scratch_[pair.a]++] = pair.b;
         adjacency_[scratch_[pair.b]++] = pair.a;
     }
@@ -390,6 +405,7 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
     make_groups();
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (island_of_[i] != kNone) groups[group_of(i)].nodes.push_back(i);
+    find_places(nodes);
     for (uint32_t b = 0; b < blocks.size(); ++b) {
         Group& group = groups[group_of(blocks[b].nodes[0])];
         group.blocks.push_back(b);
@@ -402,24 +418,35 @@ void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs
     for (uint32_t g = 0; g < group_count; ++g) {
         Group& group = groups[g];
         auto here = [&](std::span<const uint32_t> of) {
-            const uint32_t node = mover(nodes, of);
-            return node != kNone && group_of(node) == g;
+            for (uint32_t node : of)
+                if (node != kNone && island_of_[node] != kNone) return group_of(node) == g;
+            return false;
         };
         items.clear();
         for (uint32_t j = 0; j < joints.record.size(); ++j) {
             if (!joint_in_block_[j] && here(joints.record[j].nodes())) items.push_back(j);
         }
         for (uint32_t node : group.nodes) used_[node] = 0;
-        const uint32_t of_joints =
-            colour(items, group.joints, group.joint_colour_begin, [&](uint32_t j) { return joints.record[j].nodes(); });
+        const uint32_t of_joints = colour(
+            items, group.joint_colour_begin, [&](uint32_t j) { return joints.record[j].nodes(); },
+            [](uint32_t) { return 0u; });
+        group.joints.resize(items.size());
+        sort_coloured(items, [&](uint32_t at, uint32_t j, uint8_t) { group.joints[at] = j; });
         items.clear();
         for (uint32_t p = 0; p < pairs.active.size(); ++p) {
             if (pair_in_block_[p] || !here(pairs.active[p].nodes())) continue;
             (pairs.active[p].spans() ? group.span_pairs : items).push_back(p);
         }
         for (uint32_t node : group.nodes) used_[node] = 0;
-        const uint32_t of_pairs =
-            colour(items, group.pairs, group.pair_colour_begin, [&](uint32_t p) { return pairs.active[p].sides(); });
+        const uint32_t of_pairs = colour(
+            items, group.pair_colour_begin, [&](uint32_t p) { return pairs.active[p].sides(); },
+            [&](uint32_t p) { return kMostPoints - pairs.active[p].points; });
+        group.pairs.resize(items.size());
+        group.pair_place.resize(items.size());
+        sort_coloured(items, [&](uint32_t at, uint32_t p, uint8_t place) {
+            group.pairs[at] = p;
+            group.pair_place[at] = place;
+        });
         colours = std::max({colours, of_joints, of_pairs});
     }
 }
@@ -448,32 +475,67 @@ void Partition::make_groups() {
     }
 }
 
+// Along the axis on which what moves is spread widest, by mean distance from the middle: a few nodes far out take no
+// more than a few places.
+void Partition::find_places(const Nodes& nodes) {
+    Vec3 middle = Vec3::Zero(), spread = Vec3::Zero();
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < nodes.slots(); ++i)
+        if (island_of_[i] != kNone) middle += nodes.motion[i].x, ++count;
+    middle /= std::max(count, 1u);
+    for (uint32_t i = 0; i < nodes.slots(); ++i)
+        if (island_of_[i] != kNone) spread += (nodes.motion[i].x - middle).cwiseAbs();
+    int axis = 0;
+    const double mean = spread.maxCoeff(&axis) / std::max(count, 1u);
+    constexpr double kReach = 3;  // times the mean distance; a row of bodies ends at twice of it
+    const double per_length = kSlices / (2 * kReach * std::max(mean, 1e-30));
+    place_.resize(nodes.slots());
+    for (uint32_t i = 0; i < nodes.slots(); ++i) {
+        if (island_of_[i] == kNone) continue;
+        const double at = kSlices / 2 + per_length * (nodes.motion[i].x[axis] - middle[axis]);
+        place_[i] = at > 0 ? static_cast<uint8_t>(std::min(at, kSlices - 1.0)) : 0;  // not a number: 0
+    }
+}
+
 // Greedy: each item takes the first colour that none of its nodes has; what finds none goes to the last colour.
-template <class Ends>
-uint32_t Partition::colour(const Array<uint32_t>& items, Array<uint32_t>& sorted, Array<uint32_t>& begin, Ends ends) {
-    colour_of_.resize(items.size());
-    begin.assign(kMaxColours + 1, 0);
-    uint32_t most = 0;
+template <class Ends, class Kind>
+uint32_t Partition::colour(const Array<uint32_t>& items, Array<uint32_t>& begin, Ends ends, Kind kind) {
+    constexpr uint32_t kOfColour = kKinds * kSlices;
+    rank_.resize(items.size());
+    rank_begin_.assign(1, 0);
+    uint32_t most = 0;  // colours
     for (size_t i = 0; i < items.size(); ++i) {
         const auto nodes = ends(items[i]);
         uint64_t taken = uint64_t{1} << (kMaxColours - 1);
-        for (uint32_t node : nodes)
-            if (node != kNone && island_of_[node] != kNone) taken |= used_[node];
+        uint32_t place = kSlices - 1;
+        for (uint32_t node : nodes) {
+            if (node == kNone || island_of_[node] == kNone) continue;
+            taken |= used_[node];
+            place = std::min<uint32_t>(place, place_[node]);
+        }
         uint32_t c = kMaxColours - 1;
         if (~taken != 0) {
             c = static_cast<uint32_t>(std::countr_zero(~taken));
             for (uint32_t node : nodes)
                 if (node != kNone && island_of_[node] != kNone) used_[node] |= uint64_t{1} << c;
+        } else {
+            place = 0;
         }
-        colour_of_[i] = static_cast<uint8_t>(c);
-        ++begin[c + 1];
-        most = std::max(most, c + 1);
+        if (c >= most) rank_begin_.resize((most = c + 1) * kOfColour + 1, 0);
+        rank_[i] = c * kOfColour + kind(items[i]) * kSlices + place;
+        ++rank_begin_[rank_[i] + 1];
     }
-    for (uint32_t c = 0; c < kMaxColours; ++c) begin[c + 1] += begin[c];
-    scratch_.assign(begin.begin(), begin.end());
-    sorted.resize(items.size());
-    for (size_t i = 0; i < items.size(); ++i) sorted[scratch_[colour_of_[i]]++] = items[i];
+    for (uint32_t r = 0; r < most * kOfColour; ++r) rank_begin_[r + 1] += rank_begin_[r];
+    begin.resize(kMaxColours + 1);
+    for (uint32_t c = 0; c <= kMaxColours; ++c) begin[c] = rank_begin_[std::min(c, most) * kOfColour];
     return most;
+}
+
+// Calls take(at, item, place) for what colour() went through last.
+template <class Take>
+void Partition::sort_coloured(const Array<uint32_t>& items, Take&& take) {
+    for (size_t i = 0; i < items.size(); ++i)
+        take(rank_begin_[rank_[i]]++, items[i], static_cast<uint8_t>(rank_[i] % kSlices));
 }
 
 }  // namespace taut

@@ -4,7 +4,8 @@
 //   block   nodes connected by joints, with the bodies that touch them, or a tower: solved directly, contacts included;
 //           its elimination order is kept while its graph stays
 //   group   all islands that take the same number of substeps and sweeps; solved together
-//   colour  constraints of a group of which no two share a moving node
+//   colour  constraints of a group of which no two share a moving node; within, by place: so that threads that take a
+//           part each of every colour meet at few nodes
 #pragma once
 
 #include <span>
@@ -59,6 +60,7 @@ struct Group {
         : nodes(memory),
           pairs(memory),
           pair_colour_begin(memory),
+          pair_place(memory),
           joints(memory),
           joint_colour_begin(memory),
           blocks(memory),
@@ -68,8 +70,10 @@ struct Group {
     uint32_t substeps = 0;
     uint32_t sweeps = 1;    // least biased sweeps a substep
     Array<uint32_t> nodes;  // moved by forces, ascending
-    // Swept constraints by colour; the last colour holds what found no other and is solved one by one.
+    // Swept constraints by colour; the last colour holds what found no other and is solved one by one, in order of
+    // index. The others: pairs with the most points first, then by place.
     Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
+    Array<uint8_t> pair_place;                 // of each of pairs, below kSlices
     Array<uint32_t> joints, joint_colour_begin;
     Array<uint32_t> blocks;        // index into Partition::blocks
     Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
@@ -82,6 +86,7 @@ void note_loads(Joints& joints, const Nodes& nodes);
 constexpr uint8_t kLoadedAfter = 3, kLoadedFor = 60;  // frames
 
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
+constexpr uint32_t kSlices = 64;      // along the line on which the moving nodes are spread widest
 
 struct PartitionRules {
     uint32_t substeps;  // least
@@ -132,8 +137,11 @@ private:
     void make_groups();
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
     void distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
-    template <class Ends>
-    uint32_t colour(const Array<uint32_t>& items, Array<uint32_t>& sorted, Array<uint32_t>& begin, Ends ends);
+    void find_places(const Nodes& nodes);
+    template <class Ends, class Kind>
+    uint32_t colour(const Array<uint32_t>& items, Array<uint32_t>& begin, Ends ends, Kind kind);
+    template <class Take>
+    void sort_coloured(const Array<uint32_t>& items, Take&& take);
 
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
@@ -149,8 +157,10 @@ private:
     Array<uint8_t> joint_in_block_;  // by slot
     Array<uint32_t> block_of_;       // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
-    Array<uint64_t> used_;      // by slot: colours taken
-    Array<uint8_t> colour_of_;  // scratch
+    Array<uint64_t> used_;        // by slot: colours taken
+    Array<uint8_t> place_;        // by slot, of what moves
+    Array<uint32_t> rank_;        // scratch: of an item, its colour, kind and place
+    Array<uint32_t> rank_begin_;  // scratch: where items of a rank go
     Array<uint32_t> scratch_, queue_;
     Array<uint32_t> adjacency_begin_, adjacency_;  // touching pairs by node, for levels
 };

@@ -68,7 +68,7 @@ void watch_group(const Group& group, const System& system, const Pairs& pairs, C
         for (const uint32_t active : *list)
             if (const WatchedPair* watched = find_watched(watch, pairs.active[active].pair))
                 watch.current.push_back(static_cast<uint32_t>(watched - watch.pairs.data()));
-    const Array<LaneGroup>& lanes = system.contacts.group;
+    const auto& lanes = system.contacts.group;
     for (uint32_t g = 0; g < lanes.size(); ++g) {
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
             if (lanes[g].pair[lane] == kNone) continue;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "system/assemble.h"
+#include "system/colour_stages.h"
 #include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
@@ -112,31 +113,41 @@ private:
 };
 
 // What a pass over joints, rows and contacts is made of, in order: lane groups of a colour, which share no moving node,
-// so that threads may take them side by side; those of the overflow colour, the last, and rows go one by one.
+// so that threads may take them side by side; those of the overflow colour, the last, and rows go one by one. Small
+// colours one after the other are a stage of one thread: another would help less than it takes to wait for it.
 struct PassStages {
     enum What : uint8_t { joints, rows, contacts };
-    What what[Team::kMaxStages];
-    uint32_t first[Team::kMaxStages];
+    struct Piece {
+        What what;
+        uint32_t first, count;
+    };
+    Piece piece[Team::kMaxStages];
+    uint32_t first_piece[Team::kMaxStages + 1] = {};
     Team::Stage stage[Team::kMaxStages];
-    uint32_t count = 0, groups = 0;
+    uint32_t count = 0, pieces = 0, groups = 0;
+    bool last_is_small = false;
     static_assert(2 * kMaxColours + 1 <= Team::kMaxStages);
 
-    void add(What kind, uint32_t begin, uint32_t items, uint32_t grain) {
-        what[count] = kind;
-        first[count] = begin;
-        stage[count++] = {items, grain};
+    void add(Piece next, uint32_t grain, bool small) {
+        if (!(small && last_is_small)) stage[count++] = small ? Team::Stage{1, 1} : Team::Stage{next.count, grain};
+        piece[pieces++] = next;
+        first_piece[count] = pieces;
+        last_is_small = small;
     }
     template <class Lanes>
-    void add_colours(What kind, const Lanes& lanes, bool backward, uint32_t threads) {
+    void add_colours(What what, const Lanes& lanes, bool backward, uint32_t threads) {
         if (lanes.group.empty()) return;
-        constexpr uint32_t kGrain = 2;  // lane groups, a third of a microsecond each
+        constexpr uint32_t kSmall = 3;  // lane groups
         for (uint32_t k = 0; k < kMaxColours; ++k) {
-            const uint32_t c = backward ? kMaxColours - 1 - k : k, begin = lanes.colour_begin[c];
-            const uint32_t items = lanes.colour_begin[c + 1] - begin;
-            const bool one_by_one = c + 1 == kMaxColours;
-            if (items > 0) add(kind, begin, items, one_by_one ? items : std::max(kGrain, items / (4 * threads)));
-            groups += items;
+            const uint32_t c = backward ? kMaxColours - 1 - k : k;
+            const auto [first, colour] = colour_stage(lanes, c, threads);
+            const bool one_by_one = c + 1 == kMaxColours || colour.count <= kSmall;
+            if (colour.count > 0) add({what, first, colour.count}, colour.grain, one_by_one);
+            groups += colour.count;
         }
+    }
+    bool whole(uint32_t i) const {  // run by one thread
+        return stage[i].count == 1;
     }
 };
 
@@ -146,15 +157,20 @@ template <class Joints, class Rows, class Contacts>
 void pass(Substep& s, Joints&& joints, Rows&& rows, Contacts&& contacts, bool backward = false) {
     PassStages of;
     of.add_colours(PassStages::joints, s.system.joints, false, s.team.size());
-    if (s.system.rows.lasting > s.system.rows.joints) of.add(PassStages::rows, 0, 1, 1);
+    if (s.system.rows.lasting > s.system.rows.joints) of.add({PassStages::rows, 0, 1}, 1, true);
     of.add_colours(PassStages::contacts, s.system.contacts, backward, s.team.size());
-    const auto run = [&](uint32_t i, uint32_t begin, uint32_t end) {
-        if (of.what[i] == PassStages::joints) joints(of.first[i] + begin, of.first[i] + end);
-        if (of.what[i] == PassStages::rows) rows();
-        if (of.what[i] == PassStages::contacts) contacts(of.first[i] + begin, of.first[i] + end);
+    const auto run_piece = [&](PassStages::What what, uint32_t begin, uint32_t end) {
+        if (what == PassStages::joints) joints(begin, end);
+        if (what == PassStages::rows) rows();
+        if (what == PassStages::contacts) contacts(begin, end);
     };
-    constexpr uint32_t kFew = 16;  // lane groups that are done before anybody could help
-    if (of.groups >= kFew) return s.team.for_stages({of.stage, of.count}, run);
+    const auto run = [&](uint32_t i, uint32_t begin, uint32_t end) {
+        const PassStages::Piece* const first = of.piece + of.first_piece[i];
+        if (!of.whole(i)) return run_piece(first->what, first->first + begin, first->first + end);
+        for (auto piece = first; piece != of.piece + of.first_piece[i + 1]; ++piece)
+            run_piece(piece->what, piece->first, piece->first + piece->count);
+    };
+    if (of.groups >= kFewGroups) return s.team.for_stages({of.stage, of.count}, run);
     for (uint32_t i = 0; i < of.count; ++i) run(i, 0, of.stage[i].count);
 }
 
@@ -230,7 +246,9 @@ struct Swept {
           mass(s.system.inverse_mass.data()),
           first_row(s.system.rows.joints),
           row_count(s.system.rows.lasting - s.system.rows.joints),
-          soft(contact_terms(s.system.h)) {}
+          soft(contact_terms(s.system.h)) {
+        contacts.shared = s.team.size() > 1;
+    }
 
     void warm_start() const {
         pass(

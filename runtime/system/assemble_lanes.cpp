@@ -1,8 +1,10 @@
+#include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <span>
 
 #include "state/levers.h"
 #include "system/assemble.h"
+#include "system/colour_stages.h"
 
 namespace taut {
 namespace {
@@ -75,44 +77,62 @@ void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, co
                   pair.manifold.points[k].separation, pair.impulse[k], pair.restitution);
 }
 
-// The pairs that add_group chose, into their lanes.
-void fill_group(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs, const Nodes& nodes) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-        uint32_t filled = 0;
-        if (g.pair[lane] != kNone) {
-            const Pair& pair = pairs.list[g.pair[lane]];
-            fill_pair(lanes, g, lane, pair, nodes);
-            filled = static_cast<uint32_t>(pair.manifold.count);
-        } else {
-            g.a[lane] = g.b[lane] = 0;
-            g.rolls[0][lane] = g.rolls[1][lane] = 0;
-            g.friction[lane] = g.turns[lane] = g.round[0][lane] = g.round[1][lane] = 0;
-            for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
-        }
-        for (uint32_t k = filled; k < g.points; ++k) clear_lane(lanes.point[g.first_point + k], lane);
-        const Pair* pair = g.pair[lane] == kNone ? nullptr : &pairs.list[g.pair[lane]];
-        if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair);
-        if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair);
-    }
+void clear_pair(LaneGroup& g, int lane) {
+    g.a[lane] = g.b[lane] = 0;
+    g.rolls[0][lane] = g.rolls[1][lane] = 0;
+    g.friction[lane] = g.turns[lane] = g.round[0][lane] = g.round[1][lane] = 0;
+    for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
 }
 
-// Room for at most kLanes active pairs of a colour; the first has the most points.
-void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, uint32_t count) {
-    LaneGroup& g = lanes.group.emplace_back();
-    g.first_point = static_cast<uint32_t>(lanes.point.size());
-    g.points = pairs.active[items[0]].points;
-    lanes.point.resize(lanes.point.size() + g.points);
-    bool driven = false, turns = false, round = false;
-    for (uint32_t lane = 0; lane < kLanes; ++lane) {
-        g.pair[lane] = lane < count ? pairs.active[items[lane]].pair : kNone;
-        if (lane >= count) continue;
-        const Pair& pair = pairs.list[g.pair[lane]];
-        lanes.bounces = lanes.bounces || pair.restitution > 0;
-        driven = driven || pair.driven;
-        turns = turns || pair.turns();
-        round = round || pair.round_a > 0 || pair.round_b > 0;
+const Pair* pair_of(const LaneGroup& g, int lane, const Pairs& pairs) {
+    return g.pair[lane] == kNone ? nullptr : &pairs.list[g.pair[lane]];
+}
+
+// Records of pairs lie about in memory, or in the cache of the thread that found them.
+void prefetch_pair(const LaneGroup* g, int lane, const Pairs& pairs) {
+    constexpr size_t kCacheLine = 64;
+    const Pair* pair = g ? pair_of(*g, lane, pairs) : nullptr;
+    for (size_t at = 0; pair && at < sizeof(Pair); at += kCacheLine)
+        __builtin_prefetch(reinterpret_cast<const char*>(pair) + at);
+}
+
+struct Special {  // what few groups have
+    bool bounces = false, driven = false, turns = false;
+};
+
+// The pairs that add_colour chose, into their lanes. next: the group after, or null.
+Special fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
+    constexpr int kAhead = 4;  // pairs
+    Special special;
+    bool round = false;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const bool here = lane + kAhead < kLanes;
+        prefetch_pair(here ? &g : next, here ? lane + kAhead : lane + kAhead - kLanes, pairs);
+        uint32_t filled = 0;
+        if (const Pair* pair = pair_of(g, lane, pairs)) {
+            fill_pair(lanes, g, lane, *pair, nodes);
+            filled = static_cast<uint32_t>(pair->manifold.count);
+            special.bounces = special.bounces || pair->restitution > 0;
+            special.driven = special.driven || pair->driven;
+            special.turns = special.turns || pair->turns();
+            round = round || pair->round_a > 0 || pair->round_b > 0;
+        } else {
+            clear_pair(g, lane);
+        }
+        for (uint32_t k = filled; k < g.points; ++k) clear_lane(lanes.point[g.first_point + k], lane);
     }
     g.is_round = round;
+    return special;
+}
+
+// Room for what moving surfaces and friction torques of the pairs of a group need, and that.
+void fill_special(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs) {
+    bool driven = false, turns = false;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const Pair* pair = pair_of(g, lane, pairs);
+        driven = driven || (pair && pair->driven);
+        turns = turns || (pair && pair->turns());
+    }
     if (driven) {
         g.first_drive = static_cast<uint32_t>(lanes.drive.size());
         lanes.drive.resize(lanes.drive.size() + g.points);
@@ -121,46 +141,57 @@ void add_group(ContactLanes& lanes, const Pairs& pairs, const uint32_t* items, u
         g.rolling = static_cast<uint32_t>(lanes.rolling.size());
         lanes.rolling.emplace_back();
     }
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const Pair* pair = pair_of(g, lane, pairs);
+        if (driven) fill_drive(lanes, g, lane, pair);
+        if (turns) fill_rolling(lanes.rolling[g.rolling], lane, pair);
+    }
 }
 
-// Lane groups of one colour. Pairs with as many points come side by side: few empty places.
-void add_colour(ContactLanes& lanes, const Pairs& pairs, std::span<const uint32_t> items, uint32_t width) {
-    uint32_t batch[kLanes], filled = 0;
-    for (uint32_t points = 4; points >= 1; --points) {
-        for (uint32_t item : items) {
-            if (pairs.active[item].points != points) continue;
-            batch[filled++] = item;
-            if (filled < width) continue;
-            add_group(lanes, pairs, batch, filled);
-            filled = 0;
-        }
-    }
-    if (filled > 0) add_group(lanes, pairs, batch, filled);
-    lanes.colour_begin.push_back(static_cast<uint32_t>(lanes.group.size()));
-}
+uint32_t width_of(uint32_t colour) { return colour + 1 == kMaxColours ? 1 : kLanes; }  // overflow: one pair at a time
 
-// Calls act(pairs, width) for each colour, in order.
-template <class Act>
-void for_pair_colours(const Group& group, Act&& act) {
-    for (uint32_t c = 0; c < kMaxColours; ++c) {
-        const uint32_t begin = group.pair_colour_begin[c], end = group.pair_colour_begin[c + 1];
-        const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one pair at a time
-        act(std::span(group.pairs.data() + begin, end - begin), width);
+// Lane groups of one colour, whose pairs come with the most points first, so that there are few empty places; in the
+// order of the place of their middle pair.
+void add_colour(ContactLanes& lanes, const Pairs& pairs, const Group& group, uint32_t colour) {
+    const uint32_t width = width_of(colour);
+    const uint32_t begin = group.pair_colour_begin[colour], end = group.pair_colour_begin[colour + 1];
+    const uint32_t count = (end - begin + width - 1) / width, first = static_cast<uint32_t>(lanes.group.size());
+    const auto last_of = [&](uint32_t i) { return std::min(begin + (i + 1) * width, end); };
+    const auto place_of = [&](uint32_t i) { return group.pair_place[(begin + i * width + last_of(i)) / 2]; };
+    uint32_t next[kSlices + 1] = {};
+    for (uint32_t i = 0; i < count; ++i) ++next[place_of(i) + 1u];
+    for (uint32_t p = 0; p < kSlices; ++p) next[p + 1] += next[p];
+    lanes.group.resize(first + count);
+    for (uint32_t i = 0; i < count; ++i) {
+        LaneGroup& g = lanes.group[first + next[place_of(i)]++];
+        const uint32_t* item = &group.pairs[begin + i * width];
+        const uint32_t filled = last_of(i) - (begin + i * width);
+        g.points = pairs.active[*item].points;
+        for (uint32_t lane = 0; lane < kLanes; ++lane)
+            g.pair[lane] = lane < filled ? pairs.active[item[lane]].pair : kNone;
     }
+    auto points = static_cast<uint32_t>(lanes.point.size());
+    for (uint32_t i = first; i < first + count; ++i) {
+        lanes.group[i].first_point = points;
+        points += lanes.group[i].points;
+    }
+    lanes.point.resize(points);
+    lanes.colour_begin.push_back(first + count);
 }
 
 // A colour's lane groups of at least k points are those that its pairs of as many fill, the last one in part.
 void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) {
     size_t groups = 0, points = 0;
-    for_pair_colours(group, [&](std::span<const uint32_t> items, uint32_t width) {
-        size_t at_least[5] = {};
-        for (uint32_t item : items)
-            for (uint32_t k = 1; k <= pairs.active[item].points; ++k) ++at_least[k];
-        for (uint32_t k = 1; k <= 4; ++k) points += (at_least[k] + width - 1) / width;
-        groups += (items.size() + width - 1) / width;
-    });
-    reserve_more(lanes.group, groups);
-    reserve_more(lanes.point, points);
+    for (uint32_t c = 0; c < kMaxColours; ++c) {
+        const uint32_t width = width_of(c);
+        for (uint32_t i = group.pair_colour_begin[c]; i < group.pair_colour_begin[c + 1]; i += width, ++groups)
+            points += pairs.active[group.pairs[i]].points;
+    }
+    const auto reserve = [](auto& empty, size_t needed) {
+        if (needed > empty.capacity()) empty.reserve(needed + needed / 4);
+    };
+    reserve(lanes.group, groups);
+    reserve(lanes.point, points);
 }
 
 constexpr uint32_t kGrain = 16;  // lane groups that a thread takes at a time
@@ -174,14 +205,30 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     lanes.point.clear();
     lanes.drive.clear();
     lanes.rolling.clear();
-    lanes.bounces = false;
     lanes.colour_begin.assign(1, 0);
     reserve_lanes(lanes, pairs, group);
-    for_pair_colours(group,
-                     [&](std::span<const uint32_t> items, uint32_t width) { add_colour(lanes, pairs, items, width); });
-    team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t g = begin; g < end; ++g) fill_group(lanes, lanes.group[g], pairs, nodes);
-        kernels.prepare(lanes.view(), begin, end, system.velocity.data(), system.inverse_mass.data());
+    for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, pairs, group, c);
+    const auto prepare = [&](uint32_t g) {
+        kernels.prepare(lanes.view(), g, g + 1, system.velocity.data(), system.inverse_mass.data());
+    };
+    std::atomic<bool> bounces{false}, special{false};
+    for_lane_groups(team, lanes, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const Special has =
+                fill_group(lanes, lanes.group[i], i + 1 < end ? &lanes.group[i + 1] : nullptr, pairs, nodes);
+            if (has.bounces) bounces.store(true, std::memory_order_relaxed);
+            if (has.driven || has.turns)
+                special.store(true, std::memory_order_relaxed);
+            else
+                prepare(i);
+        }
+    });
+    lanes.bounces = bounces;
+    if (!special) return;
+    for (uint32_t i = 0; i < lanes.group.size(); ++i) fill_special(lanes, lanes.group[i], pairs);
+    for_lane_groups(team, lanes, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i)
+            if (lanes.group[i].first_drive != kNoLanes || lanes.group[i].rolling != kNoLanes) prepare(i);
     });
 }
 
@@ -201,25 +248,54 @@ void turn_side(const Quat& turn, const Vec3f& skin, bool rolls, float (&r)[3][kL
 // hit a wall at 100 m/s one in four gained energy, up to 6 times).
 constexpr float kOtherMass = 0.2f;
 
+bool turned(const System& system, const LaneGroup& g, int lane) {
+    return system.turned[g.a[lane]] || system.turned[g.b[lane]];
+}
+
+// What prepare() wrote for a lane, as it was before.
+void keep_lane(LanePoint& p, const LanePoint& before, int lane) {
+    p.normal_mass[lane] = before.normal_mass[lane];
+    p.isotropic_mass[lane] = before.isotropic_mass[lane];
+    for (int i = 0; i < 3; ++i) p.friction_mass[i][lane] = before.friction_mass[i][lane];
+    for (int i = 0; i < 2; ++i) p.coupling[i][lane] = before.coupling[i][lane];
+    p.approach[lane] = before.approach[lane];
+}
+
+void keep_lane(LaneRolling& r, const LaneRolling& before, int lane) {
+    r.spin_mass[lane] = before.spin_mass[lane];
+    r.isotropic_mass[lane] = before.isotropic_mass[lane];
+    for (int i = 0; i < 3; ++i) r.roll_mass[i][lane] = before.roll_mass[i][lane];
+}
+
 // What was hit already keeps the approach speed that it had.
+void renew_lane(LanePoint& p, const LanePoint& before, int lane) {
+    const float mass = before.normal_mass[lane];
+    if (p.peak[lane] > 0) p.approach[lane] = before.approach[lane];
+    if (std::abs(p.normal_mass[lane] - mass) <= kOtherMass * mass) return;
+    for (auto& impulse : p.impulse) impulse[lane] = 0;
+}
+
+// Of the lanes that turned: nothing depends on who else is in a group.
 void renew_masses(ContactLanes& lanes, uint32_t group, const System& system, const ContactKernels& kernels) {
     const LaneGroup& g = lanes.group[group];
-    float approach[4][kLanes], mass[4][kLanes];
+    LanePoint before[4];
+    LaneRolling rolling;
+    if (g.rolling != kNoLanes) rolling = lanes.rolling[g.rolling];
     for (uint32_t k = 0; k < g.points; ++k) {
         LanePoint& p = lanes.point[g.first_point + k];
-        for (int lane = 0; lane < kLanes; ++lane) {
-            approach[k][lane] = p.approach[lane];
-            mass[k][lane] = p.normal_mass[lane];
-            p.normal_mass[lane] = mass[k][lane] > 0 ? 1 : 0;  // in use
-        }
+        before[k] = p;
+        for (int lane = 0; lane < kLanes; ++lane) p.normal_mass[lane] = p.normal_mass[lane] > 0 ? 1 : 0;  // in use
     }
     kernels.prepare(lanes.view(), group, group + 1, system.velocity.data(), system.inverse_mass.data());
-    for (uint32_t k = 0; k < g.points; ++k) {
-        LanePoint& p = lanes.point[g.first_point + k];
-        for (int lane = 0; lane < kLanes; ++lane) {
-            if (p.peak[lane] > 0) p.approach[lane] = approach[k][lane];
-            if (std::abs(p.normal_mass[lane] - mass[k][lane]) <= kOtherMass * mass[k][lane]) continue;
-            for (auto& impulse : p.impulse) impulse[lane] = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const bool renewed = turned(system, g, lane);
+        if (!renewed && g.rolling != kNoLanes) keep_lane(lanes.rolling[g.rolling], rolling, lane);
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LanePoint& p = lanes.point[g.first_point + k];
+            if (renewed)
+                renew_lane(p, before[k], lane);
+            else
+                keep_lane(p, before[k], lane);
         }
     }
 }
@@ -228,7 +304,7 @@ bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const uint32_t a = g.a[lane], b = g.b[lane];
-        if (!system.turned[a] && !system.turned[b]) continue;
+        if (!turned(system, g, lane)) continue;
         any = true;
         g.turns[lane] = 1;
         g.any_turns = 1;
@@ -267,7 +343,7 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
         pair.turning = {turning[0][lane], turning[1][lane], turning[2][lane]};
         pair.spin_slip = -1;
     };
-    team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    for_lane_groups(team, lanes, [&](uint32_t begin, uint32_t end) {
         for (uint32_t g = begin; g < end; ++g)
             for (int lane = 0; lane < kLanes; ++lane)
                 if (lanes.group[g].pair[lane] != kNone) store(lanes.group[g], lane);

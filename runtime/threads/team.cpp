@@ -1,5 +1,7 @@
 #include "threads/team.h"
 
+#include <algorithm>
+
 #if defined(__linux__)
 #include <pthread.h>
 #include <sched.h>
@@ -34,19 +36,19 @@ private:
 
 }  // namespace
 
-// How a stage is cut.
+// How a stage is cut: into chunks that are as long but for one, and parts of as many chunks where there are enough.
 struct Team::Chunks {
-    uint32_t count, grain, number, parts;
+    uint32_t count, number, parts;
 
-    Chunks(uint64_t stage, uint32_t team)
-        : count(static_cast<uint32_t>(stage >> 32)), grain(static_cast<uint32_t>(stage)), parts(team) {
+    Chunks(uint64_t stage, uint32_t team) : count(static_cast<uint32_t>(stage >> 32)), parts(team) {
         constexpr uint32_t kMost = 1u << (kChunkBits - 1);
-        if (count / grain >= kMost) grain = count / kMost + 1;
+        const uint32_t grain = std::max(static_cast<uint32_t>(stage), count / kMost + 1);
         number = count / grain + (count % grain != 0);
+        if (number > parts) number -= number % parts;
     }
     uint32_t first(uint32_t part) const { return static_cast<uint32_t>((uint64_t{part} * number + parts - 1) / parts); }
-    uint32_t begin(uint32_t chunk) const { return chunk * grain; }
-    uint32_t end(uint32_t chunk) const { return count - begin(chunk) > grain ? begin(chunk) + grain : count; }
+    uint32_t begin(uint32_t chunk) const { return static_cast<uint32_t>(uint64_t{chunk} * count / number); }
+    uint32_t end(uint32_t chunk) const { return begin(chunk + 1); }
 };
 
 Team::Team(const taut_hooks& hooks, uint32_t threads)
@@ -108,7 +110,10 @@ void Team::work(uint64_t program, uint32_t worker) {
         if (!is_out()) return;
         before += chunks.number;
         for (uint32_t k = 0, part = worker; k < size_; ++k, part = part + 1 < size_ ? part + 1 : 0) {
-            if (part != worker && part_[part].joined.load(std::memory_order_acquire) == program) be_patient();
+            if (part != worker && part_[part].joined.load(std::memory_order_acquire) == program) {
+                be_patient();
+                if (finished_.load(std::memory_order_acquire) >= before) break;
+            }
             uint64_t mine = 0;
             for (uint32_t chunk; claim(part, chunks, program + i, chunk); ++mine)
                 run(context, i, chunks.begin(chunk), chunks.end(chunk));

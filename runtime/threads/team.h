@@ -95,8 +95,8 @@ private:
     // before it claims anything: stores release and loads acquire for that.
     static constexpr uint64_t kNone = 0;
     static constexpr uint32_t kChunkBits = 20;
-    alignas(64) std::atomic<uint64_t> program_{kNone};
-    std::atomic<RangeFn> run_{nullptr};
+    alignas(64) std::atomic<uint64_t> program_{kNone};  // alone: helpers look at it all the time
+    alignas(64) std::atomic<RangeFn> run_{nullptr};
     std::atomic<const void*> context_{nullptr};
     std::atomic<uint32_t> stage_count_{0};
     std::vector<std::atomic<uint64_t>> stage_;       // count << 32 | grain

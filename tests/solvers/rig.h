@@ -92,7 +92,7 @@ public:
     void begin(const Solver& with) {
         solver = with;
         w.partition.build(w.nodes, w.joints, w.pairs, {1, true, solver.direct});
-        begin_frame(w.system, w.nodes);
+        begin_frame(w.team, w.system, w.nodes);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);

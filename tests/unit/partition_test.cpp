@@ -254,6 +254,38 @@ TEST_F(PartitionTest, AHubWithAHundredContactsReachesTheLastColour) {
     EXPECT_EQ(group.pair_colour_begin[kMaxColours] - group.pair_colour_begin[kMaxColours - 1], 100 - (kMaxColours - 1));
 }
 
+// Bodies on a line in the order of chance, each in touch with those near it: two threads that take half of each colour
+// meet at few bodies, while halves in the order of index share half of them.
+TEST_F(PartitionTest, HalvesOfTheColoursMeetAtFewNodes) {
+    std::mt19937 engine(5);
+    constexpr uint32_t kCount = 1000, kNear = 4;
+    std::vector<uint32_t> at(kCount);
+    for (uint32_t& node : at) node = add(NodeKind::dynamic);
+    std::shuffle(at.begin(), at.end(), engine);
+    for (uint32_t i = 0; i < kCount; ++i) {
+        nodes.motion[at[i]].x = Vec3(0, 0, i);
+        for (uint32_t k = 1; k <= kNear && i + k < kCount; ++k) touch(at[i], at[i + k]);
+    }
+    nodes.motion[at[0]].x.y() = 1e4;  // one far off
+    build();
+    ASSERT_EQ(partition.group_count, 1u);
+    const Group& group = partition.groups[0];
+    std::set<uint32_t> half[2];
+    for (uint32_t c = 0; c < kMaxColours; ++c) {
+        const uint32_t begin = group.pair_colour_begin[c], end = group.pair_colour_begin[c + 1];
+        EXPECT_TRUE(std::is_sorted(group.pair_place.begin() + begin, group.pair_place.begin() + end));
+        if (end - begin < kCount / 10) continue;  // what is left over, anywhere
+        for (uint32_t i = begin; i < end; ++i)
+            for (uint32_t node : pairs.active[group.pairs[i]].sides())
+                half[i >= begin + (end - begin) / 2].insert(node);
+    }
+    size_t shared = 0;
+    for (uint32_t node : half[0]) shared += half[1].count(node);
+    EXPECT_GT(half[0].size(), kCount / 3);
+    EXPECT_GT(half[1].size(), kCount / 3);
+    EXPECT_LT(shared, kCount / 10);
+}
+
 TEST_F(PartitionTest, AFixedHubNeedsOneColour) {
     const uint32_t ground = add(NodeKind::fixed);
     for (int i = 0; i < 100; ++i) touch(ground, add(NodeKind::dynamic));

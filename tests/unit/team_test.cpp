@@ -36,6 +36,29 @@ TEST(Team, OwnThreadsRunEveryIndexOnce) {
     }
 }
 
+// Chunks that differ by one at most, as many for each thread.
+TEST(Team, CutsLoopsEvenly) {
+    for (uint32_t threads : {2u, 3u, 5u}) {
+        Team team({}, threads);
+        const RestAfter rest(team);
+        for (uint32_t count : {64u, 65u, 333u, 1000u}) {
+            std::vector<std::atomic<uint32_t>> length(count);  // by where a chunk begins
+            team.for_ranges(count, 16, [&](uint32_t begin, uint32_t end) { length[begin] = end - begin; });
+            uint32_t chunks = 0, least = count, most = 0;
+            for (const auto& each : length) {
+                if (each == 0) continue;
+                ++chunks;
+                least = std::min(least, each.load());
+                most = std::max(most, each.load());
+            }
+            EXPECT_LE(most - least, 1u) << count << " on " << threads;
+            if (chunks >= threads) {
+                EXPECT_EQ(chunks % threads, 0u) << count << " on " << threads;
+            }
+        }
+    }
+}
+
 // Each loop reads what the one before it wrote, on whatever thread that was.
 TEST(Team, LoopsSeeTheOnesBeforeThem) {
     Team team({}, 4);
