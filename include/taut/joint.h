@@ -266,7 +266,8 @@ typedef struct taut_cone_twist_joint_def {
     float break_torque;
     taut_joint_solve solve;
     uint32_t reserved;
-    taut_axis_def swing; /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at; no drive */
+    taut_axis_def swing; /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at; no drive.
+                              Its friction acts around the cone too, but where the joint is swept */
     taut_axis_def twist; /**< default free */
     uint64_t user_data;
 } taut_cone_twist_joint_def;

@@ -2,7 +2,9 @@
 //   0-2  p_b - p_a, world axes                   [m]    locked
 //   3    swing: angle between X_a and X_b        [rad]  in [0, pi]; its direction at 0 is Y_a
 //   4    twist from A to B about X               [rad]  in (-pi, pi]; swing-twist decomposition
-//   5    azimuth of X_b about X_a from Y_a       [rad]  in (-pi, pi], any where there is no swing; for friction alone
+//   5    azimuth of X_b about X_a from Y_a       [rad]  in (-pi, pi], any where there is no swing; for friction alone,
+//        and not swept: where it swings through 0 its axis turns about (measured: 1 of 200 ragdolls in a heap never
+//        rests)
 #include "constraints/frame_joint.h"
 
 namespace taut {
@@ -26,6 +28,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kConeTwist = frame_joint<ConeTwist, 6>("cone_twist", sample);
+const ConstraintType kConeTwist = frame_joint<ConeTwist, 6>("cone_twist", sample, 1 << 5);
 
 }  // namespace taut

@@ -75,6 +75,11 @@ struct ConstraintType {
     // a SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn are not written.
     void (*evaluate_lanes)(const LaneFrames& frames, const float* const (&pose)[2][kLanes], LaneScalar* error,
                            LaneScalar* jacobian) = nullptr;
+    // Bit r: sweeps leave out stops, drives and friction along row r. Its direction may turn about from one substep to
+    // the next, and what they carry over is then a push.
+    uint8_t unswept = 0;
+
+    bool swept(uint32_t r) const { return (unswept >> r & 1) == 0; }
 };
 
 // Every type there is; tests, hash and assembly loop over it.

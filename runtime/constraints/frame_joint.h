@@ -37,7 +37,8 @@ void stiffness_of_frames(const void* data, const Pose* x, const double* lambda, 
 
 // Rows from 3 on are angles.
 template <class Type, int kRows>
-constexpr ConstraintType frame_joint(const char* name, void (*sample)(uint64_t seed, void* data, Pose* x)) {
+constexpr ConstraintType frame_joint(const char* name, void (*sample)(uint64_t seed, void* data, Pose* x),
+                                     uint8_t unswept = 0) {
     constexpr uint8_t kAngles = (1 << kRows) - (1 << 3);
     return {name,
             kRows,
@@ -51,7 +52,8 @@ constexpr ConstraintType frame_joint(const char* name, void (*sample)(uint64_t s
             nullptr,
             sample,
             nullptr,
-            evaluate_frame_lanes<Type, kRows>};
+            evaluate_frame_lanes<Type, kRows>,
+            unswept};
 }
 
 }  // namespace taut

@@ -140,11 +140,15 @@ struct JointSweep {
         for (float mass : axis.mass) axis.used |= mass > 0 ? 1u : 0u;
     }
 
-    // Friction is a torque: lambda is less where the coordinate turns faster than its bodies do, |g| > 1.
-    static void bound_friction(LaneAxis& axis, const LaneAxisLaw& law, const V& g) {
-        const F most = F::load(law.friction) / F::max(F::sqrt(dot(g, g)), F::all(1e-30f));
+    // Friction is a torque: lambda is less where the coordinate turns faster than its bodies do, |g| > 1. What is
+    // carried on from the last substep is cut down to that, or it would be a torque of any size.
+    static void bound_friction(LaneAxis& axis, LaneRow& row, const LaneAxisLaw& law, const V& g) {
+        const F most = F::load(law.friction) / F::max(F::sqrt(dot(g, g)), F::all(1e-30f)), least = F::all(0) - most;
         most.store(axis.most);
-        (F::all(0) - most).store(axis.least);
+        least.store(axis.least);
+        const F carried = F::load(axis.impulse), kept = clamp(carried, least, most);
+        kept.store(axis.impulse);
+        (F::load(row.impulse) + F::load(axis.sign) * (kept - carried)).store(row.impulse);
     }
 
     static void prepare(JointView view, uint32_t begin, uint32_t end, const SweepMass* masses, float frame_left) {
@@ -165,7 +169,7 @@ struct JointSweep {
                 set_axis(view.axis[a], view.law[a], view.coordinate[g.first_row + row],
                          F::load(view.row[g.first_row + row].own));
                 if (view.axis[a].part == kRubbing && row >= g.first_turn)  // one that turns
-                    bound_friction(view.axis[a], view.law[a], joints.angular(1, row));
+                    bound_friction(view.axis[a], view.row[g.first_row + row], view.law[a], joints.angular(1, row));
             }
         }
     }

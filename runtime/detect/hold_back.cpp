@@ -59,6 +59,8 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
     Mechanism of_a(nodes, mechanisms, pair.a.collider.node), of_b(nodes, mechanisms, pair.b.collider.node);
     if (of_a.has(pair.b.collider.node)) return false;
     if (round == kRounds) {
+        const bool a_may = of_a.may_stay(), b_may = of_b.may_stay();
+        if (!a_may || !b_may) return false;
         of_a.stay(round);
         of_b.stay(round);
     } else {
@@ -86,7 +88,7 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     bool again = true;
     for (uint8_t round = 1; again && round <= kRounds; ++round) {
         again = false;
-        if (!find_astray(team, nodes, colliders, shapes, pairs) && !pairs.any_fast) return;
+        if (!find_astray(team, nodes, colliders, shapes, pairs) && !pairs.any_fast) break;
         gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
                [&](uint32_t i) { return strides(colliders, pairs, pairs.near[i]); });
         team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
@@ -103,6 +105,7 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
             again = part(pair, excess_of(nodes, pair), joints, round, mechanisms, nodes) || again;
         }
     }
+    end_stays(mechanisms);
 }
 
 }  // namespace taut

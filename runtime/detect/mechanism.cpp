@@ -6,6 +6,22 @@
 
 namespace taut {
 
+constexpr uint32_t kMostStays = 10;  // frames; in the next it goes on
+
+bool Mechanism::may_stay() {
+    if (!moves_) return true;
+    auto stay = std::find_if(all_.stays.begin(), all_.stays.end(), [&](const Stay& s) { return s.root == root_; });
+    if (stay == all_.stays.end()) stay = all_.stays.insert(stay, {root_, 0, false});
+    if (!stay->now) ++stay->frames;
+    stay->now = true;
+    return stay->frames <= kMostStays;
+}
+
+void end_stays(Mechanisms& of) {
+    std::erase_if(of.stays, [](const Stay& s) { return !s.now || s.frames > kMostStays; });
+    for (Stay& stay : of.stays) stay.now = false;
+}
+
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
     const uint32_t slots = nodes.slots();
     Array<uint32_t>& root = of.root;

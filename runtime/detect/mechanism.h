@@ -11,6 +11,9 @@ constexpr uint8_t kJointed = 1, kAnchored = 2;  // Mechanisms::ties; anchored: a
 
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
 
+// After all rounds: forgets the stays of mechanisms that did not stay in this frame, and those that lasted too long.
+void end_stays(Mechanisms& of);
+
 // A body and what joints tie to it, which stay as they are against each other.
 class Mechanism {
 public:
@@ -25,6 +28,8 @@ public:
         const Vec3 back = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
     }
+    // Not in frame after frame: whose joints pull it into what it may not pass would hang there for good.
+    bool may_stay();
     // Where they were before the step.
     void stay(uint8_t round) {
         for_each(round, [&](uint32_t node) {

@@ -155,6 +155,7 @@ void add_pairs(Hash& hash, const Pairs& pairs) {
     for_near(pairs, [&](const NearPair& near) {
         for_parts(pairs, near, [&](const Pair& pair) { add_pair(hash, near, pair); });
     });
+    for (const Stay& stay : pairs.mechanisms.stays) hash.add(static_cast<uint64_t>(stay.root) << 32 | stay.frames);
 }
 
 }  // namespace

@@ -178,14 +178,22 @@ struct Pace {
     bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
 };
 
+// A mechanism that hold_back() leaves where it was before the step.
+struct Stay {
+    uint32_t root;
+    uint32_t frames;  // one after another
+    bool now;         // in this one too
+};
+
 // Nodes that joints tie together, by node; hold_back().
 struct Mechanisms {
-    explicit Mechanisms(Memory& memory) : root(memory), next(memory), ties(memory), put_back(memory) {}
+    explicit Mechanisms(Memory& memory) : root(memory), next(memory), ties(memory), put_back(memory), stays(memory) {}
 
     Array<uint32_t> root;     // the least of them; empty: not found yet
     Array<uint32_t> next;     // of the ring of them
     Array<uint8_t> ties;      // of a root; detect/mechanism.h
     Array<uint8_t> put_back;  // the last round in which it was; 0: none
+    Array<Stay> stays;        // outlive the step
 };
 
 struct Pairs {

@@ -22,13 +22,15 @@ constexpr double kMost = 1e30;  // as a float
 
 uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.size()); }
 
-// visit(row, AxisRow) for each stop, drive and friction of a block, with drives at their target.
+// visit(row, AxisRow) for each stop, drive and friction of a block that is swept, with drives at their target.
 template <class Visit>
 void for_each_axis(const RowBlock& block, double h, Visit visit) {
     if (!block.axis) return;
-    for (int r = 0; r < block.type->rows; ++r)
-        for_each_axis_row(block, r, block.axis[r].target, h,
-                          [&](const AxisRow& axis) { visit(static_cast<uint32_t>(r), axis); });
+    for (int r = 0; r < block.type->rows; ++r) {
+        const auto row = static_cast<uint32_t>(r);
+        if (!block.type->swept(row)) continue;
+        for_each_axis_row(block, r, block.axis[r].target, h, [&](const AxisRow& axis) { visit(row, axis); });
+    }
 }
 
 // Places for what some lane has along a row.
@@ -145,7 +147,7 @@ void fill_rows(System& system, const JointGroup& g, int lane, const RowBlock& bl
         LaneRow& row = lanes.row[g.first_row + r];
         row.locked[lane] = locked ? 1 : 0;
         row.rigid[lane] = rigid ? 1 : 0;
-        row.impulse[lane] = static_cast<float>(times.h * block.force[r]);
+        row.impulse[lane] = block.type->swept(r) ? static_cast<float>(times.h * block.force[r]) : 0;
         LaneCoordinate& c = lanes.coordinate[g.first_row + r];
         c.drift[lane] = static_cast<float>(block.drift[r]);
         if (rigid) c.rate[lane] = times.soft.bias_rate;
