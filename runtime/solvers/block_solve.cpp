@@ -21,7 +21,6 @@ constexpr double kNegligible = 1e-3;  // of the block's largest force: smaller o
 // exceeds this part of the lever, positions (not velocities) are projected once more on the same factor. Heavy loads
 // do not whip, and there the projection disturbs the tension that K was formed from (measured: 2 of 16 starts lost).
 constexpr double kSettleGap = 4e-3;
-constexpr double kClosingSpeed = 0.5;  // gaps close so fast whatever energy that takes [m/s]
 
 double squared(const double* f, int rows) {
     double sum = 0;
@@ -83,31 +82,6 @@ double BlockSolve::known_rate(const RowBlock& block, int r) const {
         v += j.head<3>().dot(u.v) + j.tail<3>().dot(u.w);
     }
     return v;
-}
-
-// A locked row that works by nothing but closing its gap: no spring, not reeled, not led by a kinematic end.
-bool BlockSolve::ideal(const RowBlock& block, int r) const {
-    return !block.elastic(r) && block.drift[r] == 0 && known_rate(block, r) == 0;
-}
-
-// Work of the locked rows that are not ideal, at the mean of the velocities before and after [J].
-double BlockSolve::joint_work() const {
-    double sum = 0;
-    for (uint32_t j = 0; j < joints(); ++j) {
-        const RowBlock& block = row(j);
-        for (int r = 0; r < block.type->rows; ++r) {
-            if (!block.locked(r) || ideal(block, r)) continue;
-            double rate = 0;
-            for (int n = 0; n < block.type->nodes; ++n) {
-                if (local(block.node[n]) == kNone) continue;
-                const Velocity &v0 = sys_.start[block.node[n]], &v1 = sys_.exact[block.node[n]];
-                const auto jacobian = jacobian_of(sys_, block, n).row(r);
-                rate += 0.5 * (jacobian.head<3>().dot(v0.v + v1.v) + jacobian.tail<3>().dot(v0.w + v1.w));
-            }
-            sum += b_.solution[(nodes_ + j) * kDof + static_cast<uint32_t>(r)] * rate;
-        }
-    }
-    return sum;
 }
 
 // M (v* + contact changes) + h^2 K s + B^T goal / c for nodes, -closing target for joints.
@@ -229,61 +203,6 @@ bool BlockSolve::factor_rounds() {
         solve_relaxed();
         if (!set.drop_pulling()) return true;
     }
-}
-
-// Kinetic energy of the difference of two sets of velocities.
-double BlockSolve::energy_between(const Array<Velocity>& a, const Array<Velocity>& b) const {
-    double sum = 0;
-    for (uint32_t node : b_.nodes) {
-        const Vec3 v = a[node + 1].v - b[node + 1].v, w = a[node + 1].w - b[node + 1].w;
-        sum += 0.5 * s_.nodes.mass[node].mass * v.squaredNorm();
-        if (s_.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * w.dot(sys_.inertia[node + 1] * w);
-    }
-    return sum;
-}
-
-// The largest part of the joints' gaps, 0 to 1, that closes slowly: kClosingSpeed and less.
-double BlockSolve::slow_closing() const {
-    double fastest = kClosingSpeed;
-    for (uint32_t j = 0; j < joints(); ++j)
-        for (int r = 0; r < row(j).type->rows; ++r)
-            if (row(j).locked(r) && !row(j).angular(r) && ideal(row(j), r))
-                fastest = std::max(fastest, std::abs(row_terms(row(j), r, sys_.h).rate * error_of(row(j), r)));
-    return kClosingSpeed / fastest;
-}
-
-void BlockSolve::solve_closing(double part) {
-    b_.closing = part;
-    solve_known();
-    gained_ = energy_gain(s_, b_, set.work() + joint_work());
-}
-
-// Where a solution that closes wide gaps gains energy, solves on the same factor for one that does not: first without
-// the slow velocity, then closing only as much of the gaps as makes none, though not more slowly than slow_closing().
-// Where a slack chain snaps taut, light links turn by radians in a substep and their straight steps open the joints; a
-// heavy weight that is pulled in by as much within the next substep comes back faster than it went. Velocities are
-// linear in the part a of the gaps that is closed, and with q the energy of their difference between a = 0 and a = 1
-//   gain(a) = gain(0) + (gain(1) - gain(0) - q) a + q a^2
-void BlockSolve::limit_gain() {
-    if (!is_guarded(b_) || joints() == 0) return;
-    gained_ = energy_gain(s_, b_, set.work() + joint_work());
-    if (!gained_.excessive()) return;
-    const double slow = slow_closing();
-    if (slow >= b_.closing) return;
-    const EnergyGain first = gained_;  // what the guard hears of
-    relaxed_ = false;
-    std::fill(b_.known.begin(), b_.known.end(), 0.0);
-    solve_closing(b_.closing);
-    if (gained_.excessive()) {
-        const double tried = b_.closing, whole = gained_.gain;
-        for (uint32_t node : b_.nodes) sys_.kept[node + 1] = sys_.exact[node + 1];
-        solve_closing(0);
-        const double none = std::min(0.0, gained_.gain), q = energy_between(sys_.kept, sys_.exact);
-        const double slope = whole - none - q, root = std::sqrt(slope * slope - 4 * q * none);
-        solve_closing(std::clamp(q > 0 ? tried * (root - slope) / (2 * q) : tried, slow, tried));
-    }
-    gained_ = first;
-    take_forces();
 }
 
 bool BlockSolve::solve_first() {

@@ -63,17 +63,19 @@ private:
     double error_of(const RowBlock& block, int r) const {
         return sys_.rows.error[block.row + static_cast<uint32_t>(r)];
     }
-    bool ideal(const RowBlock& block, int r) const;
-    double joint_work() const;
     void solve_known();
-    double energy_between(const Array<Velocity>& a, const Array<Velocity>& b) const;
-    double slow_closing() const;
-    void solve_closing(double part);
-    void limit_gain();
     void take_solution();
     void take_forces();
     bool outgrown(const RowBlock& block, const double* force) const;
     bool force_grew() const;
+
+    // block_gain.cpp
+    bool ideal(const RowBlock& block, int r) const;
+    double joint_work() const;
+    double energy_between(const Array<Velocity>& a, const Array<Velocity>& b) const;
+    double slow_closing() const;
+    void solve_closing(double part);
+    void limit_gain();
 
     double* node_known(uint32_t i) { return &b_.known[i * kDof]; }
     double* joint_force(uint32_t j) { return &b_.force[j * kMaxRows]; }

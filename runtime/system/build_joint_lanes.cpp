@@ -147,7 +147,7 @@ void fill_rows(System& system, const JointGroup& g, int lane, const RowBlock& bl
         LaneRow& row = lanes.row[g.first_row + r];
         row.locked[lane] = locked ? 1 : 0;
         row.rigid[lane] = rigid ? 1 : 0;
-        row.impulse[lane] = block.type->swept(r) ? static_cast<float>(times.h * block.force[r]) : 0;
+        row.impulse[lane] = locked || block.type->swept(r) ? static_cast<float>(times.h * block.force[r]) : 0;
         LaneCoordinate& c = lanes.coordinate[g.first_row + r];
         c.drift[lane] = static_cast<float>(block.drift[r]);
         if (rigid) c.rate[lane] = times.soft.bias_rate;

@@ -215,7 +215,24 @@ struct Written {
                         jacobian(r, n * kDof + k) = raw[static_cast<size_t>((n * rows + r) * kDof + k)];
         }
         const Matrix w = inverse_masses(m.system, block), s = jacobian * w * jacobian.transpose();
+        const auto turns = [&](int r) { return block.type->evaluate_lanes && block.angular(r); };
+        const auto most_friction = [&](int r) {
+            const double gearing = turns(r) ? jacobian.row(r).tail<3>().norm() : 1;
+            return kStep * static_cast<double>(part.axis[static_cast<size_t>(r)].friction) / gearing;
+        };
+        const auto rubbed = [&](int r) {  // what friction carries on
+            const double before = kStep * part.memory[static_cast<size_t>(r)].friction, most = most_friction(r);
+            return turns(r) ? std::clamp(before, -most, most) : before;
+        };
         p = kStep * Vector::Map(part.force.data(), rows);
+        for (int r = 0; block.axis && r < rows; ++r) {
+            const Axis& axis = part.axis[static_cast<size_t>(r)];
+            if (axis.mode == AxisMode::locked) continue;
+            if (!block.type->swept(static_cast<uint32_t>(r)))
+                p[r] = 0;
+            else if (axis.friction > 0)
+                p[r] += rubbed(r) - kStep * part.memory[static_cast<size_t>(r)].friction;
+        }
         u += w * jacobian.transpose() * p;
 
         const SweepTerms soft = joint_terms(kStep);
@@ -258,7 +275,7 @@ struct Written {
         for (int r = 0; block.axis && r < rows; ++r) {
             const Axis& axis = part.axis[static_cast<size_t>(r)];
             const AxisMemory& memory = part.memory[static_cast<size_t>(r)];
-            if (axis.mode == AxisMode::locked) continue;
+            if (axis.mode == AxisMode::locked || !block.type->swept(static_cast<uint32_t>(r))) continue;
             auto stop = [&](double sign, double gap, double carried) {
                 const double c = axis.limit_compliance / (kStep * kStep);
                 const double push = std::min<double>(soft.push, -soft.bias_rate * gap);
@@ -279,10 +296,7 @@ struct Written {
                 solve_row(r, 1, kStep * memory.drive, 1 / (kStep * rate), (d * axis.speed - k * at) / rate, -most,
                           most);
             }
-            const double gearing =
-                block.type->evaluate_lanes && block.angular(r) ? jacobian.row(r).tail<3>().norm() : 1;
-            const double most = kStep * axis.friction / gearing;
-            if (axis.friction > 0) solve_row(r, 1, kStep * memory.friction, 0, 0, -most, most);
+            if (axis.friction > 0) solve_row(r, 1, rubbed(r), 0, 0, -most_friction(r), most_friction(r));
         }
     }
 };

@@ -1,0 +1,207 @@
+// Which joints are solved directly, together with which contacts.
+#include <algorithm>
+
+#include "partition/movers.h"
+#include "partition/partition.h"
+
+namespace taut {
+namespace {
+
+// A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
+// below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
+constexpr uint32_t kMostGrown = 64;
+
+// Contacts of what carries no more than some thirty times its own weight are as well swept, and far cheaper so:
+// ragdolls in a heap. Beyond, a light body between a heavy one and an edge sinks in.
+constexpr double kLoad = 300;             // force of a joint over the mass of its lighter body [m/s^2]
+constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses always takes them in
+
+// Beyond these, mechanisms of joints solved by load are blocks. Their contacts stay swept.
+constexpr double kSweptLoad = 1000;     // likewise [m/s^2]: such a joint yields by .4 mm at 240 substeps a second
+constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
+// For so many frames after. A hit in a heap loads a joint for three to six frames: a hold of a second would keep half
+// of it in blocks for nothing.
+constexpr uint8_t kSweptFor = 15;
+
+constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
+
+}  // namespace
+
+void note_loads(Joints& joints, const Nodes& nodes) {
+    for (Joint& joint : joints.record) {
+        if (!joint.type || asleep(nodes, joint)) continue;
+        double squared = 0, lighter = 1e300;
+        for (int r = 0; r < joint.type->rows; ++r)
+            if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];
+        for (uint32_t node : joint.nodes())
+            if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
+        const bool by_load = joint.solve == JointSolve::by_load;
+        const double most = (by_load ? kSweptLoad : kLoad) * lighter;
+        const int then = kLoadedAfter + (by_load ? kSweptFor : kLoadedFor);
+        if (squared > most * most)
+            joint.loaded = static_cast<uint8_t>(joint.loaded + 1 < kLoadedAfter ? joint.loaded + 1 : then);
+        else
+            joint.loaded = joint.loaded > kLoadedAfter ? joint.loaded - 1 : 0;
+    }
+}
+
+// False if the block would grow too much; the contact is swept then.
+bool Partition::join_contact(uint32_t a, uint32_t b) {
+    a = find(a), b = find(b);
+    if (a == b) return true;
+    const Component &ca = component_[a], &cb = component_[b];
+    const uint32_t grown = ca.grown + cb.grown + std::min(ca.nodes, cb.nodes);
+    if (grown > kMostGrown) return false;
+    const uint32_t total = ca.nodes + cb.nodes;
+    const bool loaded = ca.loaded || cb.loaded;
+    unite(a, b);
+    component_[find(a)] = {total, 0, grown, kNone, 0, 0, loaded};
+    return true;
+}
+
+// Components of the graph of direct joints and the contacts that they take in. Symbolic work happens at a block's
+// first solve.
+void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
+    const uint32_t slots = nodes.slots();
+    connect_joints(nodes, joints, /*swept_too=*/false);
+    core_.assign(slots, 0);
+    component_.assign(slots, Component{});
+    pair_in_block_.assign(pairs.active.size(), 0);
+    for (uint32_t i = 0; i < slots; ++i) component_[i].nodes = 0;
+    for (uint32_t i = 0; i < slots; ++i) {
+        Component& component = component_[find(i)];
+        ++component.nodes;
+        if (!moving(nodes, i)) continue;
+        component.least = std::min(component.least, nodes.mass[i].mass);
+        component.most = std::max(component.most, nodes.mass[i].mass);
+    }
+    choose_direct(nodes, joints);
+    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+        const auto ends = pairs.active[p].nodes();
+        const uint32_t first = mover(nodes, ends);
+        if (first == kNone) continue;  // a quarantined body at rest on a fixed one
+        const bool tower = island_[island_of_[first]].tower;
+        auto takes_in = [&](uint32_t node) {
+            return moving(nodes, node) && core_[node] && component_[find(node)].loaded;
+        };
+        if (!tower && std::none_of(ends.begin(), ends.end(), takes_in)) continue;
+        pair_in_block_[p] = std::all_of(
+            ends.begin(), ends.end(), [&](uint32_t node) { return !moving(nodes, node) || join_contact(first, node); });
+        if (tower && pair_in_block_[p]) core_[first] = 1;  // in a block, with or without a joint
+    }
+    fill_blocks(nodes, joints, pairs);
+    recall_blocks(nodes, joints);
+}
+
+// Joints that blocks own, but for nets with too many loops and for mechanisms that sweeps hold as well.
+void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
+    auto end = [&](const Joint& joint) { return mover(nodes, joint.nodes()); };
+    auto may = [&](const Joint& joint) { return joint.solve != JointSolve::swept && end(joint) != kNone; };
+    for (const Joint& joint : joints.record) {
+        if (!may(joint)) continue;
+        Component& c = component_[find(end(joint))];
+        ++c.joints;
+        const bool loaded = joint.loaded >= kLoadedAfter, direct = joint.solve == JointSolve::direct;
+        c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
+        c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
+    }
+    auto is_block = [](const Component& c) { return c.direct && c.joints <= c.nodes + kMostLoops; };
+    joint_in_block_.assign(joints.record.size(), 0);
+    for (size_t j = 0; j < joints.record.size(); ++j) {
+        const Joint& joint = joints.record[j];
+        if (!may(joint) || !is_block(component_[find(end(joint))])) continue;
+        joint_in_block_[j] = 1;
+        for (uint32_t node : joint.nodes())
+            if (moving(nodes, node)) core_[node] = 1;
+    }
+    for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
+    for (uint32_t i = nodes.slots(); i-- > 0;) {  // other nodes stand alone; their root is smallest, so last
+        if (is_block(component_[parent_[i]])) continue;
+        parent_[i] = i;
+        component_[i] = {};
+    }
+}
+
+// Into spare_: nodes, joints, pairs and the identity of each block's graph.
+void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
+    Memory& memory = *blocks.get_allocator().memory;
+    uint32_t count = 0;
+    auto block_at = [&](uint32_t node) -> Block& {
+        uint32_t& block = component_[find(node)].block;
+        if (block == kNone) {
+            block = count++;
+            if (spare_.size() < count) spare_.emplace_back(memory);
+            Block& fresh = spare_[block];
+            for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
+            fresh.links.clear();
+            fresh.identity.clear();
+            fresh.matrix.forget();
+            fresh.memory = {};
+        }
+        return spare_[block];
+    };
+    for (uint32_t j = 0; j < joints.record.size(); ++j) {
+        const Joint& joint = joints.record[j];
+        if (!joint_in_block_[j]) continue;
+        Block& block = block_at(mover(nodes, joint.nodes()));
+        block.joints.push_back(j);
+        block.identity.push_back(joint.mark());
+    }
+    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+        if (!pair_in_block_[p]) continue;
+        const auto ends = pairs.active[p].nodes();
+        Block& block = block_at(mover(nodes, ends));
+        block.pairs.push_back(p);
+        for (size_t b = 0; b < ends.size(); ++b)
+            for (size_t a = 0; a < b; ++a)
+                if (moving(nodes, ends[a]) && moving(nodes, ends[b])) block.links.push_back(pair_key(ends[a], ends[b]));
+    }
+    for (uint32_t i = 0; i < nodes.slots(); ++i)
+        if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);
+    while (spare_.size() > count) spare_.pop_back();
+    for (Block& block : spare_) {
+        double least = 1e300, most = 0;
+        for (uint32_t node : block.nodes) {
+            least = std::min(least, nodes.mass[node].mass);
+            most = std::max(most, nodes.mass[node].mass);
+            block.identity.push_back(static_cast<uint64_t>(node) << 32 | nodes.ids.generation(node));
+        }
+        block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
+        block.mass_ratio = most / least;
+        block.tower = block.joints.empty();
+    }
+}
+
+// A block whose graph stayed keeps its elimination order; one that lost or gained something keeps its memory.
+void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
+    block_of_.resize(nodes.slots(), kNone);
+    auto remembers = [&](const Block& old, const Block& block) {
+        const uint64_t mark = block.tower
+                                  ? static_cast<uint64_t>(block.nodes[0]) << 32 | nodes.ids.generation(block.nodes[0])
+                                  : joints.record[block.joints[0]].mark();
+        return old.tower == block.tower &&
+               std::find(old.identity.begin(), old.identity.end(), mark) != old.identity.end();
+    };
+    for (Block& block : spare_) {
+        const uint32_t at = block_of_[block.nodes[0]];
+        if (at == kNone || at >= blocks.size()) continue;
+        Block& old = blocks[at];
+        if (old.identity == block.identity) {
+            std::swap(old.matrix, block.matrix);
+            std::swap(old.places, block.places);
+            std::swap(old.solution, block.solution);
+            std::swap(old.known, block.known);
+            std::swap(old.force, block.force);
+            block.looped = old.looped;
+            block.memory = old.memory;
+        } else if (remembers(old, block)) {
+            block.memory = old.memory;
+        }
+    }
+    blocks.swap(spare_);
+    block_of_.assign(nodes.slots(), kNone);
+    for (uint32_t b = 0; b < blocks.size(); ++b)
+        for (uint32_t node : blocks[b].nodes) block_of_[node] = b;
+}
+
+}  // namespace taut
