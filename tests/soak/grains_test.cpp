@@ -21,12 +21,13 @@ Heap pour(const char* friction, uint32_t threads) {
     return heap;
 }
 
+// Poured as a column of 250 layers: those that hardly rub run flat.
 TEST(FourThousandGrains, HeapAtAnAngleThatRisesWithFrictionOnAnyThreads) {
-    double before = 0;
+    double before = -10;
     for (const char* friction : {"0.1", "0.3", "0.6"}) {
         const Heap heap = pour(friction, 1);
         std::printf("friction %s: slope %.1f degrees, fastest grain %.4f m/s\n", friction, heap.slope, heap.speed);
-        EXPECT_GT(heap.slope, before + 1) << "friction " << friction;
+        EXPECT_GT(heap.slope, before + 5) << "friction " << friction;
         EXPECT_LT(heap.speed, 0.1) << "friction " << friction;
         EXPECT_EQ(heap.hash, pour(friction, 2).hash) << "friction " << friction;
         before = heap.slope;
