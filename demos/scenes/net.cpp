@@ -42,7 +42,7 @@ Scene build_net(double n, double, const Options& options) {
     }
     scene.roles.mesh_width = kLink;
     perturb(scene, options.seed);
-    scene.camera = {{0.7 * width + 1, 0.85 * height, 1.05 * width + 2}, {0, 0.76 * height, 0}, 42};
+    scene.camera = {{0.8 * width + 1, height + 0.45 * width, 1.2 * width + 2}, {0, 0.9 * height, 0}, 42};
     scene.stage = {{-width, 0, -width}, {width, height + 1, width}};
     return scene;
 }
