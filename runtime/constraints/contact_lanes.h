@@ -96,17 +96,27 @@ struct UnsetAllocator : HostAllocator<T> {
 template <class T>
 using UnsetArray = std::vector<T, UnsetAllocator<T>>;
 
+// A thread's lane groups of a colour: [begin, end).
+struct LanePart {
+    uint32_t begin, end;
+};
+
 struct ContactLanes {
     explicit ContactLanes(Memory& memory)
-        : group(memory), point(memory), drive(memory), rolling(memory), colour_begin(memory) {}
+        : group(memory), point(memory), drive(memory), rolling(memory), part(memory) {}
 
     UnsetArray<LaneGroup> group;  // of a colour, in the order of place
     UnsetArray<LanePoint> point;
     Array<LaneDrive> drive;
     Array<LaneRolling> rolling;
-    Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
+    uint32_t parts = 1;    // of a colour
+    Array<LanePart> part;  // of each colour, by place
 
     bool bounces = false;  // some point has restitution
+
+    uint32_t size_of(uint32_t colour) const {  // its lane groups
+        return part[(colour + 1) * parts - 1].end - part[colour * parts].begin;
+    }
 
     LaneView view() { return {group.data(), point.data(), drive.data(), rolling.data(), false}; }
 };

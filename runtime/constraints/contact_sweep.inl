@@ -152,10 +152,10 @@ struct ContactSweep {
 
     // Of the group after one, of the same colour: no other thread works on its nodes.
     static void prefetch_next(LaneView contacts, uint32_t i, uint32_t end, const SweepVelocity* velocities,
-                              const SweepShift* shifts = nullptr) {
+                              const SweepMass* masses, const SweepShift* shifts = nullptr) {
         if (!contacts.shared || i + 1 == end) return;
-        Side::prefetch(contacts.group[i + 1].a, velocities, shifts);
-        Side::prefetch(contacts.group[i + 1].b, velocities, shifts);
+        Side::prefetch(contacts.group[i + 1].a, velocities, masses, shifts);
+        Side::prefetch(contacts.group[i + 1].b, velocities, masses, shifts);
     }
 
     // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue.
@@ -199,7 +199,7 @@ struct ContactSweep {
     static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
                            const SweepMass* masses) {
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, velocities);
+            prefetch_next(contacts, i, end, velocities, masses);
             const LaneGroup& g = contacts.group[i];
             const Frame f(g);
             Side a, b;
@@ -254,7 +254,7 @@ struct ContactSweep {
         const F least = F::all(-terms.push), soft_mass = F::all(terms.mass_scale),
                 soft_impulse = F::all(terms.impulse_scale);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, velocities, shifts);
+            prefetch_next(contacts, i, end, velocities, masses, shifts);
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(contacts, g, Frame(g), shifts);
             sweep_group(contacts, g, velocities, masses, [&](const F& gap) {
@@ -269,7 +269,7 @@ struct ContactSweep {
                               const SweepMass* masses, const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, velocities);
+            prefetch_next(contacts, i, end, velocities, masses);
             sweep_group(contacts, contacts.group[i], velocities, masses, [&](const F& gap) {
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, zero), one, zero};
             });

@@ -49,8 +49,10 @@ struct SweepSide {
         xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
     }
     // Asks for what gather() will read and scatter() write soon: another core may have changed it last.
-    static void prefetch(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepShift* shifts) {
-        for (int i = 0; i < kLanes; ++i) prefetch_to_write(&velocities[node[i]]);
+    static void prefetch(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepMass* masses,
+                         const SweepShift* shifts) {
+        for (int i = 0; i < kLanes; ++i)
+            if (masses[node[i]].inv_mass > 0) prefetch_to_write(&velocities[node[i]]);
         for (int i = 0; shifts && i < kLanes; ++i) __builtin_prefetch(&shifts[node[i]]);
     }
     // What no impulse moves is not written: groups on other threads read it.

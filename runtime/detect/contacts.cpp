@@ -151,6 +151,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     look_at_all(team, of);
     admit_arriving(team, of);
     settle_changing(of);
+    order_slots(pairs);
     list_active(team, pairs);
 }
 

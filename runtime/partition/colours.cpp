@@ -9,6 +9,9 @@ namespace {
 
 constexpr uint32_t kMostPoints = 4, kKinds = 4;  // of a pair; of pairs by their points
 
+// Kinds follow one another to and fro, so that a lane group with pairs of two kinds has them at one place.
+uint32_t along(uint32_t kind, uint32_t place) { return kind % 2 == 0 ? place : kSlices - 1 - place; }
+
 }  // namespace
 
 // One group for each effort that occurs, in ascending order.
@@ -82,7 +85,7 @@ uint32_t Partition::colour(const Array<uint32_t>& items, Array<uint32_t>& begin,
             place = 0;
         }
         if (c >= most) rank_begin_.resize((most = c + 1) * kOfColour + 1, 0);
-        rank_[i] = c * kOfColour + kind(items[i]) * kSlices + place;
+        rank_[i] = c * kOfColour + kind(items[i]) * kSlices + along(kind(items[i]), place);
         ++rank_begin_[rank_[i] + 1];
     }
     for (uint32_t r = 0; r < most * kOfColour; ++r) rank_begin_[r + 1] += rank_begin_[r];
@@ -95,7 +98,7 @@ uint32_t Partition::colour(const Array<uint32_t>& items, Array<uint32_t>& begin,
 template <class Take>
 void Partition::sort_coloured(const Array<uint32_t>& items, Take&& take) {
     for (size_t i = 0; i < items.size(); ++i)
-        take(rank_begin_[rank_[i]]++, items[i], static_cast<uint8_t>(rank_[i] % kSlices));
+        take(rank_begin_[rank_[i]]++, items[i], static_cast<uint8_t>(along(rank_[i] / kSlices, rank_[i] % kSlices)));
 }
 
 void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {

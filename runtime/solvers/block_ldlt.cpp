@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "solvers/block_solve.h"
 #include "solvers/projected_gauss_seidel.h"
+#include "solvers/row_sweep.h"
 
 namespace taut {
 namespace {

@@ -1,202 +1,202 @@
 // Projected Gauss-Seidel by colour: joints and contacts in lanes, what is neither as rows.
 #include "solvers/projected_gauss_seidel.h"
 
-#include <Eigen/LU>
-#include <algorithm>
-
+#include "solvers/row_sweep.h"
 #include "system/assemble.h"
 #include "system/colour_stages.h"
-#include "system/row_algebra.h"
 #include "system/soft_contact.h"
 
 namespace taut {
 namespace {
 
-NodeVector velocity_of(const SweepVelocity& u) {
-    NodeVector v;
-    v << u.v[0], u.v[1], u.v[2], u.w[0], u.w[1], u.w[2];
-    return v;
-}
-
-// One row block and what of the system it touches.
-class RowSweep {
-public:
-    RowSweep(System& system, const RowBlock& block) : system_(system), block_(block), rows_(block.type->rows) {}
-
-    void apply(const RowVector& impulse) {
-        for (int i = 0; i < block_.type->nodes; ++i) {
-            const uint32_t node = block_.node[i];
-            const NodeVector dv = response(system_.inverse_mass[node], jacobian(i).transpose() * impulse);
-            SweepVelocity& u = system_.velocity[node];
-            for (int k = 0; k < 3; ++k) {
-                u.v[k] += static_cast<float>(dv[k]);
-                u.w[k] += static_cast<float>(dv[3 + k]);
-            }
+// What the sweeps changed becomes part of the solution, except where a direct solve owns it.
+void publish(Substep& s, uint32_t begin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i) {
+        const uint32_t node = s.group.nodes[i];
+        if (s.system.in_block[node + 1]) continue;
+        const SweepVelocity& u = s.system.velocity[node + 1];
+        Velocity& exact = s.system.exact[node + 1];
+        for (int k = 0; k < 3; ++k) {
+            exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
+            exact.w[k] += static_cast<double>(u.w[k] - static_cast<float>(exact.w[k]));
         }
     }
-    RowVector velocity() const {  // J v
-        RowVector v = RowVector::Zero(rows_);
-        for (int i = 0; i < block_.type->nodes; ++i) v += jacobian(i) * velocity_of(system_.velocity[block_.node[i]]);
-        return v;
-    }
-    RowMatrix effective() const {  // J W J^T
-        RowMatrix s = RowMatrix::Zero(rows_, rows_);
-        for (int i = 0; i < block_.type->nodes; ++i) s += effective_mass(system_, block_, i);
-        return s;
-    }
-    RowVector impulse() const { return impulse_of(system_, block_); }
-    void move_to(const RowVector& next) {
-        apply(next - impulse());
-        Eigen::Map<RowVector>(&system_.rows.impulse[block_.row], rows_) = next;
+}
+
+// What the kernels work on, and one pass over a piece of it.
+class Kernels {
+public:
+    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed, restitute };  // the first measures the gaps
+
+    explicit Kernels(Substep& substep)
+        : s_(substep),
+          joints_(s_.system.joints.view()),
+          contacts_(s_.system.contacts.view()),
+          velocity_(s_.system.velocity.data()),
+          mass_(s_.system.inverse_mass.data()),
+          joint_(*s_.settings.joint_kernels),
+          contact_(*s_.settings.kernels),
+          soft_(contact_terms(s_.system.h)) {
+        contacts_.shared = s_.team.size() > 1;
     }
 
-    // Normal row first, then the tangents on the cone; as in the fused sweep (constraints/contact_sweep.inl).
-    void solve_cone(const SweepTerms& soft, bool biased) {
-        const double gap = system_.rows.error[block_.row];
-        const RowMatrix s = effective();
-        RowVector p = impulse();
-        const bool open = gap > 0;
-        const double bias = open ? gap * soft.inv_h : biased ? std::max<double>(soft.bias_rate * gap, -soft.push) : 0.0;
-        const bool softened = biased && !open;
-        const double step = (softened ? soft.mass_scale : 1.0) / s(0, 0) * (velocity()[0] + bias) +
-                            (softened ? soft.impulse_scale : 0.0) * p[0];
-        p[0] = std::max(0.0, p[0] - step);
-        move_to(p);
-
-        solve_circle(s, block_.friction * p[0]);
+    void joints(Pass pass, uint32_t begin, uint32_t end) const {
+        if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, velocity_, mass_);
+        if (is_biased(pass)) joint_.sweep_biased(joints_, begin, end, velocity_, mass_, joint_terms(s_.system.h));
+        if (pass == Pass::relaxed) joint_.sweep_relaxed(joints_, begin, end, velocity_, mass_);
     }
-
-    // What was hit leaves at the speed that its restitution asks for; as in the fused sweep.
-    void bounce() {
-        RowVector p = impulse();
-        if (!(block_.bounce > 0 && p[0] > 0)) return;
-        p[0] = std::max(0.0, p[0] + (block_.bounce - velocity()[0]) / effective()(0, 0));
-        move_to(p);
+    void rows(Pass pass) const {
+        const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
+        if (pass == Pass::warm_start) warm_start_rows(s_, first, count);
+        if (is_biased(pass) || pass == Pass::relaxed) sweep_rows(s_, first, count, is_biased(pass));
+        if (pass == Pass::restitute) bounce_rows(s_, first, count);
     }
-
-    // Spinning first, then rolling on its circle.
-    void solve_load() {
-        const RowMatrix s = effective();
-        if (!(s(0, 0) > 0)) return;  // both bodies stand still
-        double load = 0;
-        for (uint32_t k = 0; k < block_.loads; ++k) load += system_.rows.impulse[block_.loaded + 3 * k];
-        RowVector p = impulse();
-        const double limit = block_.arm[0] * load;
-        p[0] = std::clamp(p[0] - velocity()[0] / s(0, 0), -limit, limit);
-        move_to(p);
-        solve_circle(s, block_.arm[1] * load);
+    void contacts(Pass pass, uint32_t begin, uint32_t end) const {
+        const SweepShift* const shifts = pass == Pass::first_biased ? s_.system.shift.data() : nullptr;
+        if (pass == Pass::warm_start) contact_.warm_start(contacts_, begin, end, velocity_, mass_);
+        if (is_biased(pass)) contact_.sweep_biased(contacts_, begin, end, velocity_, mass_, shifts, soft_);
+        if (pass == Pass::relaxed) contact_.sweep_relaxed(contacts_, begin, end, velocity_, mass_, soft_);
+        if (pass == Pass::restitute) contact_.restitute(contacts_, begin, end, velocity_, mass_, kBounceSpeed, s_.last);
     }
 
 private:
-    // Rows 1 and 2 towards no slip on a circle; isotropic where they slide.
-    void solve_circle(const RowMatrix& s, double limit) {
-        RowVector p = impulse();
-        const RowVector v = velocity();
-        const Eigen::Matrix2d k = s.bottomRightCorner<2, 2>();
-        const Eigen::Vector2d slip(v[1] - block_.drive[0], v[2] - block_.drive[1]), old(p[1], p[2]);
-        Eigen::Vector2d q = old - k.inverse() * slip;
-        if (q.norm() > limit) {
-            const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
-            q = old - slip / (half + std::sqrt(diff * diff + k(0, 1) * k(0, 1)));
-            if (q.norm() > limit) q *= limit / q.norm();
-        }
-        p[1] = q[0];
-        p[2] = q[1];
-        move_to(p);
-    }
+    static bool is_biased(Pass pass) { return pass == Pass::biased || pass == Pass::first_biased; }
 
-    Eigen::Map<const RowJacobian> jacobian(int node) const { return jacobian_of(system_, block_, node); }
-
-    System& system_;
-    const RowBlock& block_;
-    int rows_;
+    Substep& s_;
+    JointView joints_;
+    LaneView contacts_;
+    SweepVelocity* velocity_;
+    const SweepMass* mass_;
+    const JointKernels& joint_;
+    const ContactKernels& contact_;
+    SweepTerms soft_;
 };
 
-// What a pass over joints, rows and contacts is made of, in order: lane groups of a colour, which share no moving node,
-// so that threads may take them side by side; those of the overflow colour, the last, and rows go one by one. Small
-// colours one after the other are a stage of one thread: another would help less than it takes to wait for it.
-struct PassStages {
-    enum What : uint8_t { joints, rows, contacts };
+// Passes one after the other, as stages for the team: lane groups of a colour share no moving node, so that threads
+// take them side by side; those of the overflow colour, the last, and rows go one by one. Small colours one after the
+// other are a stage of one thread: another would help less than it takes to wait for it.
+class Program {
+public:
+    using Pass = Kernels::Pass;
+
+    explicit Program(Substep& s) : s_(s), kernels_(s) {}
+
+    // Joints, rows, then contacts, colour by colour, backward if asked.
+    void add(Pass pass, bool backward = false) {
+        if (!s_.system.joints.group.empty())
+            for (uint32_t c = 0; c < kMaxColours; ++c) add_joints(pass, c);
+        add_rows(pass);
+        add_contacts(pass, backward);
+    }
+    void add_restitution() {
+        if (s_.system.contacts.bounces) add_contacts(Pass::restitute, false);
+        if (s_.last) add_rows(Pass::restitute);
+    }
+    // publishes: moves what was swept to the solution after all of it.
+    void run(bool publishes) {
+        constexpr uint32_t kGrain = 256;  // nodes
+        const auto nodes = publishes ? static_cast<uint32_t>(s_.group.nodes.size()) : 0;
+        if (groups_ < kFewGroups) {
+            for (uint32_t i = 0; i < count_; ++i) run(i, 0, stage_[i].count);
+            return s_.team.for_ranges(nodes, kGrain, [&](uint32_t begin, uint32_t end) { publish(s_, begin, end); });
+        }
+        if (nodes > 0) add({What::nodes, {}, 0, nodes}, {nodes, kGrain}, false);
+        s_.team.for_stages({stage_, count_}, [&](uint32_t i, uint32_t begin, uint32_t end) { run(i, begin, end); });
+    }
+
+private:
+    enum class What : uint8_t { joints, rows, contacts, nodes };
     struct Piece {
         What what;
-        uint32_t first, count;
+        Pass pass;
+        uint32_t first, count;  // of contacts: parts of a colour
     };
-    Piece piece[Team::kMaxStages];
-    uint32_t first_piece[Team::kMaxStages + 1] = {};
-    Team::Stage stage[Team::kMaxStages];
-    uint32_t count = 0, pieces = 0, groups = 0;
-    bool last_is_small = false;
-    static_assert(2 * kMaxColours + 1 <= Team::kMaxStages);
 
-    void add(Piece next, uint32_t grain, bool small) {
-        if (!(small && last_is_small)) stage[count++] = small ? Team::Stage{1, 1} : Team::Stage{next.count, grain};
-        piece[pieces++] = next;
-        first_piece[count] = pieces;
-        last_is_small = small;
+    void add_joints(Pass pass, uint32_t colour) {
+        const auto [first, stage] = colour_stage(s_.system.joints, colour, s_.team.size());
+        if (stage.count > 0) add({What::joints, pass, first, stage.count}, stage, is_small(colour, stage.count));
+        groups_ += stage.count;
     }
-    template <class Lanes>
-    void add_colours(What what, const Lanes& lanes, bool backward, uint32_t threads) {
-        if (lanes.group.empty()) return;
+    void add_rows(Pass pass) {
+        if (s_.system.rows.lasting > s_.system.rows.joints) add({What::rows, pass, 0, 1}, {1, 1}, true);
+    }
+    void add_contacts(Pass pass, bool backward) {
+        if (s_.system.contacts.group.empty()) return;
+        for (uint32_t k = 0; k < kMaxColours; ++k) add_colour(pass, backward ? kMaxColours - 1 - k : k);
+    }
+    void add_colour(Pass pass, uint32_t colour) {
+        const ContactLanes& lanes = s_.system.contacts;
+        const uint32_t count = lanes.size_of(colour);
+        if (count > 0)
+            add({What::contacts, pass, colour * lanes.parts, lanes.parts}, {lanes.parts, 1}, is_small(colour, count));
+        groups_ += count;
+    }
+    static bool is_small(uint32_t colour, uint32_t groups) {
         constexpr uint32_t kSmall = 3;  // lane groups
-        for (uint32_t k = 0; k < kMaxColours; ++k) {
-            const uint32_t c = backward ? kMaxColours - 1 - k : k;
-            const auto [first, colour] = colour_stage(lanes, c, threads);
-            const bool one_by_one = c + 1 == kMaxColours || colour.count <= kSmall;
-            if (colour.count > 0) add({what, first, colour.count}, colour.grain, one_by_one);
-            groups += colour.count;
+        return colour + 1 == kMaxColours || groups <= kSmall;
+    }
+    void add(Piece piece, Team::Stage stage, bool small) {
+        if (!(small && last_is_small_)) {
+            stage_[count_] = small ? Team::Stage{1, 1} : stage;
+            first_piece_[count_++] = pieces_;
+        }
+        piece_[pieces_++] = piece;
+        first_piece_[count_] = pieces_;
+        last_is_small_ = small;
+    }
+
+    void run(uint32_t i, uint32_t begin, uint32_t end) const {
+        const Piece& first = piece_[first_piece_[i]];
+        if (stage_[i].count > 1 || first.what == What::nodes) return run(first, begin, end);
+        for (uint32_t k = first_piece_[i]; k < first_piece_[i + 1]; ++k) run(piece_[k], 0, piece_[k].count);
+    }
+    void run(const Piece& piece, uint32_t begin, uint32_t end) const {
+        if (piece.what == What::joints) kernels_.joints(piece.pass, piece.first + begin, piece.first + end);
+        if (piece.what == What::rows) kernels_.rows(piece.pass);
+        if (piece.what == What::nodes) publish(s_, begin, end);
+        for (uint32_t k = begin; piece.what == What::contacts && k < end; ++k) {
+            const LanePart& part = s_.system.contacts.part[piece.first + k];
+            kernels_.contacts(piece.pass, part.begin, part.end);
         }
     }
-    bool whole(uint32_t i) const {  // run by one thread
-        return stage[i].count == 1;
-    }
+
+    static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (2 * kMaxColours + 1) + 1;
+    static_assert(kMost <= Team::kMaxStages);
+
+    Substep& s_;
+    Kernels kernels_;
+    Piece piece_[kMost];
+    Team::Stage stage_[kMost];
+    uint32_t first_piece_[kMost + 1] = {};  // of each stage
+    uint32_t count_ = 0, pieces_ = 0, groups_ = 0;
+    bool last_is_small_ = false;
 };
 
-// joints(begin, end) over the lane groups of joints, rows(), then contacts(begin, end), colour by colour, those of
-// contacts backward if asked.
-template <class Joints, class Rows, class Contacts>
-void pass(Substep& s, Joints&& joints, Rows&& rows, Contacts&& contacts, bool backward = false) {
-    PassStages of;
-    of.add_colours(PassStages::joints, s.system.joints, false, s.team.size());
-    if (s.system.rows.lasting > s.system.rows.joints) of.add({PassStages::rows, 0, 1}, 1, true);
-    of.add_colours(PassStages::contacts, s.system.contacts, backward, s.team.size());
-    const auto run_piece = [&](PassStages::What what, uint32_t begin, uint32_t end) {
-        if (what == PassStages::joints) joints(begin, end);
-        if (what == PassStages::rows) rows();
-        if (what == PassStages::contacts) contacts(begin, end);
-    };
-    const auto run = [&](uint32_t i, uint32_t begin, uint32_t end) {
-        const PassStages::Piece* const first = of.piece + of.first_piece[i];
-        if (!of.whole(i)) return run_piece(first->what, first->first + begin, first->first + end);
-        for (auto piece = first; piece != of.piece + of.first_piece[i + 1]; ++piece)
-            run_piece(piece->what, piece->first, piece->first + piece->count);
-    };
-    if (of.groups >= kFewGroups) return s.team.for_stages({of.stage, of.count}, run);
-    for (uint32_t i = 0; i < of.count; ++i) run(i, 0, of.stage[i].count);
+}  // namespace
+
+void warm_start_sweeps(Substep& s) {
+    Program program(s);
+    program.add(Kernels::Pass::warm_start);
+    program.run(false);
 }
 
-// What the sweeps changed becomes part of the solution, except where a direct solve owns it.
-void publish(Substep& s) {
-    constexpr uint32_t kGrain = 256;  // nodes
-    s.team.for_ranges(static_cast<uint32_t>(s.group.nodes.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i) {
-            const uint32_t node = s.group.nodes[i];
-            if (s.system.in_block[node + 1]) continue;
-            const SweepVelocity& u = s.system.velocity[node + 1];
-            Velocity& exact = s.system.exact[node + 1];
-            for (int k = 0; k < 3; ++k) {
-                exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
-                exact.w[k] += static_cast<double>(u.w[k] - static_cast<float>(exact.w[k]));
-            }
-        }
-    });
-}
-
-void bounce_rows(Substep& s, uint32_t first, uint32_t count) {
-    for (uint32_t i = first; i < first + count; ++i) {
-        const RowBlock& block = s.system.rows.block[i];
-        if (block.type->bound == Bound::cone) RowSweep(s.system, block).bounce();
+void sweep_biased(Substep& s) {
+    const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
+    for (uint32_t i = 0; i < sweeps; ++i) {
+        Program program(s);
+        program.add(i == 0 ? Kernels::Pass::first_biased : Kernels::Pass::biased, s.corrects_backward);
+        program.run(i + 1 == sweeps);
     }
 }
+
+void sweep_relaxed(Substep& s) {
+    Program program(s);
+    for (uint32_t i = 0; i < kRelaxSweeps; ++i) program.add(Kernels::Pass::relaxed, s.relaxes_backward);
+    program.add_restitution();
+    program.run(true);
+}
+
+namespace {
 
 void solve(Substep& s) {
     warm_start_sweeps(s);
@@ -206,115 +206,6 @@ void solve(Substep& s) {
 void relax(Substep& s) { sweep_relaxed(s); }
 
 }  // namespace
-
-void warm_start_rows(Substep& s, uint32_t first, uint32_t count) {
-    for (uint32_t i = first; i < first + count; ++i) {
-        RowSweep row(s.system, s.system.rows.block[i]);
-        row.apply(row.impulse());
-    }
-}
-
-void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
-    const SweepTerms soft = contact_terms(s.system.h);
-    for (uint32_t i = first; i < first + count; ++i) {
-        const RowBlock& block = s.system.rows.block[i];
-        RowSweep row(s.system, block);
-        if (block.type->bound == Bound::cone)
-            row.solve_cone(soft, biased);
-        else
-            row.solve_load();
-    }
-}
-
-namespace {
-
-// What the kernels work on, and the passes over it.
-struct Swept {
-    Substep& s;
-    JointView joints;
-    LaneView contacts;
-    SweepVelocity* velocity;
-    const SweepMass* mass;
-    uint32_t first_row, row_count;
-    SweepTerms soft;
-
-    explicit Swept(Substep& substep)
-        : s(substep),
-          joints(s.system.joints.view()),
-          contacts(s.system.contacts.view()),
-          velocity(s.system.velocity.data()),
-          mass(s.system.inverse_mass.data()),
-          first_row(s.system.rows.joints),
-          row_count(s.system.rows.lasting - s.system.rows.joints),
-          soft(contact_terms(s.system.h)) {
-        contacts.shared = s.team.size() > 1;
-    }
-
-    void warm_start() const {
-        pass(
-            s,
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.joint_kernels->warm_start(joints, begin, end, velocity, mass);
-            },
-            [&] { warm_start_rows(s, first_row, row_count); },
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.kernels->warm_start(contacts, begin, end, velocity, mass);
-            });
-    }
-    // first: of the substep, which measures the gaps.
-    void sweep_biased(bool first) const {
-        const SweepTerms stiff = joint_terms(s.system.h);
-        const SweepShift* const shifts = first ? s.system.shift.data() : nullptr;
-        pass(
-            s,
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.joint_kernels->sweep_biased(joints, begin, end, velocity, mass, stiff);
-            },
-            [&] { sweep_rows(s, first_row, row_count, true); },
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.kernels->sweep_biased(contacts, begin, end, velocity, mass, shifts, soft);
-            },
-            s.corrects_backward);
-    }
-    void sweep_relaxed() const {
-        pass(
-            s,
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.joint_kernels->sweep_relaxed(joints, begin, end, velocity, mass);
-            },
-            [&] { sweep_rows(s, first_row, row_count, false); },
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.kernels->sweep_relaxed(contacts, begin, end, velocity, mass, soft);
-            },
-            s.relaxes_backward);
-    }
-    void restitute() const {
-        pass(
-            s, [](uint32_t, uint32_t) {}, [] {},
-            [&](uint32_t begin, uint32_t end) {
-                s.settings.kernels->restitute(contacts, begin, end, velocity, mass, kBounceSpeed, s.last);
-            });
-    }
-};
-
-}  // namespace
-
-void warm_start_sweeps(Substep& s) { Swept(s).warm_start(); }
-
-void sweep_biased(Substep& s) {
-    const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
-    const Swept swept(s);
-    for (uint32_t i = 0; i < sweeps; ++i) swept.sweep_biased(i == 0);
-    publish(s);
-}
-
-void sweep_relaxed(Substep& s) {
-    const Swept swept(s);
-    for (uint32_t i = 0; i < kRelaxSweeps; ++i) swept.sweep_relaxed();
-    if (s.system.contacts.bounces) swept.restitute();
-    if (s.last) bounce_rows(s, swept.first_row, swept.row_count);
-    publish(s);
-}
 
 const Solver kProjectedGaussSeidel{"projected_gauss_seidel", false, true, solve, nullptr, relax};
 

@@ -14,8 +14,4 @@ void sweep_relaxed(Substep& substep);
 
 constexpr uint32_t kRelaxSweeps = 2;  // the pair that takes the push of overlaps out of the velocity
 
-// One pass over some row blocks, one by one in their order, on System::velocity.
-void warm_start_rows(Substep& s, uint32_t first, uint32_t count);
-void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased);
-
 }  // namespace taut

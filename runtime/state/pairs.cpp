@@ -1,5 +1,7 @@
 #include "state/pairs.h"
 
+#include <algorithm>
+
 #include "state/handle.h"
 
 namespace taut {
@@ -29,6 +31,44 @@ void give_slots(Pairs& pairs, NearPair& near) {
         pairs.free.push_back(static_cast<uint32_t>(&pair - pairs.list.data()));
     });
     near.pair = kNone;
+}
+
+namespace {
+
+// Where the slot of a record is written down: at its near pair, at the record of the part before, or with the free
+// ones.
+uint32_t& link_to(Pairs& pairs, uint32_t slot) {
+    const uint64_t key = pairs.list[slot].key;
+    for (Array<NearPair>* of : {&pairs.near, &pairs.resting}) {
+        const auto near = std::ranges::lower_bound(*of, key, {}, &NearPair::key);
+        if (near == of->end() || near->key != key) continue;
+        for (uint32_t* link = &near->pair; *link != kNone; link = &pairs.list[*link].next)
+            if (*link == slot) return *link;
+    }
+    return *std::ranges::find(pairs.free, slot);
+}
+
+void exchange_slots(Pairs& pairs, uint32_t one, uint32_t other) {
+    uint32_t &to_one = link_to(pairs, one), &to_other = link_to(pairs, other);
+    to_one = other;
+    to_other = one;
+    std::swap(pairs.list[one], pairs.list[other]);  // with a link from one to the other, if there is one
+}
+
+}  // namespace
+
+void order_slots(Pairs& pairs) {
+    constexpr uint32_t kLooks = 512, kMoves = 32;  // a frame
+    constexpr uint32_t kAway = 16;                 // slots
+    const auto count = static_cast<uint32_t>(pairs.active.size());
+    for (uint32_t looks = 0, moves = 0; looks < std::min(kLooks, count) && moves < kMoves; ++looks) {
+        const uint32_t to = pairs.next_ordered < count ? pairs.next_ordered : 0;
+        pairs.next_ordered = to + 1;
+        const uint32_t from = pairs.active[to].pair;
+        if (std::max(from, to) - std::min(from, to) <= kAway) continue;
+        exchange_slots(pairs, from, to);
+        ++moves;
+    }
 }
 
 void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const NearPair& near) {

@@ -231,6 +231,7 @@ struct Pairs {
     bool complete = false;            // all pairs of the broadphase are in one of the two
     Array<Pair> list;                 // slots, in no order; free ones have no points
     Array<uint32_t> free;             // of them; room for all
+    uint32_t next_ordered = 0;        // in active, whose slot is looked at next; order_slots()
     Array<uint64_t> arrived;          // keys that near does not hold yet, sorted; update_pairs()
     Array<uint64_t> departed;         // keys that it holds no more, sorted; update_pairs()
     Array<ActivePair> active;         // in the order of near and of parts; find_contacts()
@@ -259,6 +260,11 @@ void reserve_slots(Pairs& pairs, size_t more);
 uint32_t take_slot(Pairs& pairs, const PairEnds& ends);
 // The records of a pair that is left without points.
 void give_slots(Pairs& pairs, NearPair& near);
+
+// Before the active pairs are listed anew: brings the records of a few of them to where they lie in the order of near.
+// A thread that goes through a part of near then has them for itself: of neighbours in memory processors fetch what
+// another thread writes.
+void order_slots(Pairs& pairs);
 
 // Merges `count` records into a list, both sorted by key, in place, from the last to the first: last_key() is the key
 // of the last that is left, take() gives it away. Room was reserved before.

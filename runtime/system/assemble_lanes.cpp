@@ -170,13 +170,21 @@ void add_colour(ContactLanes& lanes, const Pairs& pairs, const Group& group, uin
         for (uint32_t lane = 0; lane < kLanes; ++lane)
             g.pair[lane] = lane < filled ? pairs.active[item[lane]].pair : kNone;
     }
-    auto points = static_cast<uint32_t>(lanes.point.size());
-    for (uint32_t i = first; i < first + count; ++i) {
-        lanes.group[i].first_point = points;
-        points += lanes.group[i].points;
-    }
+    for (uint32_t k = 0; k < lanes.parts; ++k)
+        lanes.part.push_back({first + k * count / lanes.parts, first + (k + 1) * count / lanes.parts});
+}
+
+// The points of the groups that a thread works on lie together, colour after colour: processors fetch ahead of what is
+// read, and would take what another thread writes.
+void place_points(ContactLanes& lanes) {
+    uint32_t points = 0;
+    for (uint32_t k = 0; k < lanes.parts; ++k)
+        for (uint32_t i = k; i < lanes.part.size(); i += lanes.parts)
+            for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g) {
+                lanes.group[g].first_point = points;
+                points += lanes.group[g].points;
+            }
     lanes.point.resize(points);
-    lanes.colour_begin.push_back(first + count);
 }
 
 // A colour's lane groups of at least k points are those that its pairs of as many fill, the last one in part.
@@ -205,14 +213,17 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     lanes.point.clear();
     lanes.drive.clear();
     lanes.rolling.clear();
-    lanes.colour_begin.assign(1, 0);
+    lanes.part.clear();
+    lanes.parts = team.size();
     reserve_lanes(lanes, pairs, group);
     for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, pairs, group, c);
+    place_points(lanes);
     const auto prepare = [&](uint32_t g) {
         kernels.prepare(lanes.view(), g, g + 1, system.velocity.data(), system.inverse_mass.data());
     };
     std::atomic<bool> bounces{false}, special{false};
-    for_lane_groups(team, lanes, [&](uint32_t begin, uint32_t end) {
+    for_lane_parts(team, lanes, [&](uint32_t part) {
+        const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
             const Special has =
                 fill_group(lanes, lanes.group[i], i + 1 < end ? &lanes.group[i + 1] : nullptr, pairs, nodes);
@@ -226,8 +237,8 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     lanes.bounces = bounces;
     if (!special) return;
     for (uint32_t i = 0; i < lanes.group.size(); ++i) fill_special(lanes, lanes.group[i], pairs);
-    for_lane_groups(team, lanes, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i)
+    for_lane_parts(team, lanes, [&](uint32_t part) {
+        for (uint32_t i = lanes.part[part].begin; i < lanes.part[part].end; ++i)
             if (lanes.group[i].first_drive != kNoLanes || lanes.group[i].rolling != kNoLanes) prepare(i);
     });
 }
@@ -343,8 +354,8 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
         pair.turning = {turning[0][lane], turning[1][lane], turning[2][lane]};
         pair.spin_slip = -1;
     };
-    for_lane_groups(team, lanes, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t g = begin; g < end; ++g)
+    for_lane_parts(team, lanes, [&](uint32_t part) {
+        for (uint32_t g = lanes.part[part].begin; g < lanes.part[part].end; ++g)
             for (int lane = 0; lane < kLanes; ++lane)
                 if (lanes.group[g].pair[lane] != kNone) store(lanes.group[g], lane);
     });

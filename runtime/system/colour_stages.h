@@ -25,20 +25,15 @@ ColourStage colour_stage(const Lanes& lanes, uint32_t colour, uint32_t threads) 
 
 constexpr uint32_t kFewGroups = 16;  // that are done before anybody could help
 
-// act(begin, end) over all lane groups of contacts, colour by colour; these need not come one after the other.
+// act(part) over the parts of all colours, in any order: those of a thread one after the other.
 template <class Act>
-void for_lane_groups(Team& team, const ContactLanes& lanes, Act&& act) {
-    if (lanes.group.size() < kFewGroups) return act(0u, static_cast<uint32_t>(lanes.group.size()));
-    Team::Stage stage[kMaxColours];
-    uint32_t first[kMaxColours], used = 0;
-    for (uint32_t c = 0; c < kMaxColours; ++c) {
-        const ColourStage colour = colour_stage(lanes, c, team.size());
-        first[used] = colour.first;
-        stage[used] = colour.stage;
-        used += colour.stage.count > 0;
-    }
-    team.for_stages({stage, used},
-                    [&](uint32_t i, uint32_t begin, uint32_t end) { act(first[i] + begin, first[i] + end); });
+void for_lane_parts(Team& team, const ContactLanes& lanes, Act&& act) {
+    const auto act_on = [&](uint32_t begin, uint32_t end) {
+        for (uint32_t k = begin; k < end; ++k)
+            for (uint32_t i = k; i < lanes.part.size(); i += lanes.parts) act(i);
+    };
+    if (lanes.group.size() < kFewGroups) return act_on(0, lanes.parts);
+    team.for_ranges(lanes.parts, 1, act_on);
 }
 
 }  // namespace taut

@@ -44,7 +44,7 @@ public:
     struct Stage {
         uint32_t count, grain;
     };
-    static constexpr uint32_t kMaxStages = 256;
+    static constexpr uint32_t kMaxStages = 512;
 
     // Loops one after the other: run(stage, begin, end) over ranges of [0, count) of each stage, which begins when the
     // one before is over. As for_ranges(), but the helpers go from stage to stage by themselves, some tenths of a
