@@ -1,6 +1,9 @@
 #include "integrate/integrate.h"
 
 #include <Eigen/LU>
+#include <atomic>
+
+#include "check/quarantine.h"
 
 namespace taut {
 namespace {
@@ -19,11 +22,11 @@ struct FullInertia {
     Vec3 times(const Vec3& w) const { return i * w; }
     // d of dF/dw d = -F, where l = I m.
     Vec3 newton_step(const Vec3& m, const Vec3& l, double h, const Vec3& f) const {
-        const auto column = [&](int j) -> Vec3 {  // of dF/dw
+        const auto column = [&](int j, const Vec3& unit_cross_l) -> Vec3 {  // of dF/dw
             const Vec3 own = i.col(j);
-            return own + 0.5 * h * (m.cross(own) + Vec3::Unit(j).cross(l));
+            return own + 0.5 * h * (m.cross(own) + unit_cross_l);
         };
-        return solve(column(0), column(1), column(2), -f);
+        return solve(column(0, {0, -l[2], l[1]}), column(1, {l[2], 0, -l[0]}), column(2, {-l[1], l[0], 0}), -f);
     }
 };
 
@@ -147,6 +150,13 @@ void for_nodes(Team& team, const Array<uint32_t>& list, Act&& act) {
     });
 }
 
+// What the last frame left, by index.
+void forget(System& system, uint32_t at) {
+    system.shift[at] = {};
+    system.turned[at] = system.in_block[at] = 0;
+    system.place[at] = kNone;
+}
+
 void begin_node(System& system, const Nodes& nodes, uint32_t node) {
     const NodeMotion& m = nodes.motion[node];
     system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
@@ -167,20 +177,23 @@ void begin_frame(Team& team, System& system, const Nodes& nodes) {
     system.found.resize(slots + 1);
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
-    system.shift.assign(slots + 1, SweepShift{});
+    system.shift.resize(slots + 1);
     system.sweep_pose.resize(slots + 1);
-    system.turned.assign(slots + 1, 0);
+    system.turned.resize(slots + 1);
     system.turn.resize(slots + 1);
-    system.in_block.assign(slots + 1, 0);
-    system.place.assign(slots + 1, kNone);
+    system.in_block.resize(slots + 1);
+    system.place.resize(slots + 1);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node)
         if (nodes.info[node].kind == NodeKind::kinematic && nodes.rest[node] != Rest::asleep)
             system.kinematic.push_back(node);
+    forget(system, 0);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t node = begin; node < end; ++node)
+        for (uint32_t node = begin; node < end; ++node) {
+            forget(system, node + 1);
             if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
                 begin_node(system, nodes, node);
+        }
     });
 }
 
@@ -233,7 +246,8 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
     }
 }
 
-void store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+bool store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+    std::atomic<bool> all_sane{true};
     for_nodes(team, group.nodes, [&](uint32_t node) {
         NodeMotion& m = nodes.motion[node];
         const Velocity& u = system.exact[node + 1];
@@ -244,7 +258,9 @@ void store_velocity(Team& team, const System& system, const Group& group, Nodes&
         const double kappa = system.in_block[node + 1] ? velocity_filter : 1.0;
         m.slow_v += kappa * (u.v - m.slow_v);
         m.slow_w += kappa * (u.w - m.slow_w);
+        if (!sane(m)) all_sane.store(false, std::memory_order_relaxed);
     });
+    return all_sane.load(std::memory_order_relaxed);
 }
 
 void shift_kinematic(System& system, const Nodes& nodes, double time) {
@@ -257,9 +273,9 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
     }
 }
 
-void commit_kinematic(Nodes& nodes, double time_step) {
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
-        if (nodes.info[node].kind != NodeKind::kinematic || nodes.rest[node] != Rest::awake) continue;
+void commit_kinematic(const System& system, Nodes& nodes, double time_step) {
+    for (uint32_t node : system.kinematic) {
+        if (nodes.rest[node] != Rest::awake) continue;
         NodeMotion& m = nodes.motion[node];
         m.x += time_step * m.v;
         m.q = (rotation_from_vector(time_step * m.w) * m.q).normalized();
