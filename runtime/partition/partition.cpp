@@ -55,12 +55,17 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     // In this order two threads have as much to do.
     static constexpr Part kOfGraph[] = {&Partition::find_levels, &Partition::find_places, &Partition::unite_touching,
                                         &Partition::colour_touches, &Partition::weigh};
-    if (graph_.update(team, nodes, joints, pairs)) {
-        make_room();
-        run(team, kOfGraph, nodes);
-        number_islands();
-    } else {
-        run(team, kOfFrame, nodes);
+    try {
+        if (graph_.update(team, nodes, joints, pairs)) {
+            make_room();
+            run(team, kOfGraph, nodes);
+            number_islands();
+        } else {
+            run(team, kOfFrame, nodes);
+        }
+    } catch (...) {  // out of memory: what follows from the graph may not be there
+        graph_.moves.clear();
+        throw;
     }
     find_loads(nodes);
     for (Island& island : island_) island.tower = false;

@@ -1,6 +1,8 @@
 // What a partition keeps over frames may not show: after any change it is what a new one makes of the same frame.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <new>
 #include <random>
 
 #include "unit/partition_graph.h"
@@ -113,6 +115,48 @@ private:
     uint32_t floor_ = 0, points_ = 1, second_ = kNone;
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, ChangingGraph, testing::Range(1u, 41u));
+
+// Memory that refuses after so many more requests.
+struct Scarce {
+    uint32_t left = UINT32_MAX;
+
+    taut_hooks hooks() {
+        taut_hooks hooks{};
+        hooks.allocate = [](size_t size, size_t alignment, void* self) -> void* {
+            uint32_t& budget = static_cast<Scarce*>(self)->left;
+            if (budget == 0) return nullptr;
+            --budget;
+            return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+        };
+        hooks.free = [](void* at, size_t, size_t, void*) { std::free(at); };
+        hooks.memory_user_data = this;
+        return hooks;
+    }
+};
+
+TEST_P(ChangingGraph, IsWholeAgainAfterMemoryRanOut) {
+    Scarce scarce;
+    Memory short_memory(scarce.hooks());
+    Partition kept(short_memory);
+    uint32_t refused = 0;
+    for (int frame = 0; frame < 60 && !HasFailure(); ++frame) {
+        SCOPED_TRACE(frame);
+        change();
+        find_active();
+        scarce.left = any(frame < 3 ? 12 : 3);
+        try {
+            kept.build(team, nodes, joints, pairs, rules);
+        } catch (const std::bad_alloc&) {
+            ++refused;
+        }
+        scarce.left = UINT32_MAX;
+        kept.build(team, nodes, joints, pairs, rules);
+        Partition fresh(memory);
+        fresh.build(team, nodes, joints, pairs, rules);
+        expect_same(kept, fresh);
+    }
+    EXPECT_GT(refused, 0u);
+}
 
 TEST_P(ChangingGraph, IsPartitionedAsIfItWereNew) {
     Team helped{taut_hooks{}, 1 + GetParam() % 3};
