@@ -102,6 +102,8 @@ void Partition::colour_joints() {
 template <class RankOf, class Take>
 uint32_t Partition::sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take) {
     constexpr uint32_t kOfColour = kKinds * kSlices;
+    rank_.clear();
+    reserve_more(rank_, items_.size());
     rank_.resize(items_.size());
     rank_begin_.assign(1, 0);
     uint32_t most = 0;
@@ -149,6 +151,7 @@ void Partition::list_pairs(uint32_t g, const Pairs& pairs) {
     Group& group = groups[g];
     const auto sides = [&](uint32_t p) { return std::array{graph_.touches[p].a, graph_.touches[p].b}; };
     items_.clear();
+    reserve_more(items_, graph_.touches.size());
     for (uint32_t p = 0; p < graph_.touches.size(); ++p)
         if (pair_colour_[p] != kUncoloured && is_in(g, sides(p))) items_.push_back(p);
     group.pairs.resize(items_.size());

@@ -89,15 +89,18 @@ void Partition::run(Team& team, std::span<const Part> parts, const Nodes& nodes)
 
 // For the parts, which run in loops that may not allocate.
 void Partition::make_room() {
-    const size_t slots = graph_.moves.size();
-    parent_.resize(slots);
-    level_.resize(slots);
-    place_.resize(slots);
-    used_.resize(slots);
-    queue_.resize(slots);
-    adjacency_begin_.resize(slots + 2);
-    adjacency_.resize(2 * graph_.touches.size());
-    pair_colour_.resize(graph_.touches.size());
+    const auto fit = [](auto& array, size_t size) {
+        array.clear();
+        reserve_more(array, size);
+        array.resize(size);
+    };
+    const size_t slots = graph_.moves.size(), touches = graph_.touches.size();
+    for (auto* by_slot : {&parent_, &level_, &queue_}) fit(*by_slot, slots);
+    fit(place_, slots);
+    fit(used_, slots);
+    fit(adjacency_begin_, slots + 2);
+    fit(adjacency_, 2 * touches);
+    fit(pair_colour_, touches);
 }
 
 // Union-find over all that ties and touches.

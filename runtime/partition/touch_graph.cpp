@@ -12,6 +12,7 @@ constexpr uint32_t kGrain = 512;  // elements that a thread takes at a time
 template <class T, class Now>
 bool renew(Team& team, Array<T>& list, size_t count, Now&& now) {
     std::atomic<bool> changed{list.size() != count};
+    reserve_more(list, std::max(count, list.size()) - list.size());
     list.resize(count);
     team.for_ranges(static_cast<uint32_t>(count), kGrain, [&](uint32_t begin, uint32_t end) {
         bool differs = false;
