@@ -114,7 +114,7 @@ struct Broadphase::State {
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
     Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
-    static constexpr uint32_t kRoom = 12;
+    static constexpr uint32_t kRoom = 16;
     Array<uint32_t> strays;    // those that are not any more are listed until the next step
     Array<uint64_t> pairs;     // sorted
     Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted

@@ -77,8 +77,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     watch_group(group, system, w.pairs, w.watch);
     w.profile.predict_us += watch.lap();
 
+    bool loaded = false, sane = false;  // the nodes, as far as is known
     for (uint32_t i = 0; i < group.substeps; ++i) {
-        quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
+        if (loaded || !sane) loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
         if (i > 0)
             find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
@@ -108,12 +109,13 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         w.profile.commit_us += watch.lap();
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();
-        store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
+        sane = store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
         store_contact_rows(system);
         gather_impulses(system, w.pairs, w.watch);
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
     }
+    if (!sane) quarantine(w.team, w.nodes, group.nodes, w.frozen);
     if (!solver.lanes) return;
     store_lanes(w.team, system, w.pairs);
     store_joint_lanes(w.team, system);
@@ -136,8 +138,6 @@ void solve(World& w, Stopwatch& watch) {
         solve_group(w, i, solver, settings, report, watch);
         w.profile.substeps = std::max(w.profile.substeps, w.partition.groups[i].substeps);
     }
-    for (uint32_t i = 0; i < w.partition.group_count; ++i)
-        quarantine(w.team, w.nodes, w.partition.groups[i].nodes, w.frozen);
     if (const uint32_t failures = report.failures; failures > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (!w.frozen.empty()) {
@@ -146,7 +146,7 @@ void solve(World& w, Stopwatch& watch) {
         ++w.joints.version;  // blocks lose the frozen nodes
     }
     for (Joint& joint : w.joints.record) std::fill(joint.drift, joint.drift + kMaxRows, 0.0);
-    commit_kinematic(w.nodes, w.def.time_step);
+    commit_kinematic(w.system, w.nodes, w.def.time_step);
     w.profile.factor_us = report.direct_us;
     w.profile.sweep_us -= report.direct_us;
     w.profile.solves = report.solves;
@@ -171,7 +171,7 @@ void step(World& w) {
     watch_contacts(w.nodes, w.pairs, w.watch);
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.nodes);
-    w.partition.build(w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
+    w.partition.build(w.team, w.nodes, w.joints, w.pairs, {w.def.substeps, w.def.fixed_substeps != 0, solver.direct});
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);

@@ -8,8 +8,9 @@ namespace taut {
 
 namespace {
 
+bool is_loaded(const NodeLoad& load) { return load.force != Vec3::Zero() || load.torque != Vec3::Zero(); }
+
 bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& load, double h) {
-    if (load.force == Vec3::Zero() && load.torque == Vec3::Zero()) return false;
     NodeMotion after = m;
     after.v += h * mass.inv_mass * load.force;
     after.w += h * (m.q * (mass.inv_inertia.matrix() * (m.q.conjugate() * load.torque)));
@@ -18,24 +19,32 @@ bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& 
 
 bool is_bad(const Nodes& nodes, uint32_t node, double h) {
     const NodeMotion& m = nodes.motion[node];
-    return !sane(m) || pushed_too_hard(m, nodes.mass[node], nodes.load[node], h);
+    const NodeLoad& load = nodes.load[node];
+    return !sane(m) || (is_loaded(load) && pushed_too_hard(m, nodes.mass[node], load, h));
 }
 
 constexpr uint32_t kGrain = 256;  // nodes that a thread takes at a time
 
-bool any_bad(Team& team, const Nodes& nodes, const Array<uint32_t>& list, double h) {
-    std::atomic<bool> any{false};
+struct Findings {
+    bool loaded = false, bad = false;
+};
+
+Findings look_at(Team& team, const Nodes& nodes, const Array<uint32_t>& list, double h) {
+    std::atomic<bool> loaded{false}, bad{false};
     team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i)
-            if (is_bad(nodes, list[i], h)) any.store(true, std::memory_order_relaxed);
+        for (uint32_t i = begin; i < end; ++i) {
+            if (is_loaded(nodes.load[list[i]])) loaded.store(true, std::memory_order_relaxed);
+            if (is_bad(nodes, list[i], h)) bad.store(true, std::memory_order_relaxed);
+        }
     });
-    return any.load(std::memory_order_relaxed);
+    return {loaded.load(std::memory_order_relaxed), bad.load(std::memory_order_relaxed)};
 }
 
 }  // namespace
 
-void quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
-    if (!any_bad(team, nodes, list, h)) return;
+bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
+    const Findings found = look_at(team, nodes, list, h);
+    if (!found.bad) return found.loaded;
     for (uint32_t node : list) {
         if (!is_bad(nodes, node, h)) continue;
         NodeMotion& m = nodes.motion[node];
@@ -49,6 +58,7 @@ void quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uin
         nodes.mass[node].inertia = nodes.mass[node].inv_inertia = {};
         frozen.push_back(node);
     }
+    return found.loaded;
 }
 
 void drop_bad_impulses(Pairs& pairs, Joints& joints) {

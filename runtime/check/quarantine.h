@@ -18,8 +18,8 @@ inline bool sane(const NodeMotion& m) {
 }
 
 // Freezes the insane nodes of a list, and those that their own load makes so within h, before they drag others along;
-// appends their numbers to frozen.
-void quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
+// appends their numbers to frozen. True: some node of the list has a load, and is to be asked again as it moves on.
+bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
 
 // Carried impulses and forces that are not finite become zero.
 void drop_bad_impulses(Pairs& pairs, Joints& joints);

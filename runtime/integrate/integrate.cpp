@@ -1,83 +1,12 @@
 #include "integrate/integrate.h"
 
-#include <Eigen/LU>
+#include <atomic>
+
+#include "check/quarantine.h"
+#include "integrate/gyroscopic.h"
 
 namespace taut {
 namespace {
-
-// x of [c0 c1 c2] x = r, by Cramer's rule.
-inline Vec3 solve(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec3& r) {
-    const Vec3 across = c1.cross(c2);
-    const double scale = 1 / c0.dot(across);
-    return {scale * r.dot(across), scale * c0.dot(r.cross(c2)), scale * c0.dot(c1.cross(r))};
-}
-
-// F(w) = I (w - w0) + h m x I m with m = (w + w0)/2, for any inertia ...
-struct FullInertia {
-    Mat3 i;
-
-    Vec3 times(const Vec3& w) const { return i * w; }
-    // d of dF/dw d = -F, where l = I m.
-    Vec3 newton_step(const Vec3& m, const Vec3& l, double h, const Vec3& f) const {
-        const auto column = [&](int j) -> Vec3 {  // of dF/dw
-            const Vec3 own = i.col(j);
-            return own + 0.5 * h * (m.cross(own) + Vec3::Unit(j).cross(l));
-        };
-        return solve(column(0), column(1), column(2), -f);
-    }
-};
-
-// ... and for one in principal axes, where m x I m = (m2 m3 (I3 - I2), ...).
-struct PrincipalInertia {
-    Vec3 i;
-
-    Vec3 times(const Vec3& w) const { return i.cwiseProduct(w); }
-    Vec3 newton_step(const Vec3& m, const Vec3&, double h, const Vec3& f) const {
-        const Vec3 k = 0.5 * h * Vec3(i[2] - i[1], i[0] - i[2], i[1] - i[0]);
-        return solve({i[0], k[1] * m[2], k[2] * m[1]}, {k[0] * m[2], i[1], k[2] * m[0]},
-                     {k[0] * m[1], k[1] * m[0], i[2]}, -f);
-    }
-};
-
-// Gyroscopic torque in body axes, where the inertia is constant; the explicit form spins thin bodies up.
-// Implicit midpoint, F(w) = 0, keeps w.I w and |I w| as they are. F is quadratic: what a Newton step d leaves of it is
-// h/4 d x I d. One step solves it for slow bodies, three where a substep turns the body by less than a radian or so.
-template <class Inertia>
-bool gyroscopic_midpoint(const Vec3& w0, const Inertia& inertia, double h, Vec3& w) {
-    constexpr double kSolved = 1e-10, kGood = 1e-6;  // of I w0
-    const Vec3 l0 = inertia.times(w0);
-    const double scale = l0.squaredNorm();
-    w = w0;
-    Vec3 m = w0, l = l0, residual = h * w0.cross(l0);
-    for (int step = 0; step < 3 && residual.squaredNorm() > kSolved * kSolved * scale; ++step) {
-        const Vec3 d = inertia.newton_step(m, l, h, residual), ld = inertia.times(d);
-        w += d;
-        m += 0.5 * d;
-        l += 0.5 * ld;
-        residual = 0.25 * h * d.cross(ld);
-    }
-    return residual.squaredNorm() <= kGood * kGood * scale;
-}
-
-// One Newton step of implicit Euler, I (w - w0) + h w x I w = 0: damps, and is stable at any speed.
-Vec3 gyroscopic_euler(const Vec3& w0, const Mat3& inertia, double h) {
-    const Vec3 l = inertia * w0;
-    const Mat3 derivative = inertia + h * (hat(w0) * inertia - hat(l));
-    return w0 - derivative.inverse() * (h * w0.cross(l));
-}
-
-// Free bodies keep their energy; links of a block, which whip about thin axes, take the damped form.
-Vec3 gyroscopic(const Vec3& w0, const Sym3& inertia, double h, bool damped) {
-    Vec3 w;
-    if (!damped) {
-        const bool principal = inertia.xy == 0 && inertia.xz == 0 && inertia.yz == 0;
-        const bool solved = principal
-                                ? gyroscopic_midpoint(w0, PrincipalInertia{{inertia.xx, inertia.yy, inertia.zz}}, h, w)
-                                : gyroscopic_midpoint(w0, FullInertia{inertia.matrix()}, h, w);
-        if (solved) return w;
-    }
-    return gyroscopic_euler(w0, inertia.matrix(), h);
-}
 
 void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
     out.inv_mass = static_cast<float>(mass.inv_mass);
@@ -147,6 +76,13 @@ void for_nodes(Team& team, const Array<uint32_t>& list, Act&& act) {
     });
 }
 
+// What the last frame left, by index.
+void forget(System& system, uint32_t at) {
+    system.shift[at] = {};
+    system.turned[at] = system.in_block[at] = 0;
+    system.place[at] = kNone;
+}
+
 void begin_node(System& system, const Nodes& nodes, uint32_t node) {
     const NodeMotion& m = nodes.motion[node];
     system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
@@ -167,20 +103,23 @@ void begin_frame(Team& team, System& system, const Nodes& nodes) {
     system.found.resize(slots + 1);
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
-    system.shift.assign(slots + 1, SweepShift{});
+    system.shift.resize(slots + 1);
     system.sweep_pose.resize(slots + 1);
-    system.turned.assign(slots + 1, 0);
+    system.turned.resize(slots + 1);
     system.turn.resize(slots + 1);
-    system.in_block.assign(slots + 1, 0);
-    system.place.assign(slots + 1, kNone);
+    system.in_block.resize(slots + 1);
+    system.place.resize(slots + 1);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node)
         if (nodes.info[node].kind == NodeKind::kinematic && nodes.rest[node] != Rest::asleep)
             system.kinematic.push_back(node);
+    forget(system, 0);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t node = begin; node < end; ++node)
+        for (uint32_t node = begin; node < end; ++node) {
+            forget(system, node + 1);
             if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
                 begin_node(system, nodes, node);
+        }
     });
 }
 
@@ -204,7 +143,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
             const Mat3& R = pose.R;
             note_turn(system, node, m.q);
             if (!mass.isotropic) {
-                u.w = R * gyroscopic(R.transpose() * m.w, mass.inertia, h, system.in_block[node + 1] != 0);
+                u.w = R * gyroscopic(R.transpose() * m.w, mass, h, system.in_block[node + 1] != 0);
                 if (system.turned[node + 1] || system.in_block[node + 1])
                     set_inverse_mass(system.inverse_mass[node + 1], mass, R);
             }
@@ -233,7 +172,8 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
     }
 }
 
-void store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+bool store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+    std::atomic<bool> all_sane{true};
     for_nodes(team, group.nodes, [&](uint32_t node) {
         NodeMotion& m = nodes.motion[node];
         const Velocity& u = system.exact[node + 1];
@@ -244,7 +184,9 @@ void store_velocity(Team& team, const System& system, const Group& group, Nodes&
         const double kappa = system.in_block[node + 1] ? velocity_filter : 1.0;
         m.slow_v += kappa * (u.v - m.slow_v);
         m.slow_w += kappa * (u.w - m.slow_w);
+        if (!sane(m)) all_sane.store(false, std::memory_order_relaxed);
     });
+    return all_sane.load(std::memory_order_relaxed);
 }
 
 void shift_kinematic(System& system, const Nodes& nodes, double time) {
@@ -257,9 +199,9 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
     }
 }
 
-void commit_kinematic(Nodes& nodes, double time_step) {
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
-        if (nodes.info[node].kind != NodeKind::kinematic || nodes.rest[node] != Rest::awake) continue;
+void commit_kinematic(const System& system, Nodes& nodes, double time_step) {
+    for (uint32_t node : system.kinematic) {
+        if (nodes.rest[node] != Rest::awake) continue;
         NodeMotion& m = nodes.motion[node];
         m.x += time_step * m.v;
         m.q = (rotation_from_vector(time_step * m.w) * m.q).normalized();

@@ -20,12 +20,13 @@ void commit(Team& team, System& system, const Group& group, Nodes& nodes);
 // x += dx, q = exp(dq) q for nodes of blocks marked corrected.
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes);
 
-// The kept velocity back into the state; s += kappa (v - s) for nodes in blocks.
-void store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter);
+// The kept velocity back into the state; s += kappa (v - s) for nodes in blocks. False: some motion is not sane.
+bool store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter);
 
-// Kinematic nodes move at their own velocity: where they are after `time` of the frame, as the solvers see them ...
+// Kinematic nodes that begin_frame() found awake move at their own velocity: where they are after `time` of the frame,
+// as the solvers see them ...
 void shift_kinematic(System& system, const Nodes& nodes, double time);
 // ... and, once all groups are done, in the state.
-void commit_kinematic(Nodes& nodes, double time_step);
+void commit_kinematic(const System& system, Nodes& nodes, double time_step);
 
 }  // namespace taut

@@ -63,7 +63,9 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
 // first solve.
 void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
-    connect_joints(nodes, joints, /*swept_too=*/false);
+    for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
+    for (size_t j = 0; j < joints.record.size(); ++j)
+        if (joints.record[j].solve != JointSolve::swept) unite(graph_.ties[j]);
     core_.assign(slots, 0);
     component_.assign(slots, Component{});
     pair_in_block_.assign(pairs.active.size(), 0);

@@ -1,5 +1,6 @@
 // What is swept: groups of islands, in each of which constraints of a colour share no node that moves.
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "partition/partition.h"
@@ -8,6 +9,7 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kMostPoints = 4, kKinds = 4;  // of a pair; of pairs by their points
+constexpr uint8_t kUncoloured = kMaxColours;     // not swept, or not by colours
 
 // Kinds follow one another to and fro, so that a lane group with pairs of two kinds has them at one place.
 uint32_t along(uint32_t kind, uint32_t place) { return kind % 2 == 0 ? place : kSlices - 1 - place; }
@@ -17,12 +19,12 @@ uint32_t along(uint32_t kind, uint32_t place) { return kind % 2 == 0 ? place : k
 // One group for each effort that occurs, in ascending order.
 void Partition::make_groups() {
     Memory& memory = *groups.get_allocator().memory;
-    scratch_.clear();
+    efforts_.clear();
     for (const Island& island : island_) {
-        const auto at = std::lower_bound(scratch_.begin(), scratch_.end(), island.effort());
-        if (at == scratch_.end() || *at != island.effort()) scratch_.insert(at, island.effort());
+        const auto at = std::lower_bound(efforts_.begin(), efforts_.end(), island.effort());
+        if (at == efforts_.end() || *at != island.effort()) efforts_.insert(at, island.effort());
     }
-    group_count = static_cast<uint32_t>(scratch_.size());
+    group_count = static_cast<uint32_t>(efforts_.size());
     while (groups.size() < group_count) groups.emplace_back(memory);
     for (uint32_t g = 0; g < group_count; ++g) {
         groups[g].nodes.clear();
@@ -31,8 +33,8 @@ void Partition::make_groups() {
         groups[g].span_pairs.clear();
     }
     for (Island& island : island_) {
-        island.group = static_cast<uint32_t>(std::lower_bound(scratch_.begin(), scratch_.end(), island.effort()) -
-                                             scratch_.begin());
+        island.group = static_cast<uint32_t>(std::lower_bound(efforts_.begin(), efforts_.end(), island.effort()) -
+                                             efforts_.begin());
         groups[island.group].substeps = island.substeps;
         groups[island.group].sweeps = island.sweeps;
     }
@@ -42,112 +44,154 @@ void Partition::make_groups() {
 // more than a few places.
 void Partition::find_places(const Nodes& nodes) {
     Vec3 middle = Vec3::Zero(), spread = Vec3::Zero();
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < nodes.slots(); ++i)
-        if (island_of_[i] != kNone) middle += nodes.motion[i].x, ++count;
-    middle /= std::max(count, 1u);
-    for (uint32_t i = 0; i < nodes.slots(); ++i)
-        if (island_of_[i] != kNone) spread += (nodes.motion[i].x - middle).cwiseAbs();
+    const double count = std::max(static_cast<double>(graph_.movers.size()), 1.0);
+    for (const uint32_t node : graph_.movers) middle += nodes.motion[node].x;
+    middle /= count;
+    for (const uint32_t node : graph_.movers) spread += (nodes.motion[node].x - middle).cwiseAbs();
     int axis = 0;
-    const double mean = spread.maxCoeff(&axis) / std::max(count, 1u);
+    const double mean = spread.maxCoeff(&axis) / count;
     constexpr double kReach = 3;  // times the mean distance; a row of bodies ends at twice of it
     const double per_length = kSlices / (2 * kReach * std::max(mean, 1e-30));
-    place_.resize(nodes.slots());
-    for (uint32_t i = 0; i < nodes.slots(); ++i) {
-        if (island_of_[i] == kNone) continue;
-        const double at = kSlices / 2 + per_length * (nodes.motion[i].x[axis] - middle[axis]);
-        place_[i] = at > 0 ? static_cast<uint8_t>(std::min(at, kSlices - 1.0)) : 0;  // not a number: 0
+    for (const uint32_t node : graph_.movers) {
+        const double at = kSlices / 2 + per_length * (nodes.motion[node].x[axis] - middle[axis]);
+        place_[node] = at > 0 ? static_cast<uint8_t>(std::min(at, kSlices - 1.0)) : 0;  // not a number: 0
     }
 }
 
-// Greedy: each item takes the first colour that none of its nodes has; what finds none goes to the last colour.
-template <class Ends, class Kind>
-uint32_t Partition::colour(const Array<uint32_t>& items, Array<uint32_t>& begin, Ends ends, Kind kind) {
+// Greedy: the first colour that none of the nodes has; what finds none goes to the last.
+uint8_t Partition::take_colour(std::span<const uint32_t> nodes) {
+    uint64_t taken = uint64_t{1} << (kMaxColours - 1);
+    for (const uint32_t node : nodes)
+        if (node != kNone) taken |= used_[node];
+    if (~taken == 0) return kMaxColours - 1;
+    const int colour = std::countr_zero(~taken);
+    for (const uint32_t node : nodes)
+        if (node != kNone) used_[node] |= uint64_t{1} << colour;
+    return static_cast<uint8_t>(colour);
+}
+
+// As if no block took any.
+void Partition::colour_touches(const Nodes&) {
+    std::fill(used_.begin(), used_.end(), 0);
+    for (size_t p = 0; p < graph_.touches.size(); ++p) {
+        const auto& [a, b] = graph_.touches[p];
+        pair_colour_[p] = take_colour(std::array{a, b});
+    }
+    all_coloured_ = true;
+}
+
+// Anew where blocks or pairs with a side of two nodes change what colour_touches() found.
+void Partition::colour_pairs(const Pairs& pairs) {
+    const bool all = graph_.spans.empty() && std::ranges::find(pair_in_block_, 1) == pair_in_block_.end();
+    if (all && all_coloured_) return;
+    std::fill(used_.begin(), used_.end(), 0);
+    for (size_t p = 0; p < graph_.touches.size(); ++p) {
+        const auto& [a, b] = graph_.touches[p];
+        const bool swept = !pair_in_block_[p] && !pairs.active[p].spans();
+        pair_colour_[p] = swept ? take_colour(std::array{a, b}) : kUncoloured;
+    }
+    all_coloured_ = all;
+}
+
+void Partition::colour_joints() {
+    std::fill(used_.begin(), used_.end(), 0);
+    joint_colour_.resize(graph_.ties.size());
+    for (size_t j = 0; j < graph_.ties.size(); ++j)
+        joint_colour_[j] = joint_in_block_[j] ? kUncoloured : take_colour(graph_.ties[j]);
+}
+
+// Puts items_ in the order of their ranks, (colour * kKinds + kind) * kSlices + place, with take(at, rank, item).
+// Returns how many colours there are.
+template <class RankOf, class Take>
+uint32_t Partition::sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take) {
     constexpr uint32_t kOfColour = kKinds * kSlices;
-    rank_.resize(items.size());
+    rank_.clear();
+    reserve_more(rank_, items_.size());
+    rank_.resize(items_.size());
     rank_begin_.assign(1, 0);
-    uint32_t most = 0;  // colours
-    for (size_t i = 0; i < items.size(); ++i) {
-        const auto nodes = ends(items[i]);
-        uint64_t taken = uint64_t{1} << (kMaxColours - 1);
-        uint32_t place = kSlices - 1;
-        for (uint32_t node : nodes) {
-            if (node == kNone || island_of_[node] == kNone) continue;
-            taken |= used_[node];
-            place = std::min<uint32_t>(place, place_[node]);
-        }
-        uint32_t c = kMaxColours - 1;
-        if (~taken != 0) {
-            c = static_cast<uint32_t>(std::countr_zero(~taken));
-            for (uint32_t node : nodes)
-                if (node != kNone && island_of_[node] != kNone) used_[node] |= uint64_t{1} << c;
-        } else {
-            place = 0;
-        }
-        if (c >= most) rank_begin_.resize((most = c + 1) * kOfColour + 1, 0);
-        rank_[i] = c * kOfColour + kind(items[i]) * kSlices + along(kind(items[i]), place);
+    uint32_t most = 0;
+    for (size_t i = 0; i < items_.size(); ++i) {
+        rank_[i] = rank_of(items_[i]);
+        const uint32_t colours_now = rank_[i] / kOfColour + 1;
+        if (colours_now > most) rank_begin_.resize((most = colours_now) * kOfColour + 1, 0);
         ++rank_begin_[rank_[i] + 1];
     }
     for (uint32_t r = 0; r < most * kOfColour; ++r) rank_begin_[r + 1] += rank_begin_[r];
     begin.resize(kMaxColours + 1);
     for (uint32_t c = 0; c <= kMaxColours; ++c) begin[c] = rank_begin_[std::min(c, most) * kOfColour];
+    for (size_t i = 0; i < items_.size(); ++i) take(rank_begin_[rank_[i]]++, rank_[i], items_[i]);
     return most;
 }
 
-// Calls take(at, item, place) for what colour() went through last.
-template <class Take>
-void Partition::sort_coloured(const Array<uint32_t>& items, Take&& take) {
-    for (size_t i = 0; i < items.size(); ++i)
-        take(rank_begin_[rank_[i]]++, items[i], static_cast<uint8_t>(along(rank_[i] / kSlices, rank_[i] % kSlices)));
+// By colour, kind and the least place of the nodes, to and fro; the overflow colour in order of index.
+uint32_t Partition::rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const {
+    uint32_t place = kSlices - 1;
+    for (const uint32_t node : nodes)
+        if (node != kNone) place = std::min<uint32_t>(place, place_[node]);
+    if (colour == kMaxColours - 1) place = 0;
+    return (colour * kKinds + kind) * kSlices + along(kind, place);
 }
 
-void Partition::distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
+bool Partition::is_in(uint32_t group, std::span<const uint32_t> nodes) const {
+    for (const uint32_t node : nodes)
+        if (node != kNone) return group_count == 1 || group_of(node) == group;
+    return false;
+}
+
+void Partition::list_joints(uint32_t g) {
+    Group& group = groups[g];
+    items_.clear();
+    for (uint32_t j = 0; j < graph_.ties.size(); ++j)
+        if (joint_colour_[j] != kUncoloured && is_in(g, graph_.ties[j])) items_.push_back(j);
+    group.joints.resize(items_.size());
+    const uint32_t used = sort_by_rank(
+        group.joint_colour_begin, [&](uint32_t j) { return rank(joint_colour_[j], 0, graph_.ties[j]); },
+        [&](uint32_t at, uint32_t, uint32_t j) { group.joints[at] = j; });
+    colours = std::max(colours, used);
+}
+
+void Partition::list_pairs(uint32_t g, const Pairs& pairs) {
+    Group& group = groups[g];
+    const auto sides = [&](uint32_t p) { return std::array{graph_.touches[p].a, graph_.touches[p].b}; };
+    items_.clear();
+    reserve_more(items_, graph_.touches.size());
+    for (uint32_t p = 0; p < graph_.touches.size(); ++p)
+        if (pair_colour_[p] != kUncoloured && is_in(g, sides(p))) items_.push_back(p);
+    group.pairs.resize(items_.size());
+    group.pair_place.resize(items_.size());
+    const uint32_t used = sort_by_rank(
+        group.pair_colour_begin,
+        [&](uint32_t p) { return rank(pair_colour_[p], kMostPoints - pairs.active[p].points, sides(p)); },
+        [&](uint32_t at, uint32_t rank, uint32_t p) {
+            group.pairs[at] = p;
+            group.pair_place[at] = static_cast<uint8_t>(along(rank / kSlices % kKinds, rank % kSlices));
+        });
+    colours = std::max(colours, used);
+}
+
+void Partition::list_spans(const Pairs& pairs) {
+    auto span = graph_.spans.begin();
+    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+        if (!pairs.active[p].spans()) continue;
+        const auto node = std::ranges::find_if(*span, [](uint32_t end) { return end != kNone; });
+        if (!pair_in_block_[p] && node != span->end()) groups[group_of(*node)].span_pairs.push_back(p);
+        ++span;
+    }
+}
+
+void Partition::distribute(const Pairs& pairs) {
     make_groups();
-    for (uint32_t i = 0; i < nodes.slots(); ++i)
-        if (island_of_[i] != kNone) groups[group_of(i)].nodes.push_back(i);
-    find_places(nodes);
+    for (const uint32_t node : graph_.movers) groups[group_of(node)].nodes.push_back(node);
     for (uint32_t b = 0; b < blocks.size(); ++b) {
         Group& group = groups[group_of(blocks[b].nodes[0])];
         group.blocks.push_back(b);
         group.direct_pairs.insert(group.direct_pairs.end(), blocks[b].pairs.begin(), blocks[b].pairs.end());
     }
-
-    used_.resize(nodes.slots());
+    if (!graph_.spans.empty()) list_spans(pairs);
     colours = 0;
-    Array<uint32_t>& items = queue_;
     for (uint32_t g = 0; g < group_count; ++g) {
-        Group& group = groups[g];
-        auto here = [&](std::span<const uint32_t> of) {
-            for (uint32_t node : of)
-                if (node != kNone && island_of_[node] != kNone) return group_of(node) == g;
-            return false;
-        };
-        items.clear();
-        for (uint32_t j = 0; j < joints.record.size(); ++j) {
-            if (!joint_in_block_[j] && here(joints.record[j].nodes())) items.push_back(j);
-        }
-        for (uint32_t node : group.nodes) used_[node] = 0;
-        const uint32_t of_joints = colour(
-            items, group.joint_colour_begin, [&](uint32_t j) { return joints.record[j].nodes(); },
-            [](uint32_t) { return 0u; });
-        group.joints.resize(items.size());
-        sort_coloured(items, [&](uint32_t at, uint32_t j, uint8_t) { group.joints[at] = j; });
-        items.clear();
-        for (uint32_t p = 0; p < pairs.active.size(); ++p) {
-            if (pair_in_block_[p] || !here(pairs.active[p].nodes())) continue;
-            (pairs.active[p].spans() ? group.span_pairs : items).push_back(p);
-        }
-        for (uint32_t node : group.nodes) used_[node] = 0;
-        const uint32_t of_pairs = colour(
-            items, group.pair_colour_begin, [&](uint32_t p) { return pairs.active[p].sides(); },
-            [&](uint32_t p) { return kMostPoints - pairs.active[p].points; });
-        group.pairs.resize(items.size());
-        group.pair_place.resize(items.size());
-        sort_coloured(items, [&](uint32_t at, uint32_t p, uint8_t place) {
-            group.pairs[at] = p;
-            group.pair_place[at] = place;
-        });
-        colours = std::max({colours, of_joints, of_pairs});
+        list_joints(g);
+        list_pairs(g, pairs);
     }
 }
 

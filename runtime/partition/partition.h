@@ -11,9 +11,7 @@
 #include <span>
 
 #include "linear/sparse_block_ldlt.h"
-#include "state/joints.h"
-#include "state/nodes.h"
-#include "state/pairs.h"
+#include "partition/touch_graph.h"
 
 namespace taut {
 
@@ -98,8 +96,9 @@ class Partition {
 public:
     explicit Partition(Memory& memory);
 
-    // Rebuilds islands, groups and colours from the joints and touching pairs of this frame.
-    void build(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    // Rebuilds islands, groups and colours from the joints and touching pairs of this frame; what follows from the
+    // graph of touches alone is kept while that stays.
+    void build(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
 
     Array<Group> groups;  // in ascending order of effort; the first group_count are used
     uint32_t group_count = 0;
@@ -109,9 +108,12 @@ public:
 
 private:
     struct Island {
-        uint32_t nodes = 0, levels = 0, substeps = 0, sweeps = 1, group = 0;
-        float ratio = 1;  // heaviest load over its support
+        // Of the graph.
+        uint32_t nodes = 0, levels = 0;
         bool jointed = false;
+        // Of the frame.
+        uint32_t substeps = 0, sweeps = 1, group = 0;
+        float ratio = 1;  // heaviest load over its support, where any is kHeavyOnLight
         bool tower = false;
 
         uint32_t effort() const { return substeps << 8 | sweeps; }
@@ -124,29 +126,45 @@ private:
         bool direct = false;             // its joints make a block
     };
 
+    // Parts that write nothing which another one reads.
+    using Part = void (Partition::*)(const Nodes& nodes);
+    void run(Team& team, std::span<const Part> parts, const Nodes& nodes);
+    void unite_touching(const Nodes& nodes);
+    void find_levels(const Nodes& nodes);
+    void colour_touches(const Nodes& nodes);
+    void find_places(const Nodes& nodes);
+    void weigh(const Nodes& nodes);
+
+    void make_room();
+    void number_islands();
+    void find_loads(const Nodes& nodes);
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
-    void connect_joints(const Nodes& nodes, const Joints& joints, bool swept_too);
-    void connect(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
-    void measure_towers(const Nodes& nodes, const Pairs& pairs);
+    void forget_blocks(const Joints& joints);
     void choose_substeps(const PartitionRules& rules);
     void make_groups();
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
-    void distribute(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
-    void find_places(const Nodes& nodes);
-    template <class Ends, class Kind>
-    uint32_t colour(const Array<uint32_t>& items, Array<uint32_t>& begin, Ends ends, Kind kind);
-    template <class Take>
-    void sort_coloured(const Array<uint32_t>& items, Take&& take);
+    void colour_pairs(const Pairs& pairs);
+    void colour_joints();
+    void distribute(const Pairs& pairs);
+    void list_joints(uint32_t group);
+    void list_pairs(uint32_t group, const Pairs& pairs);
+    void list_spans(const Pairs& pairs);
+    template <class RankOf, class Take>
+    uint32_t sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take);
+    uint8_t take_colour(std::span<const uint32_t> nodes);
+    uint32_t rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const;
+    bool is_in(uint32_t group, std::span<const uint32_t> nodes) const;
 
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
-    void unite(const Nodes& nodes, std::span<const uint32_t> all);  // those that move
+    void unite(std::span<const uint32_t> all);  // those that are not kNone
 
+    TouchGraph graph_;
     Array<uint32_t> parent_;     // union-find over slots; roots are the smallest slot
     Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces
     Array<uint32_t> level_;      // by slot: bodies between it and a support
@@ -157,11 +175,16 @@ private:
     Array<uint8_t> joint_in_block_;  // by slot
     Array<uint32_t> block_of_;       // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
-    Array<uint64_t> used_;        // by slot: colours taken
-    Array<uint8_t> place_;        // by slot, of what moves
-    Array<uint32_t> rank_;        // scratch: of an item, its colour, kind and place
-    Array<uint32_t> rank_begin_;  // scratch: where items of a rank go
-    Array<uint32_t> scratch_, queue_;
+    Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot
+    bool all_coloured_ = false;                    // no pair was left out in pair_colour_
+    bool heavy_on_light_ = false;                  // some node is kHeavyOnLight times as heavy as another
+    Array<uint64_t> used_;                         // by slot: colours taken
+    Array<uint8_t> place_;                         // by slot, of what moves
+    Array<uint32_t> items_;                        // scratch: what is put in order
+    Array<uint32_t> rank_;                         // scratch: of an item, its colour, kind and place
+    Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
+    Array<uint32_t> efforts_;                      // scratch: that occur
+    Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
     Array<uint32_t> adjacency_begin_, adjacency_;  // touching pairs by node, for levels
 };
 

@@ -1,6 +1,4 @@
 // Who is solved with whom, against brute force on random graphs, and the rules that give an island more substeps.
-#include "partition/partition.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,70 +7,10 @@
 #include <set>
 #include <vector>
 
-#include "constraints/constraint.h"
+#include "unit/partition_graph.h"
 
 namespace taut::test {
 namespace {
-
-// A world's state as far as the partition looks at it.
-struct Graph {
-    Memory memory{taut_hooks{}};
-    Nodes nodes{memory};
-    Joints joints{memory};
-    Pairs pairs{memory};
-    Partition partition{memory};
-    PartitionRules rules{4, false, true};
-
-    uint32_t add(NodeKind kind, double mass = 1) {
-        const uint32_t node = nodes.add();
-        nodes.info[node].kind = kind;
-        if (!moves_by_forces(kind)) mass = 0;
-        nodes.mass[node].mass = mass;
-        nodes.mass[node].inv_mass = mass > 0 ? 1 / mass : 0;
-        return node;
-    }
-    uint32_t join(uint32_t a, uint32_t b, const ConstraintType& type = kBall) {
-        Joint joint;
-        joint.type = &type;
-        joint.node[0] = a;
-        joint.node[1] = b;
-        joint.loaded = kLoadedAfter;
-        return joints.add(joint);
-    }
-    void touch(uint32_t a, uint32_t b) {
-        Pair& pair = pairs.list.emplace_back();
-        pair.key = pair_key(a, b);
-        pair.a = std::min(a, b);
-        pair.b = std::max(a, b);
-        pair.manifold.normal = Vec3f::UnitY();
-        pair.manifold.count = 1;
-    }
-    void build() {
-        std::sort(pairs.list.begin(), pairs.list.end(), [](const Pair& p, const Pair& q) { return p.key < q.key; });
-        pairs.active.clear();
-        for (uint32_t i = 0; i < pairs.list.size(); ++i)
-            pairs.active.push_back({pairs.list[i].a, pairs.list[i].b, i, 1});
-        partition.build(nodes, joints, pairs, rules);
-    }
-    bool moving(uint32_t node) const { return node != kNone && moves_by_forces(nodes.info[node].kind); }
-    uint32_t substeps_of(uint32_t node) const {
-        for (uint32_t g = 0; g < partition.group_count; ++g)
-            for (uint32_t member : partition.groups[g].nodes)
-                if (member == node) return partition.groups[g].substeps;
-        return 0;
-    }
-    // A column of boxes on the ground.
-    std::vector<uint32_t> tower(uint32_t count, double mass = 1) {
-        uint32_t below = add(NodeKind::fixed);
-        std::vector<uint32_t> boxes;
-        for (uint32_t i = 0; i < count; ++i) {
-            boxes.push_back(add(NodeKind::dynamic, mass));
-            touch(below, boxes.back());
-            below = boxes.back();
-        }
-        return boxes;
-    }
-};
 
 struct PartitionTest : testing::Test, Graph {};
 

@@ -1,0 +1,12 @@
+// Gyroscopic torque of a body that turns freely.
+#pragma once
+
+#include "state/nodes.h"
+
+namespace taut {
+
+// w after time h by I dw/dt = -w x I w, all in body axes, where the inertia is constant [rad/s]. Free bodies keep their
+// energy; damped ones, links of a block, which whip about thin axes, lose some, and are stable at any speed.
+Vec3 gyroscopic(const Vec3& w, const NodeMass& mass, double h, bool damped);
+
+}  // namespace taut

@@ -1,0 +1,111 @@
+// How many substeps and sweeps an island takes, by what rests on what.
+#include <algorithm>
+
+#include "partition/partition.h"
+
+namespace taut {
+namespace {
+
+// When an island takes more substeps than the world's. A soft column sags as h^2 and buckles under its own or a
+// heavy top's weight; a block of very unequal masses outruns the lag of its forces.
+constexpr uint32_t kTallLevels = 12;       // more bodies above one another than this, and
+constexpr uint32_t kSlenderness = 4;       // at most this many bodies a level: twice the substeps
+constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
+constexpr float kHeavyOnLight = 10;        // load over support mass: four times the substeps
+constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
+
+constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
+
+}  // namespace
+
+// Levels: bodies on the shortest way down to a fixed or kinematic support, by breadth-first search over contacts.
+void Partition::find_levels(const Nodes&) {
+    std::fill(level_.begin(), level_.end(), 0);
+    std::fill(adjacency_begin_.begin(), adjacency_begin_.end(), 0);
+    uint32_t reached = 0;  // in queue_
+    for (const auto& [a, b] : graph_.touches) {
+        if (a != kNone && b != kNone) {
+            ++adjacency_begin_[a + 2];
+            ++adjacency_begin_[b + 2];
+        } else if (a != b) {
+            const uint32_t node = std::min(a, b);
+            if (level_[node] == 0) queue_[reached++] = node;
+            level_[node] = 1;
+        }
+    }
+    for (size_t i = 2; i < adjacency_begin_.size(); ++i) adjacency_begin_[i] += adjacency_begin_[i - 1];
+    for (const auto& [a, b] : graph_.touches) {
+        if (a == kNone || b == kNone) continue;
+        adjacency_[adjacency_begin_[a + 1]++] = b;
+        adjacency_[adjacency_begin_[b + 1]++] = a;
+    }
+    for (uint32_t head = 0; head < reached; ++head) {
+        const uint32_t node = queue_[head], above = level_[node] + 1;
+        for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k) {
+            const uint32_t next = adjacency_[k];
+            if (level_[next] != 0) continue;
+            level_[next] = above;
+            queue_[reached++] = next;
+        }
+    }
+}
+
+// Whether any load can be a heavy one.
+void Partition::weigh(const Nodes& nodes) {
+    double heaviest = 0, lightest_inverse = 0;
+    for (const uint32_t node : graph_.movers) {
+        heaviest = std::max(heaviest, nodes.mass[node].mass);
+        lightest_inverse = std::max(lightest_inverse, nodes.mass[node].inv_mass);
+    }
+    heavy_on_light_ = static_cast<float>(heaviest * lightest_inverse) >= kHeavyOnLight;
+}
+
+// Of what is a level higher than what it touches.
+void Partition::find_loads(const Nodes& nodes) {
+    for (Island& island : island_) island.ratio = 1;
+    if (!heavy_on_light_) return;
+    for (const auto& [a, b] : graph_.touches) {
+        if (a == kNone || b == kNone || level_[a] == level_[b]) continue;
+        const uint32_t below = level_[a] < level_[b] ? a : b, above = a + b - below;
+        float& ratio = island_[island_of_[a]].ratio;
+        ratio = std::max(ratio, static_cast<float>(nodes.mass[above].mass * nodes.mass[below].inv_mass));
+    }
+}
+
+// Islands without joints in which weight rests on what sweeps cannot hold.
+void Partition::find_towers() {
+    for (Island& island : island_) {
+        const bool slender = island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels;
+        island.tower = !island.jointed && island.nodes <= kMostTower && (island.ratio >= kHeavyOnLight || slender);
+    }
+}
+
+void Partition::choose_substeps(const PartitionRules& rules) {
+    for (Island& island : island_) {
+        uint32_t factor = 1;
+        island.sweeps = 1;
+        if (island.tower) {
+            island.substeps = rules.substeps;
+            continue;
+        }
+        if (island.ratio >= kHeavyOnLight && !island.jointed)
+            factor = 4;
+        else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels)
+            factor = 2;
+        else if (island.levels > kSwayingLevels)
+            island.sweeps = rules.fixed ? 1 : 2;
+        island.substeps = rules.substeps * (rules.fixed ? 1 : factor);
+    }
+    if (rules.fixed) return;
+    for (Block& block : blocks) {
+        Island& island = island_[island_of_[block.nodes[0]]];
+        if (block.tower && block.memory.refused_left > 0) {
+            --block.memory.refused_left;
+            island.substeps = std::max(island.substeps, 4 * rules.substeps);
+        }
+        if (!block.tower && (block.mass_ratio > kExtremeMassRatio || block.memory.escalated))
+            island.substeps = std::max(island.substeps, 2 * rules.substeps);
+    }
+}
+
+}  // namespace taut

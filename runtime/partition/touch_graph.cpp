@@ -1,0 +1,69 @@
+#include "partition/touch_graph.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kGrain = 512;  // elements that a thread takes at a time
+
+// Brings a list up to date with now(index) below count. True: it changed.
+template <class T, class Now>
+bool renew(Team& team, Array<T>& list, size_t count, Now&& now) {
+    std::atomic<bool> changed{list.size() != count};
+    reserve_more(list, std::max(count, list.size()) - list.size());
+    list.resize(count);
+    team.for_ranges(static_cast<uint32_t>(count), kGrain, [&](uint32_t begin, uint32_t end) {
+        bool differs = false;
+        for (uint32_t i = begin; i < end; ++i) {
+            const T is = now(i);
+            if (is == list[i]) continue;
+            list[i] = is;
+            differs = true;
+        }
+        if (differs) changed.store(true, std::memory_order_relaxed);
+    });
+    return changed.load(std::memory_order_relaxed);
+}
+
+}  // namespace
+
+bool TouchGraph::update_moves(Team& team, const Nodes& nodes) {
+    if (!renew(team, moves, nodes.slots(), [&](uint32_t node) -> uint8_t { return nodes.solved(node); })) return false;
+    movers.clear();
+    for (uint32_t node = 0; node < moves.size(); ++node)
+        if (moves[node]) movers.push_back(node);
+    return true;
+}
+
+bool TouchGraph::update_touches(Team& team, const Pairs& pairs) {
+    std::atomic<bool> spanning{false};
+    const bool changed = renew(team, touches, pairs.active.size(), [&](uint32_t p) {
+        const ActivePair& pair = pairs.active[p];
+        if (pair.spans()) spanning.store(true, std::memory_order_relaxed);
+        return Touch{mover(pair.a), mover(pair.b)};
+    });
+    const bool had_spans = !spans.empty();
+    spans.clear();
+    if (!spanning.load(std::memory_order_relaxed)) return changed || had_spans;
+    for (const ActivePair& pair : pairs.active)
+        if (pair.spans()) spans.push_back({mover(pair.a), mover(pair.b), mover(pair.a2), mover(pair.b2)});
+    return true;
+}
+
+bool TouchGraph::update_ties(Team& team, const Joints& joints) {
+    return renew(team, ties, joints.record.size(), [&](uint32_t j) {
+        Tie tie;
+        tie.fill(kNone);
+        std::ranges::transform(joints.record[j].nodes(), tie.begin(), [&](uint32_t node) { return mover(node); });
+        return tie;
+    });
+}
+
+bool TouchGraph::update(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
+    const bool moves_changed = update_moves(team, nodes), touches_changed = update_touches(team, pairs);
+    return update_ties(team, joints) || moves_changed || touches_changed;
+}
+
+}  // namespace taut

@@ -1,0 +1,41 @@
+// Who moves, who touches whom and who is tied to whom: all that islands, levels and colours of contacts follow from.
+// Once things rest, it stays the same for most frames, though points of contact come and go.
+#pragma once
+
+#include <array>
+
+#include "state/joints.h"
+#include "state/pairs.h"
+#include "threads/team.h"
+
+namespace taut {
+
+class TouchGraph {
+public:
+    explicit TouchGraph(Memory& memory) : moves(memory), movers(memory), touches(memory), spans(memory), ties(memory) {}
+
+    // As it is in this frame. False: just as in the last one.
+    bool update(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+
+    // Ends that forces move; kNone in place of all others.
+    struct Touch {
+        uint32_t a, b;  // the sides of a pair, of which each is the first of its nodes
+        bool operator==(const Touch&) const = default;
+    };
+    using Tie = std::array<uint32_t, kMaxNodes>;
+
+    Array<uint8_t> moves;    // by slot of a node: forces move it, and it is awake
+    Array<uint32_t> movers;  // slots of those, ascending
+    Array<Touch> touches;    // by index in Pairs::active
+    Array<Tie> spans;        // all ends of the pairs with a side of two nodes; with any, each frame counts as changed
+    Array<Tie> ties;         // by slot of a joint
+
+private:
+    bool update_moves(Team& team, const Nodes& nodes);
+    bool update_touches(Team& team, const Pairs& pairs);
+    bool update_ties(Team& team, const Joints& joints);
+
+    uint32_t mover(uint32_t node) const { return node != kNone && moves[node] ? node : kNone; }
+};
+
+}  // namespace taut
