@@ -140,8 +140,14 @@ private:
             made->setLimit(joint.axes[0].upper, joint.axes[0].upper, joint.axes[1].upper);
             return made;
         }
+        if (joint.kind == TAUT_JOINT_UNIVERSAL) {
+            const btTransform in_a = a.getCenterOfMassTransform() * frame(joint.rotation_a, joint.anchor_a);
+            const btTransform in_b = b.getCenterOfMassTransform() * frame(joint.rotation_b, joint.anchor_b);
+            return std::make_unique<btUniversalConstraint>(a, b, in_a.getOrigin(), in_a.getBasis().getColumn(0),
+                                                           in_b.getBasis().getColumn(1));
+        }
         if (joint.kind != TAUT_JOINT_HINGE)
-            throw scenes::BadScene("--engine bullet runs ball, hinge and cone-twist joints only");
+            throw scenes::BadScene("--engine bullet runs ball, universal, hinge and cone-twist joints only");
         // A hinge turns about z here, about x there.
         const btTransform z_to_x(btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI));
         auto made = std::make_unique<btHingeConstraint>(a, b, frame(joint.rotation_a, joint.anchor_a) * z_to_x,

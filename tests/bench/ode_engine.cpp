@@ -1,5 +1,5 @@
 // The same scenes in the Open Dynamics Engine with its default settings (ERP 0.2, CFM 1e-10, no damping; 20 sweeps
-// of quickstep) and one step a frame.
+// of quickstep) and one step a frame. Friction of joints is left out.
 #include <ode/ode.h>
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "peer.h"
+#include "vector.h"
 
 namespace bench {
 
@@ -181,14 +182,32 @@ private:
     }
 
     void add(const scenes::Joint& joint) {
-        if (joint.kind != TAUT_JOINT_BALL) throw scenes::BadScene("--engine ode: ball joints only");
         dBodyID b = bodies_[static_cast<size_t>(joint.body_b)];
         dBodyID a = joint.body_a == scenes::kWorld ? nullptr : bodies_[static_cast<size_t>(joint.body_a)];
-        dJointID made = dJointCreateBall(world_, nullptr);
-        dJointAttach(made, b, a);
         dVector3 at;  // where both anchors are at the start
         dBodyGetRelPointPos(b, joint.anchor_b.x, joint.anchor_b.y, joint.anchor_b.z, at);
-        dJointSetBallAnchor(made, at[0], at[1], at[2]);
+        if (joint.kind == TAUT_JOINT_BALL) {
+            dJointID made = dJointCreateBall(world_, nullptr);
+            dJointAttach(made, b, a);
+            dJointSetBallAnchor(made, at[0], at[1], at[2]);
+        } else if (joint.kind == TAUT_JOINT_UNIVERSAL && a) {
+            add_universal(joint, a, b, at);
+        } else {
+            throw scenes::BadScene("--engine ode: ball joints, and universal ones between bodies, only");
+        }
+    }
+
+    // Turns about x of a's frame and y of b's.
+    void add_universal(const scenes::Joint& joint, dBodyID a, dBodyID b, const dVector3& at) {
+        const Vec x = rotate(joint.rotation_a, {1, 0, 0}), y = rotate(joint.rotation_b, {0, 1, 0});
+        dJointID made = dJointCreateUniversal(world_, nullptr);
+        dJointAttach(made, a, b);
+        dJointSetUniversalAnchor(made, at[0], at[1], at[2]);
+        dVector3 axis;
+        dBodyVectorToWorld(a, x.x, x.y, x.z, axis);
+        dJointSetUniversalAxis1(made, axis[0], axis[1], axis[2]);
+        dBodyVectorToWorld(b, y.x, y.y, y.z, axis);
+        dJointSetUniversalAxis2(made, axis[0], axis[1], axis[2]);
     }
 
     OdeSolver solver_;
