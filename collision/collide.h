@@ -248,6 +248,7 @@ struct Motion {
     Placement at;
     Vec3 centre;          // that it turns about [m]
     Vec3 velocity, spin;  // of that centre, world axes [m/s, rad/s]
+    double reach;         // no point of the shape's core is further from the centre: spin_radius() [m]
 
     Placement after(double time) const;
 };

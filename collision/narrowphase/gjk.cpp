@@ -9,8 +9,6 @@ namespace {
 
 // Each step adds a point; polytopes end after a few, curved surfaces when the bounds meet.
 constexpr int kMaxSteps = 32;
-// Cores nearer than this part of their extent overlap: what is left has no direction.
-constexpr double kTouching = 1e-10;
 
 }  // namespace
 
@@ -55,7 +53,7 @@ Distance gjk(const Difference& difference, const Vec3& shift, const Vec3& start,
         simplex.points[simplex.count++] = point;
         if (!simplex.reduce(nearest)) return out;
         const double next = nearest.norm();
-        if (next * next <= kTouching * kTouching * extent) return out;
+        if (next * next <= kTouchingCores * kTouchingCores * extent) return out;
         if (next >= length) break;  // rounding
         length = next;
         n = nearest / length;

@@ -38,6 +38,9 @@ struct Distance {
     Vec3 on_a = Vec3::Zero();    // a's nearest point, where the cores are apart
 };
 
+// Cores nearer than this part of their extent overlap: what is left has no direction.
+constexpr double kTouchingCores = 1e-10;
+
 // b is moved by shift. Starts from the unit vector n; ends when the distance found exceeds the separation proven by
 // less than gap of it: the normal is off by at most sqrt(2 gap).
 Distance gjk(const Difference& difference, const Vec3& shift, const Vec3& n, double gap);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "collision/narrowphase/least_push.h"
+#include "collision/queries/lines.h"
 
 namespace taut::collision {
 
@@ -23,20 +24,24 @@ public:
           pair_{a, b, at_a, at_b, {at_a.rotation.transpose() * at_b.rotation, Vec3f::Zero()}, 0, cache_},
           difference_(pair_),
           radius_a_(core_radius(a)),
-          radius_b_(core_radius(b)) {}
+          radius_b_(core_radius(b)),
+          lines_(has_line(a) && has_line(b)) {}
     Couple(const Couple&) = delete;
     Couple& operator=(const Couple&) = delete;
 
     // Of the cores, b moved by moved [m], in a's frame. Starts from the unit vector hint; gap as for gjk().
     Distance distance(const Vec3& moved, const Vec3& hint, double gap = kQueryGap) const {
-        return gjk(difference_, to_a(at_b_.position + moved - at_a_.position), hint, gap);
+        const Vec3 shift = to_a(at_b_.position + moved - at_a_.position);
+        return lines_ ? distance_of_lines(shift) : gjk(difference_, shift, hint, gap);
     }
     // No more than the gap between the two [m], if that tells whether they are deeper in each other than depth: what
     // still overlaps when both are smaller by shares of depth is.
     std::optional<double> bound(double depth) const {
         const double inner = double(inner_radius(pair_.a)) + double(inner_radius(pair_.b));
         const Difference smaller(pair_, depth / inner);
-        const Distance distance = gjk(smaller, to_a(at_b_.position - at_a_.position), hint(), kBoundGap);
+        const Vec3 apart = to_a(at_b_.position - at_a_.position);
+        // A line is as long where its shape is smaller.
+        const Distance distance = lines_ ? distance_of_lines(apart) : gjk(smaller, apart, hint(), kBoundGap);
         if (!distance.apart) return -std::numeric_limits<double>::infinity();
         const double least = proven(Vec3::Zero(), distance.normal) - radii();
         return least >= -depth ? std::optional(least) : std::nullopt;
@@ -69,12 +74,19 @@ public:
     double size() const { return double(std::min(inner_radius(pair_.a), inner_radius(pair_.b))); }
 
 private:
+    Distance distance_of_lines(const Vec3& shift) const {
+        const Mat3 rotation = pair_.b_in_a.rotation.cast<double>();
+        const Line b = Line::of(pair_.b);
+        return line_distance(Line::of(pair_.a), {rotation * b.from + shift, rotation * b.step});
+    }
+
     const Placement &at_a_, &at_b_;
     Mat3 rotation_;
     PairCache cache_;
     Pair pair_;
     Difference difference_;
     double radius_a_, radius_b_;
+    bool lines_;  // both cores are
 };
 
 // Between two convex shapes; b, or what stays, may be a triangle.

@@ -17,16 +17,11 @@ constexpr int kMaxSteps = 64;
 // Whether a meeting goes deep is looked at no more often.
 constexpr int kMaxLooks = 64;
 
-double spin_radius(const Shape& shape, const Motion& motion) {
-    return collision::spin_radius(shape, (motion.at.position - motion.centre).norm());
-}
-
 // How fast two shapes can come nearer across a plane with the normal, from a to b [m/s].
 class Approach {
 public:
-    Approach(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b)
-        : velocity_(motion_a.velocity - motion_b.velocity),
-          turning_(motion_a.spin.norm() * spin_radius(a, motion_a) + motion_b.spin.norm() * spin_radius(b, motion_b)) {}
+    Approach(const Motion& a, const Motion& b)
+        : velocity_(a.velocity - b.velocity), turning_(a.spin.norm() * a.reach + b.spin.norm() * b.reach) {}
     double along(const Vec3& normal) const { return normal.dot(velocity_) + turning_; }
     double fastest() const { return velocity_.norm() + turning_; }
 
@@ -45,7 +40,7 @@ double plane_meeting(const Shape& a, const Motion& motion_a, const Shape& b, con
         const Clearance clear = clearance(b, still.after(t), a, motion_a.after(t));
         if (clear.height <= reach) return t;
         const double approach =
-            -clear.normal.dot(motion_a.velocity - motion_b.velocity) + motion_a.spin.norm() * spin_radius(a, motion_a);
+            -clear.normal.dot(motion_a.velocity - motion_b.velocity) + motion_a.spin.norm() * motion_a.reach;
         if (!(approach > 0)) return limit;
         t += (clear.height - 0.5 * reach) / approach;
         if (!(t < limit)) return limit;
@@ -69,17 +64,33 @@ double least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Pl
     return find_gap(a, at_a, b, at_b).distance;
 }
 
-// Whether the ways lead deeper than depth from the moment met on, where they are apart by reach. In doubt they do.
+// When the centres are nearest to each other, from one moment to another [s].
+double nearest_moment(const Motion& a, const Motion& b, double from, double to) {
+    const Vec3 apart = b.centre - a.centre, velocity = b.velocity - a.velocity;
+    const double squared = velocity.squaredNorm();
+    return squared > 0 ? std::clamp(-apart.dot(velocity) / squared, from, to) : from;
+}
+
+// Whether the ways lead deeper than depth from the moment met on, where they are apart by reach. In doubt they do. Most
+// that do are as deep where the centres pass each other.
 bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
                  double reach, double depth, double until) {
-    const double fastest = Approach(a, motion_a, b, motion_b).fastest();
+    const auto gap_at = [&](double t) { return least_gap(a, motion_a.after(t), b, motion_b.after(t), depth); };
+    if (is_convex(b) && gap_at(nearest_moment(motion_a, motion_b, met, until)) < -depth) return true;
+    const double fastest = Approach(motion_a, motion_b).fastest();
     double t = met, gap = reach;
     for (int look = 0; look < kMaxLooks && t <= until; ++look) {
         t += std::max(gap + depth, 0.5 * depth) / fastest;
-        gap = least_gap(a, motion_a.after(t), b, motion_b.after(t), depth);
+        gap = gap_at(t);
         if (gap < -depth) return true;
     }
     return t <= until;
+}
+
+// Whether balls about the centres, which hold the shapes however they turn, come as near as reach by the limit.
+bool balls_meet(const Motion& a, const Motion& b, double radii, double reach, double limit) {
+    const double t = nearest_moment(a, b, 0, limit), touch = a.reach + b.reach + radii + reach;
+    return (b.centre - a.centre + t * (b.velocity - a.velocity)).squaredNorm() <= touch * touch;
 }
 
 }  // namespace
@@ -122,18 +133,24 @@ double spin_radius(const Shape& shape, double lever) {
 
 double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                       double limit) {
-    const Approach approach(a, motion_a, b, motion_b);
+    if (!balls_meet(motion_a, motion_b, core_radius(a) + core_radius(b), reach, limit)) return limit;
+    const Approach approach(motion_a, motion_b);
     double t = 0;
     std::optional<Vec3> normal;  // of the step before
     for (int step = 0; step < kMaxSteps; ++step) {
         const Placement at_a = motion_a.after(t), at_b = motion_b.after(t);
         const Couple couple(a, at_a, b, at_b);
-        const Distance cores = couple.distance(Vec3::Zero(), normal.value_or(couple.hint()), kBoundGap);
-        if (!cores.apart) return t;
-        const double separation = couple.proven(Vec3::Zero(), cores.normal) - couple.radii();
-        if (separation <= reach) return t;
-        normal = cores.normal;
-        const double speed = approach.along(couple.to_world(cores.normal));
+        if (!normal) normal = couple.hint();
+        const auto held = [&] { return couple.proven(Vec3::Zero(), *normal) - couple.radii(); };
+        double separation = held();
+        if (separation <= reach) {  // the last normal parts them no more, for which one support point was asked
+            const Distance cores = couple.distance(Vec3::Zero(), *normal, kBoundGap);
+            if (!cores.apart) return t;
+            normal = cores.normal;
+            separation = held();
+            if (separation <= reach) return t;
+        }
+        const double speed = approach.along(couple.to_world(*normal));
         if (!(speed > 0)) return limit;
         t += (separation - 0.5 * reach) / speed;
         if (!(t < limit)) return limit;

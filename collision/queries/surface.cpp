@@ -202,7 +202,7 @@ double surface_meeting(const Shape& a, const Motion& motion_a, const Shape& b, c
     const Triangles triangles(b, motion_b.at);
     const Vec3 start = triangles.place(motion_a.centre);
     const Vec3 end = triangles.place(motion_a.centre + limit * (motion_a.velocity - motion_b.velocity));
-    const double radius = spin_radius(a, (motion_a.at.position - motion_a.centre).norm()) + core_radius(a) + reach;
+    const double radius = motion_a.reach + core_radius(a) + reach;
     // A surface that turns carries its triangles round.
     const double lever = (motion_b.centre - motion_a.centre).norm() + (end - start).norm() + radius;
     const double turned = limit * motion_b.spin.norm() * lever;
@@ -212,6 +212,7 @@ double surface_meeting(const Shape& a, const Motion& motion_a, const Shape& b, c
         const TriangleShape triangle(triangles, motion_b.at, number, inner_radius(a));
         Motion motion = motion_b;
         motion.at = triangle.at();
+        motion.reach = spin_radius(triangle.shape(), (motion.at.position - motion.centre).norm());
         first = std::min(first, convex_meeting(a, motion_a, triangle.shape(), motion, reach, first));
     });
     return first;

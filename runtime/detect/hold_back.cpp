@@ -19,19 +19,26 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
-// Finds all ways, and marks what moved otherwise than its speed told before the step: further from there than a part of
-// its thickness. Whether anything did.
-bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
+bool put_back(const Mechanisms& mechanisms, const Way& way, uint8_t round) {
+    return mechanisms.put_back[way.node] == round || (way.node_b != kNone && mechanisms.put_back[way.node_b] == round);
+}
+
+// Finds where all went, after the first round what the last one put back, and marks what moved otherwise than its
+// speed told before the step: further from there than a part of its thickness. Whether anything did.
+bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
+                 Pairs& pairs) {
     std::atomic<bool> any = false;
     team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             Pace& pace = pairs.pace[c];
             if (collider.node == kNone) continue;
-            pairs.way[c] = way_of(nodes, collider, shapes);
+            pace.moved = round == 1 || put_back(pairs.mechanisms, pairs.way[c], round - 1);
+            if (!pace.moved) continue;
+            pairs.way[c].along = way_along(nodes, collider, shapes);
             if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
-            const Vec3 off = pairs.way[c] - pairs.reach[c].ahead.cast<double>();
+            const Vec3 off = pairs.way[c].along - pairs.reach[c].ahead.cast<double>();
             pace.astray = off.squaredNorm() > stride * stride;
             if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
@@ -48,7 +55,18 @@ bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& nea
     const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                     : std::max(one.thickness, other.thickness);
     const double stride = kStride * thinner;
-    return (pairs.way[a] - pairs.way[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
+    return (pairs.way[a].along - pairs.way[b].along).squaredNorm() > stride * stride &&
+           !may_be_ignored(colliders, near);
+}
+
+bool moved(const Pairs& pairs, const NearPair& near) {
+    return pairs.pace[near.collider_a()].moved || pairs.pace[near.collider_b()].moved;
+}
+
+// By the ways of its two colliders.
+bool may_pass(const Pairs& pairs, const NearPair& near) {
+    const uint32_t a = near.collider_a(), b = near.collider_b();
+    return may_pass(pairs.way[a], pairs.pace[a].thickness, pairs.way[b], pairs.pace[b].thickness);
 }
 
 // Whether a pair had passed; in the last round it stays where it was.
@@ -64,17 +82,34 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
         of_a.stay(round);
         of_b.stay(round);
     } else {
-        of_a.go_back(excess.share * pair.a.way(), excess.normal, round);
+        const Way& a = pair.a.way;
+        const Vec3 way_of_a = pair.a.collider.node_b == kNone ? a.along : Vec3(a.now.position - a.before.position);
+        of_a.go_back(excess.share * way_of_a, excess.normal, round);
         of_b.go_back(excess.share * excess.way, excess.normal, round);
     }
     return true;
 }
 
-bool put_back(const Mechanisms& mechanisms, const PairEnds& pair, uint8_t round) {
-    if (mechanisms.root.empty()) return false;
-    const auto sides = {pair.a, pair.b, pair.a2, pair.b2};
-    return std::any_of(sides.begin(), sides.end(),
-                       [&](uint32_t node) { return node != kNone && mechanisms.put_back[node] == round; });
+// Picks the pairs that may have passed, and finds those that did and of which a side moved.
+void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
+    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked, [&](uint32_t i) {
+        NearPair& near = pairs.near[i];
+        if (moved(pairs, near)) near.strides = strides(colliders, pairs, near);
+        return near.strides;
+    });
+    if (pairs.picked.empty()) return;
+    team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c)
+            if (colliders.record[c].node != kNone && pairs.pace[c].moved)
+                pairs.way[c] = way_of(nodes, colliders.record[c], shapes);
+    });
+    team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            NearPair& near = pairs.near[pairs.picked[i]];
+            near.passed = moved(pairs, near) && may_pass(pairs, near) &&
+                          excess_of(nodes, Couple(colliders, shapes, pairs.way, near)).share > 0;
+        }
+    });
 }
 
 }  // namespace
@@ -88,20 +123,19 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     bool again = true;
     for (uint8_t round = 1; again && round <= kRounds; ++round) {
         again = false;
-        if (!find_astray(team, nodes, colliders, shapes, pairs) && !pairs.any_fast) break;
-        gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
-               [&](uint32_t i) { return strides(colliders, pairs, pairs.near[i]); });
-        team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
-            for (uint32_t i = begin; i < end; ++i) {
-                NearPair& near = pairs.near[pairs.picked[i]];
-                near.passed = (round == 1 || put_back(mechanisms, near.ends(colliders), round - 1)) &&
-                              excess_of(nodes, Couple(nodes, colliders, shapes, near)).share > 0;
-            }
-        });
+        const bool any_astray = find_astray(team, nodes, colliders, shapes, round, pairs);
+        if (round == 1 && !any_astray && !pairs.any_fast) break;
+        find_passed(team, nodes, colliders, shapes, pairs);
         for (const uint32_t i : pairs.picked) {
             const NearPair& near = pairs.near[i];
-            if (!near.passed && !put_back(mechanisms, near.ends(colliders), round)) continue;
-            const Couple pair(nodes, colliders, shapes, near);
+            bool anew = false;
+            for (const uint32_t c : {near.collider_a(), near.collider_b()}) {
+                if (!again || !put_back(mechanisms, pairs.way[c], round)) continue;
+                pairs.way[c] = way_of(nodes, colliders.record[c], shapes);
+                anew = true;
+            }
+            if (!near.passed && !(anew && may_pass(pairs, near))) continue;
+            const Couple pair(colliders, shapes, pairs.way, near);
             again = part(pair, excess_of(nodes, pair), joints, round, mechanisms, nodes) || again;
         }
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace taut {
 namespace {
@@ -18,12 +19,15 @@ Mat3 rotation_of(const Collider& collider, const collision::Placement& at) {
 }
 
 // From where its collider is placed now.
-collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const collision::Placement& at) {
+collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const ShapeRecord& record,
+                            const collision::Placement& at) {
     const Movement m = movement_of(nodes, collider.node, collider.node_b);
-    if (collider.node_b != kNone) return {at, m.x, m.v, m.w};
+    if (collider.node_b != kNone) return {at, m.x, m.v, m.w, collision::spin_radius(record.shape, 0)};
     const Vec3 lever = nodes.mass[collider.node].centre - collider.position;
-    return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w};
+    return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w, record.reach + lever.norm()};
 }
+
+const ShapeRecord& record_of(const Shapes& shapes, const Collider& collider) { return shapes.record[collider.shape]; }
 
 // From the origin of a collider's node to the centre that it turns about.
 Vec3 arm_of(const Nodes& nodes, const Collider& collider, const collision::Motion& motion) {
@@ -56,13 +60,33 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
     return linear + a.turning + b.turning > a.thickness + b.thickness;
 }
 
+bool stay_apart(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time) {
+    if (pair.a2 != kNone || pair.b2 != kNone) return false;
+    double touch = kReach;
+    for (const auto& [node, collider] : {std::pair(pair.a, pair.collider_a()), std::pair(pair.b, pair.collider_b())}) {
+        if (nodes.info[node].kind == NodeKind::kinematic) return false;  // may be placed ahead of its centre
+        const Vec3 lever = pairs.placement[collider].position - nodes.motion[node].x;
+        touch += lever.norm() + static_cast<double>(pairs.stance[collider].size);
+    }
+    const NodeMotion &a = nodes.motion[pair.a], &b = nodes.motion[pair.b];
+    const Vec3 apart = b.x - a.x, velocity = b.v - a.v;
+    const double squared = velocity.squaredNorm();
+    const double nearest = squared > 0 ? std::clamp(-apart.dot(velocity) / squared, 0.0, kAhead * time) : 0.0;
+    return (apart + nearest * velocity).squaredNorm() > touch * touch;
+}
+
 Encounter::Encounter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
                      const PairEnds& pair)
-    : a_(shapes.record[colliders.record[pair.collider_a()].shape].shape),
-      b_(shapes.record[colliders.record[pair.collider_b()].shape].shape),
-      motion_a_(motion_of(nodes, colliders.record[pair.collider_a()], pairs.placement[pair.collider_a()])),
-      motion_b_(motion_of(nodes, colliders.record[pair.collider_b()], pairs.placement[pair.collider_b()])),
-      arm_a_(arm_of(nodes, colliders.record[pair.collider_a()], motion_a_)) {}
+    : Encounter(nodes, shapes, colliders.record[pair.collider_a()], pairs.placement[pair.collider_a()],
+                colliders.record[pair.collider_b()], pairs.placement[pair.collider_b()]) {}
+
+Encounter::Encounter(const Nodes& nodes, const Shapes& shapes, const Collider& a, const collision::Placement& at_a,
+                     const Collider& b, const collision::Placement& at_b)
+    : a_(record_of(shapes, a).shape),
+      b_(record_of(shapes, b).shape),
+      motion_a_(motion_of(nodes, a, record_of(shapes, a), at_a)),
+      motion_b_(motion_of(nodes, b, record_of(shapes, b), at_b)),
+      arm_a_(arm_of(nodes, a, motion_a_)) {}
 
 double Encounter::meeting(double time) const {
     const double one = collision::thickness(a_), other = collision::thickness(b_);

@@ -32,6 +32,10 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
                Nodes& nodes);
 
+// Whether balls about the centres that two colliders turn about, each as large as to hold its shape, stay apart on
+// their ways: such two do not meet, which costs less to know than when they do. False in doubt.
+bool stay_apart(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time);
+
 // Two colliders under way.
 class Encounter {
 public:
@@ -46,6 +50,9 @@ public:
     void bring_to_present(Pair& pair) const;
 
 private:
+    Encounter(const Nodes& nodes, const Shapes& shapes, const Collider& a, const collision::Placement& at_a,
+              const Collider& b, const collision::Placement& at_b);
+
     const collision::Shape &a_, &b_;
     collision::Motion motion_a_, motion_b_;
     Vec3 arm_a_;  // from the origin of a's node, which positions are relative to, to its centre of mass [m]

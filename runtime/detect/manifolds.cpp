@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "detect/carry.h"
 #include "detect/reuse.h"
@@ -87,6 +88,10 @@ Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast)
       margin_(margin_of(of.nodes, pair, of.time)),
       spans_(pair.a2 != kNone || pair.b2 != kNone) {
     if (!fast) return;
+    if (stay_apart(of.nodes, of.pairs, pair, of.time)) {
+        then_ = std::numeric_limits<double>::infinity();
+        return;
+    }
     encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
     look_ahead(of.time);
 }

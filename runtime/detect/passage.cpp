@@ -28,8 +28,8 @@ collision::Box box_of(const Passage& passage) {
 
 // Whether a ball that goes along may come by the box about a's shape.
 bool comes_by(const Passage& a, double radius, const Vec3& from, const Vec3& along) {
-    const Mat3 to_a = a.before.rotation.cast<double>().transpose();
-    const Vec3 start = to_a * (from - a.before.position), way = to_a * along;
+    const Mat3 to_a = a.way.before.rotation.cast<double>().transpose();
+    const Vec3 start = to_a * (from - a.way.before.position), way = to_a * along;
     const collision::Box box = box_of(a);
     double enter = 0, leave = 1;
     for (int i = 0; i < 3; ++i) {
@@ -49,18 +49,20 @@ double free_part(const Passage& a, const Passage& b, const Vec3& from, const Vec
     for (const double core : kCores) {
         collision::Shape ball;
         ball.size.x() = static_cast<float>(core * inside);
-        if (!collision::cast_shape(ball, {from, Mat3f::Identity()}, along, a.record.shape, a.before, 1, hit)) return 1;
+        if (!collision::cast_shape(ball, {from, Mat3f::Identity()}, along, a.record.shape, a.way.before, 1, hit))
+            return 1;
         if (!hit.inside) return hit.fraction;
     }
-    if (!collision::cast_ray(a.record.shape, a.before, from, along, 1, hit) || hit.inside) return 1;
+    if (!collision::cast_ray(a.record.shape, a.way.before, from, along, 1, hit) || hit.inside) return 1;
     return std::max(0.0, hit.fraction - kSkin * inside / -hit.normal.dot(along));
 }
 
 // Of a point of b, from before to now.
 Excess excess_along(const Couple& couple, const Vec3& before, const Vec3& now) {
     const Passage &a = couple.a, &b = couple.b;
-    const Mat3 then = a.before.rotation.cast<double>(), to_now = a.now.rotation.cast<double>() * then.transpose();
-    const Vec3 to = a.before.position + to_now.transpose() * (now - a.now.position);
+    const Mat3 then = a.way.before.rotation.cast<double>(),
+               to_now = a.way.now.rotation.cast<double>() * then.transpose();
+    const Vec3 to = a.way.before.position + to_now.transpose() * (now - a.way.now.position);
     const Vec3 along = to - before;
     const double slack = kSlack * collision::thickness(b.record.shape);
     if (along.norm() < slack || !comes_by(a, collision::thickness(b.record.shape), before, along)) return {};
@@ -70,12 +72,37 @@ Excess excess_along(const Couple& couple, const Vec3& before, const Vec3& now) {
     return {1 - met, to_now * hit.normal, now - before};
 }
 
+// The least distance of a way from the origin.
+double nearest_on(const Vec3& from, const Vec3& way) {
+    const double squared = way.squaredNorm();
+    const double at = squared > 0 ? std::clamp(-from.dot(way) / squared, 0.0, 1.0) : 0.0;
+    return (from + at * way).norm();
+}
+
+double reach_of(const Collider& collider, const ShapeRecord& record) {
+    return collider.node_b == kNone ? record.reach : collision::spin_radius(record.shape, 0);
+}
+
+Passage passage_of(const Colliders& colliders, const Shapes& shapes, const Array<Way>& ways, uint32_t collider) {
+    const Collider& record = colliders.record[collider];
+    return {record, shapes.record[record.shape], ways[collider]};
+}
+
 }  // namespace
+
+// As a sees it b's middle ends elsewhere by the chord of a's turn.
+bool may_pass(const Way& a, double thickness_a, const Way& b, double thickness_b) {
+    if (a.node_b != kNone || b.node_b != kNone) return true;  // their ends go ways of their own
+    const Vec3 from = b.from - a.from, along = b.along - a.along;
+    const double apart = (from + along).norm(), nearest = nearest_on(from, along);
+    return nearest <= static_cast<double>(a.reach) + thickness_b + static_cast<double>(a.turn) * apart ||
+           nearest <= static_cast<double>(b.reach) + thickness_a + static_cast<double>(b.turn) * apart;
+}
 
 Excess excess_of(const Nodes& nodes, const Couple& couple) {
     const Passage& b = couple.b;
-    Excess most = excess_along(couple, b.middle(b.before), b.middle(b.now));
-    if (b.collider.node_b == kNone) return most;
+    if (b.collider.node_b == kNone) return excess_along(couple, b.way.from, b.way.from + b.way.along);
+    Excess most = excess_along(couple, b.way.before.position, b.way.now.position);
     for (const uint32_t end : {b.collider.node, b.collider.node_b}) {
         const Excess of_end = excess_along(couple, nodes.before[end].position, nodes.motion[end].x);
         if (of_end.depth() > most.depth()) most = of_end;
@@ -83,7 +110,7 @@ Excess excess_of(const Nodes& nodes, const Couple& couple) {
     return most;
 }
 
-Vec3 way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
     const NodePose& before = nodes.before[collider.node];
     const NodeMotion& now = nodes.motion[collider.node];
     const Vec3& centre = nodes.mass[collider.node].centre;
@@ -95,12 +122,37 @@ Vec3 way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) 
     return way + now.q * lever - before.rotation * lever;
 }
 
-Passage::Passage(const Nodes& nodes, const Collider& c, const ShapeRecord& r)
-    : collider(c), record(r), before(placed_before(nodes, c)), now(placement_of(nodes, c)) {}
-
-double Couple::reach_of(const Collider& collider, const Shapes& shapes) {
+// Of a turn between unit quaternions p and q the chord is 2 sin(angle / 2) <= 2 |p - q|.
+Way way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+    const NodePose& before = nodes.before[collider.node];
+    const NodeMotion& now = nodes.motion[collider.node];
     const ShapeRecord& record = shapes.record[collider.shape];
-    return collider.node_b == kNone ? record.reach : collision::spin_radius(record.shape, 0);
+    const Vec3 middle = collision::middle(record.shape);
+    Way way;
+    way.from = before.position;
+    way.along = nodes.origin(collider.node) - before.position;
+    if (const Vec3 lever = collider.position + collider.rotation * middle; lever != Vec3::Zero()) {
+        const Vec3 then = before.rotation * lever;
+        way.from += then;
+        way.along += now.q * lever - then;
+    }
+    way.turn = static_cast<float>(2 * (now.q.coeffs() - before.rotation.coeffs()).norm());
+    way.reach = record.size + static_cast<float>(middle.norm());
+    way.node = collider.node;
+    way.node_b = collider.node_b;
+    way.before = placed_before(nodes, collider);
+    way.now = placement_of(nodes, collider);
+    return way;
 }
+
+Couple::Couple(const Passage& one, const Passage& other, double reach_of_one, double reach_of_other)
+    : a(reach_of_one < reach_of_other ? other : one), b(reach_of_one < reach_of_other ? one : other) {}
+
+Couple::Couple(const Passage& one, const Passage& other)
+    : Couple(one, other, reach_of(one.collider, one.record), reach_of(other.collider, other.record)) {}
+
+Couple::Couple(const Colliders& colliders, const Shapes& shapes, const Array<Way>& ways, const NearPair& near)
+    : Couple(passage_of(colliders, shapes, ways, near.collider_a()),
+             passage_of(colliders, shapes, ways, near.collider_b())) {}
 
 }  // namespace taut

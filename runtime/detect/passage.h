@@ -11,37 +11,30 @@
 namespace taut {
 
 // Of a collider's middle in this step, but for the turn of a slow one [m].
-Vec3 way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
+Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
+// All of what it did.
+Way way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
+// Whether the ball inside the one may have met the ball about the other, which reaches further: false spares the rest.
+// Thickness of either [m].
+bool may_pass(const Way& a, double thickness_a, const Way& b, double thickness_b);
 
 // A collider in a step.
 struct Passage {
-    Passage(const Nodes& nodes, const Collider& collider, const ShapeRecord& record);
-
-    Vec3 middle(const collision::Placement& at) const {
-        return at.position + at.rotation.cast<double>() * collision::middle(record.shape);
-    }
-    Vec3 way() const { return middle(now) - middle(before); }
-
     const Collider& collider;
     const ShapeRecord& record;
-    collision::Placement before, now;
+    const Way& way;
 };
 
 // The one that reaches further, a, is as it was; the other goes along.
 class Couple {
 public:
-    Couple(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const NearPair& near)
-        : Couple(nodes, colliders.record[near.collider_a()], colliders.record[near.collider_b()], shapes) {}
+    Couple(const Colliders& colliders, const Shapes& shapes, const Array<Way>& ways, const NearPair& near);
 
     const Passage a, b;
 
 private:
-    Couple(const Nodes& nodes, const Collider& one, const Collider& other, const Shapes& shapes)
-        : Couple(nodes, shapes, reach_of(one, shapes) < reach_of(other, shapes), one, other) {}
-    Couple(const Nodes& nodes, const Shapes& shapes, bool swapped, const Collider& one, const Collider& other)
-        : a(nodes, swapped ? other : one, shapes.record[(swapped ? other : one).shape]),
-          b(nodes, swapped ? one : other, shapes.record[(swapped ? one : other).shape]) {}
-    static double reach_of(const Collider& collider, const Shapes& shapes);
+    Couple(const Passage& one, const Passage& other);
+    Couple(const Passage& one, const Passage& other, double reach_of_one, double reach_of_other);
 };
 
 // What is too much of two ways.

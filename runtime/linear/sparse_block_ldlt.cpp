@@ -242,12 +242,13 @@ void SparseBlockLdlt::add(BlockPlace at, const BlockPiece& piece) {
 // Entries to where they are eliminated, zeros to where L fills in.
 void SparseBlockLdlt::load() {
     std::fill(value_.begin(), value_.end(), 0.0);
+    const auto copy = [](const Entry& e, const double* from, double* to, size_t rows) {  // known rows are unrolled
+        for (int c = 0; c < e.columns; ++c, from += rows, to += e.ld) std::copy_n(from, rows, to);
+    };
     for (const Entry& e : entry_) {
         const double* from = &number_[e.begin];
         double* to = &value_[e.value];
-        for (int c = 0; c < e.columns; ++c, to += e.ld)
-            for (int t = 0; t < e.rows; t += 3, from += 3)
-                for (int r = 0; r < 3; ++r) to[t + r] = from[r];
+        e.rows == 3 ? copy(e, from, to, 3) : copy(e, from, to, 6);
     }
 }
 

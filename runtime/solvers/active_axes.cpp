@@ -64,10 +64,10 @@ void ActiveSet::gather_axes(uint32_t index) {
 }
 
 // At a limit the row lags behind its goal in the direction of its impulse; once it does not, it holds again.
-bool ActiveSet::revise_box(BoundedRow& r) const {
+bool ActiveSet::revise_box(BoundedRow& r, bool first) const {
     const int8_t before = r.at_limit;
     if (before == 0 && std::abs(r.mu) > r.limit) r.at_limit = r.mu > 0 ? 1 : -1;
-    if (before != 0 && before * (r.goal - r.c * r.mu - speed(r, sys_.exact)) < 0) r.at_limit = 0;
+    if (first && before != 0 && before * (r.goal - r.c * r.mu - speed(r, sys_.exact)) < 0) r.at_limit = 0;
     return r.at_limit != before;
 }
 

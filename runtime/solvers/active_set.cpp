@@ -39,7 +39,8 @@ double ActiveSet::speed(const BoundedRow& row, const Array<Velocity>& velocity) 
     for (int n = 0; n < row.nodes; ++n, j += row.stride) {
         if (row.place[n] == kNone) continue;
         const Velocity& u = velocity[b_.nodes[row.place[n]] + 1];
-        v += j[0] * u.v[0] + j[1] * u.v[1] + j[2] * u.v[2] + j[3] * u.w[0] + j[4] * u.w[1] + j[5] * u.w[2];
+        const double linear = row.begin > 0 ? 0.0 : j[0] * u.v[0] + j[1] * u.v[1] + j[2] * u.v[2];
+        v += linear + j[3] * u.w[0] + j[4] * u.w[1] + j[5] * u.w[2];
     }
     return row.sign * v + row.known;
 }
@@ -55,10 +56,12 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
     r.nodes = static_cast<uint8_t>(block.type->nodes);
     r.jacobian = &sys_.rows.jacobian[block.jacobian + static_cast<uint32_t>(row * kDof)];
     r.stride = static_cast<uint32_t>(block.type->rows * kDof);
+    r.begin = 3;
     for (int n = 0; n < block.type->nodes; ++n) {
         const uint32_t node = block.node[n];
         const double* j = r.jacobian + static_cast<size_t>(n) * r.stride;
         r.place[n] = sys_.place[node];
+        if (j[0] != 0 || j[1] != 0 || j[2] != 0) r.begin = 0;
         r.k += inverse_mass_along(sys_.inverse_mass[node], j);
         if (r.place[n] != kNone) continue;
         const Velocity& u = sys_.exact[node];
@@ -196,10 +199,10 @@ void ActiveSet::follow_loads() {
     }
 }
 
-bool ActiveSet::revise() {
+bool ActiveSet::revise(bool first) {
     bool changed = false;
     for (BoundedRow& r : rows()) {
-        if (r.kind == Kind::box) changed = revise_box(r) || changed;
+        if (r.kind == Kind::box) changed = revise_box(r, first) || changed;
         if (r.kind != Kind::push) continue;
         if (r.on && r.mu < 0) {
             r.on = false;

@@ -1,7 +1,8 @@
 // The bounded rows of one block and which of them are on: contacts, stops, drives and friction.
 //
 //   round     solve with the rows that are on; drop those that pull, add those that would close; at most a few times
-//   box       a drive or friction whose impulse passes its limit is that limit, until it no longer lags behind
+//   box       a drive or friction whose impulse passes its limit is that limit, until it no longer lags behind. It lets
+//             go in the first round alone: let go in any, frictions of one limb took turns and no round was the last
 //   tangents  secant: a sliding contact aims at no slip and has c = |v| / (friction * push), which gives that impulse
 //             against the slip v, implicitly; c follows in each round. From substep to substep it is at most halved.
 //             Rolling and spinning friction likewise, with angular velocities and an arm in the place of friction
@@ -31,7 +32,8 @@ public:
     // Impulses of the rows that are on, from System::exact.
     void take_impulses();
     // After a biased solve: true if a row came, went or left its box, or slides by another force than its loads give.
-    bool revise();
+    // first: of the rounds.
+    bool revise(bool first);
     // True if a stop that is off is passed by more than a little.
     bool passes_stop() const;
     // True if the rows that pull do so by more than a little of what all push.
@@ -65,7 +67,7 @@ private:
     bool revise_slip(BoundedRow& lead) const;
     double bound_of(const BoundedRow& lead) const;
     static double size_of(const BoundedRow& lead);
-    bool revise_box(BoundedRow& row) const;
+    bool revise_box(BoundedRow& row, bool first) const;
 
     Substep& s_;
     System& sys_;

@@ -77,7 +77,7 @@ void BlockSolve::limit_gain() {
     if (slow >= b_.closing) return;
     const EnergyGain first = gained_;  // what the guard hears of
     relaxed_ = false;
-    std::fill(b_.known.begin(), b_.known.end(), 0.0);
+    std::fill_n(b_.known.begin(), nodes_ * kDof, 0.0);  // of nodes
     solve_closing(b_.closing);
     if (gained_.excessive()) {
         const double tried = b_.closing, whole = gained_.gain;

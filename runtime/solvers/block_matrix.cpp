@@ -21,13 +21,46 @@ int locked_rows(const RowBlock& block) {
     return count;
 }
 
-// sum += w a^T b, 6 x 6.
+// sum += w a^T b of the entries from First on, 6 x 6.
+template <int First>
 void add_product(const double* a, const double* b, double w, double* sum) {
-    for (int r = 0; r < kDof; ++r) {
+    for (int r = First; r < kDof; ++r) {
         const double scaled = w * a[r];
-        for (int c = 0; c < kDof; ++c) sum[r * kDof + c] += scaled * b[c];
+        for (int c = First; c < kDof; ++c) sum[r * kDof + c] += scaled * b[c];
     }
 }
+
+bool in_matrix(const BoundedRow& row) { return row.on && row.at_limit == 0; }
+
+// B^T B / c of rows on the same nodes: what each two of these have in common.
+class RowProducts {
+public:
+    explicit RowProducts(std::span<const BoundedRow> rows) : nodes_(rows.front().nodes) {
+        for (const BoundedRow& row : rows)
+            if (in_matrix(row)) first_ = std::min<int>(first_, row.begin);
+        for (int n = 0; n < nodes_; ++n)
+            for (int m = 0; m <= n; ++m) std::fill_n(sum_[n][m], kDof * kDof, 0.0);
+        for (const BoundedRow& row : rows)
+            if (in_matrix(row)) first_ > 0 ? add<3>(row) : add<0>(row);
+    }
+    // Of two nodes, of so many freedoms each.
+    BlockPiece of(int n, int m, int rows, int columns) const {
+        return {sum_[n][m] + first_ * (kDof + 1), rows - first_, columns - first_, kDof, first_, first_};
+    }
+
+private:
+    template <int First>
+    void add(const BoundedRow& row) {
+        for (int n = 0; n < nodes_; ++n)
+            for (int m = 0; m <= n; ++m)
+                if (row.place[n] != kNone && row.place[m] != kNone)
+                    add_product<First>(row.jacobian + static_cast<size_t>(n) * row.stride,
+                                       row.jacobian + static_cast<size_t>(m) * row.stride, 1 / row.c, sum_[n][m]);
+    }
+
+    int nodes_, first_ = 3;
+    double sum_[kMaxNodes][kMaxNodes][kDof * kDof];
+};
 
 }  // namespace
 
@@ -53,7 +86,7 @@ void BlockSolve::analyse() {
     for (uint64_t link : b_.links)
         matrix.link(local(static_cast<uint32_t>(link >> 32) + 1), local(static_cast<uint32_t>(link) + 1));
     b_.solution.resize((nodes_ + joints()) * kDof);
-    b_.known.resize(nodes_ * kDof);
+    b_.known.resize((nodes_ + joints()) * kDof);
     b_.force.resize(joints() * kMaxRows);
     matrix.analyse();
     find_places();
@@ -139,7 +172,7 @@ void BlockSolve::add_stiffness(uint32_t j, const double* force) {
             for (int r = 0; spare && r < rows; ++r) {
                 double sum = 0;
                 for (int c = 0; c < columns; ++c) sum += part[r * width + c] * slow[kDof * m + first + c];
-                node_known(to)[first + r] += hh * sum;
+                known(to)[first + r] += hh * sum;
             }
             if (m <= n && rows > 0 && columns > 0)  // particles do not turn
                 b_.matrix.add(m == n ? b_.places[to] : place(j, coupling(n, m)),
@@ -192,25 +225,20 @@ BlockPlace BlockSolve::place(const BoundedRow& row, int n, int m) {
 // B^T B / c of the rows that are on; rows on the same nodes follow each other and go into the matrix together.
 void BlockSolve::add_bounded() {
     const auto rows = set.rows();
-    for (size_t i = 0; i < rows.size();) {
+    for (size_t i = 0, end; i < rows.size(); i = end) {
         const BoundedRow& first = rows[i];
-        double sum[kMaxNodes][kMaxNodes][kDof * kDof] = {};
-        bool any = false;
-        for (; i < rows.size() && std::equal(first.place, first.place + kMaxNodes, rows[i].place); ++i) {
-            const BoundedRow& row = rows[i];
-            if (!row.on || row.at_limit != 0) continue;
-            any = true;
-            for (int n = 0; n < row.nodes; ++n)
-                for (int m = 0; m <= n; ++m)
-                    if (row.place[n] != kNone && row.place[m] != kNone)
-                        add_product(row.jacobian + static_cast<size_t>(n) * row.stride,
-                                    row.jacobian + static_cast<size_t>(m) * row.stride, 1 / row.c, sum[n][m]);
-        }
-        for (int n = 0; any && n < first.nodes; ++n)
+        const auto beside = [&](const BoundedRow& row) {
+            return std::equal(first.place, first.place + kMaxNodes, row.place);
+        };
+        for (end = i + 1; end < rows.size() && beside(rows[end]);) ++end;
+        const auto some = rows.subspan(i, end - i);
+        if (std::none_of(some.begin(), some.end(), in_matrix)) continue;
+        const RowProducts products(some);
+        for (int n = 0; n < first.nodes; ++n)
             for (int m = 0; m <= n; ++m)
                 if (first.place[n] != kNone && first.place[m] != kNone)
                     b_.matrix.add(place(first, n, m),
-                                  {sum[n][m], size_of(first.place[n]), size_of(first.place[m]), kDof});
+                                  products.of(n, m, size_of(first.place[n]), size_of(first.place[m])));
     }
 }
 
@@ -223,6 +251,8 @@ void BlockSolve::assemble(bool with_old) {
         const bool meant = !row(j).fresh || b_.memory.solved > 0;
         if (with_old && meant) add_stiffness(j, row(j).force);
         add_joint(j);
+        for (int r = 0; r < row(j).type->rows; ++r)
+            if (row(j).locked(r)) known(nodes_ + j)[r] = row_terms(row(j), r, sys_.h).rate;
     }
 }
 

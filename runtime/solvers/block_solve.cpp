@@ -90,18 +90,20 @@ void BlockSolve::right_hand_side() {
         const uint32_t node = b_.nodes[i];
         double* x = &b_.solution[i * kDof];
         const Velocity& u = sys_.free[node + 1];
-        Vec3::Map(x) = s_.nodes.mass[node].mass * u.v + Vec3::Map(node_known(i));
+        Vec3::Map(x) = s_.nodes.mass[node].mass * u.v + Vec3::Map(known(i));
         Vec3::Map(x + 3).setZero();
-        if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[node + 1] * u.w + Vec3::Map(node_known(i) + 3);
+        if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[node + 1] * u.w + Vec3::Map(known(i) + 3);
     }
     for (uint32_t j = 0; j < joints(); ++j) {
         const RowBlock& block = row(j);
         double* x = &b_.solution[(nodes_ + j) * kDof];
         std::fill(x, x + kDof, 0.0);
+        const bool meets_known = std::any_of(block.node, block.node + block.type->nodes,
+                                             [&](uint32_t node) { return node != 0 && local(node) == kNone; });
         for (int r = 0; r < block.type->rows; ++r) {
             if (!block.locked(r)) continue;
             const double part = b_.closing < 1 && ideal(block, r) ? b_.closing : 1;
-            x[r] = part * row_terms(block, r, sys_.h).rate * error_of(block, r) + known_rate(block, r);
+            x[r] = part * known(nodes_ + j)[r] * error_of(block, r) + (meets_known ? known_rate(block, r) : 0.0);
         }
     }
     for (const BoundedRow& bounded : set.rows()) {
@@ -112,7 +114,7 @@ void BlockSolve::right_hand_side() {
         for (int n = 0; n < bounded.nodes; ++n, j += bounded.stride) {
             if (bounded.place[n] == kNone) continue;
             double* x = &b_.solution[bounded.place[n] * kDof];
-            for (int k = 0; k < kDof; ++k) x[k] += f * j[k];
+            for (int k = bounded.begin; k < kDof; ++k) x[k] += f * j[k];
         }
     }
 }
@@ -147,19 +149,22 @@ void BlockSolve::take_forces() {
 bool BlockSolve::outgrown(const RowBlock& block, const double* force) const {
     const int width = kDof * block.type->nodes;
     double k[kDof * kMaxNodes * kDof * kMaxNodes], old[kDof * kMaxNodes * kDof * kMaxNodes];
-    stiffness_of(block, force, k);
-    stiffness_of(block, block.force, old);
-    for (int n = 0; n < block.type->nodes; ++n) {
-        const uint32_t at = local(block.node[n]);
-        if (at == kNone) continue;
-        const Mat3& inertia = sys_.inertia[block.node[n]];
-        for (int i = 0; i < size_of(at); ++i) {
-            const double mass = i < 3 ? s_.nodes.mass[b_.nodes[at]].mass : inertia(i - 3, i - 3);
-            const int ii = (kDof * n + i) * (width + 1);
-            if (sys_.h * sys_.h * (k[ii] - kGrowth * old[ii]) > kStable * mass) return true;
+    const auto exceeds = [&](auto&& growth) {
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const uint32_t at = local(block.node[n]);
+            if (at == kNone) continue;
+            const Mat3& inertia = sys_.inertia[block.node[n]];
+            for (int i = 0; i < size_of(at); ++i) {
+                const double mass = i < 3 ? s_.nodes.mass[b_.nodes[at]].mass : inertia(i - 3, i - 3);
+                if (sys_.h * sys_.h * growth((kDof * n + i) * (width + 1)) > kStable * mass) return true;
+            }
         }
-    }
-    return false;
+        return false;
+    };
+    stiffness_of(block, force, k);
+    if (!exceeds([&](int ii) { return k[ii]; })) return false;  // nor less what there was
+    stiffness_of(block, block.force, old);
+    return exceeds([&](int ii) { return k[ii] - kGrowth * old[ii]; });
 }
 
 bool BlockSolve::force_grew() const {
@@ -198,7 +203,7 @@ bool BlockSolve::factor_rounds() {
         const bool over = round >= last;
         if (over && (b_.tower || round == last + kDropRounds || !set.pulls())) return true;
         ++s_.report.rounds;
-        if (over ? set.drop_pulling() : set.revise()) continue;
+        if (over ? set.drop_pulling() : set.revise(round == 1)) continue;
         if (!b_.tower) return true;
         solve_relaxed();
         if (!set.drop_pulling()) return true;

@@ -77,7 +77,8 @@ private:
     void solve_closing(double part);
     void limit_gain();
 
-    double* node_known(uint32_t i) { return &b_.known[i * kDof]; }
+    // Of a node h^2 K s, of a joint how fast its rows close their gaps [1/s].
+    double* known(uint32_t i) { return &b_.known[i * kDof]; }
     double* joint_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
     const double* joint_force(uint32_t j) const { return &b_.force[j * kMaxRows]; }
 

@@ -26,6 +26,7 @@ struct BoundedRow {
     uint8_t row = 0;           // within its row block
     uint32_t block = 0;        // in Rows::block
     uint8_t nodes = 0;
+    uint8_t begin = 0;                 // 3 where its Jacobian has angular entries alone
     uint32_t place[kMaxNodes] = {};    // of each node in the block, or UINT32_MAX: its velocity is known
     const double* jacobian = nullptr;  // of the first node; 6 entries, those of the next node `stride` further
     uint32_t stride = 0;

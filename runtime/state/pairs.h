@@ -46,7 +46,8 @@ struct NearPair {
     bool filtered : 1 = false;    // never collides (filter, joint); kept to remember the answer
     bool on_surface : 1 = false;  // a shape has parts
     bool fast : 1 = false;        // looked for along its way in this frame; detect/impact.h
-    bool passed : 1 = false;      // went through each other in this frame; hold_back()
+    bool strides : 1 = false;     // may have gone through each other in this frame; hold_back()
+    bool passed : 1 = false;      // did so
     bool arrives : 1 = false;     // got its first points in this frame; find_contacts()
     bool changes : 1 = false;     // its records come or go in this frame; find_contacts()
     bool touching : 1 = false;    // had a point at the end of the last step, on any part
@@ -169,6 +170,15 @@ struct Travel {
     float thickness = 0;  // as in Pace [m]
 };
 
+// What a collider did in a step; hold_back().
+struct Way {
+    Vec3 from = Vec3::Zero(), along = Vec3::Zero();  // of its middle [m]
+    float turn = 0;                                  // at least the chord of the shape's turn, of radius 1
+    float reach = 0;                                 // of a ball about the middle that holds the shape [m]
+    uint32_t node = kNone, node_b = kNone;           // as the collider's
+    collision::Placement before, now;                // where a pair that may have passed has it
+};
+
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
 struct Pace {
     double thickness = 0;  // [m]; infinite: not to be looked for
@@ -176,6 +186,7 @@ struct Pace {
     float round = 0;       // collision::ball_radius() [m]
     bool rolls = false;    // collision::rolls()
     bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
+    bool moved = false;    // by the round of hold_back() before, or it is the first one
 };
 
 // A mechanism that hold_back() leaves where it was before the step.
@@ -245,7 +256,7 @@ struct Pairs {
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     bool any_fast = false;            // of near, in this frame; find_contacts()
-    Array<Vec3> way;                  // by collider: of its middle in this step [m]; hold_back()
+    Array<Way> way;                   // by collider; hold_back()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
     Array<Stance> stance;                   // by collider; place_collider()
