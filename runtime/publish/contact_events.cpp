@@ -35,8 +35,9 @@ bool update_touching(Pairs& pairs, const Touch& touch) {
     bool now = false;
     for (uint32_t i = touch.begin; i < touch.end; ++i) {
         Pair& part = pairs.list[pairs.active[i].pair];
-        part.touching = touches(part);
-        now = now || part.touching;
+        const bool touching = touches(part);
+        if (touching != part.touching) part.touching = touching;  // else another thread may go on reading the record
+        now = now || touching;
     }
     NearPair& pair = touch.pair;
     pair.touched = pair.touching;
