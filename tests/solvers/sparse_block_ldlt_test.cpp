@@ -246,6 +246,28 @@ TEST(SparseBlockLdlt, SolvesNets) {
             }
 }
 
+// A rim of bodies on spokes from one hub: what fills in grows with the rim, not with its square.
+TEST(SparseBlockLdlt, SolvesWheelsWithLittleFill) {
+    for (int count : {10, 60, 150}) {
+        SCOPED_TRACE(count);
+        Problem p(static_cast<uint64_t>(count));
+        const uint32_t hub = p.add_node(6);
+        std::vector<uint32_t> rim;
+        for (int i = 0; i < count; ++i) {
+            rim.push_back(p.add_node(6));
+            p.join(hub, rim.back(), 1e-3, false);
+            if (i > 0) p.join(rim[static_cast<size_t>(i - 1)], rim.back(), 1e-3, false);
+        }
+        p.join(rim.back(), rim.front(), 1e-3, false);
+        p.hold(hub);
+        expect_like_dense(p, 1e-10);
+        SparseBlockLdlt matrix(p.memory);
+        bool done = false;
+        p.solve(matrix, p.random(static_cast<int>(p.dense().rows()), 1), done);
+        EXPECT_LE(matrix.blocks(), 8 * matrix.unknowns());
+    }
+}
+
 TEST(SparseBlockLdlt, Avx2HasTheBitsOfTheBaseBuild) {
     if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
     EXPECT_STREQ(panel_kernels().name, "avx2");
