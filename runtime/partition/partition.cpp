@@ -51,6 +51,7 @@ void Partition::unite(std::span<const uint32_t> all) {
 
 void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs,
                       const PartitionRules& rules) {
+    static constexpr Part kOfFrame[] = {&Partition::find_places, &Partition::weigh};
     // In this order two threads have as much to do.
     static constexpr Part kOfGraph[] = {&Partition::find_levels, &Partition::find_places, &Partition::unite_touching,
                                         &Partition::colour_touches, &Partition::weigh};
@@ -60,7 +61,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
             run(team, kOfGraph, nodes);
             number_islands();
         } else {
-            weigh(nodes);
+            run(team, kOfFrame, nodes);
         }
     } catch (...) {  // out of memory: what follows from the graph may not be there
         graph_.moves.clear();
