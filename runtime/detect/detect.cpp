@@ -225,7 +225,7 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     pairs.placement.resize(slots);
     pairs.stance.resize(slots);
     pairs.travel.resize(slots);
-    pairs.way.resize(slots);
+    pairs.along.resize(slots);
     pairs.picked.resize(slots);  // nothing may fail between a new box and the broadphase's
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {

@@ -19,8 +19,9 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
-bool put_back(const Mechanisms& mechanisms, const Way& way, uint8_t round) {
-    return mechanisms.put_back[way.node] == round || (way.node_b != kNone && mechanisms.put_back[way.node_b] == round);
+bool put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t round) {
+    return mechanisms.put_back[collider.node] == round ||
+           (collider.node_b != kNone && mechanisms.put_back[collider.node_b] == round);
 }
 
 // Finds where all went, after the first round what the last one put back, and marks what moved otherwise than its
@@ -33,12 +34,12 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
             const Collider& collider = colliders.record[c];
             Pace& pace = pairs.pace[c];
             if (collider.node == kNone) continue;
-            pace.moved = round == 1 || put_back(pairs.mechanisms, pairs.way[c], round - 1);
+            pace.moved = round == 1 || put_back(pairs.mechanisms, collider, round - 1);
             if (!pace.moved) continue;
-            pairs.way[c].along = way_along(nodes, collider, shapes);
+            pairs.along[c] = way_along(nodes, collider, shapes);
             if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
-            const Vec3 off = pairs.way[c].along - pairs.reach[c].ahead.cast<double>();
+            const Vec3 off = pairs.along[c] - pairs.reach[c].ahead.cast<double>();
             pace.astray = off.squaredNorm() > stride * stride;
             if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
@@ -55,8 +56,7 @@ bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& nea
     const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                     : std::max(one.thickness, other.thickness);
     const double stride = kStride * thinner;
-    return (pairs.way[a].along - pairs.way[b].along).squaredNorm() > stride * stride &&
-           !may_be_ignored(colliders, near);
+    return (pairs.along[a] - pairs.along[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
 }
 
 bool moved(const Pairs& pairs, const NearPair& near) {
@@ -98,6 +98,7 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
         return near.strides;
     });
     if (pairs.picked.empty()) return;
+    pairs.way.resize(pairs.pace.size());
     team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c)
             if (colliders.record[c].node != kNone && pairs.pace[c].moved)
@@ -130,7 +131,7 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
             const NearPair& near = pairs.near[i];
             bool anew = false;
             for (const uint32_t c : {near.collider_a(), near.collider_b()}) {
-                if (!again || !put_back(mechanisms, pairs.way[c], round)) continue;
+                if (!again || !put_back(mechanisms, colliders.record[c], round)) continue;
                 pairs.way[c] = way_of(nodes, colliders.record[c], shapes);
                 anew = true;
             }

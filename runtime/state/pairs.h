@@ -221,6 +221,7 @@ struct Pairs {
           joined(memory),
           reach(memory),
           pace(memory),
+          along(memory),
           way(memory),
           mechanisms(memory),
           placement(memory),
@@ -256,7 +257,8 @@ struct Pairs {
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     bool any_fast = false;            // of near, in this frame; find_contacts()
-    Array<Way> way;                   // by collider; hold_back()
+    Array<Vec3> along;                // by collider: of its middle in this step [m]; hold_back()
+    Array<Way> way;                   // by collider, once some pair may have passed; hold_back()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
     Array<Stance> stance;                   // by collider; place_collider()
