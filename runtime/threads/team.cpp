@@ -82,7 +82,7 @@ void Team::hand_out(std::span<const Stage> stages, RangeFn run, const void* cont
     stage_count_.store(static_cast<uint32_t>(stages.size()), std::memory_order_release);
     for (size_t i = 0; i < stages.size(); ++i)
         stage_[i].store(uint64_t{stages[i].count} << 32 | stages[i].grain, std::memory_order_release);
-    finished_.store(0, std::memory_order_release);
+    before_.store(finished(), std::memory_order_release);
     program_.store(program, std::memory_order_release);
     work(program, 0);
 }
@@ -93,14 +93,14 @@ void Team::work(uint64_t program, uint32_t worker) {
     const RangeFn run = run_.load(std::memory_order_acquire);
     const void* const context = context_.load(std::memory_order_acquire);
     const uint32_t stages = stage_count_.load(std::memory_order_acquire);
-    uint64_t before = 0;  // chunks of the stages so far
+    uint64_t before = before_.load(std::memory_order_acquire);  // chunks up to the stage
     // A part has better stay with the thread that has its data in the cache.
     const auto be_patient = [&] {
         Spin spin;
-        for (int i = 0; i < kPatience && finished_.load(std::memory_order_acquire) < before; ++i) spin.wait();
+        for (int i = 0; i < kPatience && finished() < before; ++i) spin.wait();
     };
     const auto wait = [&] {
-        for (Spin spin; finished_.load(std::memory_order_acquire) < before; spin.wait())
+        for (Spin spin; finished() < before; spin.wait())
             if (!is_out()) return;
     };
     part_[worker].joined.store(program, std::memory_order_release);
@@ -112,15 +112,24 @@ void Team::work(uint64_t program, uint32_t worker) {
         for (uint32_t k = 0, part = worker; k < size_; ++k, part = part + 1 < size_ ? part + 1 : 0) {
             if (part != worker && part_[part].joined.load(std::memory_order_acquire) == program) {
                 be_patient();
-                if (finished_.load(std::memory_order_acquire) >= before) break;
+                if (finished() >= before) break;
             }
             uint64_t mine = 0;
             for (uint32_t chunk; claim(part, chunks, program + i, chunk); ++mine)
                 run(context, i, chunks.begin(chunk), chunks.end(chunk));
-            if (mine > 0) finished_.fetch_add(mine, std::memory_order_acq_rel);
+            if (mine == 0) continue;
+            std::atomic<uint64_t>& done = part_[worker].finished;
+            done.store(done.load(std::memory_order_relaxed) + mine, std::memory_order_release);
         }
     }
     if (worker == 0) wait();
+}
+
+// Chunks of all programs, at least: each count only grows.
+uint64_t Team::finished() const {
+    uint64_t sum = 0;
+    for (const Part& part : part_) sum += part.finished.load(std::memory_order_acquire);
+    return sum;
 }
 
 // The next chunk of a worker's part of a loop; false: all are taken.

@@ -74,6 +74,7 @@ private:
 
     void hand_out(std::span<const Stage> stages, RangeFn run, const void* context);
     void work(uint64_t program, uint32_t worker);
+    uint64_t finished() const;
     bool claim(uint32_t part, const Chunks& chunks, uint64_t loop, uint32_t& chunk);
     void call_helpers();
     void keep_off_caller();
@@ -99,11 +100,13 @@ private:
     alignas(64) std::atomic<RangeFn> run_{nullptr};
     std::atomic<const void*> context_{nullptr};
     std::atomic<uint32_t> stage_count_{0};
-    std::vector<std::atomic<uint64_t>> stage_;       // count << 32 | grain
-    alignas(64) std::atomic<uint64_t> finished_{0};  // chunks of the program
+    std::vector<std::atomic<uint64_t>> stage_;  // count << 32 | grain
+    std::atomic<uint64_t> before_{0};           // chunks of all programs before
     struct alignas(64) Part {
         std::atomic<uint64_t> cursor{0};  // loop << kChunkBits | its next chunk; of an earlier loop: none is taken yet
-        alignas(64) std::atomic<uint64_t> joined{0};  // the last program that the worker came to
+        // What the worker alone writes: a count that all add to would travel to each of them at each stage.
+        alignas(64) std::atomic<uint64_t> finished{0};  // chunks, of all programs
+        std::atomic<uint64_t> joined{0};                // the last program that it came to
     };
     std::vector<Part> part_;  // by worker
 
