@@ -38,7 +38,7 @@ protected:
 };
 
 TEST_F(Footprint, OfABodyAlone) {
-    expect_at_most(880, "body", bytes_of_each(ledger_, world_, [&](int) {
+    expect_at_most(900, "body", bytes_of_each(ledger_, world_, [&](int) {
                        taut_body_def def = body_def(TAUT_BODY_DYNAMIC, {});
                        def.mass = 1;
                        def.inertia = {1, 1, 1, 0, 0, 0};
@@ -47,7 +47,7 @@ TEST_F(Footprint, OfABodyAlone) {
 }
 
 TEST_F(Footprint, OfABodyWithAMassOfItsOwn) {
-    expect_at_most(1200, "body unlike any other", bytes_of_each(ledger_, world_, [&](int i) {
+    expect_at_most(1100, "body unlike any other", bytes_of_each(ledger_, world_, [&](int i) {
                        taut_body_def def = body_def(TAUT_BODY_DYNAMIC, {});
                        def.mass = 1 + static_cast<float>(i);
                        def.inertia = {1, 1, 1, 0, 0, 0};
@@ -76,7 +76,7 @@ TEST_F(Footprint, OfAJoint) {
     const taut_shape box = add_box(world_);
     std::vector<taut_body> bodies;
     for (int i = 0; i < kMany; ++i) bodies.push_back(add_body(world_, body_def(TAUT_BODY_DYNAMIC, box, 3.0 * i)));
-    expect_at_most(7750, "ball joint to the world", bytes_of_each(ledger_, world_, [&](int i) {
+    expect_at_most(7900, "ball joint to the world", bytes_of_each(ledger_, world_, [&](int i) {
                        add_ball(world_, bodies[static_cast<size_t>(i)], {0}, {}, {3.0 * i, 0, 0});
                    }));
 }
@@ -88,7 +88,7 @@ TEST_F(Footprint, OfAContact) {
         add_body(world_, body_def(TAUT_BODY_STATIC, box, 3.0 * i, -0.5));
         bodies.push_back(add_body(world_, body_def(TAUT_BODY_DYNAMIC, box, 3.0 * i, 100)));
     }
-    expect_at_most(1140, "contact", bytes_of_each(ledger_, world_, [&](int i) {
+    expect_at_most(1160, "contact", bytes_of_each(ledger_, world_, [&](int i) {
                        EXPECT_OK(set_pose(bodies[static_cast<size_t>(i)], at(3.0 * i, 0.5, 0)));
                    }));
 }
