@@ -296,6 +296,12 @@ bool Broadphase::refresh_pairs() {
     return finish_refresh();
 }
 
+void Broadphase::let_go() {
+    State& s = *state_;
+    for (Array<uint64_t>* each : {&s.fresh, &s.gone}) taut::let_go(*each);
+    for (Array<uint32_t>* each : {&s.partners, &s.partner_count, &s.first_of}) taut::let_go(*each);
+}
+
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }
 std::span<const uint64_t> Broadphase::arrived() const { return state_->fresh; }
 std::span<const uint64_t> Broadphase::departed() const { return state_->gone; }

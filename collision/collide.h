@@ -146,6 +146,8 @@ public:
     // What the last refresh added to them and took away, sorted likewise.
     std::span<const uint64_t> arrived() const;
     std::span<const uint64_t> departed() const;
+    // Of what it worked with, after which the last two are empty.
+    void let_go();
 
     // Where bodies are after a step may be outside the fat boxes that foresaw it: such strays keep their leaves, on
     // which the pairs depend, but every probe visits them. Noted anew after each step: those that it does not hold.

@@ -32,12 +32,6 @@ void remember_poses(Team& team, Nodes& nodes) {
     });
 }
 
-void clear_loads(Team& team, Nodes& nodes) {
-    team.for_ranges(nodes.slots(), kGrain, [&](uint32_t begin, uint32_t end) {
-        std::fill(nodes.load.begin() + begin, nodes.load.begin() + end, NodeLoad{});
-    });
-}
-
 void detect(World& w, Stopwatch& watch) {
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
@@ -132,7 +126,7 @@ void solve(World& w, Stopwatch& watch) {
                                   &joint_kernels(),
                                   w.def.adaptive_damping != 0};
     SolverReport report;
-    begin_frame(w.team, w.system, w.nodes);
+    begin_frame(w.team, w.system, w.nodes, w.joints);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) {
         solve_group(w, i, solver, settings, report, watch);
@@ -178,7 +172,7 @@ void step(World& w) {
     hold_back(w.team, w.colliders, w.shapes, w.joints, w.pairs, w.nodes);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.sensors);
-    clear_loads(w.team, w.nodes);
+    w.nodes.load.clear();
     publish_contacts(w);
     publish_motion(w, w.frozen);
     publish_profile(w);

@@ -93,13 +93,13 @@ void give_velocity(World& world, uint32_t node, const Vec3& v, const Vec3& w) {
 
 // Of the next step. Nothing does not wake a body.
 void add_load(World& world, uint32_t node, const Vec3& force, const Vec3& torque) {
-    if (force != Vec3::Zero() || torque != Vec3::Zero()) wake(world, node);
-    world.nodes.load[node].force += force;
-    world.nodes.load[node].torque += torque;
+    if (force == Vec3::Zero() && torque == Vec3::Zero()) return;
+    world.nodes.add_load(node, force, torque);
+    wake(world, node);
 }
 
 taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
-                     std::span<const Collider> colliders, taut_body* out) {
+                     std::span<const ColliderPlan> colliders, taut_body* out) {
     taut_result room = room_for_bodies(check.call(), world, 1);
     if (room == TAUT_OK) room = room_for_colliders(check.call(), world, colliders.size());
     if (room != TAUT_OK) return room;
@@ -126,7 +126,7 @@ taut_collider_def own_collider(const Def& def, float density) {
 
 // Of a checked def, its own shape first.
 taut_result make_colliders(Check& check, const World& world, NodeKind kind, const taut_body_def& def,
-                           std::vector<Collider>& out) {
+                           std::vector<ColliderPlan>& out) {
     if (def.shape.bits != 0) {
         const taut_result made = make_collider(check, world, kind, own_collider(def, def.density), out.emplace_back());
         if (made != TAUT_OK) return made;
@@ -198,7 +198,7 @@ taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, tau
         NodeInfo info;
         info.kind = kNodeKind[def->kind];
         info.user_data = def->user_data;
-        std::vector<Collider> colliders;
+        std::vector<ColliderPlan> colliders;
         const taut_result made = make_colliders(check, world, info.kind, *def, colliders);
         if (made != TAUT_OK) return made;
         NodeMass mass;
@@ -228,7 +228,7 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         const bool has_shape = def->shape.bits != 0;
-        Collider collider;
+        ColliderPlan collider;
         if (has_shape) {
             const taut_result made = make_collider(check, world, NodeKind::particle, own_collider(*def, 0), collider);
             if (made != TAUT_OK) return made;
@@ -306,7 +306,7 @@ taut_result taut_body_get_material(taut_body handle, taut_material* out) {
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
         const uint32_t first = world.nodes.info[node].collider;
         if (!check.require(first != kNone, "body has no collider")) return check.result();
-        *out = world.colliders.record[first].material;
+        *out = world.colliders.traits[first].material;
         return TAUT_OK;
     });
 }
@@ -316,9 +316,13 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        uint32_t count = 0;
+        for_colliders(world.nodes, world.colliders, node, [&](uint32_t) { ++count; });
+        world.colliders.traits.reserve_values(count);
+        for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
+            world.colliders.change_traits(c, [&](ColliderTraits& own) { own.material = *material; });
+        });
         wake(world, node);
-        for_colliders(world.nodes, world.colliders, node,
-                      [&](uint32_t c) { world.colliders.change(c).material = *material; });
         return TAUT_OK;
     });
 }

@@ -54,25 +54,25 @@ void complete(Check& check, NodeMass& out) {
 }  // namespace
 
 // Of the parts, I = sum R I_p R^T + m_p (d.d - d d^T), d from the common centre to the part's (Steiner).
-collision::MassProperties mass_of(const Shapes& shapes, std::span<const Collider> colliders) {
+collision::MassProperties mass_of(const Shapes& shapes, std::span<const ColliderPlan> colliders) {
     if (colliders.size() == 1 && colliders[0].at_origin() && !colliders[0].sensor)
         return collision::mass_properties(shapes.record[colliders[0].shape].shape,
-                                          static_cast<double>(colliders[0].density));
-    const auto part_of = [&](const Collider& c) {
-        const double density = c.sensor ? 0.0 : static_cast<double>(c.density);
+                                          static_cast<double>(colliders[0].traits.density));
+    const auto part_of = [&](const ColliderPlan& c) {
+        const double density = c.sensor ? 0.0 : static_cast<double>(c.traits.density);
         collision::MassProperties part = collision::mass_properties(shapes.record[c.shape].shape, density);
         part.centre = c.position + c.rotation * part.centre;
         return part;
     };
     collision::MassProperties out;
-    for (const Collider& c : colliders) {
+    for (const ColliderPlan& c : colliders) {
         const collision::MassProperties part = part_of(c);
         out.mass += part.mass;
         out.centre += part.mass * part.centre;
     }
     if (out.mass > 0) out.centre /= out.mass;
     Mat3 inertia = Mat3::Zero();
-    for (const Collider& c : colliders) {
+    for (const ColliderPlan& c : colliders) {
         const collision::MassProperties part = part_of(c);
         const Mat3 R = c.rotation.toRotationMatrix();
         const Vec3 d = part.centre - out.centre;
@@ -83,8 +83,8 @@ collision::MassProperties mass_of(const Shapes& shapes, std::span<const Collider
     return out;
 }
 
-void set_body_mass(Check& check, const taut_body_def& def, const Shapes& shapes, std::span<const Collider> colliders,
-                   NodeMass& out) {
+void set_body_mass(Check& check, const taut_body_def& def, const Shapes& shapes,
+                   std::span<const ColliderPlan> colliders, NodeMass& out) {
     const bool given = !is_zero(def.inertia);
     if (colliders.empty()) {
         check.require(def.mass > 0, "mass is 0, expected [1e-06, 1e+15] for a dynamic body without colliders");
@@ -107,7 +107,7 @@ void set_body_mass(Check& check, const taut_body_def& def, const Shapes& shapes,
     complete(check, out);
 }
 
-void set_body_mass(Check& check, const Shapes& shapes, std::span<const Collider> colliders, NodeMass& out) {
+void set_body_mass(Check& check, const Shapes& shapes, std::span<const ColliderPlan> colliders, NodeMass& out) {
     const collision::MassProperties sum = mass_of(shapes, colliders);
     if (!check.number("mass of the colliders", static_cast<float>(sum.mass), kBodyMass)) return;
     out.mass = sum.mass;

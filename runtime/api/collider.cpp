@@ -14,9 +14,9 @@ using namespace taut;
 
 namespace {
 
-void set_one_way(Collider& collider, const taut_vec3& direction) {
-    collider.one_way = to_vec(direction).stableNormalized().cast<float>();  // 0 stays 0
-    ask_for(collider, kAsksOneWay, collider.one_way == Vec3f::Zero() ? 0 : kAsksOneWay);
+void set_one_way(const taut_vec3& direction, ColliderTraits& traits, Collider& collider) {
+    traits.one_way = to_vec(direction).stableNormalized().cast<float>();  // 0 stays 0
+    ask_for(collider, kAsksOneWay, traits.one_way == Vec3f::Zero() ? 0 : kAsksOneWay);
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ Check& check_collider_def(Check& check, const taut_collider_def& def) {
 }
 
 taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def,
-                          Collider& out) {
+                          ColliderPlan& out) {
     const taut_result found = find_shape(check.call(), "shape", world, def.shape, out.shape);
     if (found != TAUT_OK) return found;
     const collision::ShapeKind shape = world.shapes.record[out.shape].shape.kind;
@@ -63,14 +63,14 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
     out.position = to_vec(def.position);
     out.rotation = to_quat(def.rotation);
     check.require(kind != NodeKind::particle || out.position == Vec3::Zero(), "position is not 0 on a particle");
-    out.density = def.density;
-    out.material = def.material;
-    out.filter = def.filter;
+    out.traits.density = def.density;
+    out.traits.material = def.material;
+    out.traits.filter = def.filter;
     out.user_data = def.user_data;
     out.sensor = (def.flags & TAUT_COLLIDER_SENSOR) != 0;
     out.senses_static = (def.flags & TAUT_COLLIDER_SENSES_STATIC) != 0;
     out.asks = static_cast<uint8_t>(def.contact_events | (def.flags & TAUT_COLLIDER_PRE_SOLVE ? kAsksPreSolve : 0));
-    set_one_way(out, def.one_way);
+    set_one_way(def.one_way, out.traits, out);
     return check.result();
 }
 
@@ -83,21 +83,23 @@ Check& check_own(Check& check, const World& world, uint32_t node) {
     return check.require(world.nodes.info[node].cable == kNone, "the body is part of a cable", TAUT_IN_USE);
 }
 
-taut_collider_def def_of(const World& world, const Collider& collider) {
+taut_collider_def def_of(const World& world, uint32_t index) {
+    const Collider& collider = world.colliders.record[index];
+    const ColliderTraits& traits = world.colliders.traits[index];
     taut_collider_def def;
     taut_collider_def_init(&def);
-    def.density = collider.density;
+    def.density = traits.density;
     def.shape = world.shape_handle(collider.shape);
     def.position = to_vec3(collider.position);
     def.rotation = to_quat(collider.rotation);
-    def.material = collider.material;
-    def.filter = collider.filter;
+    def.material = traits.material;
+    def.filter = traits.filter;
     def.user_data = collider.user_data;
     def.flags = (collider.sensor ? TAUT_COLLIDER_SENSOR : 0) |
                 (collider.senses_static ? TAUT_COLLIDER_SENSES_STATIC : 0) |
                 (collider.asks & kAsksPreSolve ? TAUT_COLLIDER_PRE_SOLVE : 0);
     def.contact_events = collider.asks & TAUT_CONTACT_EVENTS_ALL;
-    def.one_way = to_vec3(collider.one_way.cast<double>());
+    def.one_way = to_vec3(traits.one_way.cast<double>());
     return def;
 }
 
@@ -132,7 +134,7 @@ taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* de
         const NodeKind kind = world.nodes.info[node].kind;
         check.require(kind != NodeKind::particle, "body is a particle, whose shape comes with its def");
         if (!check_own(check, world, node)) return check.result();
-        Collider collider;
+        ColliderPlan collider;
         collider.node = node;
         const taut_result made = make_collider(check, world, kind, *def, collider);
         if (made != TAUT_OK) return made;
@@ -176,16 +178,17 @@ taut_result taut_body_set_mass_from_colliders(taut_body handle) {
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         check.require(world.nodes.info[node].kind == NodeKind::dynamic, "body is not dynamic");
         if (!check_own(check, world, node)) return check.result();
-        std::vector<Collider> colliders;
+        std::vector<ColliderPlan> colliders;
         for_colliders(world.nodes, world.colliders, node,
-                      [&](uint32_t c) { colliders.push_back(world.colliders.record[c]); });
-        NodeMass& mass = world.nodes.mass[node];
+                      [&](uint32_t c) { colliders.push_back(world.colliders.plan(c)); });
+        const NodeMass mass = world.nodes.mass[node];
         NodeMass fresh = mass;
         set_body_mass(check, world.shapes, colliders, fresh);
         if (!check) return check.result();
+        world.nodes.mass.reserve_values(1);
         wake(world, node);
         shift_centre(world, node, world.nodes.motion[node].q * (fresh.centre - mass.centre));
-        mass = fresh;
+        world.nodes.mass.set(node, fresh);
         return TAUT_OK;
     });
 }
@@ -194,7 +197,7 @@ taut_result taut_collider_get_def(taut_collider handle, taut_collider_def* out) 
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
-        *out = def_of(world, world.colliders.record[collider]);
+        *out = def_of(world, collider);
         return TAUT_OK;
     });
 }
@@ -231,11 +234,11 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         Collider& collider = world.colliders.record[index];
         if (!check_own(check, world, collider.node)) return check.result();
-        taut_collider_def def = def_of(world, collider);
+        taut_collider_def def = def_of(world, index);
         def.shape = shape;
         def.position = position;
         def.rotation = rotation;
-        Collider changed = collider;
+        ColliderPlan changed = world.colliders.plan(index);
         const taut_result made = make_collider(check, world, world.nodes.info[collider.node].kind, def, changed);
         if (made != TAUT_OK) return made;
         world.broadphase.update(index, contact_box(world.nodes, world.shapes, changed), Vec3f::Zero());
@@ -259,8 +262,8 @@ taut_result taut_collider_set_material(taut_collider handle, const taut_material
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        world.colliders.change_traits(collider, [&](ColliderTraits& own) { own.material = *material; });
         wake(world, world.colliders.record[collider].node);
-        world.colliders.change(collider).material = *material;
         return TAUT_OK;
     });
 }
@@ -271,10 +274,11 @@ taut_result taut_collider_set_filter(taut_collider handle, const taut_filter* fi
     if (!check.zero("reserved", filter->reserved)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
+        world.colliders.traits.reserve_values(1);
         wake(world, world.colliders.record[collider].node);
         wake_near(world, world.colliders.record[collider].node);
         forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));  // asked anew by the step
-        world.colliders.record[collider].filter = *filter;
+        world.colliders.change_traits(collider, [&](ColliderTraits& own) { own.filter = *filter; });
         return TAUT_OK;
     });
 }
@@ -283,7 +287,7 @@ taut_result taut_collider_set_density(taut_collider handle, float density) {
     Check check(__func__);
     if (!check.zero_or("density", density, kDensity)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
-        world.colliders.record[collider].density = density;
+        world.colliders.change_traits(collider, [&](ColliderTraits& own) { own.density = density; });
         return TAUT_OK;
     });
 }
@@ -293,11 +297,11 @@ taut_result taut_collider_set_surface_velocity(taut_collider handle, taut_vec3 v
     if (!check.bounded("velocity", velocity, kSpeed).bounded("spin", spin, kSpeed)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         if (!check_own(check, world, world.colliders.record[index].node)) return check.result();
-        Collider& collider = world.colliders.change(index);
-        collider.surface_velocity = to_vec(velocity).cast<float>();
-        collider.surface_spin = to_vec(spin).cast<float>();
-        collider.driven = collider.surface_velocity != Vec3f::Zero() || collider.surface_spin != Vec3f::Zero();
-        wake(world, collider.node);
+        world.colliders.change_traits(index, [&](ColliderTraits& own) {
+            own.surface_velocity = to_vec(velocity).cast<float>();
+            own.surface_spin = to_vec(spin).cast<float>();
+        });
+        wake(world, world.colliders.record[index].node);
         return TAUT_OK;
     });
 }
@@ -306,9 +310,9 @@ taut_result taut_collider_get_surface_velocity(taut_collider handle, taut_vec3* 
     Check check(__func__);
     if (!check.pointer("velocity", velocity).pointer("spin", spin)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const Collider& collider = world.colliders.record[index];
-        *velocity = to_vec3(collider.surface_velocity.cast<double>());
-        *spin = to_vec3(collider.surface_spin.cast<double>());
+        const ColliderTraits& traits = world.colliders.traits[index];
+        *velocity = to_vec3(traits.surface_velocity.cast<double>());
+        *spin = to_vec3(traits.surface_spin.cast<double>());
         return TAUT_OK;
     });
 }
@@ -335,7 +339,8 @@ taut_result taut_collider_set_one_way(taut_collider handle, taut_vec3 direction)
     Check check(__func__);
     if (!check.vector("direction", direction, kOneWay)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
-        set_one_way(world.colliders.change(collider), direction);
+        world.colliders.change_traits(
+            collider, [&](ColliderTraits& own) { set_one_way(direction, own, world.colliders.record[collider]); });
         return TAUT_OK;
     });
 }

@@ -24,6 +24,7 @@ Check& check_asks(Check& check, const char* flags_field, uint32_t flags, uint32_
 Check& check_collider_def(Check& check, const taut_collider_def& def);
 
 // The collider that a checked def asks for on a body of this kind, but for its node; its shape is looked up.
-taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def, Collider& out);
+taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def,
+                          ColliderPlan& out);
 
 }  // namespace taut

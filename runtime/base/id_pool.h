@@ -51,9 +51,7 @@ public:
     uint32_t count() const { return live_; }
 
 private:
-    static size_t grown(size_t size, size_t capacity) {
-        return size < capacity ? capacity : capacity + capacity / 4 + 16;
-    }
+    static size_t grown(size_t size, size_t capacity) { return size < capacity ? capacity : with_slack(capacity) + 16; }
 
     uint32_t live_ = 0;
     Array<uint32_t> generation_;  // per slot; odd while live

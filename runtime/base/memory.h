@@ -37,6 +37,7 @@ public:
         Memory& memory_;
     };
 
+    static constexpr size_t kLarge = 16384;  // bytes; smaller pieces stay as long as the world
     // What a request of this size takes from the host.
     static size_t whole(size_t size, size_t alignment);
 
@@ -50,7 +51,6 @@ private:
     };
     static constexpr size_t kLeast = 64, kAlignment = 64;  // of pieces that are kept
     static constexpr int kSizes = 44;                      // 64 bytes to 256 KiB, four to an octave
-    static constexpr size_t kLarge = 16384;                // bytes; smaller ones stay as long as the world
     static constexpr uint64_t kPatience = 128;             // steps; grows with the world's age
 
     static int size_class(size_t size, size_t alignment);  // or kSizes: not kept
@@ -91,11 +91,20 @@ struct HostAllocator {
 template <class T>
 using Array = std::vector<T, HostAllocator<T>>;
 
-// Room for more elements. By a quarter, not by doubling: large arrays make up a world's memory.
+// Room for more elements. By an eighth, not by doubling: large arrays make up a world's memory.
+constexpr size_t with_slack(size_t needed) { return needed + needed / 8; }
+
 template <class T>
 void reserve_more(Array<T>& array, size_t more) {
     const size_t needed = array.size() + more;
-    if (needed > array.capacity()) array.reserve(needed + needed / 4);
+    if (needed > array.capacity()) array.reserve(with_slack(needed));
+}
+
+// Empties an array that few steps use, and leaves its memory, if that is much, to whatever asks next.
+template <class T>
+void let_go(Array<T>& array) {
+    array.clear();
+    if (array.capacity() * sizeof(T) >= Memory::kLarge) Array<T>(array.get_allocator()).swap(array);
 }
 
 }  // namespace taut

@@ -19,7 +19,7 @@ bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& 
 
 bool is_bad(const Nodes& nodes, uint32_t node, double h) {
     const NodeMotion& m = nodes.motion[node];
-    const NodeLoad& load = nodes.load[node];
+    const NodeLoad& load = nodes.load_of(node);
     return !sane(m) || (is_loaded(load) && pushed_too_hard(m, nodes.mass[node], load, h));
 }
 
@@ -33,7 +33,7 @@ Findings look_at(Team& team, const Nodes& nodes, const Array<uint32_t>& list, do
     std::atomic<bool> loaded{false}, bad{false};
     team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
-            if (is_loaded(nodes.load[list[i]])) loaded.store(true, std::memory_order_relaxed);
+            if (is_loaded(nodes.load_of(list[i]))) loaded.store(true, std::memory_order_relaxed);
             if (is_bad(nodes, list[i], h)) bad.store(true, std::memory_order_relaxed);
         }
     });
@@ -48,14 +48,17 @@ bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uin
     for (uint32_t node : list) {
         if (!is_bad(nodes, node, h)) continue;
         NodeMotion& m = nodes.motion[node];
-        nodes.load[node] = {};
+        nodes.mass.reserve_values(1);
+        nodes.clear_load(node);
         const NodePose& last = nodes.before[node];
         m = {};
         m.q = last.rotation;
         m.x = last.position + last.rotation * nodes.mass[node].centre;
         nodes.info[node].kind = NodeKind::fixed;
-        nodes.mass[node].mass = nodes.mass[node].inv_mass = 0;
-        nodes.mass[node].inertia = nodes.mass[node].inv_inertia = {};
+        NodeMass none = nodes.mass[node];
+        none.mass = none.inv_mass = 0;
+        none.inertia = none.inv_inertia = {};
+        nodes.mass.set(node, none);
         frozen.push_back(node);
     }
     return found.loaded;

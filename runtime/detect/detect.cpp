@@ -18,7 +18,8 @@ bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pa
         tied = tied || a == b || std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(a, b));
     });
     const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    return moves && !tied && !a.sensor && !b.sensor && filters_agree(a.filter, b.filter);
+    return moves && !tied && !a.sensor && !b.sensor &&
+           filters_agree(colliders.traits[pair.collider_a()].filter, colliders.traits[pair.collider_b()].filter);
 }
 
 // Keys of nodes that a joint forbids to collide, sorted.
@@ -225,7 +226,6 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     pairs.placement.resize(slots);
     pairs.stance.resize(slots);
     pairs.travel.resize(slots);
-    pairs.along.resize(slots);
     pairs.picked.resize(slots);  // nothing may fail between a new box and the broadphase's
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
@@ -286,6 +286,9 @@ void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, co
             return near;
         });
     pairs.complete = true;
+    let_go(pairs.arrived);
+    let_go(pairs.departed);
+    broadphase.let_go();
 }
 
 }  // namespace taut

@@ -36,10 +36,9 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
             if (collider.node == kNone) continue;
             pace.moved = round == 1 || put_back(pairs.mechanisms, collider, round - 1);
             if (!pace.moved) continue;
-            pairs.along[c] = way_along(nodes, collider, shapes);
             if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
-            const Vec3 off = pairs.along[c] - pairs.reach[c].ahead.cast<double>();
+            const Vec3 off = way_along(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
             pace.astray = off.squaredNorm() > stride * stride;
             if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
@@ -48,7 +47,8 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
 }
 
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
-bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
+bool strides(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+             const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
     const Pace &one = pairs.pace[a], &other = pairs.pace[b];
     if (!(near.fast || one.astray || other.astray) || near.filtered) return false;
@@ -56,7 +56,8 @@ bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& nea
     const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                     : std::max(one.thickness, other.thickness);
     const double stride = kStride * thinner;
-    return (pairs.along[a] - pairs.along[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
+    const auto along = [&](uint32_t collider) { return way_along(nodes, colliders.record[collider], shapes); };
+    return (along(a) - along(b)).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
 }
 
 bool moved(const Pairs& pairs, const NearPair& near) {
@@ -64,9 +65,11 @@ bool moved(const Pairs& pairs, const NearPair& near) {
 }
 
 // By the ways of its two colliders.
-bool may_pass(const Pairs& pairs, const NearPair& near) {
+bool may_pass(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+              const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
-    return may_pass(pairs.way[a], pairs.pace[a].thickness, pairs.way[b], pairs.pace[b].thickness);
+    return may_pass(nodes, colliders.record[a], pairs.pace[a].thickness, colliders.record[b], pairs.pace[b].thickness,
+                    shapes);
 }
 
 // Whether a pair had passed; in the last round it stays where it was.
@@ -82,8 +85,8 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
         of_a.stay(round);
         of_b.stay(round);
     } else {
-        const Way& a = pair.a.way;
-        const Vec3 way_of_a = pair.a.collider.node_b == kNone ? a.along : Vec3(a.now.position - a.before.position);
+        const Passage& a = pair.a;
+        const Vec3 way_of_a = a.collider.node_b == kNone ? a.along : Vec3(a.now.position - a.before.position);
         of_a.go_back(excess.share * way_of_a, excess.normal, round);
         of_b.go_back(excess.share * excess.way, excess.normal, round);
     }
@@ -94,21 +97,14 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked, [&](uint32_t i) {
         NearPair& near = pairs.near[i];
-        if (moved(pairs, near)) near.strides = strides(colliders, pairs, near);
+        if (moved(pairs, near)) near.strides = strides(nodes, colliders, shapes, pairs, near);
         return near.strides;
-    });
-    if (pairs.picked.empty()) return;
-    pairs.way.resize(pairs.pace.size());
-    team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t c = begin; c < end; ++c)
-            if (colliders.record[c].node != kNone && pairs.pace[c].moved)
-                pairs.way[c] = way_of(nodes, colliders.record[c], shapes);
     });
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[pairs.picked[i]];
-            near.passed = moved(pairs, near) && may_pass(pairs, near) &&
-                          excess_of(nodes, Couple(colliders, shapes, pairs.way, near)).share > 0;
+            near.passed = moved(pairs, near) && may_pass(nodes, colliders, shapes, pairs, near) &&
+                          excess_of(nodes, Couple(nodes, colliders, shapes, near)).share > 0;
         }
     });
 }
@@ -129,14 +125,11 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
         find_passed(team, nodes, colliders, shapes, pairs);
         for (const uint32_t i : pairs.picked) {
             const NearPair& near = pairs.near[i];
-            bool anew = false;
-            for (const uint32_t c : {near.collider_a(), near.collider_b()}) {
-                if (!again || !put_back(mechanisms, colliders.record[c], round)) continue;
-                pairs.way[c] = way_of(nodes, colliders.record[c], shapes);
-                anew = true;
-            }
-            if (!near.passed && !(anew && may_pass(pairs, near))) continue;
-            const Couple pair(colliders, shapes, pairs.way, near);
+            const auto anew = [&](uint32_t c) { return again && put_back(mechanisms, colliders.record[c], round); };
+            if (!near.passed && !((anew(near.collider_a()) || anew(near.collider_b())) &&
+                                  may_pass(nodes, colliders, shapes, pairs, near)))
+                continue;
+            const Couple pair(nodes, colliders, shapes, near);
             again = part(pair, excess_of(nodes, pair), joints, round, mechanisms, nodes) || again;
         }
     }

@@ -35,11 +35,11 @@ Vec3f offset_of(const Nodes& nodes, const Collider& a, const collision::Placemen
 // What the two surfaces do to each other. What the host said of friction and restitution in this step stays.
 void meet(const Detection& of, const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,
           Pair& pair) {
-    const Collider &a = of.colliders.record[pair.collider_a()], &b = of.colliders.record[pair.collider_b()];
+    const uint32_t a = pair.collider_a(), b = pair.collider_b();
     const float friction = pair.friction, restitution = pair.restitution;
-    combine_surfaces(of.nodes, a, b, at_a, at_b, from_a, pair);
+    combine_surfaces(of.nodes, of.colliders.traits[a], of.colliders.traits[b], at_a, at_b, from_a, pair);
     if (pair.answered) pair.friction = friction, pair.restitution = restitution;
-    pair.asks = of.pairs.asks | a.asks | b.asks;
+    pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
 }
 
 // A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
@@ -55,6 +55,10 @@ void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
     meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
     carry(old, before, pair);
     if (shaped.can_be_kept()) keep_manifold(of.pairs, pair);
+}
+
+void keep_cache(const collision::PairCache& cache, NearPair& near) {
+    std::copy_n(cache.words, near.cache.size(), near.cache.begin());
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -122,7 +126,11 @@ void Shaped::find_parts(collision::Parts& parts) const {
 void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     const Shaped shaped(of, pair, fast);
-    const float gap = shaped.find_points(near.cache, pair.manifold);
+    collision::PairCache cache;
+    std::ranges::copy(pair.cache, std::ranges::copy(near.cache, cache.words).out);
+    const float gap = shaped.find_points(cache, pair.manifold);
+    keep_cache(cache, near);
+    std::copy_n(cache.words + near.cache.size(), pair.cache.size(), pair.cache.begin());
     near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
     near.changed = false;
     note_clear(of.pairs, gap, near);
@@ -130,14 +138,14 @@ void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
 }
 
 bool gets_points(const Detection& of, NearPair& near) {
-    const collision::PairCache before = near.cache;
+    collision::PairCache cache;
+    std::ranges::copy(near.cache, cache.words);
     collision::Manifold manifold;
-    const float gap = Shaped(of, near.ends(of.colliders), near.fast).find_points(near.cache, manifold);
-    if (manifold.count > 0)
-        near.cache = before;
-    else
-        note_clear(of.pairs, gap, near);
-    return manifold.count > 0;
+    const float gap = Shaped(of, near.ends(of.colliders), near.fast).find_points(cache, manifold);
+    if (manifold.count > 0) return true;
+    keep_cache(cache, near);
+    note_clear(of.pairs, gap, near);
+    return false;
 }
 
 void find_parts(const Detection& of, NearPair& near) {

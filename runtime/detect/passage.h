@@ -12,23 +12,23 @@ namespace taut {
 
 // Of a collider's middle in this step, but for the turn of a slow one [m].
 Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
-// All of what it did.
-Way way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
 // Whether the ball inside the one may have met the ball about the other, which reaches further: false spares the rest.
 // Thickness of either [m].
-bool may_pass(const Way& a, double thickness_a, const Way& b, double thickness_b);
+bool may_pass(const Nodes& nodes, const Collider& a, double thickness_a, const Collider& b, double thickness_b,
+              const Shapes& shapes);
 
 // A collider in a step.
 struct Passage {
     const Collider& collider;
     const ShapeRecord& record;
-    const Way& way;
+    Vec3 from, along;                  // of its middle [m]
+    collision::Placement before, now;  // where the step had it
 };
 
 // The one that reaches further, a, is as it was; the other goes along.
 class Couple {
 public:
-    Couple(const Colliders& colliders, const Shapes& shapes, const Array<Way>& ways, const NearPair& near);
+    Couple(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const NearPair& near);
 
     const Passage a, b;
 

@@ -17,7 +17,7 @@ constexpr float kMostFriction = 100;
 // Whether one-way colliders of a pair let the contact be. touching: the pair did at the end of the last step.
 bool from_open_side(const Colliders& colliders, const Pairs& pairs, const Pair& pair, bool touching) {
     const auto faces = [&](uint32_t collider, const Vec3f& outward) {
-        const Vec3f& direction = colliders.record[collider].one_way;
+        const Vec3f& direction = colliders.traits[collider].one_way;
         if (direction == Vec3f::Zero()) return true;
         return (pairs.placement[collider].rotation * direction).dot(outward) >= kLeastCosine;
     };

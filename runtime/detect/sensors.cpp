@@ -20,10 +20,12 @@ bool is_convex(const Shapes& shapes, const Collider& collider) {
     return kind != ShapeKind::plane && kind != ShapeKind::surface;
 }
 
-bool may_sense(const Nodes& nodes, const Shapes& shapes, const Collider& sensor, const Collider& visitor) {
+bool may_sense(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t by, uint32_t id) {
+    const Collider &sensor = colliders.record[by], &visitor = colliders.record[id];
     if (visitor.sensor || visitor.node == sensor.node) return false;
     if (nodes.info[visitor.node].kind == NodeKind::fixed && !sensor.senses_static) return false;
-    return filters_agree(sensor.filter, visitor.filter) && (is_convex(shapes, sensor) || is_convex(shapes, visitor));
+    return filters_agree(colliders.traits[by].filter, colliders.traits[id].filter) &&
+           (is_convex(shapes, sensor) || is_convex(shapes, visitor));
 }
 
 // Appends what a sensor's box meets, in the order of the tree.
@@ -33,7 +35,7 @@ void add_candidates(const Nodes& nodes, const Colliders& colliders, const Shapes
         Found(const Nodes& n, const Colliders& c, const Shapes& s, uint32_t of, Array<uint64_t>& to)
             : nodes(n), colliders(c), shapes(s), sensor(of), out(to) {}
         void visit(uint32_t id, collision::Probe&) override {
-            if (may_sense(nodes, shapes, colliders.record[sensor], colliders.record[id]))
+            if (may_sense(nodes, colliders, shapes, sensor, id))
                 out.push_back(static_cast<uint64_t>(sensor) << 32 | id);
         }
         const Nodes& nodes;

@@ -20,7 +20,7 @@ float combine(float a, float b, taut_combine rule_a, taut_combine rule_b, Usual 
 }
 
 // Adds the velocity of a collider's surface, whose frame has its origin at `from`, with the sign of its side.
-void add_drive(const Collider& collider, const Mat3f& rotation, const Vec3f& from, float sign, Pair& pair) {
+void add_drive(const ColliderTraits& collider, const Mat3f& rotation, const Vec3f& from, float sign, Pair& pair) {
     const Vec3f spin = rotation * collider.surface_spin;
     pair.drive += sign * (rotation * collider.surface_velocity - spin.cross(from));
     pair.drive_spin += sign * spin;
@@ -35,8 +35,9 @@ bool can_turn(const Nodes& nodes, const Pair& pair) {
 
 }  // namespace
 
-void combine_surfaces(const Nodes& nodes, const Collider& a, const Collider& b, const collision::Placement& at_a,
-                      const collision::Placement& at_b, const Vec3f& from_a, Pair& pair) {
+void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const ColliderTraits& b,
+                      const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,
+                      Pair& pair) {
     const taut_material &one = a.material, &other = b.material;
     pair.friction = combine(one.friction, other.friction, one.friction_rule, other.friction_rule,
                             [](float x, float y) { return std::sqrt(x * y); });
@@ -45,7 +46,7 @@ void combine_surfaces(const Nodes& nodes, const Collider& a, const Collider& b, 
     pair.spinning = std::max(one.spinning_friction, other.spinning_friction);
     pair.rolling = std::max(one.rolling_friction, other.rolling_friction);
     if (pair.turns() && !can_turn(nodes, pair)) pair.spinning = pair.rolling = 0;
-    pair.driven = a.driven || b.driven;
+    pair.driven = a.driven() || b.driven();
     if (!pair.driven) return;
     pair.drive = pair.drive_spin = Vec3f::Zero();
     add_drive(a, at_a.rotation, from_a, 1, pair);

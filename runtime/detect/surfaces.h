@@ -8,7 +8,8 @@
 namespace taut {
 
 // Friction, restitution, arms and drive of a pair. from_a: of the origin of a's shape from that of its node [m].
-void combine_surfaces(const Nodes& nodes, const Collider& a, const Collider& b, const collision::Placement& at_a,
-                      const collision::Placement& at_b, const Vec3f& from_a, Pair& pair);
+void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const ColliderTraits& b,
+                      const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,
+                      Pair& pair);
 
 }  // namespace taut

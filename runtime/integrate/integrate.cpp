@@ -29,7 +29,9 @@ void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
     for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
 }
 
-void set_sweep_pose(SweepPose& pose, const Vec3& dx, const Quat& q) {
+void set_sweep_pose(System& system, uint32_t node, const Vec3& dx, const Quat& q) {
+    if (system.sweep_pose.empty()) return;
+    SweepPose& pose = system.sweep_pose[node + 1];
     for (int i = 0; i < 3; ++i) pose.dx[i] = static_cast<float>(dx[i]);
     for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
 }
@@ -54,7 +56,7 @@ void note_turn(System& system, uint32_t node, const Quat& q) {
     const Quat turn = q * found.q.conjugate();
     system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * kTurn * kTurn;
     if (!system.turned[node + 1]) return;
-    system.turn[node + 1] = turn;
+    system.turn[node + 1] = turn.cast<float>();
     found.q = q;
     std::fill_n(system.shift[node + 1].dq, 3, 0.0f);
     system.shift[node + 1].dq[3] = 1;
@@ -87,7 +89,7 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node) {
     const NodeMotion& m = nodes.motion[node];
     system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
     system.found[node + 1] = {m.x, m.q};
-    set_sweep_pose(system.sweep_pose[node + 1], Vec3::Zero(), m.q);
+    set_sweep_pose(system, node, Vec3::Zero(), m.q);
     system.exact[node + 1] = {m.v, m.w};
     set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
     if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
@@ -96,7 +98,7 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node) {
 
 }  // namespace
 
-void begin_frame(Team& team, System& system, const Nodes& nodes) {
+void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& joints) {
     const uint32_t slots = nodes.slots();
     system.pose.resize(slots + 1);
     system.exact.resize(slots + 1);
@@ -104,7 +106,7 @@ void begin_frame(Team& team, System& system, const Nodes& nodes) {
     system.velocity.resize(slots + 1);
     system.inverse_mass.resize(slots + 1);
     system.shift.resize(slots + 1);
-    system.sweep_pose.resize(slots + 1);
+    system.sweep_pose.resize(joints.ids.count() > 0 ? slots + 1 : 0);
     system.turned.resize(slots + 1);
     system.turn.resize(slots + 1);
     system.in_block.resize(slots + 1);
@@ -128,10 +130,10 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     for_nodes(team, group.nodes, [&](uint32_t node) {
         const NodeMotion& m = nodes.motion[node];
         const NodeMass& mass = nodes.mass[node];
-        const NodeLoad& load = nodes.load[node];
+        const NodeLoad& load = nodes.load_of(node);
         Pose& pose = system.pose[node + 1];
         pose.x = m.x;
-        set_sweep_pose(system.sweep_pose[node + 1], m.x - system.found[node + 1].x, m.q);
+        set_sweep_pose(system, node, m.x - system.found[node + 1].x, m.q);
         Velocity u{m.v + h * (mass.gravity_scale * gravity + mass.inv_mass * load.force), m.w};
         if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
             u = {};
@@ -195,7 +197,7 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
         const Quat turned = (rotation_from_vector(time * m.w) * m.q).normalized();
         system.pose[node + 1] = {m.x + time * m.v, turned.toRotationMatrix()};
         set_shift(system.shift[node + 1], time * m.v, turned * m.q.conjugate());
-        set_sweep_pose(system.sweep_pose[node + 1], time * m.v, turned);
+        set_sweep_pose(system, node, time * m.v, turned);
     }
 }
 

@@ -9,7 +9,7 @@ namespace taut {
 
 // Once a frame: poses of all nodes but those long asleep, which keep theirs, still shifts, inverse masses of nodes that
 // do not turn theirs.
-void begin_frame(Team& team, System& system, const Nodes& nodes);
+void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& joints);
 
 // v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity);

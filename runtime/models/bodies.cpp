@@ -23,16 +23,16 @@ uint32_t& link_to(World& world, uint32_t node, uint32_t collider) {
 }  // namespace
 
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
-                  std::span<const Collider> colliders) {
+                  std::span<const ColliderPlan> colliders) {
     Nodes& nodes = world.nodes;
     const uint32_t node = nodes.add();
     nodes.info[node] = info;
     nodes.info[node].collider = kNone;
     nodes.motion[node] = motion;
-    nodes.mass[node] = mass;
+    nodes.mass.set(node, mass);
     nodes.before[node] = origin_pose(world, node);
     try {
-        for (Collider collider : colliders) {
+        for (ColliderPlan collider : colliders) {
             collider.node = node;
             add_collider(world, collider);
         }
@@ -56,7 +56,7 @@ void remove_node(World& world, uint32_t node) {
     world.nodes.remove(node);
 }
 
-uint32_t add_collider(World& world, const Collider& collider) {
+uint32_t add_collider(World& world, const ColliderPlan& collider) {
     world.colliders.reserve_one();
     const uint32_t index = world.colliders.add(collider);
     Collider& record = world.colliders.record[index];

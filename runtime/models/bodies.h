@@ -13,13 +13,13 @@ inline NodePose origin_pose(const World& world, uint32_t node) {
 
 // A node with its colliders, whose node and next are set here. Throws std::bad_alloc with nothing changed.
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
-                  std::span<const Collider> colliders = {});
+                  std::span<const ColliderPlan> colliders = {});
 // With its colliders and every joint that ends on it. Throws std::bad_alloc with nothing changed, and not at all where
 // reserve_ended(world.pairs, ends_on(node)) has gone before.
 void remove_node(World& world, uint32_t node);
 
 // Appends to the colliders of collider.node; next is set here. Throws std::bad_alloc with nothing changed.
-uint32_t add_collider(World& world, const Collider& collider);
+uint32_t add_collider(World& world, const ColliderPlan& collider);
 // Throws std::bad_alloc with nothing changed, and not at all after reserve_ended.
 void remove_collider(World& world, uint32_t collider);
 

@@ -224,12 +224,12 @@ Joint make_inner_joint(const Cable& cable, uint32_t i) {
 }
 
 void add_segment(World& world, const Cable& cable, uint32_t node, uint32_t next, double length) {
-    Collider collider;
+    ColliderPlan collider;
     collider.node = node;
     collider.node_b = next;
     collider.shape = world.shapes.add(shape_of(cable, length));
-    collider.material = cable.material;
-    collider.filter = cable.filter;
+    collider.traits.material = cable.material;
+    collider.traits.filter = cable.filter;
     try {
         add_collider(world, collider);
     } catch (...) {
@@ -247,10 +247,10 @@ uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, 
     info.user_data = cable.user_data;
     const NodeMass mass = mass_of(cable, length, info.kind);
     if (!links(cable)) return add_node(world, info, motion, mass);
-    Collider collider;
+    ColliderPlan collider;
     collider.shape = world.shapes.add(shape_of(cable, length));
-    collider.material = cable.material;
-    collider.filter = cable.filter;
+    collider.traits.material = cable.material;
+    collider.traits.filter = cable.filter;
     try {
         return add_node(world, info, motion, mass, {&collider, 1});
     } catch (...) {
@@ -263,7 +263,10 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
     const uint32_t node = cable.node[i];
     const NodeInfo& info = world.nodes.info[node];
     const double length = share_of(cable, i);
-    if (moves_by_forces(info.kind)) world.nodes.mass[node] = mass_of(cable, length, info.kind);
+    if (moves_by_forces(info.kind)) {
+        world.nodes.mass.reserve_values(1);
+        world.nodes.mass.set(node, mass_of(cable, length, info.kind));
+    }
     if (!links(cable)) return;
     for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
         world.shapes.record[world.colliders.record[c].shape].shape = shape_of(cable, length);

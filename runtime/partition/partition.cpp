@@ -113,6 +113,7 @@ void Partition::unite_touching(const Nodes&) {
 }
 
 void Partition::number_islands() {
+    if (island_.capacity() > 4 * island_.size()) let_go(island_);  // of a time when fewer touched
     island_.clear();
     island_of_.assign(graph_.moves.size(), kNone);
     for (const uint32_t node : graph_.movers) {  // roots are smallest, so each is met before its members

@@ -81,7 +81,8 @@ bool Sight::sees(uint32_t collider) const {
     const Collider& c = world_.colliders.record[collider];
     if (!(filter_.kinds >> static_cast<uint32_t>(world_.nodes.info[c.node].kind) & 1)) return false;
     if (c.sensor && !(filter_.kinds & TAUT_QUERY_SENSOR)) return false;
-    if (!(filter_.category & c.filter.mask) || !(c.filter.category & filter_.mask)) return false;
+    const taut_filter& own = world_.colliders.traits[collider].filter;
+    if (!(filter_.category & own.mask) || !(own.category & filter_.mask)) return false;
     if (filter_.ignored_body_count == 0 && filter_.ignored_collider_count == 0 && !filter_.accept) return true;
     const taut_body body = world_.body_handle(c.node);
     const taut_collider handle = world_.collider_handle(collider);

@@ -121,7 +121,7 @@ void settle(World& world, uint32_t node, uint32_t root) {
     Nodes& nodes = world.nodes;
     NodeMotion& m = nodes.motion[node];
     m.v = m.w = m.slow_v = m.slow_w = Vec3::Zero();
-    nodes.load[node] = {};
+    nodes.clear_load(node);
     nodes.rest[node] = Rest::settling;
     nodes.sleep[node].next = node == root ? node : nodes.sleep[root].next;
     nodes.sleep[root].next = node;

@@ -16,22 +16,22 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
         hash.add(nodes.mass[i].mass);
         hash.add(nodes.mass[i].gravity_scale);
         if (!nodes.info[i].continuous) hash.add(uint64_t{1});
-        hash.add(nodes.load[i].force);
-        hash.add(nodes.load[i].torque);
+        hash.add(nodes.load_of(i).force);
+        hash.add(nodes.load_of(i).torque);
     }
 }
 
 // What most surfaces do not have.
-void add_surface(Hash& hash, const Collider& collider) {
-    const taut_material& m = collider.material;
+void add_surface(Hash& hash, const ColliderTraits& traits) {
+    const taut_material& m = traits.material;
     if (m.friction_rule != TAUT_COMBINE_DEFAULT || m.restitution_rule != TAUT_COMBINE_DEFAULT)
         hash.add(static_cast<uint64_t>(m.friction_rule) << 32 | static_cast<uint64_t>(m.restitution_rule));
     if (m.rolling_friction != 0 || m.spinning_friction != 0) {
         hash.add(m.rolling_friction);
         hash.add(m.spinning_friction);
     }
-    if (!collider.driven) return;
-    for (const Vec3f* v : {&collider.surface_velocity, &collider.surface_spin}) hash.add(Vec3(v->cast<double>()));
+    if (!traits.driven()) return;
+    for (const Vec3f* v : {&traits.surface_velocity, &traits.surface_spin}) hash.add(Vec3(v->cast<double>()));
 }
 
 // Of worlds with sleeping alone.
@@ -47,21 +47,22 @@ void add_sleep(Hash& hash, const Nodes& nodes) {
 void add_colliders(Hash& hash, const Colliders& colliders) {
     for (uint32_t i = 0; i < colliders.record.size(); ++i) {
         const Collider& collider = colliders.record[i];
+        const ColliderTraits& traits = colliders.traits[i];
         if (collider.node == kNone) continue;
         hash.add(static_cast<uint64_t>(i) << 32 | collider.node);
         hash.add(static_cast<uint64_t>(collider.node_b) << 32 | collider.shape);
         hash.add(collider.position);
         hash.add(collider.rotation);
-        hash.add(collider.material.friction);
-        hash.add(collider.material.restitution);
-        add_surface(hash, collider);
-        hash.add(collider.filter.category);
-        hash.add(collider.filter.mask);
-        hash.add(static_cast<uint64_t>(static_cast<uint32_t>(collider.filter.group)));
+        hash.add(traits.material.friction);
+        hash.add(traits.material.restitution);
+        add_surface(hash, traits);
+        hash.add(traits.filter.category);
+        hash.add(traits.filter.mask);
+        hash.add(static_cast<uint64_t>(static_cast<uint32_t>(traits.filter.group)));
         const uint64_t filters = collider.asks & (kAsksPreSolve | kAsksOneWay);
         if (!collider.sensor && filters == 0) continue;
         hash.add(filters << 2 | static_cast<uint64_t>(collider.sensor) << 1 | collider.senses_static);
-        hash.add(collider.one_way.cast<double>().eval());
+        hash.add(traits.one_way.cast<double>().eval());
     }
 }
 
@@ -136,7 +137,8 @@ void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
     hash.add(pair.key);
     if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
     if (pair.asks & (kAsksPreSolve | kAsksOneWay)) hash.add(static_cast<uint64_t>(pair.touching));
-    for (uint32_t word : near.cache.words) hash.add(static_cast<uint64_t>(word));
+    for (uint32_t word : near.cache) hash.add(static_cast<uint64_t>(word));
+    for (uint32_t word : pair.cache) hash.add(static_cast<uint64_t>(word));
     if (near.kept) add_found(hash, pair.found, pair.manifold.count);
     for (int k = 0; k < pair.manifold.count; ++k) {
         hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));

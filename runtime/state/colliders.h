@@ -6,10 +6,13 @@
 #include <taut/body.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 #include "base/id_pool.h"
 #include "base/math.h"
 #include "state/nodes.h"
+#include "state/shared_values.h"
 
 namespace taut {
 
@@ -22,21 +25,57 @@ struct Collider {
     uint32_t node_b = kNone;           // of a capsule between two particles, which it follows: its other end
     uint32_t shape = kNone;            // index into Shapes
     uint32_t next = kNone;             // of the same node, in the order in which they were added
-    float density = 0;                 // its share in the node's mass [kg/m^3]
     Vec3 position = Vec3::Zero();      // of the shape's origin in the frame of the body's origin [m]
     Quat rotation = Quat::Identity();  // body from shape
-    taut_material material{};
-    bool driven = false;  // surface_velocity or surface_spin is not zero
-    taut_filter filter{};
     uint64_t user_data = 0;
-    // Of its surface against the body, in the shape's frame: surface_velocity + surface_spin x p [m/s], [rad/s].
-    Vec3f surface_velocity = Vec3f::Zero(), surface_spin = Vec3f::Zero();
-    Vec3f one_way = Vec3f::Zero();  // unit, in the shape's frame: it is touched from this side only; 0: from all
-    uint8_t asks = 0;               // bits of contact events, kAsks
-    bool sensor = false;            // detects, never collides
+    uint8_t asks = 0;     // bits of contact events, kAsks
+    bool sensor = false;  // detects, never collides
     bool senses_static = false;
 
     bool at_origin() const { return position == Vec3::Zero() && rotation.coeffs() == Quat::Identity().coeffs(); }
+};
+
+// What few colliders have of their own.
+struct ColliderTraits {
+    float density = 0;  // its share in the node's mass [kg/m^3]
+    taut_material material{};
+    taut_filter filter{};
+    // Of its surface against the body, in the shape's frame: surface_velocity + surface_spin x p [m/s], [rad/s].
+    Vec3f surface_velocity = Vec3f::Zero(), surface_spin = Vec3f::Zero();
+    Vec3f one_way = Vec3f::Zero();  // unit, in the shape's frame: it is touched from this side only; 0: from all
+
+    bool driven() const { return surface_velocity != Vec3f::Zero() || surface_spin != Vec3f::Zero(); }
+
+    std::array<uint64_t, 18> words() const {
+        const float numbers[] = {density,
+                                 material.friction,
+                                 material.restitution,
+                                 material.rolling_friction,
+                                 material.spinning_friction,
+                                 surface_velocity.x(),
+                                 surface_velocity.y(),
+                                 surface_velocity.z(),
+                                 surface_spin.x(),
+                                 surface_spin.y(),
+                                 surface_spin.z(),
+                                 one_way.x(),
+                                 one_way.y(),
+                                 one_way.z()};
+        std::array<uint64_t, 18> words{};
+        std::transform(std::begin(numbers), std::end(numbers), words.begin(),
+                       [](float x) { return std::bit_cast<uint32_t>(x); });
+        words[14] =
+            static_cast<uint64_t>(material.friction_rule) << 32 | static_cast<uint64_t>(material.restitution_rule);
+        words[15] = filter.category;
+        words[16] = filter.mask;
+        words[17] = static_cast<uint32_t>(filter.group);
+        return words;
+    }
+};
+
+// All of a collider that is to be.
+struct ColliderPlan : Collider {
+    ColliderTraits traits;
 };
 
 // Sets some of the bits that a collider asks for.
@@ -45,28 +84,34 @@ inline void ask_for(Collider& collider, uint32_t which, uint32_t bits) {
 }
 
 struct Colliders {
-    explicit Colliders(Memory& memory) : ids(memory), record(memory), sensors(memory) {}
+    explicit Colliders(Memory& memory) : ids(memory), record(memory), traits(memory), sensors(memory) {}
 
     // Throws std::bad_alloc before anything changes.
     void reserve_one() {
         ids.reserve_one();
         reserve_more(record, 1);
+        traits.reserve(record.capacity());
         reserve_sensor();
     }
     void reserve_sensor() {
         if (sensors.capacity() == sensors.size()) sensors.reserve(2 * sensors.size() + 16);
     }
     // reserve_one() went before.
-    uint32_t add(const Collider& collider) {
+    uint32_t add(const ColliderPlan& collider) {
         const uint32_t index = ids.create();
-        if (index == record.size()) record.emplace_back();
+        if (index == record.size()) {
+            record.emplace_back();
+            traits.add();
+        }
         record[index] = collider;
+        traits.set(index, collider.traits);
         list_sensor(index, collider.sensor);
         return index;
     }
     void remove(uint32_t index) {
         list_sensor(index, false);
         record[index] = {};
+        traits.set(index, {});
         ids.destroy(index);
     }
 
@@ -78,14 +123,26 @@ struct Colliders {
         if (!sensor && listed) sensors.erase(at);
     }
 
-    // For a change of surface, material or asks: pairs ask again.
+    // For a change of asks: pairs ask again.
     Collider& change(uint32_t index) {
         ++version;
         return record[index];
     }
 
+    // The same for what act() changes of the traits. Throws std::bad_alloc before anything changes.
+    template <class Act>
+    void change_traits(uint32_t index, Act&& act) {
+        traits.reserve_values(1);
+        ColliderTraits own = traits[index];
+        act(own);
+        traits.set(index, own);
+        ++version;
+    }
+    ColliderPlan plan(uint32_t index) const { return {record[index], traits[index]}; }
+
     IdPool ids;
     Array<Collider> record;
+    SharedValues<ColliderTraits> traits;
     Array<uint32_t> sensors;  // slots, sorted
     uint64_t version = 0;     // counts changes
 };

@@ -3,9 +3,13 @@
 
 #include <taut/body.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include "base/id_pool.h"
 #include "base/math.h"
 
+#include "state/shared_values.h"
 namespace taut {
 
 constexpr uint32_t kNone = UINT32_MAX;  // no node, no collider: the world, or nothing
@@ -34,6 +38,16 @@ struct NodeMass {
     Vec3 centre = Vec3::Zero();     // of mass, in the body's frame [m]
     double gravity_scale = 1;
     bool isotropic = false;  // inertia is a multiple of the identity: no gyroscopic torque
+    std::array<uint64_t, 19> words() const {
+        const Sym3 &i = inertia, &j = inv_inertia;
+        const double numbers[] = {mass, inv_mass, i.xx, i.yy, i.zz, i.xy,       i.xz,       i.yz,       j.xx,
+                                  j.yy, j.zz,     j.xy, j.xz, j.yz, centre.x(), centre.y(), centre.z(), gravity_scale};
+        std::array<uint64_t, 19> words;
+        std::transform(std::begin(numbers), std::end(numbers), words.begin(),
+                       [](double x) { return std::bit_cast<uint64_t>(x); });
+        words.back() = isotropic;
+        return words;
+    }
 };
 
 struct NodeLoad {                                      // of the next step
@@ -76,6 +90,12 @@ struct Nodes {
     void remove(uint32_t node);
 
     uint32_t slots() const { return ids.slots(); }
+    const NodeLoad& load_of(uint32_t node) const { return load.empty() ? kNoLoad : load[node]; }
+    // Throws std::bad_alloc before anything changes.
+    void add_load(uint32_t node, const Vec3& force, const Vec3& torque);
+    void clear_load(uint32_t node) {
+        if (!load.empty()) load[node] = {};
+    }
     // Moved by forces, and not asleep.
     bool solved(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] == Rest::awake; }
     bool sleeps(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] != Rest::awake; }
@@ -84,11 +104,14 @@ struct Nodes {
     IdPool ids;
     Array<NodeInfo> info;
     Array<NodeMotion> motion;
-    Array<NodeMass> mass;
-    Array<NodeLoad> load;
+    SharedValues<NodeMass> mass;
+    Array<NodeLoad> load;    // of all, or of none while nothing was put on any
     Array<NodePose> before;  // origin pose before the last step
     Array<Rest> rest;
     Array<NodeSleep> sleep;
+
+private:
+    static const NodeLoad kNoLoad;
 };
 
 }  // namespace taut

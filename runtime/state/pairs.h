@@ -37,9 +37,14 @@ struct PairEnds {
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
 };
 
+// What collision::PairCache begins with, kept of all pairs that are near, and what it ends with, of those with points:
+// shapes that touch alone read it again.
+using NearCache = std::array<uint32_t, 4>;
+using PointsCache = std::array<uint32_t, 4>;
+static_assert(sizeof(NearCache) + sizeof(PointsCache) == sizeof(collision::PairCache));
 struct NearPair {
     uint64_t key = 0;  // of the two colliders, see pair_key
-    collision::PairCache cache;
+    NearCache cache{};
     double clear = 0;             // the ways of its colliders until they may touch [m]; detect/reuse.h
     uint32_t pair = kNone;        // the first of its records in Pairs::list, while it has points
     uint8_t asks = 0;             // bits of contact events, as its pair's
@@ -88,6 +93,7 @@ struct Pair : PairEnds {
     float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
     // Radii of the balls that grow the two cores to their shapes [m]; see state/levers.h.
     float round_a = 0, round_b = 0;
+    PointsCache cache{};
     Impulse impulse[4];  // by point: carried in, updated by the solver
     float friction = 0;  // of the two surfaces together
     float restitution = 0;
@@ -170,15 +176,6 @@ struct Travel {
     float thickness = 0;  // as in Pace [m]
 };
 
-// What a collider did in a step; hold_back().
-struct Way {
-    Vec3 from = Vec3::Zero(), along = Vec3::Zero();  // of its middle [m]
-    float turn = 0;                                  // at least the chord of the shape's turn, of radius 1
-    float reach = 0;                                 // of a ball about the middle that holds the shape [m]
-    uint32_t node = kNone, node_b = kNone;           // as the collider's
-    collision::Placement before, now;                // where a pair that may have passed has it
-};
-
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
 struct Pace {
     double thickness = 0;  // [m]; infinite: not to be looked for
@@ -221,8 +218,6 @@ struct Pairs {
           joined(memory),
           reach(memory),
           pace(memory),
-          along(memory),
-          way(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -257,8 +252,6 @@ struct Pairs {
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     bool any_fast = false;            // of near, in this frame; find_contacts()
-    Array<Vec3> along;                // by collider: of its middle in this step [m]; hold_back()
-    Array<Way> way;                   // by collider, once some pair may have passed; hold_back()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
     Array<Stance> stance;                   // by collider; place_collider()

@@ -196,7 +196,7 @@ void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) 
             points += pairs.active[group.pairs[i]].points;
     }
     const auto reserve = [](auto& empty, size_t needed) {
-        if (needed > empty.capacity()) empty.reserve(needed + needed / 4);
+        if (needed > empty.capacity()) empty.reserve(with_slack(needed));
     };
     reserve(lanes.group, groups);
     reserve(lanes.point, points);
@@ -246,10 +246,10 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
 namespace {
 
 // One side's levers with its body: what turns is the core; the gap since detection goes on from the new lever.
-void turn_side(const Quat& turn, const Vec3f& skin, bool rolls, float (&r)[3][kLanes], int lane, const Vec3f& normal,
+void turn_side(const Quatf& turn, const Vec3f& skin, bool rolls, float (&r)[3][kLanes], int lane, const Vec3f& normal,
                float sign, LanePoint& p) {
     const Vec3f core = Vec3f(r[0][lane], r[1][lane], r[2][lane]) - skin;
-    const Vec3f turned = turn.cast<float>() * core;
+    const Vec3f turned = turn * core;
     for (int i = 0; i < 3 && !rolls; ++i) r[i][lane] = turned[i] + skin[i];
     p.gap0[lane] += sign * normal.dot(turned - core);
 }

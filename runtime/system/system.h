@@ -130,14 +130,14 @@ struct System {
     Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;             // begin_frame(), predict()
     Array<uint8_t> turned;          // 1: so far that levers turn in this substep; predict()
-    Array<Quat> turn;               // of those that turned: from their levers' old rotation to the new one; predict()
+    Array<Quatf> turn;              // of those that turned: from their levers' old rotation to the new one; predict()
     Array<uint32_t> kinematic;      // nodes; begin_frame()
     Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; build_rows()
     Array<uint32_t> place;          // in the nodes of its block, or kNone; build_rows()
     Array<SweepVelocity> velocity;  // float copy for sweeps
     Array<SweepMass> inverse_mass;  // of sweeps, world axes
     Array<SweepShift> shift;        // motion since contacts were found; commit()
-    Array<SweepPose> sweep_pose;    // pose in floats; begin_frame(), predict()
+    Array<SweepPose> sweep_pose;    // pose in floats, where there are joints; begin_frame(), predict()
 
     Rows rows;              // of the group being solved
     JointLanes joints;      // swept ones of the group being solved

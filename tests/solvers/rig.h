@@ -92,7 +92,7 @@ public:
     void begin(const Solver& with) {
         solver = with;
         w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct});
-        begin_frame(w.team, w.system, w.nodes);
+        begin_frame(w.team, w.system, w.nodes, w.joints);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
@@ -140,12 +140,14 @@ private:
         const uint32_t node = w.nodes.add();
         w.nodes.info[node].kind = kind;
         w.nodes.motion[node].x = x;
-        NodeMass& m = w.nodes.mass[node];
+        NodeMass m;
         m.mass = mass;
         m.inv_mass = mass > 0 ? 1 / mass : 0;
         m.inertia = {inertia.x(), inertia.y(), inertia.z(), 0, 0, 0};
         if (inertia != Vec3::Zero()) m.inv_inertia = {1 / inertia.x(), 1 / inertia.y(), 1 / inertia.z(), 0, 0, 0};
         m.isotropic = inertia.x() == inertia.y() && inertia.y() == inertia.z();
+        w.nodes.mass.reserve_values(1);
+        w.nodes.mass.set(node, m);
         return node;
     }
 };

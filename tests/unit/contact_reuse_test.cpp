@@ -37,7 +37,7 @@ struct Couple {
 
     Couple(const Shape& a, const Shape& b) {
         for (const Shape& shape : {a, b}) {
-            Collider collider;
+            ColliderPlan collider;
             collider.node = nodes.add();
             nodes.info[collider.node].kind = NodeKind::dynamic;
             collider.shape = shapes.add(shape);

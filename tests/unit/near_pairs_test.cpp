@@ -20,9 +20,9 @@ protected:
         for (uint32_t i = 0; i < kBodies; ++i) {
             const uint32_t node = nodes.add();
             nodes.info[node].kind = NodeKind::dynamic;
-            Collider collider;
+            ColliderPlan collider;
             collider.node = node;
-            collider.filter = {1, 1, 0, 0};
+            collider.traits.filter = {1, 1, 0, 0};
             colliders.reserve_one();
             broadphase.add(colliders.add(collider), somewhere(), true);
         }

@@ -22,9 +22,15 @@ struct Graph {
         const uint32_t node = nodes.add();
         nodes.info[node].kind = kind;
         if (!moves_by_forces(kind)) mass = 0;
-        nodes.mass[node].mass = mass;
-        nodes.mass[node].inv_mass = mass > 0 ? 1 / mass : 0;
+        set_mass(node, mass);
         return node;
+    }
+    void set_mass(uint32_t node, double mass) {
+        NodeMass of = nodes.mass[node];
+        of.mass = mass;
+        of.inv_mass = mass > 0 ? 1 / mass : 0;
+        nodes.mass.reserve_values(1);
+        nodes.mass.set(node, of);
     }
     uint32_t join(uint32_t a, uint32_t b, const ConstraintType& type = kBall) {
         Joint joint;

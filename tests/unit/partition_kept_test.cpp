@@ -79,9 +79,7 @@ protected:
                 nodes.rest[node] = nodes.rest[node] == Rest::awake ? Rest::settling : Rest::awake;
                 return;
             case 3:
-                nodes.mass[node].mass *= any(2) ? 30 : 1.0 / 30;
-                nodes.mass[node].inv_mass = 1 / nodes.mass[node].mass;
-                return;
+                return set_mass(node, nodes.mass[node].mass * (any(2) ? 30 : 1.0 / 30));
             case 4:
                 nodes.motion[node].x.x() += any(20);
                 return;

@@ -474,9 +474,9 @@ TEST_F(PartitionTest, JointsSolvedByLoadAreABlockOnlyWhileTheyNeedIt) {
     expect(1, 0);
     joints.record[other].loaded = kLoadedAfter - 1;
     expect(0, 2);
-    nodes.mass[c].mass = 20;
+    set_mass(c, 20);
     expect(1, 0);
-    nodes.mass[c].mass = 19;
+    set_mass(c, 19);
     joints.record[one].solve = JointSolve::direct;
     expect(1, 0);
 }
