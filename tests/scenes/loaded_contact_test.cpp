@@ -66,9 +66,9 @@ TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdgeAndComesToRest) {
 
 INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
                          testing::Values(Edge{"10", 0}, Edge{"10", 8}, Edge{"10", 9}, Edge{"10", 12}, Edge{"10", 16},
-                                         Edge{"10", 338}, Edge{"30", 2}, Edge{"30", 6}, Edge{"30", 13}, Edge{"100", 1}, Edge{"100", 5}, Edge{"1000", 3},
-                                         Edge{"1000", 14}, Edge{"10000", 7}, Edge{"10000", 9}, Edge{"10000", 14},
-                                         Edge{"100000", 2}),
+                                         Edge{"10", 338}, Edge{"30", 2}, Edge{"30", 6}, Edge{"30", 13}, Edge{"100", 1},
+                                         Edge{"100", 5}, Edge{"1000", 3}, Edge{"1000", 14}, Edge{"10000", 7},
+                                         Edge{"10000", 9}, Edge{"10000", 14}, Edge{"100000", 2}),
                          [](const auto& tested) {
                              return std::string("r") + tested.param.ratio + "_seed" + std::to_string(tested.param.seed);
                          });
