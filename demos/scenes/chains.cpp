@@ -30,16 +30,16 @@ Scene chain_with_weight(double n, double r, double angle, const Options& options
 }
 
 // A chain along x whose links turn on crossed pins, one level and one upright: they bend either way and do not twist.
-// Pins from `first` on, which hang, rub by a torque of at most mu r N, where N = g (R + links below) [N] hangs on them.
-// Without, the weight is a pendulum that nothing but the link on the edge damps: it swings on for up to a minute.
-void put_on_pins(Scene& scene, size_t first, double mu, double radius) {
+// Pins rub by a torque of at most mu r N, where N = g (R + links beyond) [N] is what would hang on them. Without, the
+// weight is a pendulum that nothing but the link on the edge damps: it swings on for up to a minute.
+void put_on_pins(Scene& scene, double mu, double radius) {
     const Chain& chain = *scene.roles.chain;
     double hanging = 0;  // [kg]
     for (size_t i = chain.joints.size(); i-- > 1;) {
         hanging += static_cast<double>(scene.bodies[static_cast<size_t>(chain.bodies[i])].mass);
         const double force = -static_cast<double>(scene.world.gravity.y) * hanging;
         taut_axis_def pin = free_axis();
-        if (i >= first) pin.friction = static_cast<float>(mu * radius * force);
+        pin.friction = static_cast<float>(mu * radius * force);
         Joint& joint = scene.joints[static_cast<size_t>(chain.joints[i])];
         joint.kind = TAUT_JOINT_UNIVERSAL;
         joint.rotation_a = joint.rotation_b = turn({0, 1, 0}, -std::numbers::pi / 2);  // its x level, its y upright
@@ -75,10 +75,7 @@ Scene build_chain_over_edge(double, double r, const Options& options) {
     plan.weight_reach = kCube / 2;
     add_chain(scene, plan);
     scene.roles.pile = scene.roles.chain->bodies;
-    // Pins on the box lie still: they take no energy out, whether they rub or not (measured in 64 substeps: ten links'
-    // weight is at rest after 3.9 s either way). They do not rub here, as four substeps do not hold that: a contact at
-    // the edge is lost now and then, and at R = 10 five of twelve starts did not come to rest.
-    put_on_pins(scene, kLinks / 2, kFriction, kPinRadius);
+    put_on_pins(scene, kFriction, kPinRadius);
     perturb(scene, options.seed, ChainStart::laid_out);
     scene.camera = {{6.4, 8.6, 9.4}, {-0.7, 4.0, 0}, 42};
     scene.stage = {{-8.5, 0, -4}, {5, 7, 4}};

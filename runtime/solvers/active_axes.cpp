@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kAxisSoftness = 1e-6;  // of stops, rigid drives and friction
 constexpr double kReach = 50;           // [m/s, rad/s] faster ones are not looked for from afar
-constexpr double kPassed = 2e-3;        // [m or rad] beyond a stop that is off: worth more rounds
 constexpr double kAtLimit = 1e-5;       // a box this close to its limit begins there
 
 using Kind = BoundedRow::Kind;
@@ -63,19 +62,11 @@ void ActiveSet::gather_axes(uint32_t index) {
     }
 }
 
-// At a limit the row lags behind its goal in the direction of its impulse; once it does not, it holds again.
-bool ActiveSet::revise_box(BoundedRow& r, bool first) const {
+bool ActiveSet::revise_box(BoundedRow& r) {
+    const double f = (r.goal - r.rate) / r.c;
     const int8_t before = r.at_limit;
-    if (before == 0 && std::abs(r.mu) > r.limit) r.at_limit = r.mu > 0 ? 1 : -1;
-    if (first && before != 0 && before * (r.goal - r.c * r.mu - speed(r, sys_.exact)) < 0) r.at_limit = 0;
+    r.at_limit = std::abs(f) <= r.limit ? 0 : f > 0 ? 1 : -1;
     return r.at_limit != before;
-}
-
-bool ActiveSet::passes_stop() const {
-    const auto all = rows();
-    return std::any_of(all.begin(), all.end(), [&](const BoundedRow& r) {
-        return r.kind == Kind::push && r.force && !r.on && r.gap + sys_.h * speed(r, sys_.exact) < -kPassed;
-    });
 }
 
 }  // namespace taut

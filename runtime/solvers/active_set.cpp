@@ -12,15 +12,12 @@ namespace {
 // at 10000:1, 3e-5 2.7 mm at 100000:1), as long as a manifold keeps its points; see collision/manifold.h, add_beside.
 constexpr double kContactSoftness = 3e-5;
 constexpr double kTowerSoftness = 1e-5;  // in towers, at most; a load of r times a row's own mass sinks as c r
-constexpr double kSpeculative = 5e-4;    // [m] wider gaps are not resting contacts
+constexpr double kSpeculative = 5e-4;    // [m] wider gaps, and any that did not push, are not resting contacts
 constexpr double kClosing = 1e-9;        // [m]
 // Share by which a sliding contact's c may miss |v| / (friction * push) after a round. The push on a light link of a
 // loaded cable changes tenfold from substep to substep; with c of the last one, cables slide at a third of
 // Coulomb's force.
 constexpr double kSlipMiss = 0.1;
-// Of all that push, after the last round: less pull does no harm, and to drop it too lets a sliding chain of links sink
-// (measured on a drum: 4 mm with 0.02).
-constexpr double kPull = 0.3;
 // Of a tower: share of all impulses that may be of the wrong sign, and what may close unseen [m]. Tighter refuses the
 // substeps of an impact, and the change to sweeps is what kicks a tower (measured: of 72 hit by a heavy box 0 fall, 27
 // with 0.1 and 1 mm).
@@ -127,7 +124,7 @@ void ActiveSet::gather_contact(uint32_t index) {
     }
     BoundedRow* r = &rows()[first];
     r[0].gap = sys_.rows.error[block.row];
-    r[0].speculative = r[0].gap > kSpeculative;
+    r[0].speculative = r[0].gap > (r[0].mu > 0 ? kSpeculative : 0);
     r[0].target = r[0].speculative ? -r[0].gap / sys_.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.h);
     r[0].relaxed_target = r[0].speculative ? r[0].target : 0;
     r[0].bounce = block.bounce;
@@ -180,7 +177,8 @@ void ActiveSet::take_impulses() {
         if (r.at_limit != 0)
             r.mu = r.at_limit * r.limit;
         else
-            r.mu = r.on ? (r.goal - speed(r, sys_.exact)) / r.c : 0.0;
+            r.mu = r.on ? (r.goal - (speed(r, sys_.exact) - r.short_rate)) / r.c : 0.0;
+        r.mu += r.short_mu;
     }
 }
 
@@ -199,32 +197,21 @@ void ActiveSet::follow_loads() {
     }
 }
 
-bool ActiveSet::revise(bool first) {
+bool ActiveSet::revise() {
     bool changed = false;
     for (BoundedRow& r : rows()) {
-        if (r.kind == Kind::box) changed = revise_box(r, first) || changed;
+        if (r.kind == Kind::box) changed = revise_box(r) || changed;
         if (r.kind != Kind::push) continue;
-        if (r.on && r.mu < 0) {
-            r.on = false;
-            r.mu = 0;
-            changed = true;
-        } else if (!r.on && r.gap + sys_.h * speed(r, sys_.exact) < -kClosing) {
-            r.on = true;
-            changed = true;
-        }
+        const bool before = r.on;
+        r.on = r.goal - r.rate > (before ? 0.0 : kClosing / sys_.h);
+        r.mu = r.on ? std::max(0.0, r.held) : 0.0;
+        changed = changed || r.on != before;
     }
     follow_loads();
     if (b_.tower) return changed;
     for (BoundedRow& r : rows())
         if (r.width > 0 && r.on) changed = revise_slip(r) || changed;
     return changed;
-}
-
-bool ActiveSet::pulls() const {
-    double pull = 0, push = 0;
-    for (const BoundedRow& r : rows())
-        if (r.kind == Kind::push) (r.mu < 0 ? pull : push) += std::abs(r.mu);
-    return pull > kPull * push;
 }
 
 bool ActiveSet::drop_pulling() {

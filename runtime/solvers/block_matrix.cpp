@@ -85,7 +85,7 @@ void BlockSolve::analyse() {
     }
     for (uint64_t link : b_.links)
         matrix.link(local(static_cast<uint32_t>(link >> 32) + 1), local(static_cast<uint32_t>(link) + 1));
-    b_.solution.resize((nodes_ + joints()) * kDof);
+    b_.solution.resize(2 * unknowns());
     b_.known.resize((nodes_ + joints()) * kDof);
     b_.force.resize(joints() * kMaxRows);
     matrix.analyse();

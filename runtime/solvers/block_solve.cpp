@@ -10,12 +10,6 @@ namespace {
 // with 1.3 fewer violent starts fail (measured at 1:10000: 2 of 1000; with 2, on sums over the joints of a node, 10).
 constexpr double kGrowth = 1.3;
 constexpr double kStable = 4;
-// After the rounds of a mechanism in which contacts still pull: rounds that only drop. Left in, contacts that are as
-// many as cannot be told apart push and pull by 1000 times what they carry (measured: 7 of 3200 fallen ragdolls burst).
-constexpr uint32_t kDropRounds = 4;
-// As many rounds again where a stop is passed unseen. A limb at several stops in a blow needs more than four: without,
-// a ragdoll that is shaken passes one by 2 to 4 degrees in a frame of 10000.
-constexpr uint32_t kStopRounds = 4;
 constexpr double kNegligible = 1e-3;  // of the block's largest force: smaller ones do not count
 // A light chain that whips turns so far in a substep that its straight steps leave the joints open. Where the gap
 // exceeds this part of the lever, positions (not velocities) are projected once more on the same factor. Heavy loads
@@ -119,9 +113,14 @@ void BlockSolve::right_hand_side() {
     }
 }
 
-void BlockSolve::solve_known() {
+void BlockSolve::solve_linear() {
     right_hand_side();
     b_.matrix.solve(b_.solution.data());
+}
+
+void BlockSolve::solve_known() {
+    solve_linear();
+    for (size_t i = 0; i < unknowns(); ++i) b_.solution[i] += iterate()[i];
     take_solution();
     set.take_impulses();
 }
@@ -185,29 +184,54 @@ bool BlockSolve::force_grew() const {
 bool BlockSolve::solve_round() {
     if (!b_.matrix.factor()) return false;
     set.aim_biased();
-    solve_known();
+    solve_linear();
+    take_solution();
+    set.take_impulses();
     relaxed_ = false;
     return true;
 }
 
+// Steps of a tower are whole: what does not stand as one is swept.
+void BlockSolve::advance(bool first) {
+    const double t = set.advance(first || b_.tower);
+    if (b_.tower) return;
+    for (size_t i = 0; i < unknowns(); ++i) {
+        double& at = iterate()[i];
+        at = t == 1 ? b_.solution[i] : at + t * (b_.solution[i] - at);
+    }
+}
+
+// The iterate is the solution, and what is solved on the same factor from now on is as far from its own.
+void BlockSolve::stop_short() {
+    if (b_.tower) return;
+    for (size_t i = 0; i < unknowns(); ++i) {
+        iterate()[i] -= b_.solution[i];
+        b_.solution[i] += iterate()[i];
+    }
+    take_solution();
+    set.stop_short();
+}
+
 // Rounds over the active set; of a tower, the relaxed solution has to push as well.
 bool BlockSolve::factor_rounds() {
+    std::fill_n(iterate(), unknowns(), 0.0);
     if (set.empty()) return solve_round();
-    uint32_t last = set.rounds();
+    set.begin_rounds();
     b_.matrix.keep();
     for (uint32_t round = 1;; ++round) {
         if (round > 1) b_.matrix.restore();
         add_bounded();
         if (!solve_round()) return false;
-        if (round == set.rounds() && set.passes_stop()) last += kStopRounds;
-        const bool over = round >= last;
-        if (over && (b_.tower || round == last + kDropRounds || !set.pulls())) return true;
+        advance(round == 1);
+        if (round == set.rounds() || set.settled()) break;
         ++s_.report.rounds;
-        if (over ? set.drop_pulling() : set.revise(round == 1)) continue;
-        if (!b_.tower) return true;
+        if (set.revise()) continue;
+        if (!b_.tower) break;
         solve_relaxed();
-        if (!set.drop_pulling()) return true;
+        if (!set.drop_pulling()) break;
     }
+    stop_short();
+    return true;
 }
 
 bool BlockSolve::solve_first() {

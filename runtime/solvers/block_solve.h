@@ -57,12 +57,15 @@ private:
     void slow_velocities(const RowBlock& block, double* slow) const;
     void filter_lines();
     bool solve_round();
+    void advance(bool first);
+    void stop_short();
     bool factor_rounds();
     void right_hand_side();
     double known_rate(const RowBlock& block, int r) const;
     double error_of(const RowBlock& block, int r) const {
         return sys_.rows.error[block.row + static_cast<uint32_t>(r)];
     }
+    void solve_linear();
     void solve_known();
     void take_solution();
     void take_forces();
@@ -77,6 +80,10 @@ private:
     void solve_closing(double part);
     void limit_gain();
 
+    size_t unknowns() const { return (nodes_ + joints()) * kDof; }
+    // The second half of Block::solution: while rounds go on the iterate (active_set.h), then the iterate less the
+    // solution of the last round.
+    double* iterate() { return b_.solution.data() + unknowns(); }
     // Of a node h^2 K s, of a joint how fast its rows close their gaps [1/s].
     double* known(uint32_t i) { return &b_.known[i * kDof]; }
     double* joint_force(uint32_t j) { return &b_.force[j * kMaxRows]; }

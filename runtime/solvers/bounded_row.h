@@ -42,6 +42,11 @@ struct BoundedRow {
     double goal = 0;            // of this solve
     double limit = 0;           // of a box [N s]; of tangents the coefficient of friction, or an arm [m]
     double mu = 0;              // [N s]
+    double solved = 0;          // s J v of the last round's solution
+    double rate = 0;            // s J v of the iterate, see ActiveSet::advance
+    double held = 0;            // mu that balances the iterate
+    double short_rate = 0;      // of the iterate against the last solution, once the rounds are over
+    double short_mu = 0;        // likewise
     uint32_t width = 0;         // of a lead, the first tangent of a friction: how many tangents it has; else 0
     uint32_t load = 0;          // of a lead: the first of the pushes that bound it, in the rows of the block,
     uint32_t loads = 0;         // and how many there are, kContactRows apart

@@ -40,6 +40,9 @@ double fastest_in(RunningScene& run, int frames) {
     return most;
 }
 
+// All pins rub, those on the box too. Rounds over contacts and friction that took whole steps ran in circles there: a
+// contact at the edge was lost for a substep now and then, and of seeds 1 to 12 six at 1:10 and eight at 1:30 were
+// kept above 5 mm/s.
 TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdgeAndComesToRest) {
     scenes::Options options;
     options.seed = GetParam().seed;
@@ -55,17 +58,17 @@ TEST_P(ChainOverEdge, HoldsItsLoadOnTheEdgeAndComesToRest) {
     EXPECT_LE(penetration(run.world.world), 3e-3);
     const auto weight = static_cast<size_t>(run.scene.roles.chain->bodies.back());
     EXPECT_GT(run.body(weight).position.y, 1) << "slid off";
-    EXPECT_LT(fastest, 0.01);
+    EXPECT_LT(fastest, 5e-3);
     RecordProperty("gap_mm", std::to_string(1e3 * gap));
     RecordProperty("penetration_mm", std::to_string(1e3 * penetration(run.world.world)));
     RecordProperty("fastest_mm_s", std::to_string(1e3 * fastest));
 }
 
 INSTANTIATE_TEST_SUITE_P(Ratio, ChainOverEdge,
-                         testing::Values(Edge{"10", 0}, Edge{"10", 12}, Edge{"10", 16}, Edge{"10", 338}, Edge{"30", 2},
-                                         Edge{"30", 13}, Edge{"100", 1}, Edge{"100", 5}, Edge{"1000", 3},
-                                         Edge{"1000", 14}, Edge{"10000", 7}, Edge{"10000", 9}, Edge{"10000", 14},
-                                         Edge{"100000", 2}),
+                         testing::Values(Edge{"10", 0}, Edge{"10", 8}, Edge{"10", 9}, Edge{"10", 12}, Edge{"10", 16},
+                                         Edge{"10", 338}, Edge{"30", 2}, Edge{"30", 6}, Edge{"30", 13}, Edge{"100", 1},
+                                         Edge{"100", 5}, Edge{"1000", 3}, Edge{"1000", 14}, Edge{"10000", 7},
+                                         Edge{"10000", 9}, Edge{"10000", 14}, Edge{"100000", 2}),
                          [](const auto& tested) {
                              return std::string("r") + tested.param.ratio + "_seed" + std::to_string(tested.param.seed);
                          });
