@@ -53,9 +53,10 @@ void hand_over(const Lost& lost, const collision::Manifold& now, const Vec3f& t1
     }
 }
 
-// Impulses of the old points onto the new ones: by feature, else by place, what is left over to all; friction turned
-// into the new tangents.
-void carry_impulses(const collision::Manifold& old, const Impulse* from, const collision::Manifold& now, Impulse* to) {
+// Impulses of the old points onto the new ones: by feature, else by place, what is left over, if all is asked for, to
+// all; friction turned into the new tangents.
+void carry_impulses(const collision::Manifold& old, const Impulse* from, bool all, const collision::Manifold& now,
+                    Impulse* to) {
     const Vec3f t1 = tangent_of(now.normal), t2 = now.normal.cross(t1);
     const Vec3f o1 = tangent_of(old.normal), o2 = old.normal.cross(o1);
     bool used[4] = {}, found[4] = {};
@@ -78,6 +79,7 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, const c
         }
         if (best >= 0) take(i, best);
     }
+    if (!all) return;
     Lost lost;
     for (int k = 0; k < old.count; ++k)
         if (!used[k] && from[k].normal > 0) lost.add(old.points[k].position, from[k], o1, o2);
@@ -103,7 +105,8 @@ void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
     }
     Impulse carried[4];
     std::copy(before.impulse, before.impulse + 4, carried);
-    carry_impulses(old, carried, pair.manifold, pair.impulse);
+    const bool is_round = pair.patch > 0;  // flat faces keep most of their points, and the rest are not worth the time
+    carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
     if (pair.twists()) carry_turning(old, before.turning, before.spin_slip, pair);
 }
 
