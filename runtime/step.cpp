@@ -32,7 +32,13 @@ void remember_poses(Team& team, Nodes& nodes) {
     });
 }
 
+// How old contacts, found once a frame, are on average over the substeps that they serve [s].
+double mean_age(const taut_world_def& def) {
+    return 0.5 * (1 - 1.0 / def.substeps) * static_cast<double>(def.time_step);
+}
+
 void detect(World& w, Stopwatch& watch) {
+    const double lead = mean_age(w.def);
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     tell(w, {Stage::bounds});
@@ -40,10 +46,10 @@ void detect(World& w, Stopwatch& watch) {
     retire_pairs(w);
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
-    find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+    find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
     if (wake_touched(w)) {
         recall_pairs(w);
-        find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+        find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
     }
     const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
     if (refused > 0)
@@ -74,8 +80,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     bool loaded = false, sane = false;  // the nodes, as far as is known
     for (uint32_t i = 0; i < group.substeps; ++i) {
         if (loaded || !sane) loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
-        if (i > 0)
-            find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
+        find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
         shift_kinematic(system, w.nodes, i * system.h);
         predict(w.team, system, group, w.nodes, gravity);
         if (solver.lanes && i > 0) turn_lanes(w.team, system, *settings.kernels);

@@ -11,17 +11,13 @@ namespace {
 
 // Ids of points, below 1 << 14: corners of the polygon by number; then
 constexpr uint32_t kCrossing = 64;  // + 2 * side + (0 where it enters the disc, 1 where it leaves)
-constexpr uint32_t kRim = 256;      // + quarter of the incident disc's rim
+constexpr uint32_t kRim = 256;      // + quarter of the incident disc's rim, from the deepest point on
 constexpr uint32_t kOwnRim = 264;   // + quarter of the face's own rim
 constexpr uint32_t kDeepest = 272;  // + 0 at the incident shape's -y end, 1 at +y; also the ends of its line
 constexpr uint32_t kOwnDeepest = 274;
 constexpr uint32_t kCircles = 276;  // + which of the two crossings of two circles
 constexpr uint32_t kCut = 1024;     // + 2 * side (or kOfCircle) + (0 entering, 1 leaving), of a line
 constexpr uint32_t kOfCircle = 128;
-
-// A point of a disc's rim replaces the nearest quarter where it is deeper by this much, of the radius and at most [m].
-constexpr float kDeeper = 0.002f;
-constexpr float kMostDeeper = 5e-4f;
 
 // A tilted disc counts as a circle up to 8 degrees (cosine), where it meets another.
 constexpr float kParallel = 0.99f;
@@ -102,23 +98,19 @@ struct Heights {
     float operator()(float x, float y) const { return at + slope_x * x + slope_y * y; }
 };
 
-// Four quarters of a rim in the disc's own coordinates; the lowest point stands in for its nearest quarter where it is
-// clearly lower. A body that rolls over its rim stands on that point, and one that stands flat on fixed ones.
+// Four quarters of a rim in the disc's own coordinates, from its lowest point on: they go around with that as the disc
+// wobbles. Quarters that stay on the disc until another point is clearly lower drop it by as much each time. Where it
+// lies flat to kFlatRim [m], no point is the lowest.
+constexpr float kFlatRim = 1e-6f;
+
 std::array<ClipPoint, 4> rim_points(float radius, const Heights& heights, uint32_t rim, uint32_t deepest) {
-    const float part = 0.70710678f * radius;
-    std::array<ClipPoint, 4> points = {
-        {{part, part, 0, rim}, {-part, part, 0, rim + 1}, {-part, -part, 0, rim + 2}, {part, -part, 0, rim + 3}}};
-    size_t nearest = 0;
-    for (size_t i = 0; i < 4; ++i) {
-        points[i].z = heights(points[i].x, points[i].y);
-        if (points[i].z < points[nearest].z) nearest = i;
-    }
     const float steep = std::sqrt(heights.slope_x * heights.slope_x + heights.slope_y * heights.slope_y);
-    const float low = heights.at - steep * radius;
-    if (low < points[nearest].z - std::min(kDeeper * radius, kMostDeeper)) {
-        const float scale = -radius / steep;
-        points[nearest] = {heights.slope_x * scale, heights.slope_y * scale, low, deepest};
-    }
+    const bool flat = steep * radius <= kFlatRim;
+    const float x = flat ? 0.70710678f * radius : heights.slope_x * (-radius / steep);
+    const float y = flat ? x : heights.slope_y * (-radius / steep);
+    std::array<ClipPoint, 4> points = {
+        {{x, y, 0, deepest}, {-y, x, 0, rim + 1}, {-x, -y, 0, rim + 2}, {y, -x, 0, rim + 3}}};
+    for (ClipPoint& p : points) p.z = heights(p.x, p.y);
     return points;
 }
 

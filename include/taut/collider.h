@@ -35,6 +35,11 @@ typedef enum taut_combine {
  * their length times the contact's normal force, against the relative rotation about the axes in the contact's plane
  * and about its normal. A ball of radius r stays on slopes up to tan(angle) = rolling_friction / r. A pair uses the
  * larger value of its two surfaces. Particles do not rotate, and are not affected.
+ *
+ * At least, where a shape is round (all but boxes, hulls and planes), the two touch in a patch of radius a, 3 % of the
+ * smaller one's reach from its origin, which resists spinning by an arm of 2/3 friction a, and rolling, but of spheres
+ * and capsules, by an arm of 1 % of a; so that what spins on its poles or rocks comes to rest. Bodies that joints solved
+ * directly hold in contact are left out.
  */
 typedef struct taut_material {
     float friction;                /**< Coulomb coefficient, [0, 100]. Default 0.5 */

@@ -8,8 +8,55 @@ namespace {
 // Points further apart than this are not the same point of two frames [m].
 constexpr float kSamePoint = 0.02f;
 
-// Impulses of the old points onto the new ones: by feature, else by place; friction turned into the new tangents.
-void carry_impulses(const collision::Manifold& old, const Impulse* from, const collision::Manifold& now, Impulse* to) {
+// What points gave that are gone: together, as a force with its moment.
+struct Lost {
+    float normal = 0;                // [N s]
+    Vec3f moment = Vec3f::Zero();    // sum of normal impulse times position [N s m]
+    Vec3f friction = Vec3f::Zero();  // [N s]
+
+    void add(const Vec3f& position, const Impulse& impulse, const Vec3f& t1, const Vec3f& t2) {
+        normal += impulse.normal;
+        moment += impulse.normal * position;
+        friction += impulse.tangent1 * t1 + impulse.tangent2 * t2;
+    }
+};
+
+// Onto the points that are there now. Without it a body whose contact goes over to other points falls for a substep:
+// heaps in which points come and go never rest. Of all shares d_i that leave the pair's force and moment as they were,
+//   sum d_i = F,  sum d_i (x_i, y_i) = M,
+// the least ones, d = F / n + b x + c y with x, y from the mean of the points; of M as much as no d below 0 bears.
+void hand_over(const Lost& lost, const collision::Manifold& now, const Vec3f& t1, const Vec3f& t2, Impulse* to) {
+    const float even = lost.normal / static_cast<float>(now.count);
+    Vec3f mean = Vec3f::Zero();
+    for (int i = 0; i < now.count; ++i) mean += now.points[i].position / static_cast<float>(now.count);
+    float x[4], y[4], xx = 0, yy = 0, xy = 0;
+    for (int i = 0; i < now.count; ++i) {
+        const Vec3f r = now.points[i].position - mean;
+        x[i] = r.dot(t1), y[i] = r.dot(t2);
+        xx += x[i] * x[i], yy += y[i] * y[i], xy += x[i] * y[i];
+    }
+    const Vec3f moment = lost.moment - lost.normal * mean;
+    const float mx = moment.dot(t1), my = moment.dot(t2);
+    const float least = 1e-3f * (xx + yy) + 1e-12f;  // points in a line bear nothing across it
+    xx += least, yy += least;
+    const float det = xx * yy - xy * xy, b = (yy * mx - xy * my) / det, c = (xx * my - xy * mx) / det;
+    float borne = 1;
+    for (int i = 0; i < now.count; ++i) {
+        const float tilt = b * x[i] + c * y[i];
+        if (even + borne * tilt < 0) borne = even / -tilt;
+    }
+    for (int i = 0; i < now.count; ++i) {
+        const float share = even + borne * (b * x[i] + c * y[i]);
+        to[i].normal += share;
+        to[i].tangent1 += share / lost.normal * lost.friction.dot(t1);
+        to[i].tangent2 += share / lost.normal * lost.friction.dot(t2);
+    }
+}
+
+// Impulses of the old points onto the new ones: by feature, else by place, what is left over, if all is asked for, to
+// all; friction turned into the new tangents.
+void carry_impulses(const collision::Manifold& old, const Impulse* from, bool all, const collision::Manifold& now,
+                    Impulse* to) {
     const Vec3f t1 = tangent_of(now.normal), t2 = now.normal.cross(t1);
     const Vec3f o1 = tangent_of(old.normal), o2 = old.normal.cross(o1);
     bool used[4] = {}, found[4] = {};
@@ -32,6 +79,11 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, const c
         }
         if (best >= 0) take(i, best);
     }
+    if (!all) return;
+    Lost lost;
+    for (int k = 0; k < old.count; ++k)
+        if (!used[k] && from[k].normal > 0) lost.add(old.points[k].position, from[k], o1, o2);
+    if (lost.normal > 0) hand_over(lost, now, t1, t2, to);
 }
 
 // Friction torques carried over, turned into the frame of the new manifold.
@@ -53,8 +105,9 @@ void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
     }
     Impulse carried[4];
     std::copy(before.impulse, before.impulse + 4, carried);
-    carry_impulses(old, carried, pair.manifold, pair.impulse);
-    if (pair.turns()) carry_turning(old, before.turning, before.spin_slip, pair);
+    const bool is_round = pair.patch > 0;  // flat faces keep most of their points, and the rest are not worth the time
+    carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
+    if (pair.twists()) carry_turning(old, before.turning, before.spin_slip, pair);
 }
 
 void carry_on(const Vec3f& old_normal, Pair& pair) {

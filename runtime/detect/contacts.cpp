@@ -122,12 +122,13 @@ void note_changes(const Colliders& colliders, Pairs& pairs) {
 
 void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                          std::span<const uint32_t> active_pairs, double elapsed, double substep) {
-    const Detection of{nodes, colliders, shapes, pairs, substep};
+    const Detection of{nodes, colliders, shapes, pairs, substep, 0};
     uint64_t found = 0;  // the pair whose parts are found; its records follow one another
     for (uint32_t p : active_pairs) {
         ActivePair& active = pairs.active[p];
         Pair& pair = pairs.list[active.pair];
         NearPair& near = pairs.near[active.near];
+        if (elapsed == 0 && (pair.patch == 0 || near.kept || near.fast)) continue;
         for (uint32_t c : {pair.collider_a(), pair.collider_b()})
             place_collider(nodes, shapes, colliders.record[c], elapsed, pairs, c);
         const bool fast = is_fast(nodes, pairs, pair, substep);
@@ -145,8 +146,8 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
 }
 
 void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
-                   double time_step) {
-    const Detection of{nodes, colliders, shapes, pairs, time_step};
+                   double time_step, double lead) {
+    const Detection of{nodes, colliders, shapes, pairs, time_step, lead};
     note_changes(colliders, pairs);
     look_at_all(team, of);
     admit_arriving(team, of);

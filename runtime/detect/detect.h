@@ -36,12 +36,14 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
 void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs);
 
-// Manifolds of all pairs in the list at the present poses; impulses follow their features.
+// Manifolds of all pairs in the list at the present poses, or where contacts move over their surfaces as they will be
+// in a lead time [s]; impulses follow their features.
 void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
-                   double time_step);
+                   double time_step, double lead);
 
 // The same within a frame, `elapsed` after its start, for some of Pairs::active: those of blocks, whose light links
-// turn far in a substep. A pair or part may lose its points, none is added to the list.
+// turn far in a substep; at its start, those that were found with a lead. A pair or part may lose its points, none is
+// added to the list.
 void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                          std::span<const uint32_t> active_pairs, double elapsed, double substep);
 

@@ -42,14 +42,64 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
     pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
 }
 
+// Points found where the two will be in a lead time, from a's origin then to a's node, told at the present poses: with
+// the levers of then, of the lighter node exactly, and less the growth of the gap until then,
+//   gap now = gap then - T n . ((v_b + w_b x r_b) - (v_a + w_a x r_a)),
+// to first order, for a point that rolls stays where it touches while one of the body would rise.
+void bring_back(const Detection& of, double lead, const Vec3f& from_a, Pair& pair) {
+    const NodeMotion &a = of.nodes.motion[pair.a], &b = of.nodes.motion[pair.b];
+    const double mass_a = of.nodes.mass[pair.a].inv_mass, mass_b = of.nodes.mass[pair.b].inv_mass;
+    const Vec3 arm = a.x - of.nodes.origin(pair.a), arm_then = rotation_from_vector(lead * a.w) * arm;
+    const Vec3 apart = lead * (b.v - a.v), n = pair.manifold.normal.cast<double>();
+    const double share_of_b = mass_a + mass_b > 0 ? mass_b / (mass_a + mass_b) : 0;
+    for (int k = 0; k < pair.manifold.count; ++k) {
+        collision::ContactPoint& point = pair.manifold.points[k];
+        const Vec3 lever_a = (point.position + from_a).cast<double>() - arm_then;
+        const Vec3 lever_b = lever_a - (b.x - a.x + apart);
+        point.position = (arm + lever_a - share_of_b * apart).cast<float>();
+        point.separation -= static_cast<float>(n.dot(apart + lead * (b.w.cross(lever_b) - a.w.cross(lever_a))));
+    }
+}
+
+bool is_round(const Pace& pace) { return pace.rolls || pace.round > 0; }
+
+// The radius of the patch in which the two touch, where one is round: a guess in parts of the smaller one's size, of
+// what neither is so hard nor so smooth as to touch in a point [m].
+float patch_of(const Pairs& pairs, const PairEnds& pair) {
+    constexpr float kPatch = 0.03f;
+    const uint32_t a = pair.collider_a(), b = pair.collider_b();
+    if (pair.a2 != kNone || pair.b2 != kNone || !(is_round(pairs.pace[a]) || is_round(pairs.pace[b]))) return 0;
+    return kPatch * std::min(pairs.stance[a].size, pairs.stance[b].size);
+}
+
+// The lead time of a pair's contact [s]: of one between bodies that moves over a round surface and bore in the last
+// frame, unless it moves so little in that time that it may as well be kept.
+double lead_of(const Detection& of, const Pair& pair) {
+    constexpr float kStill = 5e-5f;  // [m], as in reuse.cpp
+    if (of.lead == 0 || pair.patch == 0) return 0;
+    const auto bears = [](const Impulse& impulse) { return impulse.normal > 0; };
+    if (std::none_of(pair.impulse, pair.impulse + pair.manifold.count, bears)) return 0;
+    const Stance &a = of.pairs.stance[pair.collider_a()], &b = of.pairs.stance[pair.collider_b()];
+    const float most = kStill / static_cast<float>(of.lead);
+    const auto moves = [&](const Stance& side) {
+        return !((side.velocity.norm() + side.size * side.spin.norm()) <= most);
+    };
+    return moves(a) || moves(b) ? of.lead : 0;
+}
+
 // A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
 void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
-    for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k) pair.manifold.points[k].position += from_a;
+    if (shaped.lead() > 0)
+        bring_back(of, shaped.lead(), from_a, pair);
+    else
+        for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k)
+            pair.manifold.points[k].position += from_a;
     pair.rolls_a = of.pairs.pace[pair.collider_a()].rolls;
     pair.rolls_b = of.pairs.pace[pair.collider_b()].rolls;
     pair.round_a = of.pairs.pace[pair.collider_a()].round;
     pair.round_b = of.pairs.pace[pair.collider_b()].round;
+    pair.patch = patch_of(of.pairs, pair);
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
     meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
@@ -84,13 +134,18 @@ const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, c
 
 }  // namespace
 
-Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast)
+Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead)
     : a_(of.shapes.record[of.colliders.record[pair.collider_a()].shape].shape),
       b_(of.shapes.record[of.colliders.record[pair.collider_b()].shape].shape),
       at_a_(&of.pairs.placement[pair.collider_a()]),
       at_b_(&of.pairs.placement[pair.collider_b()]),
       margin_(margin_of(of.nodes, pair, of.time)),
-      spans_(pair.a2 != kNone || pair.b2 != kNone) {
+      spans_(pair.a2 != kNone || pair.b2 != kNone),
+      lead_(lead) {
+    if (lead > 0) {
+        encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
+        place_after(lead);
+    }
     if (!fast) return;
     if (stay_apart(of.nodes, of.pairs, pair, of.time)) {
         then_ = std::numeric_limits<double>::infinity();
@@ -104,11 +159,15 @@ Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast)
 void Shaped::look_ahead(double time) {
     then_ = encounter_->meeting(time);
     if (then_ == 0 || !std::isfinite(then_)) return;
-    met_[0] = encounter_->a_after(then_);
-    met_[1] = encounter_->b_after(then_);
+    place_after(then_);
+    if (!spans_) margin_ = kContactMargin;
+}
+
+void Shaped::place_after(double time) {
+    met_[0] = encounter_->a_after(time);
+    met_[1] = encounter_->b_after(time);
     at_a_ = &met_[0];
     at_b_ = &met_[1];
-    if (!spans_) margin_ = kContactMargin;
 }
 
 float Shaped::find_points(collision::PairCache& cache, collision::Manifold& manifold) const {
@@ -125,7 +184,7 @@ void Shaped::find_parts(collision::Parts& parts) const {
 
 void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
     const collision::Manifold old = pair.manifold;
-    const Shaped shaped(of, pair, fast);
+    const Shaped shaped(of, pair, fast, fast ? 0 : lead_of(of, pair));
     collision::PairCache cache;
     std::ranges::copy(pair.cache, std::ranges::copy(near.cache, cache.words).out);
     const float gap = shaped.find_points(cache, pair.manifold);

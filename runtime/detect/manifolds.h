@@ -18,12 +18,18 @@ struct Detection {
     const Shapes& shapes;
     Pairs& pairs;
     double time;  // ahead [s]
+    double lead;  // of contacts that move over their surfaces [s]; see Shaped
 };
 
 // Two shapes as they stand in a pair, or as they will where they meet later in the time ahead.
+//
+// Or as they will in a lead time. Contacts are found once a frame and serve all its substeps. Where a round body rocks
+// or rolls, its contact moves over it and turns as it does: found at the frame's beginning, what brings the body back
+// always comes late, and it swings wider and wider (x'' = -k x(t - T) gains energy as if driven by k T x'). Found where
+// the bodies will be halfway through the substeps, it comes in time.
 class Shaped {
 public:
-    Shaped(const Detection& of, const PairEnds& pair, bool fast);
+    Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead = 0);
     Shaped(const Shaped&) = delete;
     Shaped& operator=(const Shaped&) = delete;
 
@@ -35,22 +41,25 @@ public:
     void find_parts(collision::Parts& parts) const;
 
     float then() const { return static_cast<float>(then_); }
+    double lead() const { return lead_; }
     // Whether what is found is of the present, between two bodies: it can be reused.
-    bool can_be_kept() const { return then_ == 0 && !spans_; }
+    bool can_be_kept() const { return then_ == 0 && lead_ == 0 && !spans_; }
     void bring_to_present(Pair& pair) const {
         if (pair.then > 0) encounter_->bring_to_present(pair);
     }
 
 private:
     void look_ahead(double time);
+    void place_after(double time);
 
     const collision::Shape &a_, &b_;
     const collision::Placement *at_a_, *at_b_;
     float margin_;
     bool spans_;
+    double lead_;                         // [s]
     double then_ = 0;                     // 0: as they stand; infinite: they do not meet
-    std::optional<Encounter> encounter_;  // of fast ones
-    collision::Placement met_[2];         // where they meet
+    std::optional<Encounter> encounter_;  // of fast ones, and with a lead
+    collision::Placement met_[2];         // where they meet, or will be
 };
 
 // The manifold of a pair without a surface, with the impulses of the last one.

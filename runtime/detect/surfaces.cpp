@@ -45,7 +45,7 @@ void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const Collide
                                [](float x, float y) { return std::max(x, y); });
     pair.spinning = std::max(one.spinning_friction, other.spinning_friction);
     pair.rolling = std::max(one.rolling_friction, other.rolling_friction);
-    if (pair.turns() && !can_turn(nodes, pair)) pair.spinning = pair.rolling = 0;
+    if (pair.twists() && !can_turn(nodes, pair)) pair.spinning = pair.rolling = pair.patch = 0;
     pair.driven = a.driven() || b.driven();
     if (!pair.driven) return;
     pair.drive = pair.drive_spin = Vec3f::Zero();

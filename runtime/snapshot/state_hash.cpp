@@ -147,7 +147,7 @@ void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
         hash.add(pair.impulse[k].tangent2);
         hash.add(pair.impulse[k].slip);
     }
-    if (!pair.turns()) return;
+    if (!pair.twists()) return;
     for (float x :
          {pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2, pair.turning.slip, pair.spin_slip})
         hash.add(x);

@@ -98,6 +98,7 @@ struct Pair : PairEnds {
     float friction = 0;  // of the two surfaces together
     float restitution = 0;
     float spinning = 0, rolling = 0;  // arms of the friction torques [m]
+    float patch = 0;                  // radius of the patch in which a round side touches [m]; see spinning_arm()
     Impulse turning;                  // of these torques [N m s]; slip: of rolling [rad^2/(kg m^2)]
     float spin_slip = -1;             // the same of spinning
     // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
@@ -112,6 +113,16 @@ struct Pair : PairEnds {
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
     bool turns() const { return spinning > 0 || rolling > 0; }
+    bool twists() const { return turns() || patch > 0; }
+    // Arms of the torques in sweeps [m]: of the surfaces, or of the patch, whichever resist more. Friction in a patch
+    // of even pressure resists spinning by 2/3 mu a of the force; one that loses a part alpha of what it takes to
+    // flatten the patch resists rolling by 3/16 alpha a (Johnson, Contact Mechanics, 1985, section 9.4). Balls and
+    // capsules roll on as on rigid ground.
+    float spinning_arm() const { return std::max(spinning, 2.0f / 3 * friction * patch); }
+    float rolling_arm() const {
+        constexpr float kLoss = 0.05f;
+        return std::max(rolling, rolls_a || rolls_b ? 3.0f / 16 * kLoss * patch : 0);
+    }
 };
 
 // The smaller index first; of colliders or of nodes.

@@ -42,9 +42,9 @@ void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* p
 }
 
 void fill_rolling(LaneRolling& rolling, int lane, const Pair* pair) {
-    rolling.arm[0][lane] = pair ? pair->spinning : 0;
-    rolling.arm[1][lane] = pair ? pair->rolling : 0;
-    const bool turns = pair && pair->turns();
+    rolling.arm[0][lane] = pair ? pair->spinning_arm() : 0;
+    rolling.arm[1][lane] = pair ? pair->rolling_arm() : 0;
+    const bool turns = pair && pair->twists();
     rolling.impulse[0][lane] = turns ? pair->turning.normal : 0;
     rolling.impulse[1][lane] = turns ? pair->turning.tangent1 : 0;
     rolling.impulse[2][lane] = turns ? pair->turning.tangent2 : 0;
@@ -114,7 +114,7 @@ Special fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, con
             filled = static_cast<uint32_t>(pair->manifold.count);
             special.bounces = special.bounces || pair->restitution > 0;
             special.driven = special.driven || pair->driven;
-            special.turns = special.turns || pair->turns();
+            special.turns = special.turns || pair->twists();
             round = round || pair->round_a > 0 || pair->round_b > 0;
         } else {
             clear_pair(g, lane);
@@ -131,7 +131,7 @@ void fill_special(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs) {
     for (int lane = 0; lane < kLanes; ++lane) {
         const Pair* pair = pair_of(g, lane, pairs);
         driven = driven || (pair && pair->driven);
-        turns = turns || (pair && pair->turns());
+        turns = turns || (pair && pair->twists());
     }
     if (driven) {
         g.first_drive = static_cast<uint32_t>(lanes.drive.size());
@@ -349,7 +349,7 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
             const LanePoint& p = lanes.point[g.first_point + static_cast<uint32_t>(k)];
             pair.impulse[k] = {p.impulse[0][lane], p.impulse[1][lane], p.impulse[2][lane]};
         }
-        if (!pair.turns()) return;
+        if (!pair.twists()) return;
         const float(&turning)[3][kLanes] = lanes.rolling[g.rolling].impulse;
         pair.turning = {turning[0][lane], turning[1][lane], turning[2][lane]};
         pair.spin_slip = -1;

@@ -82,7 +82,7 @@ void add_contacts(const World& world, Sums& sums) {
         Hash& hash = sums.of(pair);
         hash.add(uint64_t{active.pair} << 32 | active.points);
         add_floats(hash, pair.manifold.normal);
-        for (float x : {pair.friction, pair.restitution, pair.spinning, pair.rolling}) hash.add(x);
+        for (float x : {pair.friction, pair.restitution, pair.spinning, pair.rolling, pair.patch}) hash.add(x);
         for (int k = 0; k < pair.manifold.count; ++k) {
             add_floats(hash, pair.manifold.points[k].position);
             hash.add(pair.manifold.points[k].separation);

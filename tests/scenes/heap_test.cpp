@@ -21,26 +21,34 @@ double mean_overlap(const RunningScene& run) {
     return overlapping > 0 ? sum / overlapping : 0;
 }
 
+// Five of six starts within 25 s; in the others a body shifts or sways for longer.
 TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
-    RunningScene run("shapes200");
-    double fastest = 0, mean = 0;
-    for (int frame = 0; frame < 900; ++frame) {
-        run.step();
-        ASSERT_TRUE(run.sound()) << "frame " << frame;
-        if (frame < 840) continue;
-        fastest = std::max(fastest, run.pile_speed());
-        double sum = 0;
-        for (int i : run.scene.roles.pile) sum += norm(run.body(static_cast<size_t>(i)).velocity);
-        mean = std::max(mean, sum / static_cast<double>(run.scene.roles.pile.size()));
+    int at_rest = 0;
+    for (uint64_t seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(seed);
+        scenes::Options options;
+        options.seed = seed;
+        RunningScene run(scenes::make_scene("shapes200", options));
+        double fastest = 0, mean = 0;
+        for (int frame = 0; frame < 1500; ++frame) {
+            run.step();
+            ASSERT_TRUE(run.sound()) << "frame " << frame;
+            if (frame < 1440) continue;
+            fastest = std::max(fastest, run.pile_speed());
+            double sum = 0;
+            for (int i : run.scene.roles.pile) sum += norm(run.body(static_cast<size_t>(i)).velocity);
+            mean = std::max(mean, sum / static_cast<double>(run.scene.roles.pile.size()));
+        }
+        const double overlap = mean_overlap(run);
+        EXPECT_LE(overlap, 0.002);
+        EXPECT_LE(mean, 0.005);
+        EXPECT_LE(fastest, 0.3);
+        at_rest += mean <= 0.001 && fastest <= 0.03;
+        for (int i : run.scene.roles.pile) EXPECT_GT(run.body(static_cast<size_t>(i)).position.y, 0) << i;
+        std::printf("heap, seed %d: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n",
+                    static_cast<int>(seed), 1e3 * overlap, mean, fastest);
     }
-    const double overlap = mean_overlap(run);
-    EXPECT_LE(overlap, 0.002);
-    EXPECT_LE(mean, 0.01);
-    EXPECT_LE(fastest, 0.3);
-    for (int i : run.scene.roles.pile) EXPECT_GT(run.body(static_cast<size_t>(i)).position.y, 0) << i;
-    RecordProperty("mean_overlap_mm", std::to_string(1e3 * overlap));
-    RecordProperty("mean_speed", std::to_string(mean));
-    std::printf("heap: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n", 1e3 * overlap, mean, fastest);
+    EXPECT_GE(at_rest, 5);
 }
 
 // Their joints are solved by load: at rest nothing in the heap needs a direct solve, and the joints stay closed.

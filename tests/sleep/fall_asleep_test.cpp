@@ -135,12 +135,11 @@ TEST(FallsAsleep, Piles) {
     for (const char* name : {"grains300_r1", "heavy_on_light_r1000"}) EXPECT_TRUE(falls_asleep(name, 0)) << name;
 }
 
-// Not all do: in two of three a ball spins on under another, or a cone or disc rocks on two points, by which it keeps
-// all that it touches awake (5 of 16 slept, with 16 substeps 8 of 11).
-TEST(FallsAsleep, SomeHeapsOfMixedShapes) {
+// Nearly all do, of 32 other starts that nothing was fitted to 30.
+TEST(FallsAsleep, HeapsOfMixedShapes) {
     int asleep = 0;
-    for (uint64_t seed = 1; seed <= 8; ++seed) asleep += falls_asleep("shapes200", seed);
-    EXPECT_GE(asleep, 2);
+    for (uint64_t seed = 1; seed <= 16; ++seed) asleep += falls_asleep("shapes200", seed);
+    EXPECT_GE(asleep, 14);
 }
 
 // Asleep nothing moves by a bit, nothing is told, velocities are zero, and queries find what is there.
@@ -190,7 +189,7 @@ TEST(Asleep, NothingMoves) {
 
 TEST(Asleep, CostsLittle) {
     scenes::Options options;
-    options.seed = 4;  // of those that fall asleep, see FallsAsleep.SomeHeapsOfMixedShapes
+    options.seed = 4;  // of those that fall asleep, see FallsAsleep.HeapsOfMixedShapes
     scenes::Scene scene = scenes::make_scene("shapes200", options);
     scene.world.sleeping = 1;
     const scenes::TautWorld world(scene);

@@ -1,0 +1,160 @@
+// Round bodies that rock, roll and wobble on what holds them lose energy, as mechanics says, or keep it.
+#include "physics/lab.h"
+
+#include <algorithm>
+#include <random>
+
+namespace {
+
+using namespace lab;
+
+taut_shape cylinder(const World& world, double radius, double half_length) {
+    taut_cylinder_def d;
+    taut_cylinder_def_init(&d);
+    d.radius = static_cast<float>(radius);
+    d.half_length = static_cast<float>(half_length);
+    taut_shape out{};
+    ok(taut_world_add_cylinder(world.handle, &d, &out));
+    return out;
+}
+
+taut_shape cone(const World& world, double radius, double half_length) {
+    taut_cone_def d;
+    taut_cone_def_init(&d);
+    d.radius = static_cast<float>(radius);
+    d.half_length = static_cast<float>(half_length);
+    taut_shape out{};
+    ok(taut_world_add_cone(world.handle, &d, &out));
+    return out;
+}
+
+taut_shape capsule(const World& world, double bottom, double top, double half_length) {
+    taut_tapered_capsule_def d;
+    taut_tapered_capsule_def_init(&d);
+    d.bottom_radius = static_cast<float>(bottom);
+    d.top_radius = static_cast<float>(top);
+    d.half_length = static_cast<float>(half_length);
+    taut_shape out{};
+    ok(taut_world_add_tapered_capsule(world.handle, &d, &out));
+    return out;
+}
+
+struct Rocker {
+    const char* name;
+    taut_shape (*make)(const World&);
+};
+
+const Rocker kRockers[] = {
+    {"cone", [](const World& w) { return cone(w, 0.25, 0.22); }},
+    {"disc", [](const World& w) { return cylinder(w, 0.28, 0.05); }},
+    {"cylinder", [](const World& w) { return cylinder(w, 0.22, 0.18); }},
+    {"rod", [](const World& w) { return cylinder(w, 0.1, 0.3); }},
+    {"coin", [](const World& w) { return cylinder(w, 0.1, 0.01); }},
+    {"capsule", [](const World& w) { return capsule(w, 0.13, 0.13, 0.17); }},
+    {"tapered capsule", [](const World& w) { return capsule(w, 0.2, 0.1, 0.16); }},
+};
+
+void add_static(const World& world, taut_shape shape, const Vec& position = {}, const Quat& rotation = {}) {
+    world.add({.kind = TAUT_BODY_STATIC, .shape = shape, .position = position, .rotation = rotation});
+}
+
+struct Support {
+    const char* name;
+    void (*add)(const World&);
+};
+
+const Support kSupports[] = {
+    {"plane", [](const World& w) { add_static(w, w.plane()); }},
+    {"groove",
+     [](const World& w) {
+         for (double side : {-1.0, 1.0}) add_static(w, w.plane({side, 1, 0}));
+     }},
+    {"corner",
+     [](const World& w) {
+         for (double side : {-1.0, 1.0}) {
+             add_static(w, w.plane({side, 1, 0}));
+             add_static(w, w.plane({0, 0.5, side}), {0, 0, -0.2 * side});
+         }
+     }},
+    {"edge",  // of a box on the ground
+     [](const World& w) {
+         add_static(w, w.box({1, 0.1, 1}), {-1, 0.1, 0});
+         add_static(w, w.plane());
+     }},
+    {"logs",  // side by side
+     [](const World& w) {
+         for (double x : {-0.2, 0.2}) add_static(w, cylinder(w, 0.2, 1), {x, 0, 0}, Quat::turn({1, 0, 0}, kPi / 2));
+         add_static(w, w.plane(), {0, -1, 0});
+     }},
+};
+
+class Start {  // a random one
+public:
+    explicit Start(uint32_t seed) : bits_(seed) {}
+    double within(double most) { return most * (2 * (bits_() * 0x1p-32) - 1); }
+
+private:
+    std::mt19937 bits_;
+};
+
+// Kinetic and of height [J/kg].
+double energy_of(taut_body body) {
+    float mass = 0;
+    taut_vec3 centre{};
+    taut_sym3 inertia{};
+    ok(taut_body_get_mass(body, &mass, &centre, &inertia));
+    const BodyState s = state(body);
+    const double spinning = 0.5 * dot(s.spin, spin_momentum(s, inertia)) / static_cast<double>(mass);
+    return 0.5 * dot(s.velocity, s.velocity) + spinning + kG * (s.position + s.rotation.rotate(centre)).y;
+}
+
+// What a body dropped at random has gained in the end, at most, over the least that it had before [J/kg]; looked at
+// once it lies on something.
+double most_gained(const Rocker& rocker, const Support& support, uint32_t substeps, uint32_t seed) {
+    constexpr int kFalls = 40, kFrames = 900;
+    const World world([&](taut_world_def& def) { def.substeps = substeps; });
+    support.add(world);
+    Start start(seed);
+    const auto vector = [&](double most) { return Vec(start.within(most), start.within(most), start.within(most)); };
+    const Vec at = Vec(0, 0.45, 0) + vector(0.1), axis = vector(1);
+    const taut_body body = world.add({.shape = rocker.make(world),
+                                      .position = at,
+                                      .rotation = Quat::turn(axis, start.within(kPi)),
+                                      .velocity = vector(0.3),
+                                      .spin = vector(2)});
+    world.step(kFalls);
+    double least = energy_of(body), gained = 0;
+    for (int frame = kFalls; frame < kFrames; ++frame) {
+        world.step();
+        const double energy = energy_of(body);
+        least = std::min(least, energy);
+        gained = std::max(gained, energy - least);
+    }
+    return gained;
+}
+
+class RockingOn : public testing::TestWithParam<Support> {};
+
+// Contacts that came late drove them to 0.3 J/kg and more, the height of 30 mm. 0.03 J/kg are 3 mm, by which a body may
+// be pushed out that a blow drove in.
+TEST_P(RockingOn, GainsNoEnergy) {
+    constexpr uint32_t kStarts = 12;
+    for (const Rocker& rocker : kRockers)
+        for (const uint32_t substeps : {4u, 16u}) {
+            double mean = 0, most = 0;
+            for (uint32_t seed = 0; seed < kStarts; ++seed) {
+                const double gained = most_gained(rocker, GetParam(), substeps, seed);
+                mean += gained / kStarts;
+                most = std::max(most, gained);
+            }
+            std::printf("%s on %s, %d substeps: gains %.4f J/kg, at most %.4f\n", rocker.name, GetParam().name,
+                        static_cast<int>(substeps), mean, most);
+            EXPECT_LE(mean, 0.008) << rocker.name << ", " << substeps << " substeps";
+            EXPECT_LE(most, 0.03) << rocker.name << ", " << substeps << " substeps";
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(A, RockingOn, testing::ValuesIn(kSupports),
+                         [](const auto& tested) -> std::string { return tested.param.name; });
+
+}  // namespace
