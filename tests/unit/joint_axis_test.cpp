@@ -119,12 +119,14 @@ TEST(InverseMass, IsWhatAnImpulseAlongTheRowDoes) {
         joint.type = &kSixDof;
         for (uint32_t& end : joint.node) {
             end = nodes.add();
-            NodeMass& mass = nodes.mass[end];
+            NodeMass mass;
             nodes.info[end].kind = NodeKind::dynamic;
             nodes.motion[end].x = random.vector();
             nodes.motion[end].q = random.rotation();
             mass.inv_mass = random.between(0.1, 2);
             mass.inv_inertia = {random.between(1, 2), random.between(1, 2), random.between(1, 2), 0.1, 0.2, -0.1};
+            nodes.mass.reserve_values(1);
+            nodes.mass.set(end, mass);
         }
         write_data(joint, JointFrames{random.vector(), random.vector(), random.rotation(), random.rotation()});
         const JointReading reading = read_joint(nodes, joint);
