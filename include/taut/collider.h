@@ -38,8 +38,8 @@ typedef enum taut_combine {
  *
  * At least, where a shape is round (all but boxes, hulls and planes), the two touch in a patch of radius a, 3 % of the
  * smaller one's reach from its origin, which resists spinning by an arm of 2/3 friction a, and rolling, but of spheres
- * and capsules, by an arm of 1 % of a; so that what spins on its poles or rocks comes to rest. Bodies that joints solved
- * directly hold in contact are left out.
+ * and capsules, by an arm of 1 % of a; so that what spins on its poles or rocks comes to rest. Bodies that joints
+ * solved directly hold in contact are left out.
  */
 typedef struct taut_material {
     float friction;                /**< Coulomb coefficient, [0, 100]. Default 0.5 */

@@ -36,9 +36,10 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
             if (collider.node == kNone) continue;
             pace.moved = round == 1 || put_back(pairs.mechanisms, collider, round - 1);
             if (!pace.moved) continue;
+            pairs.along[c] = way_along(nodes, collider, shapes);
             if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
-            const Vec3 off = way_along(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
+            const Vec3 off = pairs.along[c] - pairs.reach[c].ahead.cast<double>();
             pace.astray = off.squaredNorm() > stride * stride;
             if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
@@ -47,8 +48,7 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
 }
 
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
-bool strides(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
-             const NearPair& near) {
+bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
     const Pace &one = pairs.pace[a], &other = pairs.pace[b];
     if (!(near.fast || one.astray || other.astray) || near.filtered) return false;
@@ -56,8 +56,7 @@ bool strides(const Nodes& nodes, const Colliders& colliders, const Shapes& shape
     const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                     : std::max(one.thickness, other.thickness);
     const double stride = kStride * thinner;
-    const auto along = [&](uint32_t collider) { return way_along(nodes, colliders.record[collider], shapes); };
-    return (along(a) - along(b)).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
+    return (pairs.along[a] - pairs.along[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
 }
 
 bool moved(const Pairs& pairs, const NearPair& near) {
@@ -97,7 +96,7 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked, [&](uint32_t i) {
         NearPair& near = pairs.near[i];
-        if (moved(pairs, near)) near.strides = strides(nodes, colliders, shapes, pairs, near);
+        if (moved(pairs, near)) near.strides = strides(colliders, pairs, near);
         return near.strides;
     });
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {

@@ -97,8 +97,8 @@ Way way_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
     return way;
 }
 
-// At least the chord of a node's turn, of radius 1: between unit quaternions p
-// and q it is 2 sin(angle / 2), at most 2 |p - q|.
+// At least the chord of a node's turn, of radius 1: between unit quaternions p and q it is 2 sin(angle / 2), at most
+// 2 |p - q|.
 float chord_of(const Nodes& nodes, uint32_t node) {
     return static_cast<float>(2 * (nodes.motion[node].q.coeffs() - nodes.before[node].rotation.coeffs()).norm());
 }
@@ -114,7 +114,9 @@ Passage passage_of(const Nodes& nodes, const Colliders& colliders, const Shapes&
     return {record,    shapes.record[record.shape],  way.from,
             way.along, placed_before(nodes, record), placement_of(nodes, record)};
 }
+
 }  // namespace
+
 // As a sees it b's middle ends elsewhere by the chord of a's turn.
 bool may_pass(const Nodes& nodes, const Collider& a, double thickness_a, const Collider& b, double thickness_b,
               const Shapes& shapes) {

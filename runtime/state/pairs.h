@@ -229,6 +229,7 @@ struct Pairs {
           joined(memory),
           reach(memory),
           pace(memory),
+          along(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -262,6 +263,7 @@ struct Pairs {
     uint64_t colliders_version = 0;   // that NearPair::changed knows
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
+    Array<Vec3> along;                // by collider: of its middle in this step [m]; hold_back()
     bool any_fast = false;            // of near, in this frame; find_contacts()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
