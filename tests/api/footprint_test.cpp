@@ -65,7 +65,7 @@ TEST_F(Footprint, OfACollider) {
     taut_collider_def def;
     taut_collider_def_init(&def);
     def.shape = box;
-    expect_at_most(460, "collider", bytes_of_each(ledger_, world_, [&](int i) {
+    expect_at_most(480, "collider", bytes_of_each(ledger_, world_, [&](int i) {
                        def.position.x = 3.0f * static_cast<float>(i);
                        taut_collider out{};
                        EXPECT_OK(taut_body_add_collider(body, &def, &out));
