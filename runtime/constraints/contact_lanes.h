@@ -2,6 +2,8 @@
 // No two pairs of a lane group share a moving node. Structure of arrays inside, one group after the other.
 #pragma once
 
+#include <span>
+
 #include "base/memory.h"
 #include "simd/width.h"
 
@@ -96,27 +98,27 @@ struct UnsetAllocator : HostAllocator<T> {
 template <class T>
 using UnsetArray = std::vector<T, UnsetAllocator<T>>;
 
-// A thread's lane groups of a colour: [begin, end).
+// A thread's lane groups of a colour: [begin, end); those before inner share moving nodes with other threads' groups,
+// of whatever colour.
 struct LanePart {
-    uint32_t begin, end;
+    uint32_t begin, inner, end;
 };
 
 struct ContactLanes {
     explicit ContactLanes(Memory& memory)
-        : group(memory), point(memory), drive(memory), rolling(memory), part(memory) {}
+        : group(memory), point(memory), drive(memory), rolling(memory), part(memory), owner(memory) {}
 
-    UnsetArray<LaneGroup> group;  // of a colour, in the order of place
+    UnsetArray<LaneGroup> group;  // of a colour, in the order of place but for borders
     UnsetArray<LanePoint> point;
     Array<LaneDrive> drive;
     Array<LaneRolling> rolling;
-    uint32_t parts = 1;    // of a colour
-    Array<LanePart> part;  // of each colour, by place
+    uint32_t parts = 1;     // of a colour
+    Array<LanePart> part;   // of each colour, by place
+    Array<uint32_t> owner;  // scratch, by node + 1: its part
 
     bool bounces = false;  // some point has restitution
 
-    uint32_t size_of(uint32_t colour) const {  // its lane groups
-        return part[(colour + 1) * parts - 1].end - part[colour * parts].begin;
-    }
+    std::span<const LanePart> parts_of(uint32_t colour) const { return {&part[colour * parts], parts}; }
 
     LaneView view() { return {group.data(), point.data(), drive.data(), rolling.data(), false}; }
 };

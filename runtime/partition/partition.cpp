@@ -82,7 +82,9 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
 }
 
 void Partition::run(Team& team, std::span<const Part> parts, const Nodes& nodes) {
-    team.for_ranges(static_cast<uint32_t>(parts.size()), 1, [&](uint32_t begin, uint32_t end) {
+    constexpr uint32_t kFewMovers = 128;  // that are through before anybody could help
+    const auto count = static_cast<uint32_t>(parts.size());
+    team.for_ranges(count, graph_.movers.size() < kFewMovers ? count : 1, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) (this->*parts[i])(nodes);
     });
 }

@@ -3,7 +3,7 @@
 
 #include "solvers/row_sweep.h"
 #include "system/assemble.h"
-#include "system/colour_stages.h"
+#include "system/lane_parts.h"
 #include "system/soft_contact.h"
 
 namespace taut {
@@ -36,9 +36,7 @@ public:
           mass_(s_.system.inverse_mass.data()),
           joint_(*s_.settings.joint_kernels),
           contact_(*s_.settings.kernels),
-          soft_(contact_terms(s_.system.h)) {
-        contacts_.shared = s_.team.size() > 1;
-    }
+          soft_(contact_terms(s_.system.h)) {}
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
         if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, velocity_, mass_);
@@ -51,12 +49,15 @@ public:
         if (is_biased(pass) || pass == Pass::relaxed) sweep_rows(s_, first, count, is_biased(pass));
         if (pass == Pass::restitute) bounce_rows(s_, first, count);
     }
-    void contacts(Pass pass, uint32_t begin, uint32_t end) const {
+    // shared: with nodes that other threads' groups move too.
+    void contacts(Pass pass, uint32_t begin, uint32_t end, bool shared) const {
+        LaneView contacts = contacts_;
+        contacts.shared = shared;
         const SweepShift* const shifts = pass == Pass::first_biased ? s_.system.shift.data() : nullptr;
-        if (pass == Pass::warm_start) contact_.warm_start(contacts_, begin, end, velocity_, mass_);
-        if (is_biased(pass)) contact_.sweep_biased(contacts_, begin, end, velocity_, mass_, shifts, soft_);
-        if (pass == Pass::relaxed) contact_.sweep_relaxed(contacts_, begin, end, velocity_, mass_, soft_);
-        if (pass == Pass::restitute) contact_.restitute(contacts_, begin, end, velocity_, mass_, kBounceSpeed, s_.last);
+        if (pass == Pass::warm_start) contact_.warm_start(contacts, begin, end, velocity_, mass_);
+        if (is_biased(pass)) contact_.sweep_biased(contacts, begin, end, velocity_, mass_, shifts, soft_);
+        if (pass == Pass::relaxed) contact_.sweep_relaxed(contacts, begin, end, velocity_, mass_, soft_);
+        if (pass == Pass::restitute) contact_.restitute(contacts, begin, end, velocity_, mass_, kBounceSpeed, s_.last);
     }
 
 private:
@@ -72,9 +73,10 @@ private:
     SweepTerms soft_;
 };
 
-// Passes one after the other, as stages for the team: lane groups of a colour share no moving node, so that threads
-// take them side by side; those of the overflow colour, the last, and rows go one by one. Small colours one after the
-// other are a stage of one thread: another would help less than it takes to wait for it.
+// Passes one after the other, as stages for the team. Lane groups of a colour share no moving node, so that threads
+// take a part each side by side. A thread begins a colour with the groups at the border of its part, once the others
+// are through those of the colours before, and goes on with the ones inside, which only its own groups meet: while it
+// is at those, the news of the border come and go.
 class Program {
 public:
     using Pass = Kernels::Pass;
@@ -94,82 +96,92 @@ public:
     }
     // publishes: moves what was swept to the solution after all of it.
     void run(bool publishes) {
-        constexpr uint32_t kGrain = 256;  // nodes
-        const auto nodes = publishes ? static_cast<uint32_t>(s_.group.nodes.size()) : 0;
-        if (groups_ < kFewGroups) {
-            for (uint32_t i = 0; i < count_; ++i) run(i, 0, stage_[i].count);
-            return s_.team.for_ranges(nodes, kGrain, [&](uint32_t begin, uint32_t end) { publish(s_, begin, end); });
-        }
-        if (nodes > 0) add({What::nodes, {}, 0, nodes}, {nodes, kGrain}, false);
-        s_.team.for_stages({stage_, count_}, [&](uint32_t i, uint32_t begin, uint32_t end) { run(i, begin, end); });
+        if (publishes) add_alone({What::nodes, {}, 0});
+        if (groups_ >= kFewGroups)
+            return s_.team.for_parts({after_, count_}, [&](uint32_t i, uint32_t k) { run(i, k); });
+        for (uint32_t i = 0; i < count_; ++i)
+            for (uint32_t k = 0; k < s_.team.size(); ++k) run(i, k);
     }
 
 private:
-    enum class What : uint8_t { joints, rows, contacts, nodes };
-    struct Piece {
+    enum class What : uint8_t { joints, rows, borders, insides, nodes };
+    struct Stage {
         What what;
         Pass pass;
-        uint32_t first, count;  // of contacts: parts of a colour
+        uint32_t colour;
     };
 
     void add_joints(Pass pass, uint32_t colour) {
-        const auto [first, stage] = colour_stage(s_.system.joints, colour, s_.team.size());
-        if (stage.count > 0) add({What::joints, pass, first, stage.count}, stage, is_small(colour, stage.count));
-        groups_ += stage.count;
+        const auto& begin = s_.system.joints.colour_begin;
+        if (begin[colour + 1] > begin[colour]) add_alone({What::joints, pass, colour});
+        groups_ += begin[colour + 1] - begin[colour];
     }
     void add_rows(Pass pass) {
-        if (s_.system.rows.lasting > s_.system.rows.joints) add({What::rows, pass, 0, 1}, {1, 1}, true);
+        if (s_.system.rows.lasting > s_.system.rows.joints) add_alone({What::rows, pass, 0});
     }
     void add_contacts(Pass pass, bool backward) {
         if (s_.system.contacts.group.empty()) return;
         for (uint32_t k = 0; k < kMaxColours; ++k) add_colour(pass, backward ? kMaxColours - 1 - k : k);
     }
     void add_colour(Pass pass, uint32_t colour) {
-        const ContactLanes& lanes = s_.system.contacts;
-        const uint32_t count = lanes.size_of(colour);
-        if (count > 0)
-            add({What::contacts, pass, colour * lanes.parts, lanes.parts}, {lanes.parts, 1}, is_small(colour, count));
-        groups_ += count;
-    }
-    static bool is_small(uint32_t colour, uint32_t groups) {
-        constexpr uint32_t kSmall = 3;  // lane groups
-        return colour + 1 == kMaxColours || groups <= kSmall;
-    }
-    void add(Piece piece, Team::Stage stage, bool small) {
-        if (!(small && last_is_small_)) {
-            stage_[count_] = small ? Team::Stage{1, 1} : stage;
-            first_piece_[count_++] = pieces_;
+        bool borders = false, insides = false;
+        for (const LanePart& part : s_.system.contacts.parts_of(colour)) {
+            borders = borders || part.inner > part.begin;
+            insides = insides || part.end > part.inner;
+            groups_ += part.end - part.begin;
         }
-        piece_[pieces_++] = piece;
-        first_piece_[count_] = pieces_;
-        last_is_small_ = small;
+        if (borders) {
+            add({What::borders, pass, colour}, through_borders_);
+            through_borders_ = count_;
+        }
+        if (insides) add({What::insides, pass, colour}, through_alone_);
+    }
+    // After all that came before, and before all that comes.
+    void add_alone(Stage stage) {
+        add(stage, count_);
+        through_alone_ = through_borders_ = count_;
+    }
+    void add(Stage stage, uint32_t after) {
+        after_[count_] = std::max(after, count_ > 0 ? after_[count_ - 1] : 0);
+        stage_[count_++] = stage;
     }
 
-    void run(uint32_t i, uint32_t begin, uint32_t end) const {
-        const Piece& first = piece_[first_piece_[i]];
-        if (stage_[i].count > 1 || first.what == What::nodes) return run(first, begin, end);
-        for (uint32_t k = first_piece_[i]; k < first_piece_[i + 1]; ++k) run(piece_[k], 0, piece_[k].count);
+    // The k-th of as many parts as the team has threads.
+    uint32_t first_of(uint32_t count, uint32_t k) const {
+        return static_cast<uint32_t>(uint64_t{count} * k / s_.team.size());
     }
-    void run(const Piece& piece, uint32_t begin, uint32_t end) const {
-        if (piece.what == What::joints) kernels_.joints(piece.pass, piece.first + begin, piece.first + end);
-        if (piece.what == What::rows) kernels_.rows(piece.pass);
-        if (piece.what == What::nodes) publish(s_, begin, end);
-        for (uint32_t k = begin; piece.what == What::contacts && k < end; ++k) {
-            const LanePart& part = s_.system.contacts.part[piece.first + k];
-            kernels_.contacts(piece.pass, part.begin, part.end);
+    void run(uint32_t i, uint32_t k) const {
+        const Stage& stage = stage_[i];
+        const System& system = s_.system;
+        if (stage.what == What::joints) {
+            const uint32_t first = system.joints.colour_begin[stage.colour];
+            const uint32_t count = system.joints.colour_begin[stage.colour + 1] - first;
+            // The overflow colour goes one by one.
+            const bool whole = stage.colour + 1 == kMaxColours;
+            const uint32_t begin = whole ? (k > 0 ? count : 0) : first_of(count, k);
+            kernels_.joints(stage.pass, first + begin, first + (whole ? count : first_of(count, k + 1)));
+        }
+        if (stage.what == What::rows && k == 0) kernels_.rows(stage.pass);
+        if (stage.what == What::nodes) {
+            const auto count = static_cast<uint32_t>(s_.group.nodes.size());
+            publish(s_, first_of(count, k), first_of(count, k + 1));
+        }
+        if (stage.what == What::borders || stage.what == What::insides) {
+            const LanePart& part = system.contacts.parts_of(stage.colour)[k];
+            const bool border = stage.what == What::borders;
+            kernels_.contacts(stage.pass, border ? part.begin : part.inner, border ? part.inner : part.end, border);
         }
     }
 
-    static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (2 * kMaxColours + 1) + 1;
+    static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (3 * kMaxColours + 1) + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;
     Kernels kernels_;
-    Piece piece_[kMost];
-    Team::Stage stage_[kMost];
-    uint32_t first_piece_[kMost + 1] = {};  // of each stage
-    uint32_t count_ = 0, pieces_ = 0, groups_ = 0;
-    bool last_is_small_ = false;
+    Stage stage_[kMost];
+    uint32_t after_[kMost];
+    uint32_t count_ = 0, groups_ = 0;
+    uint32_t through_borders_ = 0, through_alone_ = 0;  // stages up to the last of these
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "state/levers.h"
 #include "system/assemble.h"
-#include "system/colour_stages.h"
+#include "system/lane_parts.h"
 
 namespace taut {
 namespace {
@@ -58,8 +58,6 @@ Movement movement_of(const Nodes& nodes, uint32_t node) {
 // One pair into one lane of a group; its points into the group's first points.
 void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
-    g.a[lane] = pair.a + 1;
-    g.b[lane] = pair.b + 1;
     g.friction[lane] = pair.friction;
     g.turns[lane] = 0;
     g.rolls[0][lane] = pair.rolls_a;
@@ -78,7 +76,6 @@ void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, co
 }
 
 void clear_pair(LaneGroup& g, int lane) {
-    g.a[lane] = g.b[lane] = 0;
     g.rolls[0][lane] = g.rolls[1][lane] = 0;
     g.friction[lane] = g.turns[lane] = g.round[0][lane] = g.round[1][lane] = 0;
     for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
@@ -96,15 +93,11 @@ void prefetch_pair(const LaneGroup* g, int lane, const Pairs& pairs) {
         __builtin_prefetch(reinterpret_cast<const char*>(pair) + at);
 }
 
-struct Special {  // what few groups have
-    bool bounces = false, driven = false, turns = false;
-};
-
-// The pairs that add_colour chose, into their lanes. next: the group after, or null.
-Special fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
+// The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
+// is noted in it and has no room yet. Returns whether a pair bounces.
+bool fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
     constexpr int kAhead = 4;  // pairs
-    Special special;
-    bool round = false;
+    bool bounces = false, driven = false, turns = false, round = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const bool here = lane + kAhead < kLanes;
         prefetch_pair(here ? &g : next, here ? lane + kAhead : lane + kAhead - kLanes, pairs);
@@ -112,9 +105,9 @@ Special fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, con
         if (const Pair* pair = pair_of(g, lane, pairs)) {
             fill_pair(lanes, g, lane, *pair, nodes);
             filled = static_cast<uint32_t>(pair->manifold.count);
-            special.bounces = special.bounces || pair->restitution > 0;
-            special.driven = special.driven || pair->driven;
-            special.turns = special.turns || pair->twists();
+            bounces = bounces || pair->restitution > 0;
+            driven = driven || pair->driven;
+            turns = turns || pair->twists();
             round = round || pair->round_a > 0 || pair->round_b > 0;
         } else {
             clear_pair(g, lane);
@@ -122,85 +115,32 @@ Special fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, con
         for (uint32_t k = filled; k < g.points; ++k) clear_lane(lanes.point[g.first_point + k], lane);
     }
     g.is_round = round;
-    return special;
+    g.first_drive = driven ? 0 : kNoLanes;
+    g.rolling = turns ? 0 : kNoLanes;
+    return bounces;
 }
 
-// Room for what moving surfaces and friction torques of the pairs of a group need, and that.
-void fill_special(ContactLanes& lanes, LaneGroup& g, const Pairs& pairs) {
-    bool driven = false, turns = false;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const Pair* pair = pair_of(g, lane, pairs);
-        driven = driven || (pair && pair->driven);
-        turns = turns || (pair && pair->twists());
-    }
-    if (driven) {
+// Room for what moving surfaces and friction torques of the pairs of a group need.
+void make_special_room(ContactLanes& lanes, LaneGroup& g) {
+    if (g.first_drive != kNoLanes) {
         g.first_drive = static_cast<uint32_t>(lanes.drive.size());
         lanes.drive.resize(lanes.drive.size() + g.points);
     }
-    if (turns) {
+    if (g.rolling != kNoLanes) {
         g.rolling = static_cast<uint32_t>(lanes.rolling.size());
         lanes.rolling.emplace_back();
     }
+}
+
+void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs) {
     for (int lane = 0; lane < kLanes; ++lane) {
         const Pair* pair = pair_of(g, lane, pairs);
-        if (driven) fill_drive(lanes, g, lane, pair);
-        if (turns) fill_rolling(lanes.rolling[g.rolling], lane, pair);
+        if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair);
+        if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair);
     }
 }
 
-uint32_t width_of(uint32_t colour) { return colour + 1 == kMaxColours ? 1 : kLanes; }  // overflow: one pair at a time
-
-// Lane groups of one colour, whose pairs come with the most points first, so that there are few empty places; in the
-// order of the place of their middle pair.
-void add_colour(ContactLanes& lanes, const Pairs& pairs, const Group& group, uint32_t colour) {
-    const uint32_t width = width_of(colour);
-    const uint32_t begin = group.pair_colour_begin[colour], end = group.pair_colour_begin[colour + 1];
-    const uint32_t count = (end - begin + width - 1) / width, first = static_cast<uint32_t>(lanes.group.size());
-    const auto last_of = [&](uint32_t i) { return std::min(begin + (i + 1) * width, end); };
-    const auto place_of = [&](uint32_t i) { return group.pair_place[(begin + i * width + last_of(i)) / 2]; };
-    uint32_t next[kSlices + 1] = {};
-    for (uint32_t i = 0; i < count; ++i) ++next[place_of(i) + 1u];
-    for (uint32_t p = 0; p < kSlices; ++p) next[p + 1] += next[p];
-    lanes.group.resize(first + count);
-    for (uint32_t i = 0; i < count; ++i) {
-        LaneGroup& g = lanes.group[first + next[place_of(i)]++];
-        const uint32_t* item = &group.pairs[begin + i * width];
-        const uint32_t filled = last_of(i) - (begin + i * width);
-        g.points = pairs.active[*item].points;
-        for (uint32_t lane = 0; lane < kLanes; ++lane)
-            g.pair[lane] = lane < filled ? pairs.active[item[lane]].pair : kNone;
-    }
-    for (uint32_t k = 0; k < lanes.parts; ++k)
-        lanes.part.push_back({first + k * count / lanes.parts, first + (k + 1) * count / lanes.parts});
-}
-
-// The points of the groups that a thread works on lie together, colour after colour: processors fetch ahead of what is
-// read, and would take what another thread writes.
-void place_points(ContactLanes& lanes) {
-    uint32_t points = 0;
-    for (uint32_t k = 0; k < lanes.parts; ++k)
-        for (uint32_t i = k; i < lanes.part.size(); i += lanes.parts)
-            for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g) {
-                lanes.group[g].first_point = points;
-                points += lanes.group[g].points;
-            }
-    lanes.point.resize(points);
-}
-
-// A colour's lane groups of at least k points are those that its pairs of as many fill, the last one in part.
-void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) {
-    size_t groups = 0, points = 0;
-    for (uint32_t c = 0; c < kMaxColours; ++c) {
-        const uint32_t width = width_of(c);
-        for (uint32_t i = group.pair_colour_begin[c]; i < group.pair_colour_begin[c + 1]; i += width, ++groups)
-            points += pairs.active[group.pairs[i]].points;
-    }
-    const auto reserve = [](auto& empty, size_t needed) {
-        if (needed > empty.capacity()) empty.reserve(with_slack(needed));
-    };
-    reserve(lanes.group, groups);
-    reserve(lanes.point, points);
-}
+bool is_special(const LaneGroup& g) { return g.first_drive != kNoLanes || g.rolling != kNoLanes; }
 
 constexpr uint32_t kGrain = 16;  // lane groups that a thread takes at a time
 
@@ -209,15 +149,9 @@ constexpr uint32_t kGrain = 16;  // lane groups that a thread takes at a time
 void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
-    lanes.group.clear();
-    lanes.point.clear();
     lanes.drive.clear();
     lanes.rolling.clear();
-    lanes.part.clear();
-    lanes.parts = team.size();
-    reserve_lanes(lanes, pairs, group);
-    for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, pairs, group, c);
-    place_points(lanes);
+    share_out(lanes, pairs, group, system.inverse_mass, team.size());
     const auto prepare = [&](uint32_t g) {
         kernels.prepare(lanes.view(), g, g + 1, system.velocity.data(), system.inverse_mass.data());
     };
@@ -225,10 +159,10 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     for_lane_parts(team, lanes, [&](uint32_t part) {
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
-            const Special has =
-                fill_group(lanes, lanes.group[i], i + 1 < end ? &lanes.group[i + 1] : nullptr, pairs, nodes);
-            if (has.bounces) bounces.store(true, std::memory_order_relaxed);
-            if (has.driven || has.turns)
+            LaneGroup& g = lanes.group[i];
+            if (fill_group(lanes, g, i + 1 < end ? &g + 1 : nullptr, pairs, nodes))
+                bounces.store(true, std::memory_order_relaxed);
+            if (is_special(g))
                 special.store(true, std::memory_order_relaxed);
             else
                 prepare(i);
@@ -236,10 +170,13 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     });
     lanes.bounces = bounces;
     if (!special) return;
-    for (uint32_t i = 0; i < lanes.group.size(); ++i) fill_special(lanes, lanes.group[i], pairs);
+    for (LaneGroup& g : lanes.group) make_special_room(lanes, g);
     for_lane_parts(team, lanes, [&](uint32_t part) {
-        for (uint32_t i = lanes.part[part].begin; i < lanes.part[part].end; ++i)
-            if (lanes.group[i].first_drive != kNoLanes || lanes.group[i].rolling != kNoLanes) prepare(i);
+        for (uint32_t i = lanes.part[part].begin; i < lanes.part[part].end; ++i) {
+            if (!is_special(lanes.group[i])) continue;
+            fill_special(lanes, lanes.group[i], pairs);
+            prepare(i);
+        }
     });
 }
 

@@ -14,14 +14,14 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kSpins = 1000;  // looks before a thread offers its core to others, some 10 to 50 us
+constexpr uint32_t kPatience =
+    20;  // looks before a thread takes a stage of the part of another that is at work, some 1 us
 
-constexpr int kPatience = 20;  // looks before a thread takes chunks of the part of another that is at work, some 1 us
-
-// One look at something that another thread will change soon.
+// Looks at something that another thread will change soon.
 class Spin {
 public:
     void wait() {
-        if (++count_ < kSpins) {
+        if (++looks_ < kSpins) {
 #if defined(__x86_64__) || defined(__i386__)
             _mm_pause();
 #endif
@@ -29,30 +29,16 @@ public:
             std::this_thread::yield();
         }
     }
+    uint32_t looks() const { return looks_; }
 
 private:
-    uint32_t count_ = 0;
+    uint32_t looks_ = 0;
 };
 
 }  // namespace
 
-// How a stage is cut: into chunks that are as long but for one, and parts of as many chunks where there are enough.
-struct Team::Chunks {
-    uint32_t count, number, parts;
-
-    Chunks(uint64_t stage, uint32_t team) : count(static_cast<uint32_t>(stage >> 32)), parts(team) {
-        constexpr uint32_t kMost = 1u << (kChunkBits - 1);
-        const uint32_t grain = std::max(static_cast<uint32_t>(stage), count / kMost + 1);
-        number = count / grain + (count % grain != 0);
-        if (number > parts) number -= number % parts;
-    }
-    uint32_t first(uint32_t part) const { return static_cast<uint32_t>((uint64_t{part} * number + parts - 1) / parts); }
-    uint32_t begin(uint32_t chunk) const { return static_cast<uint32_t>(uint64_t{chunk} * count / number); }
-    uint32_t end(uint32_t chunk) const { return begin(chunk + 1); }
-};
-
 Team::Team(const taut_hooks& hooks, uint32_t threads)
-    : hooks_(hooks), size_(threads), stage_(threads > 1 ? kMaxStages : 0), part_(threads) {
+    : hooks_(hooks), size_(threads), after_(threads > 1 ? kMaxStages : 0), part_(threads) {
     if (hooks_.enqueue_task) return;
     own_.reserve(threads - 1);
     try {
@@ -72,80 +58,84 @@ Team::~Team() {
     for (std::thread& thread : own_) thread.join();
 }
 
-void Team::hand_out(std::span<const Stage> stages, RangeFn run, const void* context) {
+void Team::hand_out(uint32_t stages, std::span<const uint32_t> after, StageFn run, const void* context) {
     call_helpers();
-    const uint64_t program = next_loop_;
-    next_loop_ += stages.size();
-    program_.store(kNone, std::memory_order_release);
+    job_.store(kNone, std::memory_order_release);
     run_.store(run, std::memory_order_release);
     context_.store(context, std::memory_order_release);
-    stage_count_.store(static_cast<uint32_t>(stages.size()), std::memory_order_release);
-    for (size_t i = 0; i < stages.size(); ++i)
-        stage_[i].store(uint64_t{stages[i].count} << 32 | stages[i].grain, std::memory_order_release);
-    before_.store(finished(), std::memory_order_release);
-    program_.store(program, std::memory_order_release);
-    work(program, 0);
+    before_.store(done_, std::memory_order_release);
+    stages_.store(stages, std::memory_order_release);
+    ordered_.store(!after.empty(), std::memory_order_release);
+    for (size_t i = 0; i < after.size(); ++i) after_[i].store(after[i], std::memory_order_release);
+    job_.store(++last_job_, std::memory_order_release);
+    done_ += stages;
+    work(job_out(last_job_), 0);
 }
 
-// Takes chunks of stage after stage. The caller, worker 0, returns when all are finished, a helper when it finds none.
-void Team::work(uint64_t program, uint32_t worker) {
-    const auto is_out = [&] { return program_.load(std::memory_order_acquire) == program; };
-    const RangeFn run = run_.load(std::memory_order_acquire);
-    const void* const context = context_.load(std::memory_order_acquire);
-    const uint32_t stages = stage_count_.load(std::memory_order_acquire);
-    uint64_t before = before_.load(std::memory_order_acquire);  // chunks up to the stage
-    // A part has better stay with the thread that has its data in the cache.
-    const auto be_patient = [&] {
-        Spin spin;
-        for (int i = 0; i < kPatience && finished() < before; ++i) spin.wait();
-    };
-    const auto wait = [&] {
-        for (Spin spin; finished() < before; spin.wait())
-            if (!is_out()) return;
-    };
-    part_[worker].joined.store(program, std::memory_order_release);
-    for (uint32_t i = 0; i < stages; ++i) {
-        const Chunks chunks(stage_[i].load(std::memory_order_acquire), size_);
-        wait();
-        if (!is_out()) return;
-        before += chunks.number;
-        for (uint32_t k = 0, part = worker; k < size_; ++k, part = part + 1 < size_ ? part + 1 : 0) {
-            if (part != worker && part_[part].joined.load(std::memory_order_acquire) == program) {
-                be_patient();
-                if (finished() >= before) break;
-            }
-            uint64_t mine = 0;
-            for (uint32_t chunk; claim(part, chunks, program + i, chunk); ++mine)
-                run(context, i, chunks.begin(chunk), chunks.end(chunk));
-            if (mine == 0) continue;
-            std::atomic<uint64_t>& done = part_[worker].finished;
-            done.store(done.load(std::memory_order_relaxed) + mine, std::memory_order_release);
+Team::Job Team::job_out(uint64_t number) const {
+    return {number,
+            before_.load(std::memory_order_acquire),
+            stages_.load(std::memory_order_acquire),
+            ordered_.load(std::memory_order_acquire),
+            run_.load(std::memory_order_acquire),
+            context_.load(std::memory_order_acquire)};
+}
+
+// Takes stages until all of the job are done.
+void Team::work(Job job, uint32_t worker) {
+    part_[worker].joined.store(job.number, std::memory_order_release);
+    for (Spin spin;;) {
+        if (advance(job, worker)) {
+            spin = {};
+        } else if (all_did(job, job.stages)) {
+            return;
+        } else if (help_others(job, worker, spin.looks() < kPatience)) {
+            spin = {};
+        } else {
+            if (!is_out(job)) return;
+            spin.wait();
         }
     }
-    if (worker == 0) wait();
 }
 
-// Chunks of all programs, at least: each count only grows.
-uint64_t Team::finished() const {
-    uint64_t sum = 0;
-    for (const Part& part : part_) sum += part.finished.load(std::memory_order_acquire);
-    return sum;
-}
-
-// The next chunk of a worker's part of a loop; false: all are taken.
-bool Team::claim(uint32_t part, const Chunks& chunks, uint64_t loop, uint32_t& chunk) {
-    const uint32_t first = chunks.first(part), end = chunks.first(part + 1);
-    if (first == end) return false;
-    std::atomic<uint64_t>& cursor = part_[part].cursor;
-    uint64_t at = cursor.load(std::memory_order_acquire);
-    for (;;) {
-        if (at >> kChunkBits > loop) return false;  // this thread is late
-        chunk = at >> kChunkBits < loop ? first : static_cast<uint32_t>(at & ((1u << kChunkBits) - 1));
-        if (chunk == end) return false;
-        if (cursor.compare_exchange_weak(at, loop << kChunkBits | (chunk + 1), std::memory_order_acq_rel,
-                                         std::memory_order_acquire))
-            return true;
+// Runs the next stage of a part, if that may begin and nobody else did.
+bool Team::advance(Job& job, uint32_t part) {
+    std::atomic<uint64_t>& taken = part_[part].taken;
+    std::atomic<uint64_t>& done = part_[part].done;
+    uint64_t at = taken.load(std::memory_order_acquire);
+    const uint64_t of = at >> kStageBits;
+    if (of > job.number) return false;  // this thread is late
+    const auto stage = of == job.number ? static_cast<uint32_t>(at & ((1u << kStageBits) - 1)) : 0;
+    if (stage >= job.stages) return false;
+    if (job.ordered) {
+        if (done.load(std::memory_order_acquire) != job.before + stage) return false;
+        if (!all_did(job, after_[stage].load(std::memory_order_acquire))) return false;
     }
+    if (!is_out(job)) return false;
+    if (!taken.compare_exchange_strong(at, job.number << kStageBits | (stage + 1), std::memory_order_acq_rel))
+        return false;
+    job.run(job.context, stage, part);
+    done.fetch_add(1, std::memory_order_release);
+    return true;
+}
+
+// A part has better stay with the thread that has its data in the cache.
+bool Team::help_others(Job& job, uint32_t worker, bool patient) {
+    for (uint32_t k = 1; k < size_; ++k) {
+        const uint32_t part = worker + k < size_ ? worker + k : worker + k - size_;
+        const bool at_work = part_[part].joined.load(std::memory_order_acquire) == job.number;
+        if (!(at_work && patient) && advance(job, part)) return true;
+    }
+    return false;
+}
+
+bool Team::all_did(Job& job, uint32_t stages) const {
+    if (stages <= job.known) return true;
+    uint64_t least = UINT64_MAX;
+    for (const Part& part : part_) least = std::min(least, part.done.load(std::memory_order_acquire));
+    if (least < job.before + stages) return false;
+    job.known = static_cast<uint32_t>(least - job.before);
+    return true;
 }
 
 void Team::call_helpers() {
@@ -181,14 +171,15 @@ void Team::rest() {
     if (hooks_.enqueue_task) hooks_.finish_task(token_, hooks_.task_user_data);
 }
 
-// Works on every program until this call for help is over.
+// Works on every job until this call for help is over.
 void Team::help(uint32_t call, uint32_t worker) {
     uint64_t last = kNone;
     for (Spin spin; call_.load(std::memory_order_acquire) == call; spin.wait()) {
-        const uint64_t program = program_.load(std::memory_order_acquire);
-        if (program == kNone || program == last) continue;
-        last = program;
-        work(program, worker);
+        const uint64_t number = job_.load(std::memory_order_acquire);
+        if (number == kNone || number == last) continue;
+        last = number;
+        const Job job = job_out(number);
+        if (is_out(job)) work(job, worker);
         spin = {};
     }
 }

@@ -1,13 +1,14 @@
 // A team of threads for the loops inside a step: the calling thread and helpers, the world's own or the host's, that
 // join while a step runs and sleep between steps.
 //
-// The calling thread hands out loops as chunks and works on them itself; whoever else is there takes chunks too. Each
-// thread begins with chunks of its own part of a loop, the same part in each loop as long, so that what it wrote is
-// still in its cache, and then helps the others. The caller never waits for a helper that has not taken a chunk, so a
-// host whose workers are busy only makes the step slower. What a loop computes may not depend on who runs which chunk:
+// The calling thread hands out a loop in parts, one for each thread, and these in stages; whoever is there takes one
+// stage after the other. Each thread begins with its own part, the same in each loop as long, so that what it wrote is
+// still in its cache, and then helps the others. The caller never waits for a helper that is not at work on a stage, so
+// a host whose workers are busy only makes the step slower. What a loop computes may not depend on who runs what:
 // results follow the scene, not the team.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <span>
@@ -37,45 +38,74 @@ public:
             if (count > 0) run(0u, count);
             return;
         }
-        const Stage stage{count, grain};
-        for_stages({&stage, 1}, [&](uint32_t, uint32_t begin, uint32_t end) { run(begin, end); });
+        const Chunks chunks(count, grain, size_);
+        const auto chunk = [&](uint32_t stage, uint32_t part) {
+            const uint32_t i = part * chunks.stages + stage;
+            if (i < chunks.number) run(chunks.begin(i), chunks.begin(i + 1));
+        };
+        hand_out(chunks.stages, {}, chunk);
     }
 
-    struct Stage {
-        uint32_t count, grain;
-    };
-    static constexpr uint32_t kMaxStages = 512;
-
-    // Loops one after the other: run(stage, begin, end) over ranges of [0, count) of each stage, which begins when the
-    // one before is over. As for_ranges(), but the helpers go from stage to stage by themselves, some tenths of a
-    // microsecond each. At most kMaxStages.
+    // run(stage, part) for each of size() parts, whose stages go one after the other. A stage begins when all parts
+    // have done the first after[stage] stages, at most as many as come before it; after may not fall. In all else as
+    // for_ranges(), but threads go from stage to stage by themselves, some tenths of a microsecond each.
     template <class Run>
-    void for_stages(std::span<const Stage> stages, Run&& run) {
+    void for_parts(std::span<const uint32_t> after, Run&& run) {
         if (size_ == 1) {
-            for (uint32_t i = 0; i < stages.size(); ++i)
-                if (stages[i].count > 0) run(i, 0u, stages[i].count);
+            for (uint32_t stage = 0; stage < after.size(); ++stage) run(stage, 0u);
             return;
         }
-        using Held = std::remove_reference_t<Run>;
-        hand_out(
-            stages,
-            [](const void* context, uint32_t stage, uint32_t begin, uint32_t end) noexcept {
-                (*const_cast<Held*>(static_cast<const Held*>(context)))(stage, begin, end);
-            },
-            std::addressof(run));
+        hand_out(static_cast<uint32_t>(after.size()), after, run);
     }
+    static constexpr uint32_t kMaxStages = 1024;  // of parts that go by after
 
     // Lets the helpers go; the next loop calls them again. At the end of a step.
     void rest();
 
 private:
-    using RangeFn = void (*)(const void* context, uint32_t stage, uint32_t begin, uint32_t end) noexcept;
-    struct Chunks;
+    using StageFn = void (*)(const void* context, uint32_t stage, uint32_t part) noexcept;
 
-    void hand_out(std::span<const Stage> stages, RangeFn run, const void* context);
-    void work(uint64_t program, uint32_t worker);
-    uint64_t finished() const;
-    bool claim(uint32_t part, const Chunks& chunks, uint64_t loop, uint32_t& chunk);
+    // How a loop is cut: into chunks that are as long but for one, as many for each thread where there are enough.
+    struct Chunks {
+        uint32_t count, number, stages;
+
+        Chunks(uint32_t length, uint32_t least, uint32_t parts) : count(length) {
+            constexpr uint32_t kMost = 1u << (kStageBits - 1);
+            const uint32_t grain = std::max(least, count / kMost + 1);
+            number = count / grain + (count % grain != 0);
+            if (number > parts) number -= number % parts;
+            stages = (number + parts - 1) / parts;
+        }
+        uint32_t begin(uint32_t chunk) const { return static_cast<uint32_t>(uint64_t{chunk} * count / number); }
+    };
+
+    // A loop as a worker sees it.
+    struct Job {
+        uint64_t number;
+        uint64_t before;  // stages of each part in all jobs before
+        uint32_t stages;  // of each part
+        bool ordered;     // by after_
+        StageFn run;
+        const void* context;
+        uint32_t known = 0;  // stages that all parts have done, as far as the worker saw
+    };
+
+    template <class Run>
+    void hand_out(uint32_t stages, std::span<const uint32_t> after, Run& run) {
+        hand_out(
+            stages, after,
+            [](const void* context, uint32_t stage, uint32_t part) noexcept {
+                (*const_cast<Run*>(static_cast<const Run*>(context)))(stage, part);
+            },
+            std::addressof(run));
+    }
+    void hand_out(uint32_t stages, std::span<const uint32_t> after, StageFn run, const void* context);
+    void work(Job job, uint32_t worker);
+    bool advance(Job& job, uint32_t part);
+    bool help_others(Job& job, uint32_t worker, bool patient);
+    bool all_did(Job& job, uint32_t stages) const;
+    bool is_out(const Job& job) const { return job_.load(std::memory_order_acquire) == job.number; }
+    Job job_out(uint64_t number) const;
     void call_helpers();
     void keep_off_caller();
     void help(uint32_t call, uint32_t worker);
@@ -89,24 +119,26 @@ private:
     bool called_ = false;    // helpers are there, or on their way
     std::thread::id caller_;
     int caller_core_ = -1;  // where the own threads do not run
-    uint64_t next_loop_ = 1;
+    uint64_t last_job_ = 0;
+    uint64_t done_ = 0;  // stages of each part in all jobs so far
 
-    // The program that is out: the number of its first loop, a stage being a loop; kNone while the rest is written. A
-    // helper that comes late may read a mixture of two programs, but then the number has changed, at which it looks
-    // before it claims anything: stores release and loads acquire for that.
+    // The number of the job that is out; kNone while the rest is written. A helper that comes late may read a mixture
+    // of two jobs, but then the number has changed, at which it looks before it takes a stage: stores release and loads
+    // acquire for that.
     static constexpr uint64_t kNone = 0;
-    static constexpr uint32_t kChunkBits = 20;
-    alignas(64) std::atomic<uint64_t> program_{kNone};  // alone: helpers look at it all the time
-    alignas(64) std::atomic<RangeFn> run_{nullptr};
+    static constexpr uint32_t kStageBits = 20;
+    alignas(64) std::atomic<uint64_t> job_{kNone};  // alone: helpers look at it all the time
+    alignas(64) std::atomic<StageFn> run_{nullptr};
     std::atomic<const void*> context_{nullptr};
-    std::atomic<uint32_t> stage_count_{0};
-    std::vector<std::atomic<uint64_t>> stage_;  // count << 32 | grain
-    std::atomic<uint64_t> before_{0};           // chunks of all programs before
+    std::atomic<uint64_t> before_{0};
+    std::atomic<uint32_t> stages_{0};
+    std::atomic<bool> ordered_{false};
+    std::vector<std::atomic<uint32_t>> after_;
     struct alignas(64) Part {
-        std::atomic<uint64_t> cursor{0};  // loop << kChunkBits | its next chunk; of an earlier loop: none is taken yet
-        // What the worker alone writes: a count that all add to would travel to each of them at each stage.
-        alignas(64) std::atomic<uint64_t> finished{0};  // chunks, of all programs
-        std::atomic<uint64_t> joined{0};                // the last program that it came to
+        std::atomic<uint64_t> taken{0};  // job << kStageBits | its stages that were begun; of an earlier job: none yet
+        // What others look at: stages done in all jobs, and the last job that the part's own worker came to.
+        alignas(64) std::atomic<uint64_t> done{0};
+        std::atomic<uint64_t> joined{0};
     };
     std::vector<Part> part_;  // by worker
 

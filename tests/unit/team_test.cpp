@@ -73,26 +73,62 @@ TEST(Team, LoopsSeeTheOnesBeforeThem) {
     for (uint64_t value : a) ASSERT_EQ(value, 2001u);
 }
 
-// Stages of many lengths, empty ones among them; each index of a stage needs what the stage before wrote everywhere.
-TEST(Team, StagesRunOneAfterTheOther) {
+// after[stage] up to that many stages back, and never falling.
+std::vector<uint32_t> orders(uint32_t stages, uint32_t back) {
+    std::vector<uint32_t> after;
+    for (uint32_t i = 0; i < stages; ++i) {
+        const uint32_t least = after.empty() ? 0 : after.back(), late = i * 7919u % (back + 1);
+        after.push_back(std::max(least, i - std::min(i, late)));
+    }
+    return after;
+}
+
+// Each stage of each part runs once, after the part's own ones before and as many of all parts as it asks for, whose
+// writes it sees.
+TEST(Team, PartsKeepTheirOrder) {
     for (uint32_t threads : {1u, 2u, 3u, 8u}) {
         Team team({}, threads);
         for (int call = 0; call < 40; ++call) {
             const RestAfter rest(team);
-            std::vector<Team::Stage> stages;
-            for (uint32_t i = 0; i < Team::kMaxStages; ++i) stages.push_back({(i * 7919u + 13) % 97, 1 + i % 9});
-            std::vector<std::atomic<uint32_t>> count(stages.size()), early(stages.size());
-            team.for_stages(stages, [&](uint32_t stage, uint32_t begin, uint32_t end) {
-                for (uint32_t before = 0; before < stage; ++before)
-                    if (count[before].load(std::memory_order_relaxed) != stages[before].count) ++early[stage];
-                count[stage].fetch_add(end - begin, std::memory_order_relaxed);
+            const std::vector<uint32_t> after = orders(Team::kMaxStages, static_cast<uint32_t>(call) % 5);
+            std::vector<uint32_t> hits(after.size() * threads), early(threads), out_of_turn(threads);
+            team.for_parts(after, [&](uint32_t stage, uint32_t part) {
+                for (uint32_t k = 0; k < threads; ++k)
+                    if (after[stage] > 0 && hits[(after[stage] - 1) * threads + k] != 1) ++early[part];
+                if (stage > 0 && hits[(stage - 1) * threads + part] != 1) ++out_of_turn[part];
+                ++hits[stage * threads + part];
             });
-            for (size_t i = 0; i < stages.size(); ++i) {
-                ASSERT_EQ(count[i].load(), stages[i].count) << "stage " << i << ", " << threads << " threads";
-                ASSERT_EQ(early[i].load(), 0u) << "stage " << i << ", " << threads << " threads";
+            for (uint32_t count : hits) ASSERT_EQ(count, 1u) << threads << " threads, call " << call;
+            for (uint32_t k = 0; k < threads; ++k) {
+                ASSERT_EQ(early[k], 0u) << "part " << k << " of " << threads << ", call " << call;
+                ASSERT_EQ(out_of_turn[k], 0u) << "part " << k << " of " << threads << ", call " << call;
             }
         }
     }
+}
+
+// Parts that need not wait for each other run on; those that must, do.
+TEST(Team, PartsRunAheadAsFarAsTheyMay) {
+    Team team({}, 2);
+    const RestAfter rest(team);
+    const std::vector<uint32_t> after = {0, 0, 0, 3};
+    std::atomic<uint32_t> begun{0};
+    bool together = false;
+    for (int i = 0; i < 10000 && !together; ++i) {
+        std::atomic<bool> waits{false}, ahead{false};
+        begun = 0;
+        team.for_parts(after, [&](uint32_t stage, uint32_t part) {
+            ++begun;
+            if (stage == 2 && part == 0 && waits) ahead = true;
+            if (stage > 0 || part == 0) return;
+            waits = true;  // in its first stage, until the other part is through its third or a while is over
+            for (int look = 0; look < 100000 && !ahead; ++look) std::atomic_signal_fence(std::memory_order_seq_cst);
+            waits = false;
+        });
+        together = ahead;
+        ASSERT_EQ(begun, 8u);
+    }
+    EXPECT_TRUE(together);
 }
 
 TEST(Team, OthersHelp) {

@@ -1,8 +1,6 @@
-// How threads share out the lane groups of a colour: the same way in each loop, so that what a thread filled in and
-// swept is in its cache when it comes again.
+// Which pairs stand side by side in lanes, and which thread takes them: the same in each loop, so that what a thread
+// filled in and swept is in its cache when it comes again.
 #pragma once
-
-#include <algorithm>
 
 #include "constraints/contact_lanes.h"
 #include "partition/partition.h"
@@ -10,18 +8,9 @@
 
 namespace taut {
 
-// Lane groups [first, first + stage.count).
-struct ColourStage {
-    uint32_t first;
-    Team::Stage stage;
-};
-
-template <class Lanes>
-ColourStage colour_stage(const Lanes& lanes, uint32_t colour, uint32_t threads) {
-    constexpr uint32_t kGrain = 2;  // lane groups, a third of a microsecond each
-    const uint32_t first = lanes.colour_begin[colour], count = lanes.colour_begin[colour + 1] - first;
-    return {first, {count, std::max(kGrain, (count + threads - 1) / threads)}};
-}
+// Lane groups of all colours with their pairs and nodes, cut into as many parts a colour. inverse_mass: by node + 1.
+void share_out(ContactLanes& lanes, const Pairs& pairs, const Group& group, const Array<SweepMass>& inverse_mass,
+               uint32_t parts);
 
 constexpr uint32_t kFewGroups = 16;  // that are done before anybody could help
 
