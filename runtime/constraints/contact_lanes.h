@@ -106,15 +106,16 @@ struct LanePart {
 
 struct ContactLanes {
     explicit ContactLanes(Memory& memory)
-        : group(memory), point(memory), drive(memory), rolling(memory), part(memory), owner(memory) {}
+        : group(memory), point(memory), drive(memory), rolling(memory), part(memory), first_pair(memory), met(memory) {}
 
     UnsetArray<LaneGroup> group;  // of a colour, in the order of place but for borders
     UnsetArray<LanePoint> point;
     Array<LaneDrive> drive;
     Array<LaneRolling> rolling;
-    uint32_t parts = 1;     // of a colour
-    Array<LanePart> part;   // of each colour, by place
-    Array<uint32_t> owner;  // scratch, by node + 1: its part
+    uint32_t parts = 1;          // of a colour
+    Array<LanePart> part;        // of each colour, by place
+    Array<uint32_t> first_pair;  // scratch, of each group: its first in Group::pairs
+    Array<uint8_t> met;          // scratch, of each part by node + 1: 1 where it has groups
 
     bool bounces = false;  // some point has restitution
 

@@ -151,7 +151,7 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     ContactLanes& lanes = system.contacts;
     lanes.drive.clear();
     lanes.rolling.clear();
-    share_out(lanes, pairs, group, system.inverse_mass, team.size());
+    share_out(team, lanes, pairs, group, system.inverse_mass);
     const auto prepare = [&](uint32_t g) {
         kernels.prepare(lanes.view(), g, g + 1, system.velocity.data(), system.inverse_mass.data());
     };

@@ -23,32 +23,22 @@ void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) 
     reserve(lanes.point, points);
 }
 
-void choose_pairs(LaneGroup& g, std::span<const uint32_t> items, const Pairs& pairs) {
-    g.points = pairs.active[items[0]].points;
-    for (uint32_t lane = 0; lane < kLanes; ++lane) {
-        const bool used = lane < items.size();
-        const ActivePair* active = used ? &pairs.active[items[lane]] : nullptr;
-        g.pair[lane] = used ? active->pair : kNone;
-        g.a[lane] = used ? active->a + 1 : 0;
-        g.b[lane] = used ? active->b + 1 : 0;
-    }
-}
-
 // Lane groups of one colour, whose pairs come with the most points first, so that there are few empty places; in the
 // order of the place of their middle pair. A thread takes a stretch of them, of the overflow colour one takes all.
-void add_colour(ContactLanes& lanes, const Pairs& pairs, const Group& group, uint32_t colour) {
+void add_colour(ContactLanes& lanes, const Group& group, uint32_t colour) {
     const uint32_t width = width_of(colour);
     const uint32_t begin = group.pair_colour_begin[colour], end = group.pair_colour_begin[colour + 1];
     const uint32_t count = (end - begin + width - 1) / width, first = static_cast<uint32_t>(lanes.group.size());
-    const auto last_of = [&](uint32_t i) { return std::min(begin + (i + 1) * width, end); };
-    const auto place_of = [&](uint32_t i) { return group.pair_place[(begin + i * width + last_of(i)) / 2]; };
+    const auto place_of = [&](uint32_t i) {
+        const uint32_t from = begin + i * width, to = std::min(from + width, end);
+        return group.pair_place[(from + to) / 2];
+    };
     uint32_t next[kSlices + 1] = {};
     for (uint32_t i = 0; i < count; ++i) ++next[place_of(i) + 1u];
     for (uint32_t p = 0; p < kSlices; ++p) next[p + 1] += next[p];
     lanes.group.resize(first + count);
-    for (uint32_t i = 0; i < count; ++i)
-        choose_pairs(lanes.group[first + next[place_of(i)]++],
-                     {&group.pairs[begin + i * width], &group.pairs[last_of(i) - 1] + 1}, pairs);
+    lanes.first_pair.resize(first + count);
+    for (uint32_t i = 0; i < count; ++i) lanes.first_pair[first + next[place_of(i)]++] = begin + i * width;
     const uint32_t parts = colour + 1 == kMaxColours ? 1 : lanes.parts;
     for (uint32_t k = 0; k < lanes.parts; ++k) {
         const auto from = [&](uint32_t part) { return first + std::min(part, parts) * count / parts; };
@@ -56,49 +46,67 @@ void add_colour(ContactLanes& lanes, const Pairs& pairs, const Group& group, uin
     }
 }
 
-// Which part a node's lane groups are in, or that several parts meet at it.
-class Owners {
+// The pairs of a lane group, from one on in the order of the group.
+void choose_pairs(LaneGroup& g, const Pairs& pairs, const Group& group, uint32_t colour, uint32_t from) {
+    const uint32_t filled = std::min(width_of(colour), group.pair_colour_begin[colour + 1] - from);
+    g.points = pairs.active[group.pairs[from]].points;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        const ActivePair* const active = lane < filled ? &pairs.active[group.pairs[from + lane]] : nullptr;
+        g.pair[lane] = active ? active->pair : kNone;
+        g.a[lane] = active ? active->a + 1 : 0;
+        g.b[lane] = active ? active->b + 1 : 0;
+    }
+}
+
+// Which parts have lane groups at which nodes.
+class Meetings {
 public:
-    Owners(Array<uint32_t>& owner, const Array<SweepMass>& inverse_mass) : owner_(owner), inverse_mass_(inverse_mass) {
-        owner_.assign(inverse_mass.size(), kNone);
+    Meetings(ContactLanes& lanes, const Array<SweepMass>& inverse_mass)
+        : lanes_(lanes), met_(lanes.met), inverse_mass_(inverse_mass), nodes_(inverse_mass.size()) {
+        met_.resize(nodes_ * lanes.parts);
     }
-    void note(const LaneGroup& g, uint32_t part) {
-        for (const auto& side : {g.a, g.b})
-            for (uint32_t lane = 0; lane < kLanes; ++lane) {
-                uint32_t& owner = owner_[side[lane]];
-                owner = owner == kNone || owner == part ? part : kSeveral;
-            }
+    void note(uint32_t part) {
+        uint8_t* const met = &met_[nodes_ * part];
+        std::fill_n(met, nodes_, uint8_t{0});
+        for (uint32_t i = part; i < lanes_.part.size(); i += lanes_.parts)
+            for (uint32_t g = lanes_.part[i].begin; g < lanes_.part[i].end; ++g)
+                for (uint32_t lane = 0; lane < kLanes; ++lane)
+                    met[lanes_.group[g].a[lane]] = met[lanes_.group[g].b[lane]] = 1;
     }
+    // In each part of a colour the groups at the border come first.
+    void put_borders_first(uint32_t part) {
+        for (uint32_t i = part; i < lanes_.part.size(); i += lanes_.parts) {
+            LanePart& of = lanes_.part[i];
+            for (uint32_t g = of.begin; g < of.end; ++g)
+                if (is_border(lanes_.group[g])) swap_choice(lanes_.group[g], lanes_.group[of.inner++]);
+        }
+    }
+
+private:
     // Whether a node that moves is of several parts.
     bool is_border(const LaneGroup& g) const {
         for (const auto& side : {g.a, g.b})
             for (uint32_t lane = 0; lane < kLanes; ++lane)
-                if (owner_[side[lane]] == kSeveral && inverse_mass_[side[lane]].inv_mass > 0) return true;
+                if (parts_at(side[lane]) > 1 && inverse_mass_[side[lane]].inv_mass > 0) return true;
         return false;
     }
+    uint32_t parts_at(uint32_t node) const {
+        uint32_t count = 0;
+        for (uint32_t part = 0; part < lanes_.parts; ++part) count += met_[nodes_ * part + node];
+        return count;
+    }
+    static void swap_choice(LaneGroup& one, LaneGroup& other) {
+        std::swap(one.points, other.points);
+        std::swap(one.pair, other.pair);
+        std::swap(one.a, other.a);
+        std::swap(one.b, other.b);
+    }
 
-private:
-    static constexpr uint32_t kSeveral = kNone - 1;
-    Array<uint32_t>& owner_;
+    ContactLanes& lanes_;
+    Array<uint8_t>& met_;
     const Array<SweepMass>& inverse_mass_;
+    size_t nodes_;
 };
-
-void swap_choice(LaneGroup& one, LaneGroup& other) {
-    std::swap(one.points, other.points);
-    std::swap(one.pair, other.pair);
-    std::swap(one.a, other.a);
-    std::swap(one.b, other.b);
-}
-
-// In each part the groups at its border come first.
-void put_borders_first(ContactLanes& lanes, const Array<SweepMass>& inverse_mass) {
-    Owners owners(lanes.owner, inverse_mass);
-    for (uint32_t i = 0; i < lanes.part.size(); ++i)
-        for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g) owners.note(lanes.group[g], i % lanes.parts);
-    for (LanePart& part : lanes.part)
-        for (uint32_t g = part.begin; g < part.end; ++g)
-            if (owners.is_border(lanes.group[g])) swap_choice(lanes.group[g], lanes.group[part.inner++]);
-}
 
 // The points of the groups that a thread works on lie together, colour after colour: processors fetch ahead of what is
 // read, and would take what another thread writes.
@@ -115,15 +123,24 @@ void place_points(ContactLanes& lanes) {
 
 }  // namespace
 
-void share_out(ContactLanes& lanes, const Pairs& pairs, const Group& group, const Array<SweepMass>& inverse_mass,
-               uint32_t parts) {
+void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group,
+               const Array<SweepMass>& inverse_mass) {
     lanes.group.clear();
     lanes.point.clear();
     lanes.part.clear();
-    lanes.parts = parts;
+    lanes.parts = team.size();
     reserve_lanes(lanes, pairs, group);
-    for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, pairs, group, c);
-    if (parts > 1) put_borders_first(lanes, inverse_mass);
+    lanes.first_pair.clear();
+    for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c);
+    for_lane_parts(team, lanes, [&](uint32_t i) {
+        for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)
+            choose_pairs(lanes.group[g], pairs, group, i / lanes.parts, lanes.first_pair[g]);
+    });
+    if (lanes.parts > 1 && !lanes.group.empty()) {
+        Meetings meetings(lanes, inverse_mass);
+        for_parts_of(team, lanes, [&](uint32_t part) { meetings.note(part); });
+        for_parts_of(team, lanes, [&](uint32_t part) { meetings.put_borders_first(part); });
+    }
     place_points(lanes);
 }
 

@@ -127,6 +127,34 @@ public:
         ok(taut_world_add_sphere(handle, &d, &out));
         return out;
     }
+    taut_shape cylinder(double radius, double half_length) const {
+        taut_cylinder_def d;
+        taut_cylinder_def_init(&d);
+        d.radius = static_cast<float>(radius);
+        d.half_length = static_cast<float>(half_length);
+        taut_shape out{};
+        ok(taut_world_add_cylinder(handle, &d, &out));
+        return out;
+    }
+    taut_shape cone(double radius, double half_length) const {
+        taut_cone_def d;
+        taut_cone_def_init(&d);
+        d.radius = static_cast<float>(radius);
+        d.half_length = static_cast<float>(half_length);
+        taut_shape out{};
+        ok(taut_world_add_cone(handle, &d, &out));
+        return out;
+    }
+    taut_shape tapered_capsule(double bottom, double top, double half_length) const {
+        taut_tapered_capsule_def d;
+        taut_tapered_capsule_def_init(&d);
+        d.bottom_radius = static_cast<float>(bottom);
+        d.top_radius = static_cast<float>(top);
+        d.half_length = static_cast<float>(half_length);
+        taut_shape out{};
+        ok(taut_world_add_tapered_capsule(handle, &d, &out));
+        return out;
+    }
     taut_shape plane(const Vec& normal = {0, 1, 0}) const {
         taut_plane_def d;
         taut_plane_def_init(&d);

@@ -8,50 +8,19 @@ namespace {
 
 using namespace lab;
 
-taut_shape cylinder(const World& world, double radius, double half_length) {
-    taut_cylinder_def d;
-    taut_cylinder_def_init(&d);
-    d.radius = static_cast<float>(radius);
-    d.half_length = static_cast<float>(half_length);
-    taut_shape out{};
-    ok(taut_world_add_cylinder(world.handle, &d, &out));
-    return out;
-}
-
-taut_shape cone(const World& world, double radius, double half_length) {
-    taut_cone_def d;
-    taut_cone_def_init(&d);
-    d.radius = static_cast<float>(radius);
-    d.half_length = static_cast<float>(half_length);
-    taut_shape out{};
-    ok(taut_world_add_cone(world.handle, &d, &out));
-    return out;
-}
-
-taut_shape capsule(const World& world, double bottom, double top, double half_length) {
-    taut_tapered_capsule_def d;
-    taut_tapered_capsule_def_init(&d);
-    d.bottom_radius = static_cast<float>(bottom);
-    d.top_radius = static_cast<float>(top);
-    d.half_length = static_cast<float>(half_length);
-    taut_shape out{};
-    ok(taut_world_add_tapered_capsule(world.handle, &d, &out));
-    return out;
-}
-
 struct Rocker {
     const char* name;
     taut_shape (*make)(const World&);
 };
 
 const Rocker kRockers[] = {
-    {"cone", [](const World& w) { return cone(w, 0.25, 0.22); }},
-    {"disc", [](const World& w) { return cylinder(w, 0.28, 0.05); }},
-    {"cylinder", [](const World& w) { return cylinder(w, 0.22, 0.18); }},
-    {"rod", [](const World& w) { return cylinder(w, 0.1, 0.3); }},
-    {"coin", [](const World& w) { return cylinder(w, 0.1, 0.01); }},
-    {"capsule", [](const World& w) { return capsule(w, 0.13, 0.13, 0.17); }},
-    {"tapered capsule", [](const World& w) { return capsule(w, 0.2, 0.1, 0.16); }},
+    {"cone", [](const World& w) { return w.cone(0.25, 0.22); }},
+    {"disc", [](const World& w) { return w.cylinder(0.28, 0.05); }},
+    {"cylinder", [](const World& w) { return w.cylinder(0.22, 0.18); }},
+    {"rod", [](const World& w) { return w.cylinder(0.1, 0.3); }},
+    {"coin", [](const World& w) { return w.cylinder(0.1, 0.01); }},
+    {"capsule", [](const World& w) { return w.tapered_capsule(0.13, 0.13, 0.17); }},
+    {"tapered capsule", [](const World& w) { return w.tapered_capsule(0.2, 0.1, 0.16); }},
 };
 
 void add_static(const World& world, taut_shape shape, const Vec& position = {}, const Quat& rotation = {}) {
@@ -83,7 +52,7 @@ const Support kSupports[] = {
      }},
     {"logs",  // side by side
      [](const World& w) {
-         for (double x : {-0.2, 0.2}) add_static(w, cylinder(w, 0.2, 1), {x, 0, 0}, Quat::turn({1, 0, 0}, kPi / 2));
+         for (double x : {-0.2, 0.2}) add_static(w, w.cylinder(0.2, 1), {x, 0, 0}, Quat::turn({1, 0, 0}, kPi / 2));
          add_static(w, w.plane(), {0, -1, 0});
      }},
 };

@@ -5,26 +5,6 @@ namespace {
 
 using namespace lab;
 
-taut_shape cylinder(const World& world, double radius, double half_length) {
-    taut_cylinder_def d;
-    taut_cylinder_def_init(&d);
-    d.radius = static_cast<float>(radius);
-    d.half_length = static_cast<float>(half_length);
-    taut_shape out{};
-    ok(taut_world_add_cylinder(world.handle, &d, &out));
-    return out;
-}
-
-taut_shape cone(const World& world, double radius, double half_length) {
-    taut_cone_def d;
-    taut_cone_def_init(&d);
-    d.radius = static_cast<float>(radius);
-    d.half_length = static_cast<float>(half_length);
-    taut_shape out{};
-    ok(taut_world_add_cone(world.handle, &d, &out));
-    return out;
-}
-
 enum class Ground { plane, box };
 
 void add_slope(const World& world, Ground ground, double angle) {
@@ -49,7 +29,7 @@ TEST_P(OnGround, CylinderRollsDownAsItsInertiaSays) {
     const World world;
     add_slope(world, GetParam(), kAngle);
     const Vec normal = Quat::turn({0, 0, 1}, -kAngle).rotate({0, 1, 0});
-    const taut_body body = world.add({.shape = cylinder(world, kRadius, 0.4),
+    const taut_body body = world.add({.shape = world.cylinder(kRadius, 0.4),
                                       .position = kRadius * normal,
                                       .rotation = Quat::turn({1, 0, 0}, kPi / 2),
                                       .friction = 1});
@@ -76,12 +56,12 @@ TEST_P(OnGround, WhatStandsStaysWhereItIs) {
     const World world;
     add_slope(world, GetParam(), 0);
     const std::vector<taut_body> bodies = {
-        world.add({.shape = cylinder(world, 0.2, 0.6), .position = {-2, 0.6, 0}}),
-        world.add({.shape = cylinder(world, 0.5, 0.03), .position = {0, 0.03, 0}}),
-        world.add({.shape = cone(world, 0.3, 0.4), .position = {2, 0.4, 0}}),
-        world.add({.shape = cylinder(world, 0.3, 0.3), .position = {4, 0.3, 0}}),
-        world.add({.shape = cylinder(world, 0.3, 0.3), .position = {4.05, 0.9, 0.02}}),  // on the last, cap to cap
-        world.add({.shape = cylinder(world, 0.2, 0.3), .position = {4.1, 1.5, 0}}),
+        world.add({.shape = world.cylinder(0.2, 0.6), .position = {-2, 0.6, 0}}),
+        world.add({.shape = world.cylinder(0.5, 0.03), .position = {0, 0.03, 0}}),
+        world.add({.shape = world.cone(0.3, 0.4), .position = {2, 0.4, 0}}),
+        world.add({.shape = world.cylinder(0.3, 0.3), .position = {4, 0.3, 0}}),
+        world.add({.shape = world.cylinder(0.3, 0.3), .position = {4.05, 0.9, 0.02}}),  // on the last, cap to cap
+        world.add({.shape = world.cylinder(0.2, 0.3), .position = {4.1, 1.5, 0}}),
     };
     std::vector<BodyState> start;
     for (const taut_body body : bodies) start.push_back(state(body));
@@ -99,7 +79,7 @@ TEST_P(OnGround, TippedCylinderFallsBackOntoItsCap) {
     const World world;
     add_slope(world, GetParam(), 0);
     const taut_body body = world.add(
-        {.shape = cylinder(world, 0.3, 0.3), .position = {0, 0.42, 0}, .rotation = Quat::turn({1, 0, 0.4}, 0.35)});
+        {.shape = world.cylinder(0.3, 0.3), .position = {0, 0.42, 0}, .rotation = Quat::turn({1, 0, 0.4}, 0.35)});
     world.step(300);
     EXPECT_GT(state(body).rotation.rotate({0, 1, 0}).y, 0.9999);
     EXPECT_LT(norm(velocity(body)), 0.003);
@@ -113,7 +93,7 @@ TEST_P(OnGround, ConeLiesOnItsSide) {
     add_slope(world, GetParam(), 0);
     // The side's normal (2 h, r) turned to straight down.
     const double turn = std::atan2(kRadius, 2 * kHalf);
-    const taut_body body = world.add({.shape = cone(world, kRadius, kHalf),
+    const taut_body body = world.add({.shape = world.cone(kRadius, kHalf),
                                       .position = {0, 0.3, 0},
                                       .rotation = Quat::turn({0, 0, 1}, -kPi / 2 - turn)});
     world.step(240);
