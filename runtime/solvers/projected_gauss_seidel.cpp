@@ -76,12 +76,13 @@ private:
 // Passes one after the other, as stages for the team. Lane groups of a colour share no moving node, so that threads
 // take a part each side by side. A thread begins a colour with the groups at the border of its part, once the others
 // are through those of the colours before, and goes on with the ones inside, which only its own groups meet: while it
-// is at those, the news of the border come and go.
+// is at those, the news of the border come and go. Small colours one after the other, rows and the overflow colour are
+// for one thread: another would help less than it takes to wait for it.
 class Program {
 public:
     using Pass = Kernels::Pass;
 
-    explicit Program(Substep& s) : s_(s), kernels_(s) {}
+    explicit Program(Substep& s) : s_(s), kernels_(s) { first_piece_[0] = 0; }
 
     // Joints, rows, then contacts, colour by colour, backward if asked.
     void add(Pass pass, bool backward = false) {
@@ -98,14 +99,13 @@ public:
     void run(bool publishes) {
         if (publishes) add_alone({What::nodes, {}, 0});
         if (groups_ >= kFewGroups)
-            return s_.team.for_parts({after_, count_}, [&](uint32_t i, uint32_t k) { run(i, k); });
-        for (uint32_t i = 0; i < count_; ++i)
-            for (uint32_t k = 0; k < s_.team.size(); ++k) run(i, k);
+            return s_.team.for_parts({after_, count_}, [&](uint32_t i, uint32_t part) { run_stage(i, part); });
+        for (uint32_t i = 0; i < pieces_; ++i) run_whole(piece_[i]);
     }
 
 private:
-    enum class What : uint8_t { joints, rows, borders, insides, nodes };
-    struct Stage {
+    enum class What : uint8_t { joints, rows, contacts, borders, insides, nodes };
+    struct Piece {
         What what;
         Pass pass;
         uint32_t colour;
@@ -113,64 +113,81 @@ private:
 
     void add_joints(Pass pass, uint32_t colour) {
         const auto& begin = s_.system.joints.colour_begin;
-        if (begin[colour + 1] > begin[colour]) add_alone({What::joints, pass, colour});
-        groups_ += begin[colour + 1] - begin[colour];
+        const uint32_t count = begin[colour + 1] - begin[colour];
+        if (count == 0) return;
+        groups_ += count;
+        if (is_small(colour, count)) return add_single({What::joints, pass, colour});
+        add_alone({What::joints, pass, colour});
     }
     void add_rows(Pass pass) {
-        if (s_.system.rows.lasting > s_.system.rows.joints) add_alone({What::rows, pass, 0});
+        if (s_.system.rows.lasting > s_.system.rows.joints) add_single({What::rows, pass, 0});
     }
     void add_contacts(Pass pass, bool backward) {
         if (s_.system.contacts.group.empty()) return;
         for (uint32_t k = 0; k < kMaxColours; ++k) add_colour(pass, backward ? kMaxColours - 1 - k : k);
     }
     void add_colour(Pass pass, uint32_t colour) {
-        bool borders = false, insides = false;
+        uint32_t borders = 0, insides = 0;
         for (const LanePart& part : s_.system.contacts.parts_of(colour)) {
-            borders = borders || part.inner > part.begin;
-            insides = insides || part.end > part.inner;
-            groups_ += part.end - part.begin;
+            borders += part.inner - part.begin;
+            insides += part.end - part.inner;
         }
-        if (borders) {
-            add({What::borders, pass, colour}, through_borders_);
+        if (borders + insides == 0) return;
+        groups_ += borders + insides;
+        if (is_small(colour, borders + insides)) return add_single({What::contacts, pass, colour});
+        if (borders > 0) {
+            add({What::borders, pass, colour}, through_borders_, false);
             through_borders_ = count_;
         }
-        if (insides) add({What::insides, pass, colour}, through_alone_);
+        if (insides > 0) add({What::insides, pass, colour}, through_alone_, false);
+    }
+    static bool is_small(uint32_t colour, uint32_t groups) {
+        constexpr uint32_t kSmall = 3;  // lane groups
+        return colour + 1 == kMaxColours || groups <= kSmall;
     }
     // After all that came before, and before all that comes.
-    void add_alone(Stage stage) {
-        add(stage, count_);
+    void add_alone(Piece piece, bool single = false) {
+        add(piece, count_, single);
         through_alone_ = through_borders_ = count_;
     }
-    void add(Stage stage, uint32_t after) {
-        after_[count_] = std::max(after, count_ > 0 ? after_[count_ - 1] : 0);
-        stage_[count_++] = stage;
+    void add_single(Piece piece) {
+        if (count_ == 0 || !single_[count_ - 1]) return add_alone(piece, true);
+        piece_[pieces_++] = piece;
+        first_piece_[count_] = pieces_;
+    }
+    void add(Piece piece, uint32_t after, bool single) {
+        after_[count_] = count_ > 0 ? std::max(after, after_[count_ - 1]) : 0;
+        single_[count_] = single;
+        piece_[pieces_++] = piece;
+        first_piece_[++count_] = pieces_;
     }
 
-    // The k-th of as many parts as the team has threads.
-    uint32_t first_of(uint32_t count, uint32_t k) const {
-        return static_cast<uint32_t>(uint64_t{count} * k / s_.team.size());
+    void run_stage(uint32_t i, uint32_t part) const {
+        if (!single_[i]) return run(piece_[first_piece_[i]], part);
+        for (uint32_t k = first_piece_[i]; part == 0 && k < first_piece_[i + 1]; ++k) run_whole(piece_[k]);
     }
-    void run(uint32_t i, uint32_t k) const {
-        const Stage& stage = stage_[i];
+    void run_whole(const Piece& piece) const {
+        for (uint32_t part = 0; part < s_.team.size(); ++part) run(piece, part);
+    }
+    void run(const Piece& piece, uint32_t part) const {
         const System& system = s_.system;
-        if (stage.what == What::joints) {
-            const uint32_t first = system.joints.colour_begin[stage.colour];
-            const uint32_t count = system.joints.colour_begin[stage.colour + 1] - first;
-            // The overflow colour goes one by one.
-            const bool whole = stage.colour + 1 == kMaxColours;
-            const uint32_t begin = whole ? (k > 0 ? count : 0) : first_of(count, k);
-            kernels_.joints(stage.pass, first + begin, first + (whole ? count : first_of(count, k + 1)));
-        }
-        if (stage.what == What::rows && k == 0) kernels_.rows(stage.pass);
-        if (stage.what == What::nodes) {
+        if (piece.what == What::rows) {
+            if (part == 0) kernels_.rows(piece.pass);
+        } else if (piece.what == What::nodes) {
             const auto count = static_cast<uint32_t>(s_.group.nodes.size());
-            publish(s_, first_of(count, k), first_of(count, k + 1));
+            publish(s_, begin_of(part, count), begin_of(part + 1, count));
+        } else if (piece.what == What::joints) {
+            const uint32_t first = system.joints.colour_begin[piece.colour];
+            const uint32_t count = system.joints.colour_begin[piece.colour + 1] - first;
+            kernels_.joints(piece.pass, first + begin_of(part, count), first + begin_of(part + 1, count));
+        } else {
+            const LanePart& lanes = system.contacts.parts_of(piece.colour)[part];
+            const bool inside = piece.what == What::insides, border = piece.what == What::borders;
+            kernels_.contacts(piece.pass, inside ? lanes.inner : lanes.begin, border ? lanes.inner : lanes.end, border);
         }
-        if (stage.what == What::borders || stage.what == What::insides) {
-            const LanePart& part = system.contacts.parts_of(stage.colour)[k];
-            const bool border = stage.what == What::borders;
-            kernels_.contacts(stage.pass, border ? part.begin : part.inner, border ? part.inner : part.end, border);
-        }
+    }
+    uint32_t begin_of(uint32_t part, uint32_t count) const {
+        return static_cast<uint32_t>(uint64_t{count} * part / s_.team.size());
     }
 
     static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (3 * kMaxColours + 1) + 1;
@@ -178,9 +195,11 @@ private:
 
     Substep& s_;
     Kernels kernels_;
-    Stage stage_[kMost];
-    uint32_t after_[kMost];
-    uint32_t count_ = 0, groups_ = 0;
+    Piece piece_[kMost];
+    uint32_t first_piece_[kMost + 1];  // of each stage
+    uint32_t after_[kMost];            // stages that all parts did before each
+    bool single_[kMost];               // for one thread
+    uint32_t pieces_ = 0, count_ = 0, groups_ = 0;
     uint32_t through_borders_ = 0, through_alone_ = 0;  // stages up to the last of these
 };
 

@@ -78,22 +78,22 @@ public:
         for (uint32_t i = part; i < lanes_.part.size(); i += lanes_.parts) {
             LanePart& of = lanes_.part[i];
             for (uint32_t g = of.begin; g < of.end; ++g)
-                if (is_border(lanes_.group[g])) swap_choice(lanes_.group[g], lanes_.group[of.inner++]);
+                if (is_border(lanes_.group[g], part)) swap_choice(lanes_.group[g], lanes_.group[of.inner++]);
         }
     }
 
 private:
-    // Whether a node that moves is of several parts.
-    bool is_border(const LaneGroup& g) const {
+    // Whether a node that moves is of other parts too.
+    bool is_border(const LaneGroup& g, uint32_t part) const {
         for (const auto& side : {g.a, g.b})
             for (uint32_t lane = 0; lane < kLanes; ++lane)
-                if (parts_at(side[lane]) > 1 && inverse_mass_[side[lane]].inv_mass > 0) return true;
+                if (others_meet(side[lane], part) && inverse_mass_[side[lane]].inv_mass > 0) return true;
         return false;
     }
-    uint32_t parts_at(uint32_t node) const {
-        uint32_t count = 0;
-        for (uint32_t part = 0; part < lanes_.parts; ++part) count += met_[nodes_ * part + node];
-        return count;
+    bool others_meet(uint32_t node, uint32_t part) const {
+        for (uint32_t other = 0; other < lanes_.parts; ++other)
+            if (other != part && met_[nodes_ * other + node]) return true;
+        return false;
     }
     static void swap_choice(LaneGroup& one, LaneGroup& other) {
         std::swap(one.points, other.points);
@@ -132,15 +132,18 @@ void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group&
     reserve_lanes(lanes, pairs, group);
     lanes.first_pair.clear();
     for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c);
-    for_lane_parts(team, lanes, [&](uint32_t i) {
-        for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)
-            choose_pairs(lanes.group[g], pairs, group, i / lanes.parts, lanes.first_pair[g]);
+    Meetings meetings(lanes, inverse_mass);
+    const auto choose = [&](uint32_t part) {
+        for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts)
+            for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)
+                choose_pairs(lanes.group[g], pairs, group, i / lanes.parts, lanes.first_pair[g]);
+        if (lanes.parts > 1) meetings.note(part);
+    };
+    constexpr uint32_t kAfter[] = {0, 1};  // borders once all have noted
+    for_parts(team, lanes, {kAfter, lanes.parts > 1 ? 2u : 1u}, [&](uint32_t stage, uint32_t part) {
+        if (stage == 0) return choose(part);
+        meetings.put_borders_first(part);
     });
-    if (lanes.parts > 1 && !lanes.group.empty()) {
-        Meetings meetings(lanes, inverse_mass);
-        for_parts_of(team, lanes, [&](uint32_t part) { meetings.note(part); });
-        for_parts_of(team, lanes, [&](uint32_t part) { meetings.put_borders_first(part); });
-    }
     place_points(lanes);
 }
 

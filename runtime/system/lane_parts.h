@@ -15,21 +15,20 @@ void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group&
 
 constexpr uint32_t kFewGroups = 16;  // that are done before anybody could help
 
-// act(k) for each of lanes.parts, in any order.
-template <class Act>
-void for_parts_of(Team& team, const ContactLanes& lanes, Act&& act) {
-    const auto act_on = [&](uint32_t begin, uint32_t end) {
-        for (uint32_t k = begin; k < end; ++k) act(k);
-    };
-    if (lanes.group.size() < kFewGroups) return act_on(0, lanes.parts);
-    team.for_ranges(lanes.parts, 1, act_on);
+// Team::for_parts(), but for few lane groups by the caller.
+template <class Run>
+void for_parts(Team& team, const ContactLanes& lanes, std::span<const uint32_t> after, Run&& run) {
+    if (lanes.group.size() >= kFewGroups) return team.for_parts(after, run);
+    for (uint32_t stage = 0; stage < after.size(); ++stage)
+        for (uint32_t part = 0; part < lanes.parts; ++part) run(stage, part);
 }
 
-// act(part) over the parts of all colours, in any order: those of a thread one after the other.
+// act(i) over the parts of all colours, in any order: those of a thread one after the other.
 template <class Act>
 void for_lane_parts(Team& team, const ContactLanes& lanes, Act&& act) {
-    for_parts_of(team, lanes, [&](uint32_t k) {
-        for (uint32_t i = k; i < lanes.part.size(); i += lanes.parts) act(i);
+    constexpr uint32_t kAtOnce[] = {0};
+    for_parts(team, lanes, kAtOnce, [&](uint32_t, uint32_t part) {
+        for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts) act(i);
     });
 }
 

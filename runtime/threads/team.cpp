@@ -84,12 +84,14 @@ Team::Job Team::job_out(uint64_t number) const {
 // Takes stages until all of the job are done.
 void Team::work(Job job, uint32_t worker) {
     part_[worker].joined.store(job.number, std::memory_order_release);
+    uint32_t patience = kPatience;  // looks; who needed help once may be off its core for long
     for (Spin spin;;) {
         if (advance(job, worker)) {
             spin = {};
         } else if (all_did(job, job.stages)) {
             return;
-        } else if (help_others(job, worker, spin.looks() < kPatience)) {
+        } else if (help_others(job, worker, spin.looks() < patience)) {
+            patience /= 2;
             spin = {};
         } else {
             if (!is_out(job)) return;
@@ -98,25 +100,38 @@ void Team::work(Job job, uint32_t worker) {
     }
 }
 
-// Runs the next stage of a part, if that may begin and nobody else did.
+// Runs the next stage of a part, if that may begin and nobody else did; of a loop without order all that are left.
 bool Team::advance(Job& job, uint32_t part) {
-    std::atomic<uint64_t>& taken = part_[part].taken;
     std::atomic<uint64_t>& done = part_[part].done;
+    uint32_t stage = 0;
+    if (!take(job, part, stage)) return false;
+    if (job.ordered) {  // nobody else writes: a store need not wait for those that look
+        job.run(job.context, stage, part);
+        done.store(job.before + stage + 1, std::memory_order_release);
+        return true;
+    }
+    uint64_t ran = 0;
+    do {
+        job.run(job.context, stage, part);
+        ++ran;
+    } while (take(job, part, stage));
+    done.fetch_add(ran, std::memory_order_release);
+    return true;
+}
+
+bool Team::take(Job& job, uint32_t part, uint32_t& stage) {
+    std::atomic<uint64_t>& taken = part_[part].taken;
     uint64_t at = taken.load(std::memory_order_acquire);
     const uint64_t of = at >> kStageBits;
     if (of > job.number) return false;  // this thread is late
-    const auto stage = of == job.number ? static_cast<uint32_t>(at & ((1u << kStageBits) - 1)) : 0;
+    stage = of == job.number ? static_cast<uint32_t>(at & ((1u << kStageBits) - 1)) : 0;
     if (stage >= job.stages) return false;
     if (job.ordered) {
-        if (done.load(std::memory_order_acquire) != job.before + stage) return false;
+        if (part_[part].done.load(std::memory_order_acquire) != job.before + stage) return false;
         if (!all_did(job, after_[stage].load(std::memory_order_acquire))) return false;
     }
     if (!is_out(job)) return false;
-    if (!taken.compare_exchange_strong(at, job.number << kStageBits | (stage + 1), std::memory_order_acq_rel))
-        return false;
-    job.run(job.context, stage, part);
-    done.fetch_add(1, std::memory_order_release);
-    return true;
+    return taken.compare_exchange_strong(at, job.number << kStageBits | (stage + 1), std::memory_order_acq_rel);
 }
 
 // A part has better stay with the thread that has its data in the cache.

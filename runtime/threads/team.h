@@ -102,6 +102,7 @@ private:
     void hand_out(uint32_t stages, std::span<const uint32_t> after, StageFn run, const void* context);
     void work(Job job, uint32_t worker);
     bool advance(Job& job, uint32_t part);
+    bool take(Job& job, uint32_t part, uint32_t& stage);
     bool help_others(Job& job, uint32_t worker, bool patient);
     bool all_did(Job& job, uint32_t stages) const;
     bool is_out(const Job& job) const { return job_.load(std::memory_order_acquire) == job.number; }
