@@ -102,10 +102,14 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
         return near.strides;
     });
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
+        // Apart from the casts, so that processors work on several at once.
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[pairs.picked[i]];
-            near.passed = moved(pairs, near) && may_pass(pairs, near) &&
-                          excess_of(nodes, Couple(colliders, shapes, pairs.courses, near)).share > 0;
+            near.passed = moved(pairs, near) && may_pass(pairs, near);
+        }
+        for (uint32_t i = begin; i < end; ++i) {
+            NearPair& near = pairs.near[pairs.picked[i]];
+            if (near.passed) near.passed = excess_of(nodes, Couple(colliders, shapes, pairs.courses, near)).share > 0;
         }
     });
 }

@@ -9,10 +9,11 @@ namespace taut {
 namespace {
 
 // Parts of the ball inside a shape.
-constexpr double kCores[] = {0.8, 0.4, 0.2};  // the largest that is free at the start is what may not pass
-constexpr double kSkin = 0.02;                // where none is, the middle stays so far off
-constexpr double kSlack = 0.01;               // less is not put back
-constexpr double kTurn = 0.02;                // a smaller turn moves no middle worth the name: sine of half of it
+constexpr double kLargest = 0.8;
+constexpr double kCores[] = {kLargest, 0.4, 0.2};  // the largest that is free at the start is what may not pass
+constexpr double kSkin = 0.02;                     // where none is, the middle stays so far off
+constexpr double kSlack = 0.01;                    // less is not put back
+constexpr double kTurn = 0.02;                     // a smaller turn moves no middle worth the name: sine of half of it
 
 collision::Placement placed_before(const Nodes& nodes, const Collider& collider) {
     const NodePose& pose = nodes.before[collider.node];
@@ -74,7 +75,7 @@ public:
         const Vec3 to = a_before_.position + to_now.transpose() * (now - a_now_.position);
         const Vec3 along = to - before;
         const double slack = kSlack * thickness_b_;
-        if (along.norm() < slack || !comes_by(a_, a_before_, thickness_b_, before, along)) return {};
+        if (along.norm() < slack || !comes_by(a_, a_before_, kLargest * thickness_b_, before, along)) return {};
         collision::Hit hit;
         const double met = free_part(a_, a_before_, b_, before, along, hit);
         if ((1 - met) * along.norm() < slack) return {};
@@ -135,7 +136,7 @@ bool may_pass(const Course& one, const Course& other) {
     if (std::isinf(one.chord) || std::isinf(other.chord)) return true;  // their ends go ways of their own
     const Course &a = one.reach < other.reach ? other : one, &b = one.reach < other.reach ? one : other;
     const Vec3 from = b.from - a.from, along = b.along - a.along;
-    const auto reach = static_cast<double>(a.reach + a.round + b.thickness);
+    const double reach = static_cast<double>(a.reach + a.round) + kLargest * static_cast<double>(b.thickness);
     return nearest_on(from, along) <= reach + static_cast<double>(a.chord) * (from + along).norm();
 }
 

@@ -13,7 +13,7 @@ namespace taut {
 // Of a collider's middle in this step, but for the turn of a slow one [m].
 Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
 Course course_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Pace& pace);
-// Whether the ball inside the one that reaches less far may have met the ball about the other: false spares the rest.
+// Whether the core of the one that reaches less far may have met the ball about the other: false spares the rest.
 bool may_pass(const Course& one, const Course& other);
 
 // A collider in a step.
