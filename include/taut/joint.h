@@ -53,7 +53,7 @@ typedef enum taut_joint_solve {
     TAUT_JOINT_SOLVE_SOFT = 1,    /**< by sweeps: cheap, yields under loads far heavier than the bodies it holds */
     TAUT_JOINT_SOLVE_BY_LOAD = 2, /**< for crowds: by sweeps, but directly while the bodies that such joints connect
                                      differ by 20 times or more in mass, or one of the joints bears over 1000 N per kg
-                                     of its lighter body: from the third step on, to 15 steps after. With a direct
+                                     of its lighter body: from the sixth step on, to 15 steps after. With a direct
                                      joint among them: directly */
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;

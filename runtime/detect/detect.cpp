@@ -223,7 +223,6 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
     pairs.reach.resize(slots);
     pairs.pace.resize(slots);
-    pairs.along.resize(slots);
     pairs.placement.resize(slots);
     pairs.stance.resize(slots);
     pairs.travel.resize(slots);

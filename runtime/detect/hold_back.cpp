@@ -24,8 +24,8 @@ bool put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t ro
            (collider.node_b != kNone && mechanisms.put_back[collider.node_b] == round);
 }
 
-// Finds where all went, after the first round what the last one put back, and marks what moved otherwise than its
-// speed told before the step: further from there than a part of its thickness. Whether anything did.
+// Marks what went elsewhere than its speed told before the step, further from there than a part of its thickness: of
+// all, after the first round of what the last one put back. Whether anything did.
 bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
                  Pairs& pairs) {
     std::atomic<bool> any = false;
@@ -36,10 +36,9 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
             if (collider.node == kNone) continue;
             pace.moved = round == 1 || put_back(pairs.mechanisms, collider, round - 1);
             if (!pace.moved) continue;
-            pairs.along[c] = way_along(nodes, collider, shapes);
             if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
-            const Vec3 off = pairs.along[c] - pairs.reach[c].ahead.cast<double>();
+            const Vec3 off = way_along(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
             pace.astray = off.squaredNorm() > stride * stride;
             if (pace.astray) any.store(true, std::memory_order_relaxed);
         }
@@ -47,28 +46,33 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
     return any.load(std::memory_order_relaxed);
 }
 
+void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
+    pairs.courses.resize(pairs.pace.size());
+    team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t c = begin; c < end; ++c)
+            if (colliders.record[c].node != kNone && pairs.pace[c].moved)
+                pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
+    });
+}
+
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
 bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
-    const Pace &one = pairs.pace[a], &other = pairs.pace[b];
-    if (!(near.fast || one.astray || other.astray) || near.filtered) return false;
+    if (!(near.fast || pairs.pace[a].astray || pairs.pace[b].astray) || near.filtered) return false;
+    const Course &one = pairs.courses[a], &other = pairs.courses[b];
     if (std::isinf(one.thickness + other.thickness)) return false;  // not to be looked for
-    const double thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
-                                                                    : std::max(one.thickness, other.thickness);
-    const double stride = kStride * thinner;
-    return (pairs.along[a] - pairs.along[b]).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
+    const float thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
+                                                                   : std::max(one.thickness, other.thickness);
+    const double stride = kStride * static_cast<double>(thinner);
+    return (one.along - other.along).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
 }
 
 bool moved(const Pairs& pairs, const NearPair& near) {
     return pairs.pace[near.collider_a()].moved || pairs.pace[near.collider_b()].moved;
 }
 
-// By the ways of its two colliders.
-bool may_pass(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
-              const NearPair& near) {
-    const uint32_t a = near.collider_a(), b = near.collider_b();
-    return may_pass(nodes, colliders.record[a], pairs.pace[a].thickness, colliders.record[b], pairs.pace[b].thickness,
-                    shapes);
+bool may_pass(const Pairs& pairs, const NearPair& near) {
+    return may_pass(pairs.courses[near.collider_a()], pairs.courses[near.collider_b()]);
 }
 
 // Whether a pair had passed; in the last round it stays where it was.
@@ -84,9 +88,7 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
         of_a.stay(round);
         of_b.stay(round);
     } else {
-        const Passage& a = pair.a;
-        const Vec3 way_of_a = a.collider.node_b == kNone ? a.along : Vec3(a.now.position - a.before.position);
-        of_a.go_back(excess.share * way_of_a, excess.normal, round);
+        of_a.go_back(excess.share * way_of(nodes, pair.a), excess.normal, round);
         of_b.go_back(excess.share * excess.way, excess.normal, round);
     }
     return true;
@@ -100,10 +102,14 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
         return near.strides;
     });
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
+        // Apart from the casts, so that processors work on several at once.
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[pairs.picked[i]];
-            near.passed = moved(pairs, near) && may_pass(nodes, colliders, shapes, pairs, near) &&
-                          excess_of(nodes, Couple(nodes, colliders, shapes, near)).share > 0;
+            near.passed = moved(pairs, near) && may_pass(pairs, near);
+        }
+        for (uint32_t i = begin; i < end; ++i) {
+            NearPair& near = pairs.near[pairs.picked[i]];
+            if (near.passed) near.passed = excess_of(nodes, Couple(colliders, shapes, pairs.courses, near)).share > 0;
         }
     });
 }
@@ -120,15 +126,23 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     for (uint8_t round = 1; again && round <= kRounds; ++round) {
         again = false;
         const bool any_astray = find_astray(team, nodes, colliders, shapes, round, pairs);
-        if (round == 1 && !any_astray && !pairs.any_fast) break;
+        if (round == 1 && !any_astray && !pairs.any_fast) {
+            let_go(pairs.courses);
+            break;
+        }
+        find_courses(team, nodes, colliders, shapes, pairs);
         find_passed(team, nodes, colliders, shapes, pairs);
         for (const uint32_t i : pairs.picked) {
             const NearPair& near = pairs.near[i];
-            const auto anew = [&](uint32_t c) { return again && put_back(mechanisms, colliders.record[c], round); };
-            if (!near.passed && !((anew(near.collider_a()) || anew(near.collider_b())) &&
-                                  may_pass(nodes, colliders, shapes, pairs, near)))
-                continue;
-            const Couple pair(nodes, colliders, shapes, near);
+            bool anew = false;
+            for (const uint32_t c : {near.collider_a(), near.collider_b()}) {
+                const Collider& collider = colliders.record[c];
+                if (!again || !put_back(mechanisms, collider, round)) continue;
+                pairs.courses[c] = course_of(nodes, collider, shapes, pairs.pace[c]);
+                anew = true;
+            }
+            if (!near.passed && !(anew && may_pass(pairs, near))) continue;
+            const Couple pair(colliders, shapes, pairs.courses, near);
             again = part(pair, excess_of(nodes, pair), joints, round, mechanisms, nodes) || again;
         }
     }

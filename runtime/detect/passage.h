@@ -12,29 +12,30 @@ namespace taut {
 
 // Of a collider's middle in this step, but for the turn of a slow one [m].
 Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
-// Whether the ball inside the one may have met the ball about the other, which reaches further: false spares the rest.
-// Thickness of either [m].
-bool may_pass(const Nodes& nodes, const Collider& a, double thickness_a, const Collider& b, double thickness_b,
-              const Shapes& shapes);
+Course course_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Pace& pace);
+// Whether the core of the one that reaches less far may have met the ball about the other: false spares the rest.
+bool may_pass(const Course& one, const Course& other);
 
 // A collider in a step.
 struct Passage {
     const Collider& collider;
     const ShapeRecord& record;
-    Vec3 from, along;                  // of its middle [m]
-    collision::Placement before, now;  // where the step had it
+    const Course& course;
+
+    bool spans() const { return collider.node_b != kNone; }
 };
+// Of its middle [m].
+Vec3 way_of(const Nodes& nodes, const Passage& passage);
 
 // The one that reaches further, a, is as it was; the other goes along.
 class Couple {
 public:
-    Couple(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const NearPair& near);
+    Couple(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, const NearPair& near);
 
     const Passage a, b;
 
 private:
     Couple(const Passage& one, const Passage& other);
-    Couple(const Passage& one, const Passage& other, double reach_of_one, double reach_of_other);
 };
 
 // What is too much of two ways.

@@ -50,7 +50,7 @@ Tally tally(World& world) {
         if (!joint.type) return;
         ++t.joints;
         if (asleep(world.nodes, joint)) return;
-        t.joint_error = std::max(t.joint_error, static_cast<float>(error_of(world.nodes, joint).linear));
+        t.joint_error = std::max(t.joint_error, static_cast<float>(gap_of(world.nodes, joint)));
     };
     const Tally of_pairs = tally(world.team, world.pairs.active, add_pair);
     const Tally of_nodes = tally(world.team, world.nodes.info, add_node);

@@ -35,6 +35,14 @@ void poses_of(const Nodes& nodes, const Joint& joint, Pose* pose) {
     for (int end = 0; end < joint.type->nodes; ++end) pose[end] = pose_of(nodes, joint.node[end]);
 }
 
+// Three locked rows that are no angles hold the anchors of two nodes together: they are p_b - p_a along some axes.
+bool holds_anchors(const Joint& joint) {
+    const ConstraintType& type = *joint.type;
+    const bool others_turn = (type.angular | 7) == (1 << type.rows) - 1;
+    return type.nodes == 2 && type.rows >= 3 && (type.angular & 7) == 0 && others_turn && is_locked(joint, 0) &&
+           is_locked(joint, 1) && is_locked(joint, 2);
+}
+
 JointError error_at(const Joint& joint, const double* value) {
     double squared[2] = {};
     for (int row = 0; row < joint.type->rows; ++row) {
@@ -120,12 +128,16 @@ double overrun_of(const Joint& joint, const double* values, int row) {
 
 JointError error_of(const Joint& joint, const JointReading& reading) { return error_at(joint, reading.value); }
 
-JointError error_of(const Nodes& nodes, const Joint& joint) {
+double gap_of(const Nodes& nodes, const Joint& joint) {
     Pose pose[kMaxNodes];
-    double value[kMaxRows];
     poses_of(nodes, joint, pose);
+    if (holds_anchors(joint)) {
+        const Vec3 lever_a = pose[0].R * anchor_of(joint, 0), lever_b = pose[1].R * anchor_of(joint, 1);
+        return (pose[1].x - pose[0].x + (lever_b - lever_a)).norm();
+    }
+    double value[kMaxRows];
     joint.type->evaluate(joint.data, pose, value, nullptr);
-    return error_at(joint, value);
+    return error_at(joint, value).linear;
 }
 
 Wrench wrench_of(const Joint& joint, const JointReading& reading) {

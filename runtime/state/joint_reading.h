@@ -43,8 +43,8 @@ struct JointError {
     double linear, angular;  // [m], [rad]
 };
 JointError error_of(const Joint& joint, const JointReading& reading);
-// The same without a reading, at the present poses.
-JointError error_of(const Nodes& nodes, const Joint& joint);
+// JointError::linear without a reading, at the present poses [m].
+double gap_of(const Nodes& nodes, const Joint& joint);
 
 // On end b about its anchor, world axes, of a joint of two nodes; zero of one that was not solved yet.
 struct Wrench {

@@ -197,6 +197,15 @@ struct Pace {
     bool moved = false;    // by the round of hold_back() before, or it is the first one
 };
 
+// Where a collider's middle went in this step, for what may have gone through each other; course_of().
+struct Course {
+    Vec3 from = Vec3::Zero(), along = Vec3::Zero();  // [m]
+    float thickness = 0;                             // as in Pace [m]
+    float reach = 0;                                 // of its core about its origin [m]
+    float round = 0;                                 // reach and this: of a ball about the middle that holds it [m]
+    float chord = 0;                                 // of its turn, at least, at radius 1; infinite: its ends go apart
+};
+
 // A mechanism that hold_back() leaves where it was before the step.
 struct Stay {
     uint32_t root;
@@ -229,7 +238,7 @@ struct Pairs {
           joined(memory),
           reach(memory),
           pace(memory),
-          along(memory),
+          courses(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -263,7 +272,7 @@ struct Pairs {
     uint64_t colliders_version = 0;   // that NearPair::changed knows
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
-    Array<Vec3> along;                // by collider: of its middle in this step [m]; hold_back()
+    Array<Course> courses;            // by collider, scratch; hold_back()
     bool any_fast = false;            // of near, in this frame; find_contacts()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()

@@ -469,11 +469,17 @@ TEST_F(PartitionTest, JointsSolvedByLoadAreABlockOnlyWhileTheyNeedIt) {
         EXPECT_EQ(partition.groups[0].joints.size(), swept);
         EXPECT_EQ(partition.groups[0].pairs.size(), 1u) << "contacts stay swept";
     };
-    expect(0, 2);
-    joints.record[other].loaded = kLoadedAfter;
-    expect(1, 0);
-    joints.record[other].loaded = kLoadedAfter - 1;
-    expect(0, 2);
+    auto expect_after = [&](int frames, double force, size_t blocks, size_t swept) {
+        joints.record[other].lambda[0] = force;
+        for (int i = 0; i < frames; ++i) note_loads(joints, nodes);
+        expect(blocks, swept);
+    };
+    expect_after(5, 1001, 0, 2);
+    expect_after(1, 999, 0, 2);
+    expect_after(5, 1001, 0, 2);
+    expect_after(1, 1001, 1, 0);
+    expect_after(15, 999, 1, 0);
+    expect_after(1, 999, 0, 2);
     set_mass(c, 20);
     expect(1, 0);
     set_mass(c, 19);
