@@ -42,6 +42,11 @@ struct Side {
     float x, y, offset;
 };
 
+// The faces around a vertex, in Polytope::around.
+struct Fan {
+    uint16_t first, count;
+};
+
 // Runs from -> to counter-clockwise around the left face, hence along normal(left) x normal(right).
 struct Edge {
     uint8_t from, to, left, right;
@@ -55,12 +60,18 @@ struct Polytope {
     std::span<const uint8_t> loops;     // vertex indices
     std::span<const Side> sides;        // parallel to loops
     std::span<const Edge> edges;
+    std::span<const Fan> fans;        // of the vertices
+    std::span<const uint8_t> around;  // face numbers, twice as many as edges
     Vec3f centre = Vec3f::Zero();
     float inner_radius = 0;  // of a ball about the centre that lies inside [m]
     float outer_radius = 0;  // of a ball about the centre that holds all vertices [m]
 
     std::span<const Side> sides_of(const Face& face) const { return sides.subspan(face.first, face.count); }
     std::span<const uint8_t> loop_of(const Face& face) const { return loops.subspan(face.first, face.count); }
+    std::span<const uint8_t> faces_around(int vertex) const {
+        const Fan& fan = fans[size_t(vertex)];
+        return around.subspan(fan.first, fan.count);
+    }
     Vec3f direction(const Edge& edge) const { return vertices[edge.to] - vertices[edge.from]; }
 };
 
@@ -122,6 +133,9 @@ inline int support(const Polytope& polytope, const Vec3f& direction) {
     const float top = find_heights(polytope, direction, height);
     return first_equal(height, int(polytope.vertices.size()), top);
 }
+
+// Fills fans, one a vertex, and around.
+void find_fans(std::span<const Edge> edges, std::span<Fan> fans, std::span<uint8_t> around);
 
 // Of the faces around the vertex deepest against the direction, the one that looks most against it.
 int face_against(const Polytope& polytope, const Vec3f& direction);

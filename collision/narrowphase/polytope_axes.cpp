@@ -34,6 +34,14 @@ struct EdgeLanes {
     static void put(float (&lanes)[3][kLanes], int k, const Vec3f& v) {
         for (int i = 0; i < 3; ++i) lanes[i][k] = v[i];
     }
+    void turn(float (&lanes)[3][kLanes], const Mat3f& r, const Vec3f& shift) const {
+        for (int k = 0; k < count; ++k) {
+            const float x = lanes[0][k], y = lanes[1][k], z = lanes[2][k];
+            lanes[0][k] = r(0, 0) * x + r(0, 1) * y + r(0, 2) * z + shift[0];
+            lanes[1][k] = r(1, 0) * x + r(1, 1) * y + r(1, 2) * z + shift[1];
+            lanes[2][k] = r(2, 0) * x + r(2, 1) * y + r(2, 2) * z + shift[2];
+        }
+    }
 };
 
 // The vertices of one polytope along a direction of its frame.
@@ -56,21 +64,22 @@ int edges_above(const Polytope& polytope, const Heights& heights, float least, u
 
 // Those edges of b whose heights reach up to the least.
 void gather(const PolytopePair& pair, const Heights& heights, float least, EdgeLanes& lanes) {
-    const Mat3f& r = pair.b_in_a.rotation;
     const int count = edges_above(pair.b, heights, least, lanes.index);
     lanes.count = (count + 3) / 4 * 4;
     for (int k = 0; k < count; ++k) {
         const Edge& edge = pair.b.edges[lanes.index[k]];
-        lanes.put(lanes.from, k, pair.b_in_a * pair.b.vertices[edge.from]);
-        lanes.put(lanes.along, k, r * pair.b.direction(edge));
-        lanes.put(lanes.left, k, -(r * pair.b.faces[edge.left].normal));
-        lanes.put(lanes.right, k, -(r * pair.b.faces[edge.right].normal));
+        lanes.put(lanes.from, k, pair.b.vertices[edge.from]);
+        lanes.put(lanes.along, k, pair.b.direction(edge));
+        lanes.put(lanes.left, k, pair.b.faces[edge.left].normal);
+        lanes.put(lanes.right, k, pair.b.faces[edge.right].normal);
     }
-    for (int k = count; k < lanes.count; ++k) {
-        lanes.put(lanes.along, k, Vec3f::Zero());
-        lanes.put(lanes.left, k, Vec3f::Zero());
-        lanes.put(lanes.right, k, Vec3f::Zero());
-    }
+    for (int k = count; k < lanes.count; ++k)
+        for (auto* each : {&lanes.from, &lanes.along, &lanes.left, &lanes.right}) lanes.put(*each, k, Vec3f::Zero());
+    const Mat3f& r = pair.b_in_a.rotation;
+    lanes.turn(lanes.from, r, pair.b_in_a.position);
+    lanes.turn(lanes.along, r, Vec3f::Zero());
+    lanes.turn(lanes.left, -r, Vec3f::Zero());
+    lanes.turn(lanes.right, -r, Vec3f::Zero());
 }
 
 // On the sphere of normals each edge is an arc between its faces' normals, part of the great circle across
@@ -155,47 +164,56 @@ class FaceBounds {
 public:
     // The other holds a ball.
     FaceBounds(const Polytope& one, const Vec3f& centre, float radius) : one_(one) {
-        for (size_t k = 0; k < one.planes.size(); ++k) pack(k) = heights_over(one.planes[k], centre) - radius;
+        Eigen::Array4f most = Eigen::Array4f::Constant(kAsked);
+        for (size_t k = 0; k < one.planes.size(); ++k) {
+            pack(k) = heights_over(one.planes[k], centre) - radius;
+            most = most.max(pack(k));
+        }
+        largest_ = most.maxCoeff();
+        std::fill(most_ + one.faces.size(), most_ + 4 * one.planes.size(), kAsked);
+    }
+    float largest() const { return largest_; }
+    // The face with the largest bound, which is asked no more.
+    size_t take_largest() {
+        const int face = first_equal(most_, int(one_.faces.size()), largest_);
+        most_[face] = kAsked;
+        return size_t(face);
     }
     // The other holds a point.
     void lower(const Vec3f& point) {
-        for (size_t k = 0; k < one_.planes.size(); ++k) pack(k) = pack(k).min(heights_over(one_.planes[k], point));
-    }
-    float operator[](size_t face) const { return most_[face]; }
-    size_t largest() const {
-        size_t best = 0;
-        for (size_t i = 1; i < one_.faces.size(); ++i) {
-            if (most_[i] > most_[best]) best = i;
+        Eigen::Array4f most = Eigen::Array4f::Constant(kAsked);
+        for (size_t k = 0; k < one_.planes.size(); ++k) {
+            pack(k) = pack(k).min(heights_over(one_.planes[k], point));
+            most = most.max(pack(k));
         }
-        return best;
+        largest_ = most.maxCoeff();
     }
 
 private:
+    static constexpr float kAsked = -1e30f;
+
     Eigen::Map<Eigen::Array4f, Eigen::Aligned16> pack(size_t k) {
         return Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{most_ + 4 * k};
     }
 
     const Polytope& one_;
+    float largest_;
     alignas(16) float most_[4 * kMaxPlanePacks];
 };
 
-// The face of one that separates most from the other, which lies at a pose; the one that looks most towards the ball
-// inside the other first.
+// The face of one that separates most from the other, which lies at a pose; those with the largest bounds first.
 Separation best_face(const Polytope& one, const Polytope& other, const Pose& pose, float margin, AxisKind kind) {
     FaceBounds bounds(one, pose * other.centre, other.inner_radius);
-    const size_t first = bounds.largest();
     Separation best;
-    const auto ask = [&](size_t i) {
+    while (bounds.largest() > best.distance) {
+        const size_t i = bounds.take_largest();
         const Face& face = one.faces[i];
         const Vec3f nearest = pose * other.vertices[size_t(support(other, pose.rotation.transpose() * -face.normal))];
         const float distance = face.normal.dot(nearest) - face.offset;
+        if (distance > best.distance)
+            best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance};
+        if (distance > margin) break;
         bounds.lower(nearest);
-        if (distance <= best.distance) return;
-        best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance};
-    };
-    ask(first);
-    for (size_t i = 0; i < one.faces.size() && best.distance <= margin; ++i) {
-        if (bounds[i] > best.distance && i != first) ask(i);
     }
     return best;
 }
@@ -221,13 +239,19 @@ Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth
     uint8_t own[kMaxEdges];
     const int count = edges_above(pair.a, up_a, middle - down_b.top - depth, own);
     Separation best;
-    int32_t hits[kLanes];
+    alignas(16) int32_t hits[kLanes];
+    uint8_t hit[kLanes + 1];
     for (int e = 0; e < count; ++e) {
         const Edge& edge = pair.a.edges[own[e]];
         const Vec3f along = pair.a.direction(edge);
         if (!arcs_cross(along, pair.a.faces[edge.left].normal, pair.a.faces[edge.right].normal, lanes, hits)) continue;
-        for (int k = 0; k < lanes.count; ++k) {
-            if (hits[k] == 0) continue;
+        int found = 0;
+        for (int k = 0; k < lanes.count; ++k) {  // without branches, which would be mispredicted
+            hit[found] = uint8_t(k);
+            found += hits[k];
+        }
+        for (int i = 0; i < found; ++i) {
+            const int k = hit[i];
             const Vec3f across = edge_normal(pair.a, edge, lanes.at(lanes.along, k));
             if (across.squaredNorm() == 0) continue;
             const float distance = across.dot(lanes.at(lanes.from, k) - pair.a.vertices[edge.from]);
