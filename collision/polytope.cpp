@@ -89,10 +89,10 @@ const BoxFans kFans;
 
 }  // namespace
 
-int face_against(const Polytope& polytope, const Vec3f& direction) {
+int face_against(const Polytope& polytope, int vertex, const Vec3f& direction) {
     int best = 0;
     float most = 2;
-    for (const uint8_t face : polytope.faces_around(support(polytope, -direction))) {
+    for (const uint8_t face : polytope.faces_around(vertex)) {
         const float dot = polytope.faces[face].normal.dot(direction);
         best = dot < most ? face : best;
         most = dot < most ? dot : most;

@@ -137,8 +137,12 @@ inline int support(const Polytope& polytope, const Vec3f& direction) {
 // Fills fans, one a vertex, and around.
 void find_fans(std::span<const Edge> edges, std::span<Fan> fans, std::span<uint8_t> around);
 
-// Of the faces around the vertex deepest against the direction, the one that looks most against it.
-int face_against(const Polytope& polytope, const Vec3f& direction);
+// Of the faces around a vertex, the one that looks most against the direction.
+int face_against(const Polytope& polytope, int vertex, const Vec3f& direction);
+// The same around the vertex deepest against the direction.
+inline int face_against(const Polytope& polytope, const Vec3f& direction) {
+    return face_against(polytope, support(polytope, -direction), direction);
+}
 
 // A box spelled out as a polytope; face 2 k + s looks along +axis k if s = 1, else -axis k.
 class BoxPolytope {

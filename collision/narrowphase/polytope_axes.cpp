@@ -208,10 +208,11 @@ Separation best_face(const Polytope& one, const Polytope& other, const Pose& pos
     while (bounds.largest() > best.distance) {
         const size_t i = bounds.take_largest();
         const Face& face = one.faces[i];
-        const Vec3f nearest = pose * other.vertices[size_t(support(other, pose.rotation.transpose() * -face.normal))];
+        const int vertex = support(other, pose.rotation.transpose() * -face.normal);
+        const Vec3f nearest = pose * other.vertices[size_t(vertex)];
         const float distance = face.normal.dot(nearest) - face.offset;
         if (distance > best.distance)
-            best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance};
+            best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance, vertex};
         if (distance > margin) break;
         bounds.lower(nearest);
     }
@@ -255,7 +256,7 @@ Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth
             const Vec3f across = edge_normal(pair.a, edge, lanes.at(lanes.along, k));
             if (across.squaredNorm() == 0) continue;
             const float distance = across.dot(lanes.at(lanes.from, k) - pair.a.vertices[edge.from]);
-            if (distance > best.distance) best = {{AxisKind::edges, own[e], lanes.index[k]}, distance};
+            if (distance > best.distance) best = {{AxisKind::edges, own[e], lanes.index[k]}, distance, 0};
             if (distance > margin) return best;
         }
     }

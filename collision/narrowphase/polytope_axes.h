@@ -22,6 +22,7 @@ struct Axis {
 struct Separation {
     Axis axis;
     float distance = -1e30f;  // negative is overlap [m]
+    int nearest = 0;          // of a face: the other polytope's vertex
 };
 
 struct PolytopePair {
