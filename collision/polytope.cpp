@@ -125,7 +125,8 @@ BoxPolytope::BoxPolytope(const Vec3f& half) : faces_(kFaces) {
     const Eigen::Array4f zero = Eigen::Array4f::Zero();
     planes_ = {PlanePack{{-1, 1, 0, 0}, {0, 0, -1, 1}, zero, {hx, hx, hy, hy}},
                PlanePack{zero, zero, {-1, 1, 1, 1}, Eigen::Array4f::Constant(hz)}};
-    view_ = {vertices_, packs_, faces_, planes_, kLoops, sides_, kEdges, kFans.fans, kFans.around, Vec3f::Zero(), half.minCoeff(), half.norm()};
+    view_ = {vertices_, packs_,     faces_,       planes_,       kLoops,          sides_,
+             kEdges,    kFans.fans, kFans.around, Vec3f::Zero(), half.minCoeff(), half.norm()};
 }
 
 }  // namespace taut::collision

@@ -111,20 +111,29 @@ inline float outside(const Polytope& polytope, const Vec3f& p) {
     return most.maxCoeff();
 }
 
-// Index of the first of `count` values that equals x, the last index if none does. Aligned, room for whole packs of 4.
-inline int first_equal(const float* values, int count, float x) {
+// Of four numbers, a bit for each that holds.
 #if defined(__SSE2__)
-    const __m128 all = _mm_set1_ps(x);
-    for (int i = 0; i < count; i += 4) {
-        const int mask = _mm_movemask_ps(_mm_cmpeq_ps(_mm_load_ps(values + i), all));
-        if (mask != 0) return std::min(i + std::countr_zero(unsigned(mask)), count - 1);
+inline unsigned equal_bits(const float* four, float x) {
+    return unsigned(_mm_movemask_ps(_mm_cmpeq_ps(_mm_load_ps(four), _mm_set1_ps(x))));
+}
+#else
+inline unsigned equal_bits(const float* four, float x) {
+    unsigned bits = 0;
+    for (int i = 0; i < 4; ++i) bits |= unsigned(four[i] == x) << i;
+    return bits;
+}
+#endif
+
+// Index of the first of `count` values that equals x, the last index if none does. Aligned, room for whole packs of 4.
+// Looks at 64 at a time, for where the first lies would be mispredicted.
+inline int first_equal(const float* values, int count, float x) {
+    for (int begin = 0; begin < count; begin += 64) {
+        uint64_t bits = 0;
+        const int end = std::min(count - begin, 64);
+        for (int i = 0; i < end; i += 4) bits |= uint64_t(equal_bits(values + begin + i, x)) << i;
+        if (bits != 0) return std::min(begin + std::countr_zero(bits), count - 1);
     }
     return count - 1;
-#else
-    int i = 0;
-    while (i < count - 1 && values[i] != x) ++i;
-    return i;
-#endif
 }
 
 // Index of the vertex furthest along direction; the first of equals.

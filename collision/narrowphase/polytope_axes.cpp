@@ -5,101 +5,10 @@
 namespace taut::collision {
 namespace {
 
-// Edges within 1e-3 rad of parallel have no axis of their own.
-constexpr float kParallel = 1e-6f;
-
-// Unit normal across an edge of a and a direction that points out of a; zero for parallel ones.
-Vec3f edge_normal(const Polytope& a, const Edge& edge_a, const Vec3f& along_b) {
-    const Vec3f along_a = a.direction(edge_a);
-    const Vec3f cross = along_a.cross(along_b);
-    const float squared = cross.squaredNorm();
-    if (!(squared > kParallel * along_a.squaredNorm() * along_b.squaredNorm())) return Vec3f::Zero();
-    const Vec3f out_of_a = a.faces[edge_a.left].normal + a.faces[edge_a.right].normal;
-    const float scale = 1 / std::sqrt(squared);
-    return cross * (cross.dot(out_of_a) < 0 ? -scale : scale);
-}
-
-constexpr int kLanes = (kMaxEdges + 3) / 4 * 4;
-
-// Edges of one polytope in a's frame, coordinates side by side for the sweep over them.
-struct EdgeLanes {
-    int count = 0;  // a multiple of 4: filled up with zeros, which cross nothing
-    uint8_t index[kLanes];
-    alignas(16) float from[3][kLanes];
-    alignas(16) float along[3][kLanes];  // from one end to the other
-    alignas(16) float left[3][kLanes];   // normals of the two faces, those of b negated
-    alignas(16) float right[3][kLanes];
-
-    Vec3f at(const float (&lanes)[3][kLanes], int k) const { return {lanes[0][k], lanes[1][k], lanes[2][k]}; }
-    static void put(float (&lanes)[3][kLanes], int k, const Vec3f& v) {
-        for (int i = 0; i < 3; ++i) lanes[i][k] = v[i];
-    }
-    void turn(float (&lanes)[3][kLanes], const Mat3f& r, const Vec3f& shift) const {
-        for (int k = 0; k < count; ++k) {
-            const float x = lanes[0][k], y = lanes[1][k], z = lanes[2][k];
-            lanes[0][k] = r(0, 0) * x + r(0, 1) * y + r(0, 2) * z + shift[0];
-            lanes[1][k] = r(1, 0) * x + r(1, 1) * y + r(1, 2) * z + shift[1];
-            lanes[2][k] = r(2, 0) * x + r(2, 1) * y + r(2, 2) * z + shift[2];
-        }
-    }
-};
-
-// The vertices of one polytope along a direction of its frame.
-struct Heights {
-    alignas(16) float of[kMaxVertices];
-    float top;
-
-    Heights(const Polytope& polytope, const Vec3f& direction) : top(find_heights(polytope, direction, of)) {}
-};
-
-// The edges that reach up to the least height; returns how many.
-int edges_above(const Polytope& polytope, const Heights& heights, float least, uint8_t* index) {
-    int count = 0;
-    for (size_t e = 0; e < polytope.edges.size(); ++e) {
-        index[count] = uint8_t(e);
-        count += std::max(heights.of[polytope.edges[e].from], heights.of[polytope.edges[e].to]) >= least;
-    }
-    return count;
-}
-
-// Those edges of b whose heights reach up to the least.
-void gather(const PolytopePair& pair, const Heights& heights, float least, EdgeLanes& lanes) {
-    const int count = edges_above(pair.b, heights, least, lanes.index);
-    lanes.count = (count + 3) / 4 * 4;
-    for (int k = 0; k < count; ++k) {
-        const Edge& edge = pair.b.edges[lanes.index[k]];
-        lanes.put(lanes.from, k, pair.b.vertices[edge.from]);
-        lanes.put(lanes.along, k, pair.b.direction(edge));
-        lanes.put(lanes.left, k, pair.b.faces[edge.left].normal);
-        lanes.put(lanes.right, k, pair.b.faces[edge.right].normal);
-    }
-    for (int k = count; k < lanes.count; ++k)
-        for (auto* each : {&lanes.from, &lanes.along, &lanes.left, &lanes.right}) lanes.put(*each, k, Vec3f::Zero());
-    const Mat3f& r = pair.b_in_a.rotation;
-    lanes.turn(lanes.from, r, pair.b_in_a.position);
-    lanes.turn(lanes.along, r, Vec3f::Zero());
-    lanes.turn(lanes.left, -r, Vec3f::Zero());
-    lanes.turn(lanes.right, -r, Vec3f::Zero());
-}
-
 // On the sphere of normals each edge is an arc between its faces' normals, part of the great circle across
 // its direction. The arcs of a and of -b cross, so that the edges meet in a face of the Minkowski difference, if
 // each arc's ends lie on both sides of the other's circle and the two arcs lie on one hemisphere (Gregorius, GDC
-// 2013). hits[k] = 1 where they do; returns whether any does.
-bool arcs_cross(const Vec3f& along, const Vec3f& left, const Vec3f& right, const EdgeLanes& b, int32_t* hits) {
-    int32_t any = 0;
-    for (int k = 0; k < b.count; ++k) {
-        const float c = b.left[0][k] * along[0] + b.left[1][k] * along[1] + b.left[2][k] * along[2];
-        const float d = b.right[0][k] * along[0] + b.right[1][k] * along[1] + b.right[2][k] * along[2];
-        const float l = b.along[0][k] * left[0] + b.along[1][k] * left[1] + b.along[2][k] * left[2];
-        const float r = b.along[0][k] * right[0] + b.along[1][k] * right[1] + b.along[2][k] * right[2];
-        hits[k] = (c * d < 0) & (l * r < 0) & (c * r > 0);
-        any |= hits[k];
-    }
-    return any != 0;
-}
-
-// The same of one pair of edges.
+// 2013).
 bool arcs_cross(const PolytopePair& pair, const Edge& edge_a, const Edge& edge_b) {
     const Mat3f& rotation = pair.b_in_a.rotation;
     const Vec3f along_a = pair.a.direction(edge_a), along_b = rotation * pair.b.direction(edge_b);
@@ -227,40 +136,6 @@ Separation best_face_a(const PolytopePair& pair, float margin) {
 
 Separation best_face_b(const PolytopePair& pair, float margin) {
     return best_face(pair.b, pair.a, pair.a_in_b, margin, AxisKind::face_b);
-}
-
-// If an edge pair bears the least overlap d <= depth, its nearest points lie on the edges, d apart and both within
-// the two polytopes' overlap along normal grown by d.
-Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float margin) {
-    const Heights up_a(pair.a, normal);
-    const Heights down_b(pair.b, pair.b_in_a.rotation.transpose() * -normal);
-    const float middle = normal.dot(pair.b_in_a.position);
-    EdgeLanes lanes;
-    gather(pair, down_b, middle - up_a.top - depth, lanes);
-    uint8_t own[kMaxEdges];
-    const int count = edges_above(pair.a, up_a, middle - down_b.top - depth, own);
-    Separation best;
-    alignas(16) int32_t hits[kLanes];
-    uint8_t hit[kLanes + 1];
-    for (int e = 0; e < count; ++e) {
-        const Edge& edge = pair.a.edges[own[e]];
-        const Vec3f along = pair.a.direction(edge);
-        if (!arcs_cross(along, pair.a.faces[edge.left].normal, pair.a.faces[edge.right].normal, lanes, hits)) continue;
-        int found = 0;
-        for (int k = 0; k < lanes.count; ++k) {  // without branches, which would be mispredicted
-            hit[found] = uint8_t(k);
-            found += hits[k];
-        }
-        for (int i = 0; i < found; ++i) {
-            const int k = hit[i];
-            const Vec3f across = edge_normal(pair.a, edge, lanes.at(lanes.along, k));
-            if (across.squaredNorm() == 0) continue;
-            const float distance = across.dot(lanes.at(lanes.from, k) - pair.a.vertices[edge.from]);
-            if (distance > best.distance) best = {{AxisKind::edges, own[e], lanes.index[k]}, distance, 0};
-            if (distance > margin) return best;
-        }
-    }
-    return best;
 }
 
 }  // namespace taut::collision

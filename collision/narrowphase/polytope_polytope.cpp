@@ -204,7 +204,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     }
     const float apart = std::min({margin, most + view.slack(), view.most_apart() + view.slack()});
     const float depth = std::max(apart, -face.distance + (other_way ? preference.keep : 0.0f));
-    const Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
+    const Separation edges = best_edges(pair, pair.normal(face.axis), depth);
     if (edges.distance > margin) {
         out.count = 0;
         write(edges.axis, false, pair, shapes.cache);
