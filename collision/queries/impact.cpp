@@ -1,5 +1,6 @@
-// Bodies under way that turn as well: two shapes apart by s along n need at least s / (n . (v_a - v_b) + w_a r_a + w_b
-// r_b) to meet, r the reach of a core about the centre that it turns about (conservative advancement; Mirtich 1996).
+// Bodies under way that turn as well: two shapes apart by s along n need at least s / (n . (v_a - v_b) + |w_a x n| r_a
+// + |w_b x n| r_b) to meet, r the reach of a core about the centre that it turns about (conservative advancement;
+// Mirtich 1996).
 #include <array>
 #include <limits>
 
@@ -17,17 +18,20 @@ constexpr int kMaxSteps = 64;
 // Whether a meeting goes deep is looked at no more often.
 constexpr int kMaxLooks = 64;
 
-// How fast two shapes can come nearer across a plane with the normal, from a to b [m/s].
+// How fast two shapes can come nearer [m/s].
 class Approach {
 public:
     Approach(const Motion& a, const Motion& b)
-        : velocity_(a.velocity - b.velocity), turning_(a.spin.norm() * a.reach + b.spin.norm() * b.reach) {}
-    double along(const Vec3& normal) const { return normal.dot(velocity_) + turning_; }
-    double fastest() const { return velocity_.norm() + turning_; }
+        : velocity_(a.velocity - b.velocity), turn_a_(a.reach * a.spin), turn_b_(b.reach * b.spin) {}
+    // Across a plane with the normal n, from a to b: n . (v + w x r) <= n . v + |w x n| |r| for each point.
+    double along(const Vec3& normal) const {
+        return normal.dot(velocity_) + turn_a_.cross(normal).norm() + turn_b_.cross(normal).norm();
+    }
+    double fastest() const { return velocity_.norm() + turn_a_.norm() + turn_b_.norm(); }
 
 private:
     Vec3 velocity_;
-    double turning_;
+    Vec3 turn_a_, turn_b_;  // spins times reaches
 };
 
 // b is the plane, which may move but, being endless, not turn much: its turning is left out.
@@ -96,6 +100,7 @@ bool balls_meet(const Motion& a, const Motion& b, double radii, double reach, do
 }  // namespace
 
 Placement Motion::after(double time) const {
+    if (time == 0) return at;
     const Mat3 turn = rotation_from_vector(time * spin).toRotationMatrix();
     const Vec3 lever = turn * (at.position - centre);
     return {centre + time * velocity + lever, (turn * at.rotation.cast<double>()).cast<float>()};
