@@ -61,11 +61,16 @@ constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_m
                                                         convex_meeting, convex_meeting, surface_meeting};
 
 // No more than the gap between two shapes [m], and less than -depth just where they are deeper in each other.
-double least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double depth) {
-    if (is_convex(b)) {
-        if (const auto bound = Couple(a, at_a, b, at_b).bound(depth)) return *bound;
-    }
-    return find_gap(a, at_a, b, at_b).distance;
+struct Clear {
+    double gap;
+    Vec3 normal;  // of a plane that keeps them as far apart, from a to b, world axes; 0: of none
+};
+Clear least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double depth) {
+    if (!is_convex(b)) return {find_gap(a, at_a, b, at_b).distance, Vec3::Zero()};
+    const Couple couple(a, at_a, b, at_b);
+    if (const auto plane = couple.bound(depth)) return {plane->apart, couple.to_world(plane->normal)};
+    const Gap gap = find_gap(a, at_a, b, at_b);
+    return {gap.distance, gap.normal};
 }
 
 // When the centres are nearest to each other, from one moment to another [s].
@@ -79,14 +84,18 @@ double nearest_moment(const Motion& a, const Motion& b, double from, double to) 
 // that do are as deep where the centres pass each other.
 bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
                  double reach, double depth, double until) {
-    const auto gap_at = [&](double t) { return least_gap(a, motion_a.after(t), b, motion_b.after(t), depth); };
-    if (is_convex(b) && gap_at(nearest_moment(motion_a, motion_b, met, until)) < -depth) return true;
-    const double fastest = Approach(motion_a, motion_b).fastest();
-    double t = met, gap = reach;
+    const auto clear_at = [&](double t) { return least_gap(a, motion_a.after(t), b, motion_b.after(t), depth); };
+    if (is_convex(b) && clear_at(nearest_moment(motion_a, motion_b, met, until)).gap < -depth) return true;
+    const Approach approach(motion_a, motion_b);
+    const double least = 0.5 * depth / approach.fastest();  // of the time from look to look
+    Clear clear = {reach, Vec3::Zero()};
+    double t = met;
     for (int look = 0; look < kMaxLooks && t <= until; ++look) {
-        t += std::max(gap + depth, 0.5 * depth) / fastest;
-        gap = gap_at(t);
-        if (gap < -depth) return true;
+        const double speed = clear.normal == Vec3::Zero() ? approach.fastest() : approach.along(clear.normal);
+        if (!(speed > 0)) return false;
+        t += std::max((clear.gap + depth) / speed, least);
+        clear = clear_at(t);
+        if (clear.gap < -depth) return true;
     }
     return t <= until;
 }
