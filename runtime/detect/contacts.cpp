@@ -12,9 +12,9 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
-constexpr size_t kMostArriving = 256;               // records, 1/8 of what a world of a thousand bodies has
-constexpr uint32_t kSoon = 4;                       // pairs that a loop asks the memory for ahead of itself
+constexpr uint32_t kGrain = 32, kArrivalGrain = 8;          // pairs that a thread takes at a time
+constexpr uint32_t kFewArriving = 32, kMostArriving = 256;  // records
+constexpr uint32_t kSoon = 4;                               // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
@@ -65,6 +65,17 @@ void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
            [&](uint32_t i) { return pairs.near[i].changes; });
 }
 
+// Room for about as many arrivals as there were in this frame; not for few, nor for those of a world's first frame.
+void prepare_arrivals(uint32_t number, Array<Pair>& arriving) {
+    if (4 * number < arriving.size()) {
+        arriving.clear();
+        Array<Pair>(arriving.get_allocator()).swap(arriving);
+    } else if (number > arriving.size() && number >= kFewArriving && number <= kMostArriving) {
+        arriving.clear();
+        arriving.resize(std::min(number + number / 4, kMostArriving));
+    }
+}
+
 // Slots of pairs that got their first points: given in the order of keys. Points of those that had no record are found
 // again, side by side.
 void admit_arriving(Team& team, const Detection& of, Arrivals& arrivals) {
@@ -88,7 +99,6 @@ void admit_arriving(Team& team, const Detection& of, Arrivals& arrivals) {
             if (near.arrives) find_points(of, near.fast, near, pairs.list[near.pair]);
         }
     });
-    pairs.arriving.resize(std::min<size_t>(with_slack(number), kMostArriving));
 }
 
 // Pairs with a surface, and those that lost their points.
@@ -162,6 +172,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     Arrivals arrivals(pairs.arriving);
     look_at_all(team, of, arrivals);
     admit_arriving(team, of, arrivals);
+    prepare_arrivals(arrivals.number(), pairs.arriving);
     settle_changing(of);
     order_slots(pairs);
     list_active(team, pairs);
