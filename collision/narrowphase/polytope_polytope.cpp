@@ -202,7 +202,8 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
         write(face.axis, true, pair, shapes.cache);
         return 0;
     }
-    const float apart = std::min({margin, most + view.slack(), view.most_apart() + view.slack()});
+    // Edges that separate by slop less may bear what the face misses.
+    const float apart = std::min({margin, most + view.slack(), view.most_apart() + preference.slop});
     const float depth = std::max(apart, -face.distance + (other_way ? preference.keep : 0.0f));
     const Separation edges = best_edges(pair, pair.normal(face.axis), depth);
     if (edges.distance > margin) {
