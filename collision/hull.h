@@ -15,7 +15,9 @@ struct Hull {
     std::vector<PlanePack> planes;
     std::vector<uint8_t> loops;
     std::vector<Side> sides;
-    std::vector<Edge> edges;       // sorted by (from, to), from < to
+    std::vector<Edge> edges;  // sorted by (from, to), from < to
+    std::vector<Fan> fans;
+    std::vector<uint8_t> around;
     Vec3f centre = Vec3f::Zero();  // mean of the vertices [m]
     float inner_radius = 0;
     float outer_radius = 0;
@@ -23,7 +25,8 @@ struct Hull {
     Polytope polytope;  // all of the above in one view, as it was when last laid out
 
     void lay_out() {
-        polytope = {vertices, packs, faces, planes, loops, sides, edges, centre, inner_radius, outer_radius};
+        polytope = {vertices, packs, faces,  planes, loops,        sides,
+                    edges,    fans,  around, centre, inner_radius, outer_radius};
     }
     const Polytope& view() const { return polytope; }
 };

@@ -224,6 +224,9 @@ std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, co
     for (const auto& loop : loops) add_face(loop, *hull);
     pack_planes(*hull);
     if (!add_edges(loops, *hull)) return nullptr;
+    hull->fans.resize(hull->vertices.size());
+    hull->around.resize(2 * hull->edges.size());
+    find_fans(hull->edges, hull->fans, hull->around);
     hull->inner_radius = 1e30f;
     for (const Face& face : hull->faces) {
         if (!(std::fabs(face.normal.squaredNorm() - 1) < 1e-3f)) return nullptr;

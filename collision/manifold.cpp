@@ -61,7 +61,8 @@ Chosen choose(const ClipPoint* points, int count) {
 
 }  // namespace
 
-// Sutherland-Hodgman, side by side. A crossing is cut on the side itself.
+// Sutherland-Hodgman, side by side. A crossing is cut on the side itself. Each end and each crossing is written, and
+// counted where there is one: branches would be mispredicted.
 void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
     Polygon spare;
     Polygon* in = &polygon;
@@ -83,15 +84,16 @@ void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
             const ClipPoint& to = in->points[j];
             const bool from_in = outside[i] <= slack;
             const bool to_in = outside[j] <= slack;
-            if (from_in) out->points[out->count++] = from;
-            if (from_in == to_in) continue;
+            out->points[out->count] = from;
+            out->count += from_in;
             const float inner = from_in ? outside[i] : outside[j];
             const float outer = from_in ? outside[j] : outside[i];
             const float t = inner < 0 ? inner / (inner - outer) : 0.0f;  // from the inner end
             const ClipPoint& a = from_in ? from : to;
             const ClipPoint& b = from_in ? to : from;
-            out->points[out->count++] = {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t,
-                                         from_in ? line : from.id};
+            out->points[out->count] = {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t,
+                                       from_in ? line : from.id};
+            out->count += from_in != to_in;
         }
         std::swap(in, out);
     }

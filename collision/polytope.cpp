@@ -59,19 +59,43 @@ const std::array<Face, 6> kFaces = unit_faces();
 
 }  // namespace
 
-int face_against(const Polytope& polytope, const Vec3f& direction) {
-    const int vertex = support(polytope, -direction);
-    int best = 0;
-    float most = 2;
-    for (const Edge& edge : polytope.edges) {
-        if (edge.from != vertex && edge.to != vertex) continue;
-        for (const int face : {int(edge.left), int(edge.right)}) {
-            const float dot = polytope.faces[size_t(face)].normal.dot(direction);
-            if (dot < most) {
-                most = dot;
-                best = face;
+// Each edge of a vertex names two of its faces, and each of these once more on their other edge there.
+void find_fans(std::span<const Edge> edges, std::span<Fan> fans, std::span<uint8_t> around) {
+    uint16_t first = 0;
+    for (size_t vertex = 0; vertex < fans.size(); ++vertex) {
+        uint16_t count = 0;
+        for (const Edge& edge : edges) {
+            if (edge.from != vertex && edge.to != vertex) continue;
+            for (const uint8_t face : {edge.left, edge.right}) {
+                const auto begin = around.begin() + first, end = begin + count;
+                if (std::find(begin, end, face) == end) around[size_t(first + count++)] = face;
             }
         }
+        fans[vertex] = {first, count};
+        first = uint16_t(first + count);
+    }
+}
+
+namespace {
+
+struct BoxFans {
+    std::array<Fan, 8> fans;
+    std::array<uint8_t, 24> around;
+
+    BoxFans() { find_fans(kEdges, fans, around); }
+};
+
+const BoxFans kFans;
+
+}  // namespace
+
+int face_against(const Polytope& polytope, int vertex, const Vec3f& direction) {
+    int best = 0;
+    float most = 2;
+    for (const uint8_t face : polytope.faces_around(vertex)) {
+        const float dot = polytope.faces[face].normal.dot(direction);
+        best = dot < most ? face : best;
+        most = dot < most ? dot : most;
     }
     return best;
 }
@@ -101,7 +125,8 @@ BoxPolytope::BoxPolytope(const Vec3f& half) : faces_(kFaces) {
     const Eigen::Array4f zero = Eigen::Array4f::Zero();
     planes_ = {PlanePack{{-1, 1, 0, 0}, {0, 0, -1, 1}, zero, {hx, hx, hy, hy}},
                PlanePack{zero, zero, {-1, 1, 1, 1}, Eigen::Array4f::Constant(hz)}};
-    view_ = {vertices_, packs_, faces_, planes_, kLoops, sides_, kEdges, Vec3f::Zero(), half.minCoeff(), half.norm()};
+    view_ = {vertices_, packs_,     faces_,       planes_,       kLoops,          sides_,
+             kEdges,    kFans.fans, kFans.around, Vec3f::Zero(), half.minCoeff(), half.norm()};
 }
 
 }  // namespace taut::collision

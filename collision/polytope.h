@@ -42,6 +42,11 @@ struct Side {
     float x, y, offset;
 };
 
+// The faces around a vertex, in Polytope::around.
+struct Fan {
+    uint16_t first, count;
+};
+
 // Runs from -> to counter-clockwise around the left face, hence along normal(left) x normal(right).
 struct Edge {
     uint8_t from, to, left, right;
@@ -55,12 +60,18 @@ struct Polytope {
     std::span<const uint8_t> loops;     // vertex indices
     std::span<const Side> sides;        // parallel to loops
     std::span<const Edge> edges;
+    std::span<const Fan> fans;        // of the vertices
+    std::span<const uint8_t> around;  // face numbers, twice as many as edges
     Vec3f centre = Vec3f::Zero();
     float inner_radius = 0;  // of a ball about the centre that lies inside [m]
     float outer_radius = 0;  // of a ball about the centre that holds all vertices [m]
 
     std::span<const Side> sides_of(const Face& face) const { return sides.subspan(face.first, face.count); }
     std::span<const uint8_t> loop_of(const Face& face) const { return loops.subspan(face.first, face.count); }
+    std::span<const uint8_t> faces_around(int vertex) const {
+        const Fan& fan = fans[size_t(vertex)];
+        return around.subspan(fan.first, fan.count);
+    }
     Vec3f direction(const Edge& edge) const { return vertices[edge.to] - vertices[edge.from]; }
 };
 
@@ -100,20 +111,29 @@ inline float outside(const Polytope& polytope, const Vec3f& p) {
     return most.maxCoeff();
 }
 
-// Index of the first of `count` values that equals x, the last index if none does. Aligned, room for whole packs of 4.
-inline int first_equal(const float* values, int count, float x) {
+// Of four numbers, a bit for each that holds.
 #if defined(__SSE2__)
-    const __m128 all = _mm_set1_ps(x);
-    for (int i = 0; i < count; i += 4) {
-        const int mask = _mm_movemask_ps(_mm_cmpeq_ps(_mm_load_ps(values + i), all));
-        if (mask != 0) return std::min(i + std::countr_zero(unsigned(mask)), count - 1);
+inline unsigned equal_bits(const float* four, float x) {
+    return unsigned(_mm_movemask_ps(_mm_cmpeq_ps(_mm_load_ps(four), _mm_set1_ps(x))));
+}
+#else
+inline unsigned equal_bits(const float* four, float x) {
+    unsigned bits = 0;
+    for (int i = 0; i < 4; ++i) bits |= unsigned(four[i] == x) << i;
+    return bits;
+}
+#endif
+
+// Index of the first of `count` values that equals x, the last index if none does. Aligned, room for whole packs of 4.
+// Looks at 64 at a time, for where the first lies would be mispredicted.
+inline int first_equal(const float* values, int count, float x) {
+    for (int begin = 0; begin < count; begin += 64) {
+        uint64_t bits = 0;
+        const int end = std::min(count - begin, 64);
+        for (int i = 0; i < end; i += 4) bits |= uint64_t(equal_bits(values + begin + i, x)) << i;
+        if (bits != 0) return std::min(begin + std::countr_zero(bits), count - 1);
     }
     return count - 1;
-#else
-    int i = 0;
-    while (i < count - 1 && values[i] != x) ++i;
-    return i;
-#endif
 }
 
 // Index of the vertex furthest along direction; the first of equals.
@@ -123,8 +143,15 @@ inline int support(const Polytope& polytope, const Vec3f& direction) {
     return first_equal(height, int(polytope.vertices.size()), top);
 }
 
-// Of the faces around the vertex deepest against the direction, the one that looks most against it.
-int face_against(const Polytope& polytope, const Vec3f& direction);
+// Fills fans, one a vertex, and around.
+void find_fans(std::span<const Edge> edges, std::span<Fan> fans, std::span<uint8_t> around);
+
+// Of the faces around a vertex, the one that looks most against the direction.
+int face_against(const Polytope& polytope, int vertex, const Vec3f& direction);
+// The same around the vertex deepest against the direction.
+inline int face_against(const Polytope& polytope, const Vec3f& direction) {
+    return face_against(polytope, support(polytope, -direction), direction);
+}
 
 // A box spelled out as a polytope; face 2 k + s looks along +axis k if s = 1, else -axis k.
 class BoxPolytope {

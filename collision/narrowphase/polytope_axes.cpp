@@ -5,92 +5,10 @@
 namespace taut::collision {
 namespace {
 
-// Edges within 1e-3 rad of parallel have no axis of their own.
-constexpr float kParallel = 1e-6f;
-
-// Unit normal across an edge of a and a direction that points out of a; zero for parallel ones.
-Vec3f edge_normal(const Polytope& a, const Edge& edge_a, const Vec3f& along_b) {
-    const Vec3f along_a = a.direction(edge_a);
-    const Vec3f cross = along_a.cross(along_b);
-    const float squared = cross.squaredNorm();
-    if (!(squared > kParallel * along_a.squaredNorm() * along_b.squaredNorm())) return Vec3f::Zero();
-    const Vec3f out_of_a = a.faces[edge_a.left].normal + a.faces[edge_a.right].normal;
-    const float scale = 1 / std::sqrt(squared);
-    return cross * (cross.dot(out_of_a) < 0 ? -scale : scale);
-}
-
-constexpr int kLanes = (kMaxEdges + 3) / 4 * 4;
-
-// Edges of one polytope in a's frame, coordinates side by side for the sweep over them.
-struct EdgeLanes {
-    int count = 0;  // a multiple of 4: filled up with zeros, which cross nothing
-    uint8_t index[kLanes];
-    alignas(16) float from[3][kLanes];
-    alignas(16) float along[3][kLanes];  // from one end to the other
-    alignas(16) float left[3][kLanes];   // normals of the two faces, those of b negated
-    alignas(16) float right[3][kLanes];
-
-    Vec3f at(const float (&lanes)[3][kLanes], int k) const { return {lanes[0][k], lanes[1][k], lanes[2][k]}; }
-    static void put(float (&lanes)[3][kLanes], int k, const Vec3f& v) {
-        for (int i = 0; i < 3; ++i) lanes[i][k] = v[i];
-    }
-};
-
-// The vertices of one polytope along a direction of its frame.
-struct Heights {
-    alignas(16) float of[kMaxVertices];
-    float top;
-
-    Heights(const Polytope& polytope, const Vec3f& direction) : top(find_heights(polytope, direction, of)) {}
-};
-
-// The edges that reach up to the least height; returns how many.
-int edges_above(const Polytope& polytope, const Heights& heights, float least, uint8_t* index) {
-    int count = 0;
-    for (size_t e = 0; e < polytope.edges.size(); ++e) {
-        index[count] = uint8_t(e);
-        count += std::max(heights.of[polytope.edges[e].from], heights.of[polytope.edges[e].to]) >= least;
-    }
-    return count;
-}
-
-// Those edges of b whose heights reach up to the least.
-void gather(const PolytopePair& pair, const Heights& heights, float least, EdgeLanes& lanes) {
-    const Mat3f& r = pair.b_in_a.rotation;
-    const int count = edges_above(pair.b, heights, least, lanes.index);
-    lanes.count = (count + 3) / 4 * 4;
-    for (int k = 0; k < count; ++k) {
-        const Edge& edge = pair.b.edges[lanes.index[k]];
-        lanes.put(lanes.from, k, pair.b_in_a * pair.b.vertices[edge.from]);
-        lanes.put(lanes.along, k, r * pair.b.direction(edge));
-        lanes.put(lanes.left, k, -(r * pair.b.faces[edge.left].normal));
-        lanes.put(lanes.right, k, -(r * pair.b.faces[edge.right].normal));
-    }
-    for (int k = count; k < lanes.count; ++k) {
-        lanes.put(lanes.along, k, Vec3f::Zero());
-        lanes.put(lanes.left, k, Vec3f::Zero());
-        lanes.put(lanes.right, k, Vec3f::Zero());
-    }
-}
-
 // On the sphere of normals each edge is an arc between its faces' normals, part of the great circle across
 // its direction. The arcs of a and of -b cross, so that the edges meet in a face of the Minkowski difference, if
 // each arc's ends lie on both sides of the other's circle and the two arcs lie on one hemisphere (Gregorius, GDC
-// 2013). hits[k] = 1 where they do; returns whether any does.
-bool arcs_cross(const Vec3f& along, const Vec3f& left, const Vec3f& right, const EdgeLanes& b, int32_t* hits) {
-    int32_t any = 0;
-    for (int k = 0; k < b.count; ++k) {
-        const float c = b.left[0][k] * along[0] + b.left[1][k] * along[1] + b.left[2][k] * along[2];
-        const float d = b.right[0][k] * along[0] + b.right[1][k] * along[1] + b.right[2][k] * along[2];
-        const float l = b.along[0][k] * left[0] + b.along[1][k] * left[1] + b.along[2][k] * left[2];
-        const float r = b.along[0][k] * right[0] + b.along[1][k] * right[1] + b.along[2][k] * right[2];
-        hits[k] = (c * d < 0) & (l * r < 0) & (c * r > 0);
-        any |= hits[k];
-    }
-    return any != 0;
-}
-
-// The same of one pair of edges.
+// 2013).
 bool arcs_cross(const PolytopePair& pair, const Edge& edge_a, const Edge& edge_b) {
     const Mat3f& rotation = pair.b_in_a.rotation;
     const Vec3f along_a = pair.a.direction(edge_a), along_b = rotation * pair.b.direction(edge_b);
@@ -155,47 +73,57 @@ class FaceBounds {
 public:
     // The other holds a ball.
     FaceBounds(const Polytope& one, const Vec3f& centre, float radius) : one_(one) {
-        for (size_t k = 0; k < one.planes.size(); ++k) pack(k) = heights_over(one.planes[k], centre) - radius;
+        Eigen::Array4f most = Eigen::Array4f::Constant(kAsked);
+        for (size_t k = 0; k < one.planes.size(); ++k) {
+            pack(k) = heights_over(one.planes[k], centre) - radius;
+            most = most.max(pack(k));
+        }
+        largest_ = most.maxCoeff();
+        std::fill(most_ + one.faces.size(), most_ + 4 * one.planes.size(), kAsked);
+    }
+    float largest() const { return largest_; }
+    // The face with the largest bound, which is asked no more.
+    size_t take_largest() {
+        const int face = first_equal(most_, int(one_.faces.size()), largest_);
+        most_[face] = kAsked;
+        return size_t(face);
     }
     // The other holds a point.
     void lower(const Vec3f& point) {
-        for (size_t k = 0; k < one_.planes.size(); ++k) pack(k) = pack(k).min(heights_over(one_.planes[k], point));
-    }
-    float operator[](size_t face) const { return most_[face]; }
-    size_t largest() const {
-        size_t best = 0;
-        for (size_t i = 1; i < one_.faces.size(); ++i) {
-            if (most_[i] > most_[best]) best = i;
+        Eigen::Array4f most = Eigen::Array4f::Constant(kAsked);
+        for (size_t k = 0; k < one_.planes.size(); ++k) {
+            pack(k) = pack(k).min(heights_over(one_.planes[k], point));
+            most = most.max(pack(k));
         }
-        return best;
+        largest_ = most.maxCoeff();
     }
 
 private:
+    static constexpr float kAsked = -1e30f;
+
     Eigen::Map<Eigen::Array4f, Eigen::Aligned16> pack(size_t k) {
         return Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{most_ + 4 * k};
     }
 
     const Polytope& one_;
+    float largest_;
     alignas(16) float most_[4 * kMaxPlanePacks];
 };
 
-// The face of one that separates most from the other, which lies at a pose; the one that looks most towards the ball
-// inside the other first.
+// The face of one that separates most from the other, which lies at a pose; those with the largest bounds first.
 Separation best_face(const Polytope& one, const Polytope& other, const Pose& pose, float margin, AxisKind kind) {
     FaceBounds bounds(one, pose * other.centre, other.inner_radius);
-    const size_t first = bounds.largest();
     Separation best;
-    const auto ask = [&](size_t i) {
+    while (bounds.largest() > best.distance) {
+        const size_t i = bounds.take_largest();
         const Face& face = one.faces[i];
-        const Vec3f nearest = pose * other.vertices[size_t(support(other, pose.rotation.transpose() * -face.normal))];
+        const int vertex = support(other, pose.rotation.transpose() * -face.normal);
+        const Vec3f nearest = pose * other.vertices[size_t(vertex)];
         const float distance = face.normal.dot(nearest) - face.offset;
+        if (distance > best.distance)
+            best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance, vertex};
+        if (distance > margin) break;
         bounds.lower(nearest);
-        if (distance <= best.distance) return;
-        best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance};
-    };
-    ask(first);
-    for (size_t i = 0; i < one.faces.size() && best.distance <= margin; ++i) {
-        if (bounds[i] > best.distance && i != first) ask(i);
     }
     return best;
 }
@@ -208,34 +136,6 @@ Separation best_face_a(const PolytopePair& pair, float margin) {
 
 Separation best_face_b(const PolytopePair& pair, float margin) {
     return best_face(pair.b, pair.a, pair.a_in_b, margin, AxisKind::face_b);
-}
-
-// If an edge pair bears the least overlap d <= depth, its nearest points lie on the edges, d apart and both within
-// the two polytopes' overlap along normal grown by d.
-Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float margin) {
-    const Heights up_a(pair.a, normal);
-    const Heights down_b(pair.b, pair.b_in_a.rotation.transpose() * -normal);
-    const float middle = normal.dot(pair.b_in_a.position);
-    EdgeLanes lanes;
-    gather(pair, down_b, middle - up_a.top - depth, lanes);
-    uint8_t own[kMaxEdges];
-    const int count = edges_above(pair.a, up_a, middle - down_b.top - depth, own);
-    Separation best;
-    int32_t hits[kLanes];
-    for (int e = 0; e < count; ++e) {
-        const Edge& edge = pair.a.edges[own[e]];
-        const Vec3f along = pair.a.direction(edge);
-        if (!arcs_cross(along, pair.a.faces[edge.left].normal, pair.a.faces[edge.right].normal, lanes, hits)) continue;
-        for (int k = 0; k < lanes.count; ++k) {
-            if (hits[k] == 0) continue;
-            const Vec3f across = edge_normal(pair.a, edge, lanes.at(lanes.along, k));
-            if (across.squaredNorm() == 0) continue;
-            const float distance = across.dot(lanes.at(lanes.from, k) - pair.a.vertices[edge.from]);
-            if (distance > best.distance) best = {{AxisKind::edges, own[e], lanes.index[k]}, distance};
-            if (distance > margin) return best;
-        }
-    }
-    return best;
 }
 
 }  // namespace taut::collision

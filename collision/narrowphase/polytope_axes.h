@@ -1,6 +1,8 @@
 // Separating axes of two polytopes, all in a's frame.
 #pragma once
 
+#include <cmath>
+
 #include "collision/narrowphase/kernel.h"
 #include "collision/narrowphase/segment.h"
 #include "collision/polytope.h"
@@ -22,6 +24,7 @@ struct Axis {
 struct Separation {
     Axis axis;
     float distance = -1e30f;  // negative is overlap [m]
+    int nearest = 0;          // of a face: the other polytope's vertex
 };
 
 struct PolytopePair {
@@ -60,6 +63,18 @@ Separation best_face_b(const PolytopePair& pair, float margin);
 
 // The pair of edges that separates most, among those that could bear less than depth of overlap: edges on the
 // far sides, as seen along the unit normal (a to b), can not.
-Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float margin);
+Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth);
+
+// Unit normal across an edge of a and a direction that points out of a; zero for parallel ones.
+inline Vec3f edge_normal(const Polytope& a, const Edge& edge_a, const Vec3f& along_b) {
+    constexpr float kParallel = 1e-6f;  // edges within 1e-3 rad of parallel have no axis of their own
+    const Vec3f along_a = a.direction(edge_a);
+    const Vec3f cross = along_a.cross(along_b);
+    const float squared = cross.squaredNorm();
+    const Vec3f out_of_a = a.faces[edge_a.left].normal + a.faces[edge_a.right].normal;
+    const float scale =
+        squared > kParallel * along_a.squaredNorm() * along_b.squaredNorm() ? 1 / std::sqrt(squared) : 0;
+    return cross * (cross.dot(out_of_a) < 0 ? -scale : scale);
+}
 
 }  // namespace taut::collision

@@ -7,67 +7,99 @@ namespace taut::collision {
 namespace {
 
 // A face of the reference polytope and the other polytope over it, all in the reference's frame.
-struct FaceView {
-    const Polytope& reference;
-    int number;
-    const Polytope& other;
-    const Pose& other_in_reference;
-    const Face& face = reference.faces[size_t(number)];
-    const Vec3f up = other_in_reference.rotation.transpose() * face.normal;  // the normal in the other's frame
+class FaceView {
+public:
+    // lowest: the vertex of the other polytope that reaches furthest down.
+    FaceView(const Polytope& reference, int number, const Polytope& other, const Pose& pose, int lowest)
+        : reference_(reference),
+          number_(number),
+          other_(other),
+          pose_(pose),
+          face_(reference.faces[size_t(number)]),
+          up_(pose.rotation.transpose() * face_.normal),
+          lowest_(lowest >= 0 ? lowest : support(other, -up_)),
+          at_(pose * other.vertices[size_t(lowest_)]),
+          x_(face_.u.dot(at_)),
+          y_(face_.v.dot(at_)),
+          z_(face_.normal.dot(at_) - face_.offset) {}
 
-    // The corners of a face of the other polytope in this face's coordinates.
-    void lay_out(int incident, Polygon& polygon) const {
-        const Vec3f along = other_in_reference.rotation.transpose() * face.u;
-        const Vec3f across = other_in_reference.rotation.transpose() * face.v;
-        const float x = face.u.dot(other_in_reference.position);
-        const float y = face.v.dot(other_in_reference.position);
-        polygon.count = 0;
-        for (const int corner : other.loop_of(other.faces[size_t(incident)])) {
-            const Vec3f& p = other.vertices[size_t(corner)];
-            polygon.points[polygon.count] = {along.dot(p) + x, across.dot(p) + y, up.dot(p) + height(),
-                                             uint32_t(polygon.count)};
-            ++polygon.count;
-        }
-    }
-    // The vertex of the other polytope that reaches furthest down, in the reference's frame.
-    Vec3f lowest() const { return other_in_reference * other.vertices[size_t(support(other, -up))]; }
+    float slack() const { return flush_slack(reference_.inner_radius); }
     // Whether no axis separates by ask more than the face: none separates further than the lowest vertex is from the
     // reference, and that is over the face or, inside, nearest to it.
-    bool decides(const Vec3f& lowest, float ask, float slack) const {
-        const float x = face.u.dot(lowest), y = face.v.dot(lowest), z = face.normal.dot(lowest) - face.offset;
-        for (const Side& side : reference.sides_of(face)) {
-            if (side.x * x + side.y * y - side.offset > slack) return false;
-        }
-        return outside(reference, lowest) <= z + ask;
+    bool decides(float ask) const {
+        for (const Side& side : reference_.sides_of(face_))
+            if (outside(side) > slack()) return false;
+        return collision::outside(reference_, at_) <= z_ + ask;
     }
-    float height() const { return face.normal.dot(other_in_reference.position) - face.offset; }
+    // How far the two are apart at most: no further than the lowest vertex is from the face's edge nearest to it.
+    float most_apart() const;
+    // The normal comes out of the reference face. incident: the face last found to lie against it, if known.
+    void clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const;
+
+private:
+    float outside(const Side& side) const { return side.x * x_ + side.y * y_ - side.offset; }
+    void lay_out(int incident, Polygon& polygon) const;
     // Whether one of the corners is as deep as any vertex, within tolerance [m].
     bool holds_deepest(const Polygon& polygon, float tolerance) const {
         float least = polygon.points[0].z;
         for (int i = 1; i < polygon.count; ++i) least = std::min(least, polygon.points[i].z);
-        return least <= height() - highest(other, -up) + tolerance;
+        return least <= z_ + tolerance;
     }
+
+    const Polytope& reference_;
+    int number_;
+    const Polytope& other_;
+    const Pose& pose_;  // of the other in the reference's frame
+    const Face& face_;
+    Vec3f up_;  // the normal in the other's frame
+    int lowest_;
+    Vec3f at_;         // the lowest vertex,
+    float x_, y_, z_;  // in the face's coordinates
 };
 
-FaceView view_of(const PolytopePair& pair, Axis axis) {
-    if (axis.kind == AxisKind::face_a) return {pair.a, axis.i, pair.b, pair.b_in_a};
-    return {pair.b, axis.j, pair.a, pair.a_in_b};
+float FaceView::most_apart() const {
+    const auto sides = reference_.sides_of(face_);
+    size_t furthest = 0;
+    for (size_t i = 1; i < sides.size(); ++i)
+        if (outside(sides[i]) > outside(sides[furthest])) furthest = i;
+    if (outside(sides[furthest]) <= 0) return std::max(z_, 0.0f);
+    const auto loop = reference_.loop_of(face_);
+    const Vec3f& from = reference_.vertices[loop[furthest]];
+    const Vec3f& to = reference_.vertices[loop[furthest + 1 < loop.size() ? furthest + 1 : 0]];
+    const Segment edge = {from, to - from};
+    return (edge.at(edge.nearest(at_)) - at_).norm();
 }
 
-// The normal comes out of the reference face. incident: the face last found to lie against it, if known.
-void clip_faces(const FaceView& view, uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) {
-    const Face& face = view.face;
-    const float slack = flush_slack(view.reference.inner_radius);
-    Polygon polygon;
-    if (known) view.lay_out(incident, polygon);
-    if (!known || !view.holds_deepest(polygon, 0.1f * slack)) {
-        incident = uint8_t(face_against(view.other, view.up));
-        view.lay_out(incident, polygon);
+// The corners of a face of the other polytope in this face's coordinates.
+void FaceView::lay_out(int incident, Polygon& polygon) const {
+    const Vec3f along = pose_.rotation.transpose() * face_.u, across = pose_.rotation.transpose() * face_.v;
+    const float x = face_.u.dot(pose_.position), y = face_.v.dot(pose_.position);
+    const float z = face_.normal.dot(pose_.position) - face_.offset;
+    polygon.count = 0;
+    for (const int corner : other_.loop_of(other_.faces[size_t(incident)])) {
+        const Vec3f& p = other_.vertices[size_t(corner)];
+        polygon.points[polygon.count] = {along.dot(p) + x, across.dot(p) + y, up_.dot(p) + z, uint32_t(polygon.count)};
+        ++polygon.count;
     }
-    clip(polygon, view.reference.sides_of(face), slack);
-    out.normal = face.normal;
-    add_points(polygon, {face.u, face.v, face.normal, face.offset}, face_base(reference_on_b, view.number, incident),
+}
+
+void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const {
+    Polygon polygon;
+    if (known) lay_out(incident, polygon);
+    if (!known || !holds_deepest(polygon, 0.1f * slack())) {
+        incident = uint8_t(face_against(other_, lowest_, up_));
+        lay_out(incident, polygon);
+    }
+    clip(polygon, reference_.sides_of(face_), slack());
+    out.normal = face_.normal;
+    add_points(polygon, {face_.u, face_.v, face_.normal, face_.offset}, face_base(reference_on_b, number_, incident),
                margin, out);
+}
+
+// Of a face axis; nearest: as in Separation, if known.
+FaceView view_of(const PolytopePair& pair, Axis axis, int nearest = -1) {
+    if (axis.kind == AxisKind::face_a) return {pair.a, axis.i, pair.b, pair.b_in_a, nearest};
+    return {pair.b, axis.j, pair.a, pair.a_in_b, nearest};
 }
 
 void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out) {
@@ -82,10 +114,9 @@ void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out
 }
 
 // kept: the axis is last frame's, with the face that lay against it; else the axis gets that face.
-void contact(const PolytopePair& pair, Axis& axis, bool kept, float margin, Manifold& out) {
-    if (axis.kind == AxisKind::edges) return edge_point(pair, axis, margin, out);
+void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Manifold& out) {
     const bool on_b = axis.kind == AxisKind::face_b;
-    clip_faces(view_of(pair, axis), on_b ? axis.i : axis.j, kept, on_b, margin, out);
+    view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, out);
     if (on_b) move_to_a(pair.b_in_a, out);
 }
 
@@ -94,7 +125,7 @@ void add_face_beside(const PolytopePair& pair, Axis edges, float margin, Manifol
     FaceBeside face = face_beside(pair, edges, out.normal);
     if (face.along < kSamePlane) return;
     Manifold clipped;
-    contact(pair, face.axis, false, margin, clipped);
+    face_points(pair, view_of(pair, face.axis), face.axis, false, margin, clipped);
     add_beside(clipped, out);
 }
 
@@ -112,24 +143,35 @@ bool edges_bear(const PolytopePair& pair, const Separation& edges, const Separat
     return same_way(normal, last) || gain > preference.keep;
 }
 
-// Whether no axis separates by clearly more than the given one.
-bool decides(const PolytopePair& pair, Axis axis) {
-    const Preference preference(pair.size());
-    if (axis.kind == AxisKind::edges) return edges_decide(pair, axis, preference.slop);
-    const FaceView view = view_of(pair, axis);
-    return view.decides(view.lowest(), preference.keep, flush_slack(view.reference.inner_radius));
-}
-
-// Whether last frame's axis still gives the contact, as the pair has hardly moved or no other axis separates by more.
+// Whether last frame's axis still gives the contact, as the pair has hardly moved or no other axis separates by clearly
+// more.
 bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache& cache, Manifold& out) {
     if (!kept.touching || !pair.valid(kept.axis)) return false;
     const bool is_still = still(kept, pair);
-    if (!is_still && !decides(pair, kept.axis)) return false;
-    contact(pair, kept.axis, true, margin, out);
+    const Preference preference(pair.size());
+    if (kept.axis.kind == AxisKind::edges) {
+        if (!is_still && !edges_decide(pair, kept.axis, preference.slop)) return false;
+        edge_point(pair, kept.axis, margin, out);
+    } else {
+        const FaceView view = view_of(pair, kept.axis);
+        if (!is_still && !view.decides(preference.keep)) return false;
+        face_points(pair, view, kept.axis, true, margin, out);
+    }
     if (out.count == 0 || is_still) return out.count > 0;
     if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, margin, out);
     write(kept.axis, true, pair, cache);
     return true;
+}
+
+// The face of either that separates most. a's is the reference of parallel faces, unless b's was.
+Separation best_face(const PolytopePair& pair, const Kept& kept, float margin) {
+    const Separation face_a = best_face_a(pair, margin);
+    if (face_a.distance > margin) return face_a;
+    const Separation face_b = best_face_b(pair, margin);
+    const float keep = Preference(pair.size()).keep;
+    const bool b_was = kept.touching && kept.axis.kind == AxisKind::face_b;
+    const bool b_is = face_b.distance > margin || face_b.distance > face_a.distance + (b_was ? -keep : keep);
+    return b_is ? face_b : face_a;
 }
 
 }  // namespace
@@ -142,34 +184,28 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     Kept kept = read(shapes.cache);
     if (keep_contact(pair, kept, margin, shapes.cache, out)) return 0;
 
-    Separation face = best_face_a(pair, margin);
-    if (face.distance <= margin) {
-        const Separation face_b = best_face_b(pair, margin);
-        // a's face is the reference of parallel faces, unless b's was.
-        const float keep = Preference(pair.size()).keep;
-        const bool b_was = kept.touching && kept.axis.kind == AxisKind::face_b;
-        if (face_b.distance > margin || face_b.distance > face.distance + (b_was ? -keep : keep)) face = face_b;
-    }
+    Separation face = best_face(pair, kept, margin);
     if (face.distance > margin) {
         write(face.axis, false, pair, shapes.cache);
         return face.distance;
     }
     const Preference preference(pair.size());
     const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
-    const FaceView view = view_of(pair, face.axis);
-    const float slack = flush_slack(view.reference.inner_radius);
-    contact(pair, face.axis, false, margin, out);
-    const float ask = preference.ask(was_edge);
+    const FaceView view = view_of(pair, face.axis, face.nearest);
+    face_points(pair, view, face.axis, false, margin, out);
     // Where the faces lie over each other the two are at most so far apart.
     const float most = deepest(out);
     const Vec3f last = kept.touching && pair.valid(kept.axis) ? pair.normal(kept.axis) : Vec3f(Vec3f::Zero());
     const bool other_way = last != Vec3f::Zero() && !same_way(last, pair.normal(face.axis));
-    if (!other_way && (std::max(most, 0.0f) <= face.distance + slack || view.decides(view.lowest(), ask, slack))) {
+    if (!other_way &&
+        (std::max(most, 0.0f) <= face.distance + view.slack() || view.decides(preference.ask(was_edge)))) {
         write(face.axis, true, pair, shapes.cache);
         return 0;
     }
-    const float depth = std::max(std::min(margin, most + slack), -face.distance + (other_way ? preference.keep : 0.0f));
-    Separation edges = best_edges(pair, pair.normal(face.axis), depth, margin);
+    // Edges that separate by slop less may bear what the face misses.
+    const float apart = std::min({margin, most + view.slack(), view.most_apart() + preference.slop});
+    const float depth = std::max(apart, -face.distance + (other_way ? preference.keep : 0.0f));
+    const Separation edges = best_edges(pair, pair.normal(face.axis), depth);
     if (edges.distance > margin) {
         out.count = 0;
         write(edges.axis, false, pair, shapes.cache);
@@ -180,7 +216,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
         edges_bear(pair, edges, face, last, preference)) {
         out.count = 0;
         face.axis = edges.axis;
-        contact(pair, edges.axis, false, margin, out);
+        edge_point(pair, edges.axis, margin, out);
         add_face_beside(pair, edges.axis, margin, out);
     }
     write(face.axis, true, pair, shapes.cache);

@@ -34,17 +34,21 @@ public:
         const Vec3 shift = to_a(at_b_.position + moved - at_a_.position);
         return lines_ ? distance_of_lines(shift) : gjk(difference_, shift, hint, gap);
     }
-    // No more than the gap between the two [m], if that tells whether they are deeper in each other than depth: what
-    // still overlaps when both are smaller by shares of depth is.
-    std::optional<double> bound(double depth) const {
+    // A plane that keeps the two as far apart as this [m], if that tells whether they are deeper in each other than
+    // depth: what still overlaps when both are smaller by shares of depth is, and has no such plane: -infinity.
+    struct Plane {
+        double apart;
+        Vec3 normal;  // unit, from a to b, a's frame
+    };
+    std::optional<Plane> bound(double depth) const {
         const double inner = double(inner_radius(pair_.a)) + double(inner_radius(pair_.b));
         const Difference smaller(pair_, depth / inner);
         const Vec3 apart = to_a(at_b_.position - at_a_.position);
         // A line is as long where its shape is smaller.
         const Distance distance = lines_ ? distance_of_lines(apart) : gjk(smaller, apart, hint(), kBoundGap);
-        if (!distance.apart) return -std::numeric_limits<double>::infinity();
+        if (!distance.apart) return Plane{-std::numeric_limits<double>::infinity(), distance.normal};
         const double least = proven(Vec3::Zero(), distance.normal) - radii();
-        return least >= -depth ? std::optional(least) : std::nullopt;
+        return least >= -depth ? std::optional(Plane{least, distance.normal}) : std::nullopt;
     }
     // How far a plane across the normal keeps the cores apart: no more than their distance, however far GJK came.
     double proven(const Vec3& moved, const Vec3& normal) const {

@@ -1,5 +1,6 @@
-// Bodies under way that turn as well: two shapes apart by s along n need at least s / (n . (v_a - v_b) + w_a r_a + w_b
-// r_b) to meet, r the reach of a core about the centre that it turns about (conservative advancement; Mirtich 1996).
+// Bodies under way that turn as well: two shapes apart by s along n need at least s / (n . (v_a - v_b) + |w_a x n| r_a
+// + |w_b x n| r_b) to meet, r the reach of a core about the centre that it turns about (conservative advancement;
+// Mirtich 1996).
 #include <array>
 #include <limits>
 
@@ -17,17 +18,20 @@ constexpr int kMaxSteps = 64;
 // Whether a meeting goes deep is looked at no more often.
 constexpr int kMaxLooks = 64;
 
-// How fast two shapes can come nearer across a plane with the normal, from a to b [m/s].
+// How fast two shapes can come nearer [m/s].
 class Approach {
 public:
     Approach(const Motion& a, const Motion& b)
-        : velocity_(a.velocity - b.velocity), turning_(a.spin.norm() * a.reach + b.spin.norm() * b.reach) {}
-    double along(const Vec3& normal) const { return normal.dot(velocity_) + turning_; }
-    double fastest() const { return velocity_.norm() + turning_; }
+        : velocity_(a.velocity - b.velocity), turn_a_(a.reach * a.spin), turn_b_(b.reach * b.spin) {}
+    // Across a plane with the normal n, from a to b: n . (v + w x r) <= n . v + |w x n| |r| for each point.
+    double along(const Vec3& normal) const {
+        return normal.dot(velocity_) + turn_a_.cross(normal).norm() + turn_b_.cross(normal).norm();
+    }
+    double fastest() const { return velocity_.norm() + turn_a_.norm() + turn_b_.norm(); }
 
 private:
     Vec3 velocity_;
-    double turning_;
+    Vec3 turn_a_, turn_b_;  // spins times reaches
 };
 
 // b is the plane, which may move but, being endless, not turn much: its turning is left out.
@@ -57,11 +61,16 @@ constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_m
                                                         convex_meeting, convex_meeting, surface_meeting};
 
 // No more than the gap between two shapes [m], and less than -depth just where they are deeper in each other.
-double least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double depth) {
-    if (is_convex(b)) {
-        if (const auto bound = Couple(a, at_a, b, at_b).bound(depth)) return *bound;
-    }
-    return find_gap(a, at_a, b, at_b).distance;
+struct Clear {
+    double gap;
+    Vec3 normal;  // of a plane that keeps them as far apart, from a to b, world axes; 0: of none
+};
+Clear least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double depth) {
+    if (!is_convex(b)) return {find_gap(a, at_a, b, at_b).distance, Vec3::Zero()};
+    const Couple couple(a, at_a, b, at_b);
+    if (const auto plane = couple.bound(depth)) return {plane->apart, couple.to_world(plane->normal)};
+    const Gap gap = find_gap(a, at_a, b, at_b);
+    return {gap.distance, gap.normal};
 }
 
 // When the centres are nearest to each other, from one moment to another [s].
@@ -75,14 +84,18 @@ double nearest_moment(const Motion& a, const Motion& b, double from, double to) 
 // that do are as deep where the centres pass each other.
 bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
                  double reach, double depth, double until) {
-    const auto gap_at = [&](double t) { return least_gap(a, motion_a.after(t), b, motion_b.after(t), depth); };
-    if (is_convex(b) && gap_at(nearest_moment(motion_a, motion_b, met, until)) < -depth) return true;
-    const double fastest = Approach(motion_a, motion_b).fastest();
-    double t = met, gap = reach;
+    const auto clear_at = [&](double t) { return least_gap(a, motion_a.after(t), b, motion_b.after(t), depth); };
+    if (is_convex(b) && clear_at(nearest_moment(motion_a, motion_b, met, until)).gap < -depth) return true;
+    const Approach approach(motion_a, motion_b);
+    const double least = 0.5 * depth / approach.fastest();  // of the time from look to look
+    Clear clear = {reach, Vec3::Zero()};
+    double t = met;
     for (int look = 0; look < kMaxLooks && t <= until; ++look) {
-        t += std::max(gap + depth, 0.5 * depth) / fastest;
-        gap = gap_at(t);
-        if (gap < -depth) return true;
+        const double speed = clear.normal == Vec3::Zero() ? approach.fastest() : approach.along(clear.normal);
+        if (!(speed > 0)) return false;
+        t += std::max((clear.gap + depth) / speed, least);
+        clear = clear_at(t);
+        if (clear.gap < -depth) return true;
     }
     return t <= until;
 }
@@ -96,6 +109,7 @@ bool balls_meet(const Motion& a, const Motion& b, double radii, double reach, do
 }  // namespace
 
 Placement Motion::after(double time) const {
+    if (time == 0) return at;
     const Mat3 turn = rotation_from_vector(time * spin).toRotationMatrix();
     const Vec3 lever = turn * (at.position - centre);
     return {centre + time * velocity + lever, (turn * at.rotation.cast<double>()).cast<float>()};

@@ -12,8 +12,9 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
-constexpr uint32_t kSoon = 4;                       // pairs that a loop asks the memory for ahead of itself
+constexpr uint32_t kGrain = 32, kArrivalGrain = 8;          // pairs that a thread takes at a time
+constexpr uint32_t kFewArriving = 32, kMostArriving = 256;  // records
+constexpr uint32_t kSoon = 4;                               // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
@@ -23,7 +24,7 @@ bool has_parts(const Detection& of, const NearPair& near) {
 }
 
 // Finds what a pair needs on its own, or that it is not to be asked.
-void look_at(const Detection& of, NearPair& near) {
+void look_at(const Detection& of, Arrivals& arrivals, NearPair& near) {
     near.arrives = near.fast = near.reused = false;
     if (near.filtered || stay_clear(of.pairs, near)) return;
     near.fast = may_be_fast(of.pairs, near) && is_fast(of.nodes, of.pairs, near.ends(of.colliders), of.time);
@@ -32,7 +33,7 @@ void look_at(const Detection& of, NearPair& near) {
     near.on_surface = has_parts(of, near);
     if (near.on_surface) return;
     if (near.pair == kNone) {
-        near.arrives = gets_points(of, near);
+        near.arrives = gets_points(of, arrivals, near);
         return;
     }
     Pair& pair = of.pairs.list[near.pair];
@@ -46,7 +47,7 @@ bool lost_points(const Pairs& pairs, const NearPair& near) {
 }
 
 // Looks at all pairs, and picks those whose records come or go.
-void look_at_all(Team& team, const Detection& of) {
+void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
     Pairs& pairs = of.pairs;
     std::atomic<bool> any_fast = false;
     team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
@@ -54,7 +55,7 @@ void look_at_all(Team& team, const Detection& of) {
             NearPair& near = pairs.near[i];
             if (i + kSoon < end && pairs.near[i + kSoon].pair != kNone)
                 prefetch(pairs.list[pairs.near[i + kSoon].pair]);
-            look_at(of, near);
+            look_at(of, arrivals, near);
             near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
             if (near.fast) any_fast.store(true, std::memory_order_relaxed);
         }
@@ -64,15 +65,34 @@ void look_at_all(Team& team, const Detection& of) {
            [&](uint32_t i) { return pairs.near[i].changes; });
 }
 
-// Records of pairs that got their first points: given in the order of keys, filled side by side.
-void admit_arriving(Team& team, const Detection& of) {
+// Room for about as many arrivals as there were in this frame; not for few, nor for those of a world's first frame.
+void prepare_arrivals(uint32_t number, Array<Pair>& arriving) {
+    if (4 * number < arriving.size()) {
+        arriving.clear();
+        Array<Pair>(arriving.get_allocator()).swap(arriving);
+    } else if (number > arriving.size() && number >= kFewArriving && number <= kMostArriving) {
+        arriving.clear();
+        arriving.resize(std::min(number + number / 4, kMostArriving));
+    }
+}
+
+// Slots of pairs that got their first points: given in the order of keys. Points of those that had no record are found
+// again, side by side.
+void admit_arriving(Team& team, const Detection& of, Arrivals& arrivals) {
     Pairs& pairs = of.pairs;
-    const auto arriving =
-        std::count_if(pairs.picked.begin(), pairs.picked.end(), [&](uint32_t i) { return pairs.near[i].arrives; });
-    if (arriving == 0) return;
-    reserve_slots(pairs, static_cast<size_t>(arriving));
-    for (const uint32_t i : pairs.picked)
-        if (pairs.near[i].arrives) pairs.near[i].pair = take_slot(pairs, pairs.near[i].ends(of.colliders));
+    const uint32_t number = arrivals.number();
+    if (number == 0) return;
+    reserve_slots(pairs, number);
+    const std::span<const Pair> found = arrivals.sort();
+    auto next = found.begin();
+    for (const uint32_t i : pairs.picked) {
+        NearPair& near = pairs.near[i];
+        if (!near.arrives) continue;
+        near.pair = take_slot(pairs, near.ends(of.colliders));
+        near.arrives = next == found.end() || next->key != near.key;  // is still to be found
+        if (!near.arrives) pairs.list[near.pair] = *next++;
+    }
+    if (number == found.size()) return;
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kArrivalGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t k = begin; k < end; ++k) {
             NearPair& near = pairs.near[pairs.picked[k]];
@@ -149,8 +169,10 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                    double time_step, double lead) {
     const Detection of{nodes, colliders, shapes, pairs, time_step, lead};
     note_changes(colliders, pairs);
-    look_at_all(team, of);
-    admit_arriving(team, of);
+    Arrivals arrivals(pairs.arriving);
+    look_at_all(team, of, arrivals);
+    admit_arriving(team, of, arrivals);
+    prepare_arrivals(arrivals.number(), pairs.arriving);
     settle_changing(of);
     order_slots(pairs);
     list_active(team, pairs);

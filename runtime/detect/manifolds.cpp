@@ -111,6 +111,15 @@ void keep_cache(const collision::PairCache& cache, NearPair& near) {
     std::copy_n(cache.words, near.cache.size(), near.cache.begin());
 }
 
+// What was found for a pair without a surface, into its record.
+void take_over(const Shaped& shaped, const Detection& of, const collision::PairCache& cache,
+               const collision::Manifold& old, NearPair& near, Pair& pair) {
+    std::copy_n(cache.words + near.cache.size(), pair.cache.size(), pair.cache.begin());
+    near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
+    near.changed = false;
+    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
+}
+
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
 // longer touched that looked about the same way. Null if there is none.
 const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, const collision::PartManifold& part) {
@@ -189,22 +198,27 @@ void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
     std::ranges::copy(pair.cache, std::ranges::copy(near.cache, cache.words).out);
     const float gap = shaped.find_points(cache, pair.manifold);
     keep_cache(cache, near);
-    std::copy_n(cache.words + near.cache.size(), pair.cache.size(), pair.cache.begin());
-    near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
-    near.changed = false;
     note_clear(of.pairs, gap, near);
-    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
+    take_over(shaped, of, cache, old, near, pair);
 }
 
-bool gets_points(const Detection& of, NearPair& near) {
+bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near) {
     collision::PairCache cache;
     std::ranges::copy(near.cache, cache.words);
     collision::Manifold manifold;
-    const float gap = Shaped(of, near.ends(of.colliders), near.fast).find_points(cache, manifold);
-    if (manifold.count > 0) return true;
+    const PairEnds ends = near.ends(of.colliders);
+    const Shaped shaped(of, ends, near.fast);
+    const float gap = shaped.find_points(cache, manifold);
+    Pair* const pair = manifold.count > 0 ? arrivals.take() : nullptr;
+    if (manifold.count > 0 && !pair) return true;
     keep_cache(cache, near);
     note_clear(of.pairs, gap, near);
-    return false;
+    if (!pair) return false;
+    *pair = Pair();
+    static_cast<PairEnds&>(*pair) = ends;
+    pair->manifold = manifold;
+    take_over(shaped, of, cache, {}, near, *pair);
+    return true;
 }
 
 void find_parts(const Detection& of, NearPair& near) {

@@ -244,6 +244,7 @@ struct Pairs {
           stance(memory),
           travel(memory),
           picked(memory),
+          arriving(memory),
           parts(memory) {}
 
     // Of a new collider in a slot, or of one that gets another shape.
@@ -279,6 +280,7 @@ struct Pairs {
     Array<Stance> stance;                   // by collider; place_collider()
     Array<Travel> travel;                   // by collider; place_collider(), ahead: update_bounds()
     Array<uint32_t> picked;                 // scratch: what gather() found last
+    Array<Pair> arriving;                   // scratch: records that have no slots yet; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };
 
