@@ -112,14 +112,22 @@ Vec ShootingRange::aim() {
     return {x, 0.5 * kRough, z};
 }
 
-bool ShootingRange::beyond(taut_body body) const {
+Vec ShootingRange::centre(taut_body body) const {
     taut_sym3 inertia{};
     float mass = 0;
     taut_vec3 centre{};
     ok(taut_body_get_mass(body, &mass, &centre, &inertia));
     const BodyState s = state(body);
-    const Vec p = s.position + s.rotation.rotate(centre);
-    if (!(p.x > reach_ && p.x < kSide - reach_ && p.z > reach_ && p.z < kSide - reach_)) return !finite(p);
+    return s.position + s.rotation.rotate(centre);
+}
+
+bool ShootingRange::over_target(const Vec& p) const {
+    return p.x > reach_ && p.x < kSide - reach_ && p.z > reach_ && p.z < kSide - reach_;
+}
+
+bool ShootingRange::beyond(taut_body body) const {
+    const Vec p = centre(body);
+    if (!over_target(p)) return !finite(p);
     const int row = static_cast<int>(p.z / kCell), column = static_cast<int>(p.x / kCell);
     const double lowest = std::min({heights_[sample(row, column)], heights_[sample(row + 1, column)],
                                     heights_[sample(row, column + 1)], heights_[sample(row + 1, column + 1)]});
@@ -192,10 +200,19 @@ int ShootingRange::limbs_through(taut_joint_solve solve) {
         ragdoll(at, Quat(scenes::turn(random_.direction(), kPi * random_.uniform())), solve);
     for (taut_body body : bodies)
         ok(taut_body_set_velocity(body, (v + cross(spin, position(body) - at)).narrow(), spin.narrow()));
-    world_.step(60 + static_cast<int>(4 / (speed_ * world_.frame())));
-    const auto through = std::count_if(bodies.begin(), bodies.end(), [&](taut_body body) { return beyond(body); });
+    std::vector<bool> through(bodies.size()), aside(bodies.size());  // aside: gone over the rim, swings below as it may
+    for (int frame = 0; frame < 60 + static_cast<int>(4 / (speed_ * world_.frame())); ++frame) {
+        world_.step(1);
+        for (size_t i = 0; i < bodies.size(); ++i) {
+            const Vec p = centre(bodies[i]);
+            if (finite(p) && !over_target(p))
+                aside[i] = aside[i] || !through[i];
+            else
+                through[i] = !aside[i] && beyond(bodies[i]);
+        }
+    }
     for (taut_body body : bodies) ok(taut_body_remove(body));
-    return static_cast<int>(through);
+    return static_cast<int>(std::count(through.begin(), through.end(), true));
 }
 
 }  // namespace soak

@@ -27,7 +27,7 @@ public:
     // the far side, by more than the wall is thick.
     bool comes_through(int kind);
     // Throws a trunk with a head and four limbs of two pieces, all turning together; how many of the ten stay on the
-    // far side.
+    // far side, where they did not get around the rim.
     int limbs_through(taut_joint_solve solve);
 
 private:
@@ -35,7 +35,9 @@ private:
     lab::Vec velocity();
     std::vector<taut_body> ragdoll(const lab::Vec& at, const lab::Quat& turned, taut_joint_solve solve);
     void tie(taut_body a, taut_body b, const lab::Vec& pivot, taut_joint_solve solve);
-    lab::Vec aim();  // on the target
+    lab::Vec aim();                         // on the target
+    lab::Vec centre(taut_body body) const;  // of mass
+    bool over_target(const lab::Vec& p) const;
     bool beyond(taut_body body) const;
 
     ShotPlan plan_;
