@@ -20,15 +20,6 @@ public:
         ok(taut_world_add_cable(handle, &d, &out));
         return out;
     }
-    taut_shape capsule(double radius, double half_length) const {
-        taut_capsule_def d;
-        taut_capsule_def_init(&d);
-        d.radius = static_cast<float>(radius);
-        d.half_length = static_cast<float>(half_length);
-        taut_shape out{};
-        ok(taut_world_add_capsule(handle, &d, &out));
-        return out;
-    }
 };
 
 inline taut_cable_end_def to_world(const Vec& point) { return {1, 0, {0}, point.pos()}; }

@@ -112,55 +112,48 @@ public:
     World& operator=(const World&) = delete;
 
     taut_shape box(const Vec& half) const {
-        taut_box_def d;
-        taut_box_def_init(&d);
-        d.half_extents = half.narrow();
-        taut_shape out{};
-        ok(taut_world_add_box(handle, &d, &out));
-        return out;
+        return shape(taut_box_def_init, taut_world_add_box, [&](taut_box_def& d) { d.half_extents = half.narrow(); });
     }
     taut_shape sphere(double radius) const {
-        taut_sphere_def d;
-        taut_sphere_def_init(&d);
-        d.radius = static_cast<float>(radius);
-        taut_shape out{};
-        ok(taut_world_add_sphere(handle, &d, &out));
-        return out;
+        return shape(taut_sphere_def_init, taut_world_add_sphere,
+                     [&](taut_sphere_def& d) { d.radius = static_cast<float>(radius); });
     }
     taut_shape cylinder(double radius, double half_length) const {
-        taut_cylinder_def d;
-        taut_cylinder_def_init(&d);
-        d.radius = static_cast<float>(radius);
-        d.half_length = static_cast<float>(half_length);
-        taut_shape out{};
-        ok(taut_world_add_cylinder(handle, &d, &out));
-        return out;
+        return shape(taut_cylinder_def_init, taut_world_add_cylinder, [&](taut_cylinder_def& d) {
+            d.radius = static_cast<float>(radius);
+            d.half_length = static_cast<float>(half_length);
+        });
     }
     taut_shape cone(double radius, double half_length) const {
-        taut_cone_def d;
-        taut_cone_def_init(&d);
-        d.radius = static_cast<float>(radius);
-        d.half_length = static_cast<float>(half_length);
-        taut_shape out{};
-        ok(taut_world_add_cone(handle, &d, &out));
-        return out;
+        return shape(taut_cone_def_init, taut_world_add_cone, [&](taut_cone_def& d) {
+            d.radius = static_cast<float>(radius);
+            d.half_length = static_cast<float>(half_length);
+        });
+    }
+    taut_shape capsule(double radius, double half_length) const {
+        return shape(taut_capsule_def_init, taut_world_add_capsule, [&](taut_capsule_def& d) {
+            d.radius = static_cast<float>(radius);
+            d.half_length = static_cast<float>(half_length);
+        });
     }
     taut_shape tapered_capsule(double bottom, double top, double half_length) const {
-        taut_tapered_capsule_def d;
-        taut_tapered_capsule_def_init(&d);
-        d.bottom_radius = static_cast<float>(bottom);
-        d.top_radius = static_cast<float>(top);
-        d.half_length = static_cast<float>(half_length);
-        taut_shape out{};
-        ok(taut_world_add_tapered_capsule(handle, &d, &out));
-        return out;
+        return shape(taut_tapered_capsule_def_init, taut_world_add_tapered_capsule, [&](taut_tapered_capsule_def& d) {
+            d.bottom_radius = static_cast<float>(bottom);
+            d.top_radius = static_cast<float>(top);
+            d.half_length = static_cast<float>(half_length);
+        });
     }
     taut_shape plane(const Vec& normal = {0, 1, 0}) const {
-        taut_plane_def d;
-        taut_plane_def_init(&d);
-        d.normal = normal.narrow();
+        return shape(taut_plane_def_init, taut_world_add_plane, [&](taut_plane_def& d) { d.normal = normal.narrow(); });
+    }
+    // Of a def with its defaults but for what set writes.
+    template <class Def, class Add, class Set>
+    taut_shape shape(void (*init)(Def*), Add add, Set set) const {
+        Def def;
+        init(&def);
+        set(def);
         taut_shape out{};
-        ok(taut_world_add_plane(handle, &d, &out));
+        ok(add(handle, &def, &out));
         return out;
     }
     taut_body add(const BodyPlan& plan) const {

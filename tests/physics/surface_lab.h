@@ -103,16 +103,6 @@ inline taut_shape height_field(const World& world, uint32_t rows, uint32_t colum
     return out;
 }
 
-inline taut_shape capsule(const World& world, double radius, double half_length) {
-    taut_capsule_def d;
-    taut_capsule_def_init(&d);
-    d.radius = static_cast<float>(radius);
-    d.half_length = static_cast<float>(half_length);
-    taut_shape out{};
-    ok(taut_world_add_capsule(world.handle, &d, &out));
-    return out;
-}
-
 inline taut_shape hull(const World& world, const std::vector<taut_vec3>& points) {
     taut_hull_def d;
     taut_hull_def_init(&d);

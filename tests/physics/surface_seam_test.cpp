@@ -48,7 +48,7 @@ BodyPlan plan_of(const World& world, Slider slider) {
         case Slider::sphere:
             return {.shape = world.sphere(0.3), .position = {-6, 0.3, 0}};
         case Slider::capsule:
-            return {.shape = capsule(world, 0.2, 0.4),
+            return {.shape = world.capsule(0.2, 0.4),
                     .position = {-6, 0.2, 0},
                     .rotation = Quat::turn({1, 0, 0}, 1.5707963)};
         default:

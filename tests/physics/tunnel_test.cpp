@@ -10,15 +10,7 @@ enum class Bullet { ball, box, rod, hull };
 taut_shape shape_of(const World& world, Bullet bullet) {
     if (bullet == Bullet::ball) return world.sphere(0.02);
     if (bullet == Bullet::box) return world.box({0.05, 0.03, 0.04});
-    if (bullet == Bullet::rod) {
-        taut_capsule_def d;
-        taut_capsule_def_init(&d);
-        d.radius = 0.01f;
-        d.half_length = 0.3f;
-        taut_shape out{};
-        ok(taut_world_add_capsule(world.handle, &d, &out));
-        return out;
-    }
+    if (bullet == Bullet::rod) return world.capsule(0.01, 0.3);
     const taut_vec3 points[] = {
         {0.06f, 0, 0}, {-0.04f, 0.04f, 0.01f}, {-0.03f, -0.04f, 0}, {0, 0.01f, 0.05f}, {0, 0, -0.05f}};
     taut_hull_def d;
@@ -165,13 +157,7 @@ enum class Slim { rod, cylinder, beam };
 taut_shape shape_of(const World& world, Slim slim) {
     if (slim == Slim::rod) return shape_of(world, Bullet::rod);
     if (slim == Slim::beam) return world.box({0.01, 0.3, 0.01});
-    taut_cylinder_def d;
-    taut_cylinder_def_init(&d);
-    d.radius = 0.01f;
-    d.half_length = 0.3f;
-    taut_shape out{};
-    ok(taut_world_add_cylinder(world.handle, &d, &out));
-    return out;
+    return world.cylinder(0.01, 0.3);
 }
 
 struct Bounce {

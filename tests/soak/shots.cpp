@@ -60,7 +60,7 @@ ShootingRange::ShootingRange(const ShotPlan& plan, uint64_t seed) : plan_(plan),
     }
     wall.restitution = 0.5;
     world_.add(wall);
-    trunk_ = world_.box({0.2, 0.3, 0.12}), head_ = world_.sphere(0.12), limb_ = capsule(world_, 0.07, 0.15);
+    trunk_ = world_.box({0.2, 0.3, 0.12}), head_ = world_.sphere(0.12), limb_ = world_.capsule(0.07, 0.15);
 }
 
 taut_shape ShootingRange::shape(int kind) {
@@ -73,9 +73,9 @@ taut_shape ShootingRange::shape(int kind) {
         case 1:
             return world_.box({size, size * (0.3 + 0.7 * random_.uniform()), size * (0.3 + 0.7 * random_.uniform())});
         case 2:
-            return capsule(world_, 0.08 * size, size);
+            return world_.capsule(0.08 * size, size);
         case 3:
-            return capsule(world_, 0.4 * size, size);
+            return world_.capsule(0.4 * size, size);
         case 4:
             return make<taut_cylinder_def>(w, taut_cylinder_def_init, taut_world_add_cylinder, 0.5 * size, size);
         case 5:
