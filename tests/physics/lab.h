@@ -147,13 +147,13 @@ public:
         return shape(taut_plane_def_init, taut_world_add_plane, [&](taut_plane_def& d) { d.normal = normal.narrow(); });
     }
     // Of a def with its defaults but for what set writes.
-    template <class Def, class Add, class Set>
-    taut_shape shape(void (*init)(Def*), Add add, Set set) const {
-        Def def;
-        init(&def);
-        set(def);
+    template <class Def, class Set>
+    taut_shape shape(void (*init)(Def*), taut_result (*add_shape)(taut_world, const Def*, taut_shape*), Set set) const {
+        Def d;
+        init(&d);
+        set(d);
         taut_shape out{};
-        ok(add(handle, &def, &out));
+        ok(add_shape(handle, &d, &out));
         return out;
     }
     taut_body add(const BodyPlan& plan) const {
