@@ -195,7 +195,9 @@ std::vector<taut_body> ShootingRange::ragdoll(const Vec& at, const Quat& turned,
 int ShootingRange::limbs_through(taut_joint_solve solve) {
     reach_ = 0;
     const Vec v = velocity(), spin = 0.1 * plan_.spin * random_.uniform() * Vec(random_.direction());
-    const Vec at = aim() - (2 + 2 * random_.uniform()) / speed_ * v;
+    constexpr double kClear = 1.5;  // [m], of all limbs as well
+    Vec at = aim() - (2 + 2 * random_.uniform()) / speed_ * v;
+    at.y = std::max(at.y, kClear);
     const std::vector<taut_body> bodies =
         ragdoll(at, Quat(scenes::turn(random_.direction(), kPi * random_.uniform())), solve);
     for (taut_body body : bodies)
