@@ -1,0 +1,188 @@
+// Bodies and particles come and go.
+#include <taut/body.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "api/access.h"
+#include "api/body_mass.h"
+#include "api/body_motion.h"
+#include "api/collider_def.h"
+#include "models/bodies.h"
+
+using namespace taut;
+
+namespace {
+
+constexpr NodeKind kNodeKind[] = {NodeKind::fixed, NodeKind::kinematic, NodeKind::dynamic};
+
+Check& check_inertia(Check& check, const taut_sym3& m) {
+    return check.number("inertia.xx", m.xx, kInertia)
+        .number("inertia.yy", m.yy, kInertia)
+        .number("inertia.zz", m.zz, kInertia)
+        .number("inertia.xy", m.xy, kInertia)
+        .number("inertia.xz", m.xz, kInertia)
+        .number("inertia.yz", m.yz, kInertia);
+}
+
+Check& check_def(Check& check, const taut_body_def& def) {
+    check.struct_size(def.struct_size, sizeof def)
+        .choice("kind", def.kind, TAUT_BODY_DYNAMIC)  // a particle has its own def
+        .bounded("position", def.position, kPosition)
+        .rotation("rotation", def.rotation)
+        .bounded("linear_velocity", def.linear_velocity, kSpeed)
+        .bounded("angular_velocity", def.angular_velocity, kSpeed);
+    if (check && def.kind == TAUT_BODY_STATIC) {
+        check.zero("linear_velocity", def.linear_velocity, "for a static body")
+            .zero("angular_velocity", def.angular_velocity, "for a static body");
+    }
+    check_material(check, kMaterialInDef, def.material)
+        .zero("filter.reserved", def.filter.reserved)
+        .number("density", def.density, kDensity)
+        .zero_or("mass", def.mass, kBodyMass)
+        .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
+    check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
+    check_inertia(check, def.inertia).number("gravity_scale", def.gravity_scale, kGravityScale);
+    if (def.collider_count > 0) check.pointer("colliders", def.colliders);
+    if (!check) return check;
+    char scope[32];
+    for (uint32_t i = 0; i < def.collider_count; ++i) {
+        std::snprintf(scope, sizeof scope, "colliders[%u].", i);
+        check_collider_def(check.within(scope), def.colliders[i]);
+        if (!check) return check;
+    }
+    return check.within("");
+}
+
+taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
+                     std::span<const ColliderPlan> colliders, taut_body* out) {
+    taut_result room = room_for_bodies(check.call(), world, 1);
+    if (room == TAUT_OK) room = room_for_colliders(check.call(), world, colliders.size());
+    if (room != TAUT_OK) return room;
+    NodeInfo own = info;
+    own.continuous = world.def.continuous != 0;
+    *out = world.body_handle(add_node(world, own, motion, mass, colliders));
+    return TAUT_OK;
+}
+
+// The collider that a def's own shape, material and filter make.
+template <class Def>
+taut_collider_def own_collider(const Def& def, float density) {
+    taut_collider_def own;
+    taut_collider_def_init(&own);
+    own.density = density;
+    own.shape = def.shape;
+    own.material = def.material;
+    own.filter = def.filter;
+    own.user_data = def.user_data;
+    own.flags = def.collider_flags;
+    own.contact_events = def.contact_events;
+    return own;
+}
+
+// Of a checked def, its own shape first.
+taut_result make_colliders(Check& check, const World& world, NodeKind kind, const taut_body_def& def,
+                           std::vector<ColliderPlan>& out) {
+    if (def.shape.bits != 0) {
+        const taut_result made = make_collider(check, world, kind, own_collider(def, def.density), out.emplace_back());
+        if (made != TAUT_OK) return made;
+    }
+    for (uint32_t i = 0; i < def.collider_count; ++i) {
+        const taut_result made = make_collider(check, world, kind, def.colliders[i], out.emplace_back());
+        if (made != TAUT_OK) return made;
+    }
+    return TAUT_OK;
+}
+
+}  // namespace
+
+void taut_body_def_init(taut_body_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->kind = TAUT_BODY_DYNAMIC;
+    def->rotation = {0, 0, 0, 1};
+    def->material = kDefaultMaterial;
+    def->filter = kDefaultFilter;
+    def->density = 1000;
+    def->gravity_scale = 1;
+}
+
+void taut_particle_def_init(taut_particle_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->mass = 1;
+    def->gravity_scale = 1;
+    def->material = kDefaultMaterial;
+    def->filter = kDefaultFilter;
+}
+
+taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, taut_body* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    if (!check_def(check, *def)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        NodeInfo info;
+        info.kind = kNodeKind[def->kind];
+        info.user_data = def->user_data;
+        std::vector<ColliderPlan> colliders;
+        const taut_result made = make_colliders(check, world, info.kind, *def, colliders);
+        if (made != TAUT_OK) return made;
+        NodeMass mass;
+        mass.gravity_scale = def->gravity_scale;
+        if (info.kind == NodeKind::dynamic) {
+            set_body_mass(check, *def, world.shapes, colliders, mass);
+            if (!check) return check.result();
+        }
+        NodeMotion motion;
+        motion.q = to_quat(def->rotation);
+        motion.x = to_vec(def->position) + motion.q * mass.centre;
+        set_velocity(motion, to_vec(def->linear_velocity), to_vec(def->angular_velocity));
+        return add_body(check, world, info, motion, mass, colliders, out);
+    });
+}
+
+taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* def, taut_body* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    check.struct_size(def->struct_size, sizeof *def)
+        .number("mass", def->mass, kParticleMass)
+        .bounded("position", def->position, kPosition)
+        .bounded("velocity", def->velocity, kSpeed)
+        .number("gravity_scale", def->gravity_scale, kGravityScale);
+    check_material(check, kMaterialInDef, def->material).zero("filter.reserved", def->filter.reserved);
+    check_asks(check, "collider_flags", def->collider_flags, def->contact_events);
+    if (!check) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const bool has_shape = def->shape.bits != 0;
+        ColliderPlan collider;
+        if (has_shape) {
+            const taut_result made = make_collider(check, world, NodeKind::particle, own_collider(*def, 0), collider);
+            if (made != TAUT_OK) return made;
+        }
+        NodeMass mass;
+        mass.mass = def->mass;
+        mass.inv_mass = 1 / mass.mass;
+        mass.gravity_scale = def->gravity_scale;
+        mass.isotropic = true;
+        NodeMotion motion;
+        motion.x = to_vec(def->position);
+        set_velocity(motion, to_vec(def->velocity), Vec3::Zero());
+        NodeInfo info;
+        info.kind = NodeKind::particle;
+        info.user_data = def->user_data;
+        return add_body(check, world, info, motion, mass, {&collider, has_shape ? 1u : 0u}, out);
+    });
+}
+
+taut_result taut_body_remove(taut_body handle) {
+    Check check(__func__);
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        check.require(world.nodes.info[node].cable == kNone, "body is part of a cable, which is removed as a whole",
+                      TAUT_IN_USE);
+        if (!check) return check.result();
+        remove_node(world, node);
+        return TAUT_OK;
+    });
+}
