@@ -97,16 +97,15 @@ public:
     }
     // publishes: moves what was swept to the solution after all of it.
     void run(bool publishes) {
-        if (publishes) add_alone({What::nodes, {}, 0});
+        if (publishes) add_alone({&Program::publish_part, {}, 0});
         if (groups_ >= kFewGroups)
             return s_.team.for_parts({after_, count_}, [&](uint32_t i, uint32_t part) { run_stage(i, part); });
         for (uint32_t i = 0; i < pieces_; ++i) run_whole(piece_[i]);
     }
 
 private:
-    enum class What : uint8_t { joints, rows, contacts, borders, insides, nodes };
     struct Piece {
-        What what;
+        void (Program::*part)(const Piece& piece, uint32_t number) const;  // one of the team's size parts
         Pass pass;
         uint32_t colour;
     };
@@ -116,11 +115,11 @@ private:
         const uint32_t count = begin[colour + 1] - begin[colour];
         if (count == 0) return;
         groups_ += count;
-        if (is_small(colour, count)) return add_single({What::joints, pass, colour});
-        add_alone({What::joints, pass, colour});
+        if (is_small(colour, count)) return add_single({&Program::joints_part, pass, colour});
+        add_alone({&Program::joints_part, pass, colour});
     }
     void add_rows(Pass pass) {
-        if (s_.system.rows.lasting > s_.system.rows.joints) add_single({What::rows, pass, 0});
+        if (s_.system.rows.lasting > s_.system.rows.joints) add_single({&Program::rows_part, pass, 0});
     }
     void add_contacts(Pass pass, bool backward) {
         if (s_.system.contacts.group.empty()) return;
@@ -134,12 +133,12 @@ private:
         }
         if (borders + insides == 0) return;
         groups_ += borders + insides;
-        if (is_small(colour, borders + insides)) return add_single({What::contacts, pass, colour});
+        if (is_small(colour, borders + insides)) return add_single({&Program::contacts_part, pass, colour});
         if (borders > 0) {
-            add({What::borders, pass, colour}, through_borders_, false);
+            add({&Program::borders_part, pass, colour}, through_borders_, false);
             through_borders_ = count_;
         }
-        if (insides > 0) add({What::insides, pass, colour}, through_alone_, false);
+        if (insides > 0) add({&Program::insides_part, pass, colour}, through_alone_, false);
     }
     static bool is_small(uint32_t colour, uint32_t groups) {
         constexpr uint32_t kSmall = 3;  // lane groups
@@ -169,22 +168,34 @@ private:
     void run_whole(const Piece& piece) const {
         for (uint32_t part = 0; part < s_.team.size(); ++part) run(piece, part);
     }
-    void run(const Piece& piece, uint32_t part) const {
-        const System& system = s_.system;
-        if (piece.what == What::rows) {
-            if (part == 0) kernels_.rows(piece.pass);
-        } else if (piece.what == What::nodes) {
-            const auto count = static_cast<uint32_t>(s_.group.nodes.size());
-            publish(s_, begin_of(part, count), begin_of(part + 1, count));
-        } else if (piece.what == What::joints) {
-            const uint32_t first = system.joints.colour_begin[piece.colour];
-            const uint32_t count = system.joints.colour_begin[piece.colour + 1] - first;
-            kernels_.joints(piece.pass, first + begin_of(part, count), first + begin_of(part + 1, count));
-        } else {
-            const LanePart& lanes = system.contacts.parts_of(piece.colour)[part];
-            const bool inside = piece.what == What::insides, border = piece.what == What::borders;
-            kernels_.contacts(piece.pass, inside ? lanes.inner : lanes.begin, border ? lanes.inner : lanes.end, border);
-        }
+    void run(const Piece& piece, uint32_t part) const { (this->*piece.part)(piece, part); }
+
+    void joints_part(const Piece& piece, uint32_t part) const {
+        const auto& begin = s_.system.joints.colour_begin;
+        const uint32_t first = begin[piece.colour], count = begin[piece.colour + 1] - first;
+        kernels_.joints(piece.pass, first + begin_of(part, count), first + begin_of(part + 1, count));
+    }
+    void rows_part(const Piece& piece, uint32_t part) const {
+        if (part == 0) kernels_.rows(piece.pass);
+    }
+    void borders_part(const Piece& piece, uint32_t part) const {
+        const LanePart& lanes = lanes_of(piece, part);
+        kernels_.contacts(piece.pass, lanes.begin, lanes.inner, true);
+    }
+    void insides_part(const Piece& piece, uint32_t part) const {
+        const LanePart& lanes = lanes_of(piece, part);
+        kernels_.contacts(piece.pass, lanes.inner, lanes.end, false);
+    }
+    void contacts_part(const Piece& piece, uint32_t part) const {
+        const LanePart& lanes = lanes_of(piece, part);
+        kernels_.contacts(piece.pass, lanes.begin, lanes.end, false);
+    }
+    void publish_part(const Piece&, uint32_t part) const {
+        const auto count = static_cast<uint32_t>(s_.group.nodes.size());
+        publish(s_, begin_of(part, count), begin_of(part + 1, count));
+    }
+    const LanePart& lanes_of(const Piece& piece, uint32_t part) const {
+        return s_.system.contacts.parts_of(piece.colour)[part];
     }
     uint32_t begin_of(uint32_t part, uint32_t count) const {
         return static_cast<uint32_t>(uint64_t{count} * part / s_.team.size());
