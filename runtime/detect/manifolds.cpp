@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "detect/carry.h"
+#include "detect/lead.h"
 #include "detect/reuse.h"
 #include "detect/surfaces.h"
 
@@ -40,51 +41,6 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
     combine_surfaces(of.nodes, of.colliders.traits[a], of.colliders.traits[b], at_a, at_b, from_a, pair);
     if (pair.answered) pair.friction = friction, pair.restitution = restitution;
     pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
-}
-
-// Points found where the two will be in a lead time, from a's origin then to a's node, told at the present poses: with
-// the levers of then, of the lighter node exactly, and less the growth of the gap until then,
-//   gap now = gap then - T n . ((v_b + w_b x r_b) - (v_a + w_a x r_a)),
-// to first order, for a point that rolls stays where it touches while one of the body would rise.
-void bring_back(const Detection& of, double lead, const Vec3f& from_a, Pair& pair) {
-    const NodeMotion &a = of.nodes.motion[pair.a], &b = of.nodes.motion[pair.b];
-    const double mass_a = of.nodes.mass[pair.a].inv_mass, mass_b = of.nodes.mass[pair.b].inv_mass;
-    const Vec3 arm = a.x - of.nodes.origin(pair.a), arm_then = rotation_from_vector(lead * a.w) * arm;
-    const Vec3 apart = lead * (b.v - a.v), n = pair.manifold.normal.cast<double>();
-    const double share_of_b = mass_a + mass_b > 0 ? mass_b / (mass_a + mass_b) : 0;
-    for (int k = 0; k < pair.manifold.count; ++k) {
-        collision::ContactPoint& point = pair.manifold.points[k];
-        const Vec3 lever_a = (point.position + from_a).cast<double>() - arm_then;
-        const Vec3 lever_b = lever_a - (b.x - a.x + apart);
-        point.position = (arm + lever_a - share_of_b * apart).cast<float>();
-        point.separation -= static_cast<float>(n.dot(apart + lead * (b.w.cross(lever_b) - a.w.cross(lever_a))));
-    }
-}
-
-bool is_round(const Pace& pace) { return pace.rolls || pace.round > 0; }
-
-// The radius of the patch in which the two touch, where one is round: a guess in parts of the smaller one's size, of
-// what neither is so hard nor so smooth as to touch in a point [m].
-float patch_of(const Pairs& pairs, const PairEnds& pair) {
-    constexpr float kPatch = 0.03f;
-    const uint32_t a = pair.collider_a(), b = pair.collider_b();
-    if (pair.a2 != kNone || pair.b2 != kNone || !(is_round(pairs.pace[a]) || is_round(pairs.pace[b]))) return 0;
-    return kPatch * std::min(pairs.stance[a].size, pairs.stance[b].size);
-}
-
-// The lead time of a pair's contact [s]: of one between bodies that moves over a round surface and bore in the last
-// frame, unless it moves so little in that time that it may as well be kept.
-double lead_of(const Detection& of, const Pair& pair) {
-    constexpr float kStill = 5e-5f;  // [m], as in reuse.cpp
-    if (of.lead == 0 || pair.patch == 0) return 0;
-    const auto bears = [](const Impulse& impulse) { return impulse.normal > 0; };
-    if (std::none_of(pair.impulse, pair.impulse + pair.manifold.count, bears)) return 0;
-    const Stance &a = of.pairs.stance[pair.collider_a()], &b = of.pairs.stance[pair.collider_b()];
-    const float most = kStill / static_cast<float>(of.lead);
-    const auto moves = [&](const Stance& side) {
-        return !((side.velocity.norm() + side.size * side.spin.norm()) <= most);
-    };
-    return moves(a) || moves(b) ? of.lead : 0;
 }
 
 // A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
