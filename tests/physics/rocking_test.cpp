@@ -1,5 +1,5 @@
 // Round bodies that rock, roll and wobble on what holds them lose energy, as mechanics says, or keep it.
-#include "physics/lab.h"
+#include "physics/surface_lab.h"
 
 #include <algorithm>
 #include <random>
@@ -50,6 +50,18 @@ const Support kSupports[] = {
          add_static(w, w.box({1, 0.1, 1}), {-1, 0.1, 0});
          add_static(w, w.plane());
      }},
+    {"mesh_groove",
+     [](const World& w) {
+         Triangles sides;
+         for (double side : {-1.0, 1.0})
+             sides.add_quad({0, 0, -3 * side}, {0, 0, 3 * side}, {3 * side, 3, 3 * side}, {3 * side, 3, -3 * side});
+         add_static(w, mesh(w, sides));
+     }},
+    {"hills",
+     [](const World& w) {
+         const auto hills = [](double x, double z) { return 0.05 * (std::sin(7 * x) + std::sin(5 * z)); };
+         add_static(w, height_field(w, 25, 25, 0.25, hills), {-3, 0, -3});
+     }},
     {"logs",  // side by side
      [](const World& w) {
          for (double x : {-0.2, 0.2}) add_static(w, w.cylinder(0.2, 1), {x, 0, 0}, Quat::turn({1, 0, 0}, kPi / 2));
@@ -99,6 +111,7 @@ double most_gained(const Rocker& rocker, const Support& support, uint32_t subste
         least = std::min(least, energy);
         gained = std::max(gained, energy - least);
     }
+    EXPECT_GT(state(body).position.y, -1) << rocker.name << " fell off " << support.name;
     return gained;
 }
 
