@@ -98,9 +98,20 @@ class MostApart {
 public:
     MostApart(const PolytopePair& pair, const EdgesOfB& b) : pair_(pair), b_(b) {}
 
-    void note(uint8_t edge_of_a, int place_in_b) {
-        hits_[count_++] = {edge_of_a, uint8_t(place_in_b)};
-        if (count_ == kMost) settle();
+    // The edges of b from a place on that have a bit. Most edges of a cross at most two: those two are noted without a
+    // branch, which would be mispredicted.
+    void note(uint8_t edge_of_a, int place, uint64_t bits) {
+        for (int i = 0; i < 2; ++i) {
+            put(edge_of_a, place, bits | uint64_t{1} << 63);
+            count_ += bits != 0;
+            bits &= bits - 1;
+        }
+        for (; bits != 0; bits &= bits - 1) {
+            if (count_ == kMost) settle();
+            put(edge_of_a, place, bits);
+            ++count_;
+        }
+        if (count_ + 2 > kMost) settle();
     }
     // Looks at those noted since: many at once, for none waits for another. The first of equals wins.
     void settle() {
@@ -126,6 +137,10 @@ private:
         uint8_t a, b;
     };
     static constexpr int kMost = 32;
+
+    void put(uint8_t edge_of_a, int place, uint64_t bits) {
+        hits_[count_] = {edge_of_a, uint8_t(place + std::countr_zero(bits))};
+    }
 
     const PolytopePair& pair_;
     const EdgesOfB& b_;
@@ -157,7 +172,7 @@ Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth
             const int packs = std::min(b.packs_used() - begin, 16);
             for (int i = 0; i < packs; ++i)
                 bits |= uint64_t(crossing_bits(along, left, right, b.packs[begin + i])) << 4 * i;
-            for (; bits != 0; bits &= bits - 1) most.note(own[e], 4 * begin + std::countr_zero(bits));
+            most.note(own[e], 4 * begin, bits);
         }
     }
     most.settle();
