@@ -9,6 +9,7 @@
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
 #include "collision/collide.h"
+#include "collision/descent.h"
 
 namespace taut::collision {
 namespace {
@@ -91,7 +92,7 @@ struct Broadphase::State {
         : leaves(memory),
           stale(memory),
           partners(memory),
-          partner_count(memory),
+          found_of(memory),
           strays(memory),
           pairs(memory),
           fresh(memory),
@@ -103,84 +104,94 @@ struct Broadphase::State {
         stale.push_back(id);
         leaves[id].stale = true;
     }
-    template <class Meet>
-    void for_partners(uint32_t id, Meet&& meet) const;
+    template <class Report>
+    void for_partners(uint32_t id, Report&& report) const;
     void find(uint32_t begin, uint32_t end);
     void gather_fresh();
+    void sort_by(const Array<uint64_t>& keys, int bit, Array<uint64_t>& sorted);
     bool find_changes();
     void merge();
 
     btDbvt tree;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
-    Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
+    bool all_stale = false;  // as in the first step
+    static constexpr uint32_t kNowhere = UINT32_MAX;
+    struct Found {
+        uint32_t first, count;  // kNowhere: there was no room for them
+    };
+    Array<uint32_t> partners;  // of stale leaves, with so much room for each of those that are looked at together
     static constexpr uint32_t kRoom = 16;
+    Array<Found> found_of;     // in partners, of each stale leaf
     Array<uint32_t> strays;    // those that are not any more are listed until the next step
     Array<uint64_t> pairs;     // sorted
     Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
     Array<uint64_t> gone;      // those of stale leaves before, then those of them that are no more; sorted
-    Array<uint32_t> first_of;  // where in fresh those begin that have an id as their smaller one
+    Array<uint32_t> first_of;  // where in a sorted list the keys of an id begin
 };
 
-// Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
-// smaller id reports. Down the tree and up again by the parents, with no memory of its own.
-template <class Meet>
-void Broadphase::State::for_partners(uint32_t id, Meet&& meet) const {
+// Calls report(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves
+// the smaller id reports. If all are stale, each only looks to its right in the tree and reports whom it meets there.
+template <class Report>
+void Broadphase::State::for_partners(uint32_t id, Report&& report) const {
     const Leaf& leaf = leaves[id];
-    const btDbvtNode* node = leaf.node ? tree.m_root : nullptr;
-    while (node) {
-        if (Intersect(node->volume, leaf.node->volume)) {
-            if (node->isinternal()) {
-                node = node->childs[0];
-                continue;
-            }
-            const uint32_t other = uint32_t(node->dataAsInt);
-            const bool reports = other != id && !(leaves[other].stale && other < id);
-            if (reports && (leaves[other].moves || leaf.moves)) meet(other);
-        }
-        while (node->parent && node == node->parent->childs[1]) node = node->parent;
-        node = node->parent ? node->parent->childs[1] : nullptr;
+    if (!leaf.node) return;
+    const auto found = [&](uint32_t other) {
+        const bool reports = all_stale || !(leaves[other].stale && other < id);
+        if (reports && (leaves[other].moves || leaf.moves)) report(other);
+    };
+    Descent descent(leaf.node->volume, found);
+    for (const btDbvtNode* node = leaf.node; node->parent; node = node->parent) {
+        const bool is_right = node == node->parent->childs[1];
+        if (!is_right || !all_stale) descent.begin_at(node->parent->childs[!is_right]);
     }
+    descent.run();
 }
 
+// One after the other into the room of all; where there is none left, they are only counted.
 void Broadphase::State::find(uint32_t begin, uint32_t end) {
+    const uint32_t room = end * kRoom;
+    uint32_t to = begin * kRoom;
     for (uint32_t i = begin; i < end; ++i) {
-        uint32_t* room = &partners[size_t(i) * kRoom];
-        uint32_t count = 0;
+        const uint32_t first = to;
         for_partners(stale[i], [&](uint32_t other) {
-            if (count < kRoom) room[count] = other;
-            ++count;
+            if (to < room) partners[to] = other;
+            ++to;
         });
-        partner_count[i] = count;
+        found_of[i] = {to > room ? kNowhere : first, to - first};
+        to = std::min(to, room);
     }
 }
 
-// What find() found, those anew that found more than they had room for; sorted: by counting the pairs of each smaller
-// id, then those few by themselves.
+// What find() found, those anew that there was no room for; sorted.
 void Broadphase::State::gather_fresh() {
-    Array<uint64_t>& found = gone;  // has no other use yet
-    found.clear();
-    reserve_more(found, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
+    size_t number = 0;
+    for (const Found& each : found_of) number += each.count;
+    fresh.clear();
+    reserve_more(fresh, number);
     for (size_t i = 0; i < stale.size(); ++i) {
-        const auto add = [&](uint32_t other) { found.push_back(pair_key(stale[i], other)); };
-        if (partner_count[i] > kRoom)
+        const auto add = [&](uint32_t other) { fresh.push_back(pair_key(stale[i], other)); };
+        if (found_of[i].first == kNowhere)
             for_partners(stale[i], add);
         else
-            std::for_each_n(&partners[i * kRoom], partner_count[i], add);
+            std::for_each_n(partners.begin() + found_of[i].first, found_of[i].count, add);
     }
+    constexpr size_t kFew = 32;  // to as many leaves a key: less than what counting takes
+    if (fresh.size() < leaves.size() / kFew) return std::sort(fresh.begin(), fresh.end());
+    Array<uint64_t>& by_larger = gone;  // has no other use yet
+    sort_by(fresh, 0, by_larger);
+    sort_by(by_larger, 32, fresh);
+}
+
+// Counting, by one of the two ids, which begins at this bit of a key; those of one id stay in their order.
+void Broadphase::State::sort_by(const Array<uint64_t>& keys, int bit, Array<uint64_t>& sorted) {
     first_of.assign(leaves.size() + 1, 0);
-    for (const uint64_t key : found) ++first_of[size_t(key >> 32) + 1];
+    for (const uint64_t key : keys) ++first_of[size_t(uint32_t(key >> bit)) + 1];
     std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
-    fresh.clear();
-    reserve_more(fresh, found.size());
-    fresh.resize(found.size());
-    for (const uint64_t key : found) fresh[first_of[size_t(key >> 32)]++] = key;
-    auto from = fresh.begin();
-    for (const uint32_t end : first_of) {  // where the next id's begin now
-        const auto to = fresh.begin() + end;
-        if (to - from > 1) std::sort(from, to);
-        from = to;
-    }
+    sorted.clear();
+    reserve_more(sorted, keys.size());
+    sorted.resize(keys.size());
+    for (const uint64_t key : keys) sorted[first_of[uint32_t(key >> bit)]++] = key;
 }
 
 // Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. True: the list changes, by what
@@ -270,7 +281,9 @@ void Broadphase::set_moves(uint32_t id, bool moves) {
 uint32_t Broadphase::start_refresh() {
     State& s = *state_;
     s.partners.resize(s.stale.size() * State::kRoom);
-    s.partner_count.resize(s.stale.size());
+    s.found_of.resize(s.stale.size());
+    const auto in_tree = [&](uint32_t id) { return s.leaves[id].node != nullptr; };
+    s.all_stale = std::ranges::count_if(s.stale, in_tree) == s.tree.m_leaves;
     return uint32_t(s.stale.size());
 }
 
@@ -299,7 +312,8 @@ bool Broadphase::refresh_pairs() {
 void Broadphase::let_go() {
     State& s = *state_;
     for (Array<uint64_t>* each : {&s.fresh, &s.gone}) taut::let_go(*each);
-    for (Array<uint32_t>* each : {&s.partners, &s.partner_count, &s.first_of}) taut::let_go(*each);
+    for (Array<uint32_t>* each : {&s.partners, &s.first_of}) taut::let_go(*each);
+    taut::let_go(s.found_of);
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }

@@ -1,7 +1,7 @@
 // What a shape weighs and how far it reaches, one function a kind.
 #include <array>
+#include <bit>
 #include <cmath>
-#include <limits>
 
 #include "collision/collide.h"
 #include "collision/hull.h"
@@ -108,17 +108,20 @@ MassProperties hull_mass(const Shape& shape, double density) {
 
 // ---------------------------------------------------------------- bounds
 
+// The largest float that is not above x. The bits of neighbours in size differ by one; which way x was rounded, and so
+// whether it is the neighbour, no branch could foretell.
+float not_above(double x) {
+    const float nearest = float(x);
+    const int32_t bits = std::bit_cast<int32_t>(nearest), below = bits < 0 ? 1 : -1;  // -0, of what is less than 0, too
+    return std::bit_cast<float>(bits + below * int32_t(double(nearest) > x));
+}
+
 // Single precision box of a box in double, rounded outwards.
 Box rounded(const Vec3& centre, const Vec3& lo, const Vec3& hi) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     Box box;
     for (int i = 0; i < 3; ++i) {
-        const double low = centre[i] + lo[i];
-        const double high = centre[i] + hi[i];
-        box.lo[i] = float(low);
-        box.hi[i] = float(high);
-        if (double(box.lo[i]) > low) box.lo[i] = std::nextafter(box.lo[i], -kInfinity);
-        if (double(box.hi[i]) < high) box.hi[i] = std::nextafter(box.hi[i], kInfinity);
+        box.lo[i] = not_above(centre[i] + lo[i]);
+        box.hi[i] = -not_above(-(centre[i] + hi[i]));
     }
     return box;
 }

@@ -139,6 +139,9 @@ struct ContactKernels {
     const char* name;
     // Effective masses and approach speeds from the geometry that assembly filled in.
     void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
+    // The same of one group within the frame, but only in the lanes where turned[lane] is 1, so that nothing depends on
+    // who else is in the group; an impulse that fits them no more goes.
+    void (*renew)(LaneView, uint32_t group, const float* turned, const SweepVelocity*, const SweepMass*);
     void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
     // Soft normal rows and friction on the cone. shifts: gaps follow from them; null: they are as measured before.
     void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepShift*,

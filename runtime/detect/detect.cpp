@@ -59,16 +59,40 @@ void grow_turning(const Pace& pace, collision::Box& box) {
     box.hi.array() += way;
 }
 
-// A collider that moved by no more than what is left of the contact margin in this step cannot have left the box that
-// was made before it: |dx| + angle x distance of the furthest corner, the angle at most pi |sin(angle / 2)|.
-bool stays_within(const Nodes& nodes, const Collider& collider, const collision::Box& box) {
-    if (collider.node_b != kNone) return false;
-    const NodePose& before = nodes.before[collider.node];
-    const double moved = (nodes.origin(collider.node) - before.position).norm();
-    const double sine = (nodes.motion[collider.node].q * before.rotation.conjugate()).vec().norm();
-    const Vec3 middle = (0.5f * (box.lo + box.hi)).cast<double>();
-    const double furthest = (middle - before.position).norm() + 0.5 * static_cast<double>((box.hi - box.lo).norm());
-    return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin) - kBoxLag;
+// What a collider did in this step with the box that was made before it: |dx|, and angle x distance of the furthest
+// corner, the angle at most pi |sin(angle / 2)|.
+struct BoxMotion {
+    Vec3 along;    // [m]
+    double swing;  // [m]
+
+    BoxMotion(const Nodes& nodes, const Collider& collider, const collision::Box& box) {
+        const NodePose& before = nodes.before[collider.node];
+        const double sine = (nodes.motion[collider.node].q * before.rotation.conjugate()).vec().norm();
+        const Vec3 middle = (0.5f * (box.lo + box.hi)).cast<double>(), arm = middle - before.position;
+        along = nodes.origin(collider.node) - before.position;
+        swing = 3.15 * sine * (arm.norm() + 0.5 * static_cast<double>((box.hi - box.lo).norm()));
+    }
+    // By no more than what is left of the contact margin: it cannot have left the box.
+    bool is_small() const { return along.norm() + swing <= static_cast<double>(kContactMargin) - kBoxLag; }
+    // The box, less the motion foreseen, wherever it went.
+    collision::Box after(const Reach& reach) const {
+        const Vec3f way = along.cast<float>(), all = Vec3f::Constant(static_cast<float>(swing));
+        return {reach.box.lo - reach.ahead.cwiseMin(0.0f) + way - all,
+                reach.box.hi - reach.ahead.cwiseMax(0.0f) + way + all};
+    }
+};
+
+// Whether a step kept a collider in its leaf; its box is that of where it is now, or at most a larger one.
+bool keep_in_leaf(const Nodes& nodes, const Collider& collider, const Shapes& shapes, uint32_t c,
+                  const collision::Broadphase& broadphase, Reach& reach) {
+    if (collider.node_b == kNone) {
+        const BoxMotion motion(nodes, collider, reach.box);
+        if (motion.is_small()) return true;
+        reach = {motion.after(reach), Vec3f::Zero()};
+        if (broadphase.holds(c, reach.box)) return true;
+    }
+    reach = {collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)), Vec3f::Zero()};
+    return broadphase.holds(c, reach.box);
 }
 
 const NearPair* find_pair(const Array<NearPair>& list, uint64_t key) {
@@ -250,12 +274,8 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
-            Reach& reach = pairs.reach[c];
-            reach.left = false;
-            if (!moves(nodes, collider) || stays_within(nodes, collider, reach.box)) continue;
-            reach = {collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)),
-                     Vec3f::Zero()};
-            reach.left = !broadphase.holds(c, reach.box);
+            pairs.reach[c].left =
+                moves(nodes, collider) && !keep_in_leaf(nodes, collider, shapes, c, broadphase, pairs.reach[c]);
         }
     });
     broadphase.clear_strays();

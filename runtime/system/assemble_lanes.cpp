@@ -191,69 +191,15 @@ void turn_side(const Quatf& turn, const Vec3f& skin, bool rolls, float (&r)[3][k
     p.gap0[lane] += sign * normal.dot(turned - core);
 }
 
-// An impulse that fitted the levers and masses of the last substep throws a thin body about where these have changed:
-// beyond this share of the mass along the normal it is not carried on (measured: of thin spinning cylinders that
-// hit a wall at 100 m/s one in four gained energy, up to 6 times).
-constexpr float kOtherMass = 0.2f;
-
-bool turned(const System& system, const LaneGroup& g, int lane) {
-    return system.turned[g.a[lane]] || system.turned[g.b[lane]];
-}
-
-// What prepare() wrote for a lane, as it was before.
-void keep_lane(LanePoint& p, const LanePoint& before, int lane) {
-    p.normal_mass[lane] = before.normal_mass[lane];
-    p.isotropic_mass[lane] = before.isotropic_mass[lane];
-    for (int i = 0; i < 3; ++i) p.friction_mass[i][lane] = before.friction_mass[i][lane];
-    for (int i = 0; i < 2; ++i) p.coupling[i][lane] = before.coupling[i][lane];
-    p.approach[lane] = before.approach[lane];
-}
-
-void keep_lane(LaneRolling& r, const LaneRolling& before, int lane) {
-    r.spin_mass[lane] = before.spin_mass[lane];
-    r.isotropic_mass[lane] = before.isotropic_mass[lane];
-    for (int i = 0; i < 3; ++i) r.roll_mass[i][lane] = before.roll_mass[i][lane];
-}
-
-// What was hit already keeps the approach speed that it had.
-void renew_lane(LanePoint& p, const LanePoint& before, int lane) {
-    const float mass = before.normal_mass[lane];
-    if (p.peak[lane] > 0) p.approach[lane] = before.approach[lane];
-    if (std::abs(p.normal_mass[lane] - mass) <= kOtherMass * mass) return;
-    for (auto& impulse : p.impulse) impulse[lane] = 0;
-}
-
-// Of the lanes that turned: nothing depends on who else is in a group.
-void renew_masses(ContactLanes& lanes, uint32_t group, const System& system, const ContactKernels& kernels) {
-    const LaneGroup& g = lanes.group[group];
-    LanePoint before[4];
-    LaneRolling rolling;
-    if (g.rolling != kNoLanes) rolling = lanes.rolling[g.rolling];
-    for (uint32_t k = 0; k < g.points; ++k) {
-        LanePoint& p = lanes.point[g.first_point + k];
-        before[k] = p;
-        for (int lane = 0; lane < kLanes; ++lane) p.normal_mass[lane] = p.normal_mass[lane] > 0 ? 1 : 0;  // in use
-    }
-    kernels.prepare(lanes.view(), group, group + 1, system.velocity.data(), system.inverse_mass.data());
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const bool renewed = turned(system, g, lane);
-        if (!renewed && g.rolling != kNoLanes) keep_lane(lanes.rolling[g.rolling], rolling, lane);
-        for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = lanes.point[g.first_point + k];
-            if (renewed)
-                renew_lane(p, before[k], lane);
-            else
-                keep_lane(p, before[k], lane);
-        }
-    }
-}
-
-bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system) {
+// Notes which lanes turned, each 1, else 0; false: none.
+bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system, float (&turned)[kLanes]) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const uint32_t a = g.a[lane], b = g.b[lane];
-        if (!turned(system, g, lane)) continue;
+        turned[lane] = 0;
+        if (!system.turned[a] && !system.turned[b]) continue;
         any = true;
+        turned[lane] = 1;
         g.turns[lane] = 1;
         g.any_turns = 1;
         const Vec3f n(g.normal[0][lane], g.normal[1][lane], g.normal[2][lane]);
@@ -273,8 +219,10 @@ bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system) {
 void turn_lanes(Team& team, System& system, const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        alignas(64) float turned[kLanes];
         for (uint32_t g = begin; g < end; ++g)
-            if (turn_group(lanes, lanes.group[g], system)) renew_masses(lanes, g, system, kernels);
+            if (turn_group(lanes, lanes.group[g], system, turned))
+                kernels.renew(lanes.view(), g, turned, system.velocity.data(), system.inverse_mass.data());
     });
 }
 
