@@ -7,8 +7,8 @@
 namespace taut {
 
 void reserve_slots(Pairs& pairs, size_t more) {
-    if (more > pairs.free.size()) reserve_more(pairs.list, more - pairs.free.size());
-    pairs.free.reserve(pairs.list.capacity());
+    if (more > pairs.free.size()) pairs.list.reserve(pairs.list.size() + more - pairs.free.size());
+    reserve_more(pairs.free, pairs.list.capacity() - pairs.free.size());
 }
 
 uint32_t take_slot(Pairs& pairs, const PairEnds& ends) {
@@ -25,11 +25,11 @@ uint32_t take_slot(Pairs& pairs, const PairEnds& ends) {
 }
 
 void give_slots(Pairs& pairs, NearPair& near) {
-    for_parts(pairs, near, [&](Pair& pair) {
-        pair.manifold.count = 0;
-        pair.touching = false;
-        pairs.free.push_back(static_cast<uint32_t>(&pair - pairs.list.data()));
-    });
+    for (uint32_t slot = near.pair; slot != kNone; slot = pairs.list[slot].next) {
+        pairs.list[slot].manifold.count = 0;
+        pairs.list[slot].touching = false;
+        pairs.free.push_back(slot);
+    }
     near.pair = kNone;
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 
+#include "base/segmented_array.h"
 #include "collision/collide.h"
 #include "state/colliders.h"
 
@@ -258,7 +259,7 @@ struct Pairs {
     Array<NearPair> near;             // sorted by key
     Array<NearPair> resting;          // sorted likewise: pairs of which no side moves and one is asleep
     bool complete = false;            // all pairs of the broadphase are in one of the two
-    Array<Pair> list;                 // slots, in no order; free ones have no points
+    SegmentedArray<Pair> list;        // slots, in no order; free ones have no points
     Array<uint32_t> free;             // of them; room for all
     uint32_t next_ordered = 0;        // in active, whose slot is looked at next; order_slots()
     Array<uint64_t> arrived;          // keys that near does not hold yet, sorted; update_pairs()

@@ -80,7 +80,8 @@ public:
         for (size_t i = 0; i < points.size(); ++i)
             pair.manifold.points[i] = {(points[i].first - w.nodes.origin(a)).cast<float>(),
                                        static_cast<float>(points[i].second), static_cast<uint32_t>(i)};
-        std::sort(w.pairs.list.begin(), w.pairs.list.end(), [](const Pair& p, const Pair& q) { return p.key < q.key; });
+        for (size_t i = w.pairs.list.size() - 1; i > 0 && w.pairs.list[i - 1].key > w.pairs.list[i].key; --i)
+            std::swap(w.pairs.list[i - 1], w.pairs.list[i]);
         w.pairs.active.clear();
         for (uint32_t i = 0; i < w.pairs.list.size(); ++i) {
             const Pair& p = w.pairs.list[i];

@@ -20,7 +20,7 @@ struct Scattered {
         std::vector<uint32_t> slots(3 * kPairs);
         for (uint32_t i = 0; i < slots.size(); ++i) slots[i] = i;
         std::ranges::shuffle(slots, random);
-        pairs.list.resize(slots.size());
+        while (pairs.list.size() < slots.size()) pairs.list.emplace_back();
         for (uint32_t i = 0; i < kPairs; ++i) {
             NearPair near;
             near.key = pair_key(i, i + 1 + random() % 9);
@@ -53,7 +53,9 @@ struct Scattered {
     void expect_all_slots_once() const {
         std::vector<int> uses(pairs.list.size());
         for (uint32_t slot : pairs.free) ++uses[slot];
-        for_pairs(pairs, [&](const Pair& pair) { ++uses[static_cast<size_t>(&pair - pairs.list.data())]; });
+        for (const Array<NearPair>* of : {&pairs.near, &pairs.resting})
+            for (const NearPair& near : *of)
+                for (uint32_t slot = near.pair; slot != kNone; slot = pairs.list[slot].next) ++uses[slot];
         EXPECT_TRUE(std::ranges::all_of(uses, [](int n) { return n == 1; }));
     }
     uint32_t most_away() const {

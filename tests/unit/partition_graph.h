@@ -14,6 +14,7 @@ struct Graph {
     Team team{taut_hooks{}, 1};
     Nodes nodes{memory};
     Joints joints{memory};
+    std::vector<Pair> touching;  // find_active() brings them to pairs
     Pairs pairs{memory};
     Partition partition{memory};
     PartitionRules rules{4, false, true};
@@ -41,7 +42,7 @@ struct Graph {
         return joints.add(joint);
     }
     void touch(uint32_t a, uint32_t b) {
-        Pair& pair = pairs.list.emplace_back();
+        Pair& pair = touching.emplace_back();
         pair.key = pair_key(a, b);
         pair.a = std::min(a, b);
         pair.b = std::max(a, b);
@@ -49,10 +50,13 @@ struct Graph {
         pair.manifold.count = 1;
     }
     void find_active() {
-        std::sort(pairs.list.begin(), pairs.list.end(), [](const Pair& p, const Pair& q) { return p.key < q.key; });
+        std::ranges::sort(touching, {}, &Pair::key);
         pairs.active.clear();
-        for (uint32_t i = 0; i < pairs.list.size(); ++i)
-            pairs.active.push_back({pairs.list[i].a, pairs.list[i].b, i, 1});
+        for (uint32_t i = 0; i < touching.size(); ++i) {
+            if (i == pairs.list.size()) pairs.list.emplace_back();
+            pairs.list[i] = touching[i];
+            pairs.active.push_back({touching[i].a, touching[i].b, i, 1});
+        }
     }
     void build() {
         find_active();

@@ -55,11 +55,11 @@ protected:
     void touch_or_part() {
         const uint32_t a = any(4) == 0 ? floor_ : body(), b = body();
         if (a == b) return;
-        const auto at = std::ranges::find(pairs.list, pair_key(a, b), &Pair::key);
-        if (at == pairs.list.end())
+        const auto at = std::ranges::find(touching, pair_key(a, b), &Pair::key);
+        if (at == touching.end())
             touch(a, b);
         else
-            pairs.list.erase(at);
+            touching.erase(at);
     }
     void tie_or_untie() {
         const uint32_t a = body(), b = body();

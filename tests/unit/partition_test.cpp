@@ -109,9 +109,9 @@ TEST_P(RandomGraph, HasItsComponentsAsIslandsAndBlocks) {
     for (uint32_t i = 0; i < count; ++i) expected_members += moving(i);
     EXPECT_EQ(members, expected_members);
     EXPECT_EQ(grouped_blocks, partition.blocks.size());
-    EXPECT_EQ(grouped_pairs + direct_pairs, pairs.list.size());
+    EXPECT_EQ(grouped_pairs + direct_pairs, touching.size());
     size_t with_jointed = 0;
-    for (const Pair& pair : pairs.list)
+    for (const Pair& pair : touching)
         with_jointed += (moving(pair.a) && jointed.count(pair.a)) || (moving(pair.b) && jointed.count(pair.b));
     EXPECT_EQ(direct_pairs, with_jointed);
 }
@@ -172,7 +172,7 @@ TEST_F(PartitionTest, NoColourHoldsAMovingNodeTwice) {
         swept_pairs += group.pairs.size();
         swept_joints += group.joints.size();
     }
-    EXPECT_EQ(swept_pairs, pairs.list.size());
+    EXPECT_EQ(swept_pairs, touching.size());
     EXPECT_EQ(swept_joints, joints.record.size());
     EXPECT_GT(partition.colours, 4u);
     EXPECT_LT(partition.colours, kMaxColours);
@@ -396,7 +396,7 @@ TEST_F(PartitionTest, ContactsMergeBlocks) {
     EXPECT_EQ(partition.blocks[0].pairs.size(), 2u);
     EXPECT_EQ(partition.groups[0].pairs.size(), 1u);
     analyse(partition.blocks[0]);
-    pairs.list.clear();
+    touching.clear();
     build();
     ASSERT_EQ(partition.blocks.size(), 2u);
     EXPECT_EQ(partition.blocks[0].memory.solved, 7u);

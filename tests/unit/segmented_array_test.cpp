@@ -1,0 +1,72 @@
+// A list that grows in segments.
+#include "base/segmented_array.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace {
+
+using namespace taut;
+
+TEST(SegmentedArray, HoldWhatWasPutInWhereItIs) {
+    Memory memory{taut_hooks{}};
+    SegmentedArray<int> list(memory);
+    const int* first = nullptr;
+    for (int i = 0; i < 1000; ++i) {
+        list.emplace_back() = i;
+        if (i == 0) first = &list[0];
+    }
+    EXPECT_EQ(&list[0], first);
+    ASSERT_EQ(list.size(), 1000u);
+    for (size_t i = 0; i < list.size(); ++i) EXPECT_EQ(list[i], static_cast<int>(i));
+    int sum = 0;
+    for (const int x : list) sum += x;
+    EXPECT_EQ(sum, 999 * 1000 / 2);
+}
+
+TEST(SegmentedArray, ReserveRoomAndBeginWithNewElements) {
+    Memory memory{taut_hooks{}};
+    struct Seven {
+        int value = 7;
+    };
+    SegmentedArray<Seven> list(memory);
+    list.reserve(100);
+    EXPECT_GE(list.capacity(), 100u);
+    EXPECT_EQ(list.size(), 0u);
+    const uint64_t calls = memory.calls();
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(list.emplace_back().value, 7);
+    EXPECT_EQ(memory.calls(), calls);
+}
+
+// A host that gives so many pieces, then none.
+taut_hooks hooks_of(int& left) {
+    taut_hooks hooks{};
+    hooks.allocate = [](size_t size, size_t alignment, void* pieces) -> void* {
+        if (--*static_cast<int*>(pieces) < 0) return nullptr;
+        return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    };
+    hooks.free = [](void* pointer, size_t, size_t, void*) { std::free(pointer); };
+    hooks.memory_user_data = &left;
+    return hooks;
+}
+
+TEST(SegmentedArray, StayAsTheyAreWithoutMemory) {
+    for (int allowed = 0; allowed < 8; ++allowed) {
+        int left = allowed;
+        Memory memory(hooks_of(left));
+        SegmentedArray<int> list(memory);
+        bool failed = false;
+        size_t held = 0;
+        try {
+            for (;; ++held) list.emplace_back() = static_cast<int>(held);
+        } catch (const std::bad_alloc&) {
+            failed = true;
+        }
+        EXPECT_TRUE(failed);
+        ASSERT_EQ(list.size(), held);
+        for (size_t i = 0; i < held; ++i) EXPECT_EQ(list[i], static_cast<int>(i));
+    }
+}
+
+}  // namespace
