@@ -71,11 +71,6 @@ bool stays_within(const Nodes& nodes, const Collider& collider, const collision:
     return moved + 3.15 * sine * furthest <= static_cast<double>(kContactMargin) - kBoxLag;
 }
 
-const NearPair* find_pair(const Array<NearPair>& list, uint64_t key) {
-    const auto at = std::ranges::lower_bound(list, key, {}, &NearPair::key);
-    return at != list.end() && at->key == key ? &*at : nullptr;
-}
-
 // What came and went: as the broadphase tells, or, where records were forgotten before, found anew.
 void find_news(const collision::Broadphase& broadphase, bool was_complete, Pairs& pairs) {
     const std::span<const uint64_t> keys = broadphase.pairs();
@@ -114,13 +109,6 @@ void drop_departed(const Nodes& nodes, const Colliders& colliders, Pairs& pairs)
         give_slots(pairs, near);
     }
     pairs.near.resize(kept);
-}
-
-NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
-    NearPair near;
-    near.key = key;
-    near.filtered = !may_collide(nodes, colliders, pairs, near.ends(colliders));
-    return near;
 }
 
 // Of a body's centre of mass; kinematic bodies move at the end of the frame.
@@ -265,6 +253,13 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
         for_colliders(nodes, colliders, node, [&](uint32_t c) {
             broadphase.update(c, contact_box(nodes, shapes, colliders.record[c]), Vec3f::Zero());
         });
+}
+
+NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
+    NearPair near;
+    near.key = key;
+    near.filtered = !may_collide(nodes, colliders, pairs, near.ends(colliders));
+    return near;
 }
 
 void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,

@@ -170,6 +170,16 @@ Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shape
     return way + now.q * lever - before.rotation * lever;
 }
 
+collision::Box bounds_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+    return collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider));
+}
+
+collision::Box box_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+    const collision::Box then = collision::bounds(shapes.record[collider.shape].shape, placed_before(nodes, collider)),
+                         now = bounds_of(nodes, collider, shapes);
+    return {then.lo.cwiseMin(now.lo), then.hi.cwiseMax(now.hi)};
+}
+
 Couple::Couple(const Passage& one, const Passage& other)
     : a(one.course.reach < other.course.reach ? other : one), b(one.course.reach < other.course.reach ? one : other) {}
 
