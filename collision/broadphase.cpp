@@ -84,6 +84,23 @@ private:
     Vec3 inverse_;
 };
 
+// Asks which boxes one overlaps that stays where it is; whichever comes first.
+class Overlap {
+public:
+    explicit Overlap(const Probe& probe) : lo_(probe.from + probe.lo), hi_(probe.from + probe.hi) {}
+
+    bool meets(const Probe& probe, const btDbvtVolume& volume) const {
+        if (!(probe.limit >= 0)) return false;
+        for (int i = 0; i < 3; ++i)
+            if (!(double(volume.Mins()[i]) <= hi_[i] && double(volume.Maxs()[i]) >= lo_[i])) return false;
+        return true;
+    }
+    int first(const Probe&, const btDbvtNode*) const { return 0; }
+
+private:
+    Vec3 lo_, hi_;
+};
+
 }  // namespace
 
 struct Broadphase::State {
@@ -107,19 +124,23 @@ struct Broadphase::State {
     void for_partners(uint32_t id, Meet&& meet) const;
     void find(uint32_t begin, uint32_t end);
     void gather_fresh();
+    template <class IdOf>
+    void sort_by(const Array<uint64_t>& from, Array<uint64_t>& to, IdOf id_of);
     bool find_changes();
     void merge();
+    template <class Asks>
+    void walk(const Asks& asks, Probe& probe, Visitor& visitor) const;
 
     btDbvt tree;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
     Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
-    static constexpr uint32_t kRoom = 16;
+    static constexpr uint32_t kRoom = 32;
     Array<uint32_t> strays;    // those that are not any more are listed until the next step
     Array<uint64_t> pairs;     // sorted
     Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
     Array<uint64_t> gone;      // those of stale leaves before, then those of them that are no more; sorted
-    Array<uint32_t> first_of;  // where in fresh those begin that have an id as their smaller one
+    Array<uint32_t> first_of;  // where those begin that have an id, as keys are sorted by it
 };
 
 // Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
@@ -155,10 +176,10 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
     }
 }
 
-// What find() found, those anew that found more than they had room for; sorted: by counting the pairs of each smaller
-// id, then those few by themselves.
+// What find() found, those anew that found more than they had room for; sorted by counting, first by the larger ids,
+// then by the smaller ones.
 void Broadphase::State::gather_fresh() {
-    Array<uint64_t>& found = gone;  // has no other use yet
+    Array<uint64_t>& found = fresh;
     found.clear();
     reserve_more(found, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
     for (size_t i = 0; i < stale.size(); ++i) {
@@ -168,19 +189,21 @@ void Broadphase::State::gather_fresh() {
         else
             std::for_each_n(&partners[i * kRoom], partner_count[i], add);
     }
+    Array<uint64_t>& by_larger = gone;  // has no other use yet
+    by_larger.clear();
+    reserve_more(by_larger, found.size());
+    by_larger.resize(found.size());
+    sort_by(found, by_larger, [](uint64_t key) { return uint32_t(key); });
+    sort_by(by_larger, found, [](uint64_t key) { return uint32_t(key >> 32); });
+}
+
+// By one of a key's ids, those of the same id in the order in which they were.
+template <class IdOf>
+void Broadphase::State::sort_by(const Array<uint64_t>& from, Array<uint64_t>& to, IdOf id_of) {
     first_of.assign(leaves.size() + 1, 0);
-    for (const uint64_t key : found) ++first_of[size_t(key >> 32) + 1];
+    for (const uint64_t key : from) ++first_of[size_t(id_of(key)) + 1];
     std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
-    fresh.clear();
-    reserve_more(fresh, found.size());
-    fresh.resize(found.size());
-    for (const uint64_t key : found) fresh[first_of[size_t(key >> 32)]++] = key;
-    auto from = fresh.begin();
-    for (const uint32_t end : first_of) {  // where the next id's begin now
-        const auto to = fresh.begin() + end;
-        if (to - from > 1) std::sort(from, to);
-        from = to;
-    }
+    for (const uint64_t key : from) to[first_of[id_of(key)]++] = key;
 }
 
 // Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. True: the list changes, by what
@@ -319,26 +342,33 @@ void Broadphase::note_stray(uint32_t id) {
 }
 
 // Down the tree and up again by the parents: it may be of any depth, and a query has no memory of its own.
+template <class Asks>
+void Broadphase::State::walk(const Asks& asks, Probe& probe, Visitor& visitor) const {
+    const btDbvtNode* root = tree.m_root;
+    const btDbvtNode* node = root;
+    while (node) {
+        if (asks.meets(probe, node->volume)) {
+            if (node->isinternal()) {
+                node = node->childs[asks.first(probe, node)];
+                continue;
+            }
+            const uint32_t id = uint32_t(node->dataAsInt);
+            if (!leaves[id].stray) visitor.visit(id, probe);
+        }
+        const auto second = [&](const btDbvtNode* parent) { return parent->childs[1 - asks.first(probe, parent)]; };
+        while (node != root && node == second(node->parent)) node = node->parent;
+        node = node == root ? nullptr : second(node->parent);
+    }
+}
+
 void Broadphase::visit(Probe probe, Visitor& visitor) const {
     const State& s = *state_;
     for (const uint32_t id : s.strays)
         if (s.leaves[id].stray) visitor.visit(id, probe);
-    const Slabs slabs(probe);
-    const btDbvtNode* root = s.tree.m_root;
-    const btDbvtNode* node = root;
-    while (node) {
-        if (slabs.meets(probe, node->volume)) {
-            if (node->isinternal()) {
-                node = node->childs[slabs.first(probe, node)];
-                continue;
-            }
-            const uint32_t id = uint32_t(node->dataAsInt);
-            if (!s.leaves[id].stray) visitor.visit(id, probe);
-        }
-        const auto second = [&](const btDbvtNode* parent) { return parent->childs[1 - slabs.first(probe, parent)]; };
-        while (node != root && node == second(node->parent)) node = node->parent;
-        node = node == root ? nullptr : second(node->parent);
-    }
+    if (probe.along == Vec3::Zero() && probe.reach == 0)
+        s.walk(Overlap(probe), probe, visitor);
+    else
+        s.walk(Slabs(probe), probe, visitor);
 }
 
 }  // namespace taut::collision

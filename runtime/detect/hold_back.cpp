@@ -200,9 +200,12 @@ bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints&
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     gather(team, count_of(pairs), pairs.picked, [&](uint32_t i) {
         NearPair& near = pair_at(pairs, i);
-        near.passed = moved(pairs, near);
-        if (near.passed) near.strides = strides(colliders, pairs, near);
-        near.passed = near.passed && near.strides && may_pass(pairs, near);
+        if (moved(pairs, near)) {
+            near.strides = strides(colliders, pairs, near);
+            near.passed = near.strides && may_pass(pairs, near);
+        } else if (near.passed) {
+            near.passed = false;
+        }
         return near.strides;
     });
     sort_in_late(pairs);
