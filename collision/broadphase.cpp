@@ -37,11 +37,14 @@ btDbvtVolume fat_volume(const Box& box, const Vec3f& ahead) {
 
 uint64_t pair_key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 32 | std::max(i, j); }
 
+constexpr uint32_t kLeastRoom = 10, kMostRoom = 1000;  // for partners of a leaf
+
 struct Leaf {
     btDbvtNode* node = nullptr;  // null: no such id
     bool moves = false;
-    bool stale = false;  // its pairs must be found again; listed in State::stale
-    bool stray = false;  // may be outside its fat box; listed in State::strays
+    bool stale = false;          // its pairs must be found again; listed in State::stale
+    bool stray = false;          // may be outside its fat box; listed in State::strays
+    uint16_t room = kLeastRoom;  // for partners: a quarter more than it ever had
 };
 
 // ---------------------------------------------------------------- probes
@@ -108,6 +111,7 @@ struct Broadphase::State {
         : leaves(memory),
           stale(memory),
           partners(memory),
+          room_from(memory),
           partner_count(memory),
           strays(memory),
           pairs(memory),
@@ -134,13 +138,13 @@ struct Broadphase::State {
     btDbvt tree;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
-    Array<uint32_t> partners, partner_count;  // of each stale leaf, with so much room each
-    static constexpr uint32_t kRoom = 32;
-    Array<uint32_t> strays;    // those that are not any more are listed until the next step
-    Array<uint64_t> pairs;     // sorted
-    Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
-    Array<uint64_t> gone;      // those of stale leaves before, then those of them that are no more; sorted
-    Array<uint32_t> first_of;  // where those begin that have an id, as keys are sorted by it
+    Array<uint32_t> partners, room_from;  // of each stale leaf, and where its room for them begins; and the end
+    Array<uint32_t> partner_count;        // of each stale leaf; may be more than there is room for
+    Array<uint32_t> strays;               // those that are not any more are listed until the next step
+    Array<uint64_t> pairs;                // sorted
+    Array<uint64_t> fresh;                // those of stale leaves now, then those of them that are new; sorted
+    Array<uint64_t> gone;                 // those of stale leaves before, then those of them that are no more; sorted
+    Array<uint32_t> first_of;             // where those begin that have an id, as keys are sorted by it
 };
 
 // Calls meet(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves the
@@ -166,10 +170,11 @@ void Broadphase::State::for_partners(uint32_t id, Meet&& meet) const {
 
 void Broadphase::State::find(uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
-        uint32_t* room = &partners[size_t(i) * kRoom];
+        uint32_t* to = partners.data() + room_from[i];
+        const uint32_t room = room_from[i + 1] - room_from[i];
         uint32_t count = 0;
         for_partners(stale[i], [&](uint32_t other) {
-            if (count < kRoom) room[count] = other;
+            if (count < room) to[count] = other;
             ++count;
         });
         partner_count[i] = count;
@@ -184,10 +189,12 @@ void Broadphase::State::gather_fresh() {
     reserve_more(found, std::accumulate(partner_count.begin(), partner_count.end(), size_t{0}));
     for (size_t i = 0; i < stale.size(); ++i) {
         const auto add = [&](uint32_t other) { found.push_back(pair_key(stale[i], other)); };
-        if (partner_count[i] > kRoom)
+        if (partner_count[i] > room_from[i + 1] - room_from[i])
             for_partners(stale[i], add);
         else
-            std::for_each_n(&partners[i * kRoom], partner_count[i], add);
+            std::for_each_n(partners.data() + room_from[i], partner_count[i], add);
+        uint16_t& room = leaves[stale[i]].room;
+        room = uint16_t(std::clamp<uint32_t>(partner_count[i] + partner_count[i] / 4, room, kMostRoom));
     }
     Array<uint64_t>& by_larger = gone;  // has no other use yet
     by_larger.clear();
@@ -260,6 +267,7 @@ void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     s.leaves[id].node = s.tree.insert(fat_volume(tight, Vec3f::Zero()), nullptr);
     s.leaves[id].node->dataAsInt = int(id);
     s.leaves[id].moves = moves;
+    s.leaves[id].room = kLeastRoom;
 }
 
 void Broadphase::remove(uint32_t id) {
@@ -292,7 +300,14 @@ void Broadphase::set_moves(uint32_t id, bool moves) {
 
 uint32_t Broadphase::start_refresh() {
     State& s = *state_;
-    s.partners.resize(s.stale.size() * State::kRoom);
+    s.room_from.resize(s.stale.size() + 1);
+    uint32_t room = 0;
+    for (size_t i = 0; i < s.stale.size(); ++i) {
+        s.room_from[i] = room;
+        room += s.leaves[s.stale[i]].room;
+    }
+    s.room_from.back() = room;
+    s.partners.resize(room);
     s.partner_count.resize(s.stale.size());
     return uint32_t(s.stale.size());
 }
@@ -322,7 +337,7 @@ bool Broadphase::refresh_pairs() {
 void Broadphase::let_go() {
     State& s = *state_;
     for (Array<uint64_t>* each : {&s.fresh, &s.gone}) taut::let_go(*each);
-    for (Array<uint32_t>* each : {&s.partners, &s.partner_count, &s.first_of}) taut::let_go(*each);
+    for (Array<uint32_t>* each : {&s.partners, &s.room_from, &s.partner_count, &s.first_of}) taut::let_go(*each);
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }

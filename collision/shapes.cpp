@@ -1,7 +1,7 @@
 // What a shape weighs and how far it reaches, one function a kind.
 #include <array>
+#include <bit>
 #include <cmath>
-#include <limits>
 
 #include "collision/collide.h"
 #include "collision/hull.h"
@@ -108,17 +108,23 @@ MassProperties hull_mass(const Shape& shape, double density) {
 
 // ---------------------------------------------------------------- bounds
 
+// The next number below (way -1) or above (1), or the number itself: without a branch, for nobody foresees which.
+float next(float x, bool is_next, uint32_t way) {
+    constexpr uint32_t kSign = 0x80000000u;
+    const auto in_order = [](uint32_t bits) { return bits & kSign ? kSign - bits : bits; };  // and back
+    const uint32_t bits = std::bit_cast<uint32_t>(x), stepped = in_order(in_order(bits) + way);
+    return std::bit_cast<float>(bits ^ ((bits ^ stepped) & (0u - uint32_t{is_next})));
+}
+
 // Single precision box of a box in double, rounded outwards.
 Box rounded(const Vec3& centre, const Vec3& lo, const Vec3& hi) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     Box box;
     for (int i = 0; i < 3; ++i) {
         const double low = centre[i] + lo[i];
         const double high = centre[i] + hi[i];
-        box.lo[i] = float(low);
-        box.hi[i] = float(high);
-        if (double(box.lo[i]) > low) box.lo[i] = std::nextafter(box.lo[i], -kInfinity);
-        if (double(box.hi[i]) < high) box.hi[i] = std::nextafter(box.hi[i], kInfinity);
+        const float below = float(low), above = float(high);
+        box.lo[i] = next(below, double(below) > low, ~0u);
+        box.hi[i] = next(above, double(above) < high, 1u);
     }
     return box;
 }

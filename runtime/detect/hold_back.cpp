@@ -62,7 +62,8 @@ void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, co
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
 bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
-    if (!(near.fast || pairs.pace[a].astray || pairs.pace[b].astray) || near.filtered) return false;
+    const Pace &pace_a = pairs.pace[a], &pace_b = pairs.pace[b];
+    if (near.filtered || !(near.fast | pace_a.astray | pace_b.astray)) return false;
     const Course &one = pairs.courses[a], &other = pairs.courses[b];
     if (std::isinf(one.thickness + other.thickness)) return false;  // not to be looked for
     const float thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
