@@ -85,6 +85,23 @@ private:
     Vec3 inverse_;
 };
 
+// Asks which boxes one overlaps that stays where it is; whichever comes first.
+class Overlap {
+public:
+    explicit Overlap(const Probe& probe) : lo_(probe.from + probe.lo), hi_(probe.from + probe.hi) {}
+
+    bool meets(const Probe& probe, const btDbvtVolume& volume) const {
+        if (!(probe.limit >= 0)) return false;
+        for (int i = 0; i < 3; ++i)
+            if (!(double(volume.Mins()[i]) <= hi_[i] && double(volume.Maxs()[i]) >= lo_[i])) return false;
+        return true;
+    }
+    int first(const Probe&, const btDbvtNode*) const { return 0; }
+
+private:
+    Vec3 lo_, hi_;
+};
+
 }  // namespace
 
 struct Broadphase::State {
@@ -111,6 +128,8 @@ struct Broadphase::State {
     void sort_by(const Array<uint64_t>& keys, int bit, Array<uint64_t>& sorted);
     bool find_changes();
     void merge();
+    template <class Asks>
+    void walk(const Asks& asks, Probe& probe, Visitor& visitor) const;
 
     btDbvt tree;
     Array<Leaf> leaves;  // by id
@@ -333,26 +352,33 @@ void Broadphase::note_stray(uint32_t id) {
 }
 
 // Down the tree and up again by the parents: it may be of any depth, and a query has no memory of its own.
+template <class Asks>
+void Broadphase::State::walk(const Asks& asks, Probe& probe, Visitor& visitor) const {
+    const btDbvtNode* root = tree.m_root;
+    const btDbvtNode* node = root;
+    while (node) {
+        if (asks.meets(probe, node->volume)) {
+            if (node->isinternal()) {
+                node = node->childs[asks.first(probe, node)];
+                continue;
+            }
+            const uint32_t id = uint32_t(node->dataAsInt);
+            if (!leaves[id].stray) visitor.visit(id, probe);
+        }
+        const auto second = [&](const btDbvtNode* parent) { return parent->childs[1 - asks.first(probe, parent)]; };
+        while (node != root && node == second(node->parent)) node = node->parent;
+        node = node == root ? nullptr : second(node->parent);
+    }
+}
+
 void Broadphase::visit(Probe probe, Visitor& visitor) const {
     const State& s = *state_;
     for (const uint32_t id : s.strays)
         if (s.leaves[id].stray) visitor.visit(id, probe);
-    const Slabs slabs(probe);
-    const btDbvtNode* root = s.tree.m_root;
-    const btDbvtNode* node = root;
-    while (node) {
-        if (slabs.meets(probe, node->volume)) {
-            if (node->isinternal()) {
-                node = node->childs[slabs.first(probe, node)];
-                continue;
-            }
-            const uint32_t id = uint32_t(node->dataAsInt);
-            if (!s.leaves[id].stray) visitor.visit(id, probe);
-        }
-        const auto second = [&](const btDbvtNode* parent) { return parent->childs[1 - slabs.first(probe, parent)]; };
-        while (node != root && node == second(node->parent)) node = node->parent;
-        node = node == root ? nullptr : second(node->parent);
-    }
+    if (probe.along == Vec3::Zero() && probe.reach == 0)
+        s.walk(Overlap(probe), probe, visitor);
+    else
+        s.walk(Slabs(probe), probe, visitor);
 }
 
 }  // namespace taut::collision

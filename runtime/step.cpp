@@ -174,7 +174,7 @@ void step(World& w) {
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
-    hold_back(w.team, w.colliders, w.shapes, w.joints, w.pairs, w.nodes);
+    hold_back(w.team, w.colliders, w.shapes, w.joints, w.pairs, w.broadphase, w.nodes);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.sensors);
     w.nodes.load.clear();

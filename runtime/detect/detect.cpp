@@ -95,11 +95,6 @@ bool keep_in_leaf(const Nodes& nodes, const Collider& collider, const Shapes& sh
     return broadphase.holds(c, reach.box);
 }
 
-const NearPair* find_pair(const Array<NearPair>& list, uint64_t key) {
-    const auto at = std::ranges::lower_bound(list, key, {}, &NearPair::key);
-    return at != list.end() && at->key == key ? &*at : nullptr;
-}
-
 // What came and went: as the broadphase tells, or, where records were forgotten before, found anew.
 void find_news(const collision::Broadphase& broadphase, bool was_complete, Pairs& pairs) {
     const std::span<const uint64_t> keys = broadphase.pairs();
@@ -138,13 +133,6 @@ void drop_departed(const Nodes& nodes, const Colliders& colliders, Pairs& pairs)
         give_slots(pairs, near);
     }
     pairs.near.resize(kept);
-}
-
-NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
-    NearPair near;
-    near.key = key;
-    near.filtered = !may_collide(nodes, colliders, pairs, near.ends(colliders));
-    return near;
 }
 
 // Of a body's centre of mass; kinematic bodies move at the end of the frame.
@@ -285,6 +273,13 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
         for_colliders(nodes, colliders, node, [&](uint32_t c) {
             broadphase.update(c, contact_box(nodes, shapes, colliders.record[c]), Vec3f::Zero());
         });
+}
+
+NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
+    NearPair near;
+    near.key = key;
+    near.filtered = !may_collide(nodes, colliders, pairs, near.ends(colliders));
+    return near;
 }
 
 void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,

@@ -32,6 +32,9 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
 void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
                  std::span<const uint32_t> frozen, Pairs& pairs, collision::Broadphase& broadphase);
 
+// A record for two colliders, after update_pairs() of this step or within it: asked whether they may collide.
+NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key);
+
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
 void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
                   collision::Broadphase& broadphase, Pairs& pairs);

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
+#include "detect/detect.h"
 #include "detect/impact.h"
 #include "detect/mechanism.h"
 #include "detect/passage.h"
@@ -19,9 +22,10 @@ bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
-bool put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t round) {
-    return mechanisms.put_back[collider.node] == round ||
-           (collider.node_b != kNone && mechanisms.put_back[collider.node_b] == round);
+// Whether a collider between two nodes was put back by either.
+bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t round) {
+    return collider.node_b != kNone &&
+           (mechanisms.put_back[collider.node] == round || mechanisms.put_back[collider.node_b] == round);
 }
 
 // Marks what went elsewhere than its speed told before the step, further from there than a part of its thickness: of
@@ -34,7 +38,7 @@ bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, con
             const Collider& collider = colliders.record[c];
             Pace& pace = pairs.pace[c];
             if (collider.node == kNone) continue;
-            pace.moved = round == 1 || put_back(pairs.mechanisms, collider, round - 1);
+            pace.moved = round == 1 || pace.moved || span_put_back(pairs.mechanisms, collider, round - 1);
             if (!pace.moved) continue;
             if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
             const double stride = kStride * pace.thickness;
@@ -58,7 +62,8 @@ void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, co
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
 bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
-    if (!(near.fast || pairs.pace[a].astray || pairs.pace[b].astray) || near.filtered) return false;
+    const Pace &pace_a = pairs.pace[a], &pace_b = pairs.pace[b];
+    if (near.filtered || !(near.fast | pace_a.astray | pace_b.astray)) return false;
     const Course &one = pairs.courses[a], &other = pairs.courses[b];
     if (std::isinf(one.thickness + other.thickness)) return false;  // not to be looked for
     const float thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
@@ -75,10 +80,70 @@ bool may_pass(const Pairs& pairs, const NearPair& near) {
     return may_pass(pairs.courses[near.collider_a()], pairs.courses[near.collider_b()]);
 }
 
-// Whether a pair had passed; in the last round it stays where it was.
-bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_t round, Mechanisms& mechanisms,
-          Nodes& nodes) {
+// Appends a collider's pairs with what its box meets, but for those that are near.
+void add_late(const Nodes& nodes, const Colliders& colliders, const collision::Broadphase& broadphase, uint32_t c,
+              Pairs& pairs) {
+    struct Found final : collision::Visitor {
+        Found(const Nodes& n, const Colliders& all, uint32_t one, Pairs& to)
+            : nodes(n), colliders(all), c(one), pairs(to) {}
+        void visit(uint32_t other, collision::Probe&) override {
+            const uint64_t key = pair_key(c, other);
+            if (other == c || find_pair(pairs.near, key) || find_pair(pairs.late, key)) return;
+            reserve_more(pairs.late, 1);
+            const NearPair pair = new_pair(nodes, colliders, pairs, key);
+            pairs.late.insert(std::ranges::upper_bound(pairs.late, key, {}, &NearPair::key), pair);
+        }
+        const Nodes& nodes;
+        const Colliders& colliders;
+        uint32_t c;
+        Pairs& pairs;
+    };
+    const collision::Box& box = pairs.reach[c].box;
+    const Vec3 middle = 0.5 * (box.lo + box.hi).cast<double>();
+    Found found(nodes, colliders, c, pairs);
+    broadphase.visit({middle, Vec3::Zero(), box.lo.cast<double>() - middle, box.hi.cast<double>() - middle}, found);
+}
+
+// What left the box by which the broadphase foresaw it, as when a joint whips it, gets one about the way that it took,
+// and its pairs with what is there go into Pairs::late.
+void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+               collision::Broadphase& broadphase) {
+    gather(team, static_cast<uint32_t>(pairs.pace.size()), pairs.picked, [&](uint32_t c) {
+        const Collider& collider = colliders.record[c];
+        return collider.node != kNone && pairs.pace[c].moved && pairs.pace[c].astray &&
+               !broadphase.holds(c, bounds_of(nodes, collider, shapes));
+    });
+    // All boxes before any looks about itself: two of them may have met.
+    for (const uint32_t c : pairs.picked) {
+        Reach& reach = pairs.reach[c];
+        reach.box = box_along(nodes, colliders.record[c], shapes);
+        reach.made = std::numeric_limits<double>::infinity();
+        broadphase.update(c, reach.box, Vec3f::Zero());
+    }
+    for (const uint32_t c : pairs.picked) add_late(nodes, colliders, broadphase, c, pairs);
+}
+
+// Of the pairs that are near and of those that came late, one after the other.
+uint32_t count_of(const Pairs& pairs) { return static_cast<uint32_t>(pairs.near.size() + pairs.late.size()); }
+NearPair& pair_at(Pairs& pairs, uint32_t index) {
+    const size_t near = pairs.near.size();
+    return index < near ? pairs.near[index] : pairs.late[index - near];
+}
+
+// The late ones, which come last, to their places in the order of keys.
+void sort_in_late(Pairs& pairs) {
+    const auto key_of = [&](uint32_t i) { return pair_at(pairs, i).key; };
+    const auto is_near = [&](uint32_t i) { return i < pairs.near.size(); };
+    Array<uint32_t>& picked = pairs.picked;
+    for (auto late = std::ranges::partition_point(picked, is_near); late != picked.end(); ++late)
+        std::rotate(std::ranges::upper_bound(picked.begin(), late, key_of(*late), {}, key_of), late, late + 1);
+}
+
+// Puts back a pair that had passed; in the last round it stays where it was. Whether it did.
+bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, const Shapes& shapes,
+          const Joints& joints, uint8_t round, Pairs& pairs, Nodes& nodes) {
     if (!(excess.share > 0)) return false;
+    Mechanisms& mechanisms = pairs.mechanisms;
     if (mechanisms.root.empty()) find_mechanisms(nodes, joints, mechanisms);
     Mechanism of_a(nodes, mechanisms, pair.a.collider.node), of_b(nodes, mechanisms, pair.b.collider.node);
     if (of_a.has(pair.b.collider.node)) return false;
@@ -88,27 +153,66 @@ bool part(const Couple& pair, const Excess& excess, const Joints& joints, uint8_
         of_a.stay(round);
         of_b.stay(round);
     } else {
-        of_a.go_back(excess.share * way_of(nodes, pair.a), excess.normal, round);
-        of_b.go_back(excess.share * excess.way, excess.normal, round);
+        const Vec3 way_of_a = excess.share * way_of(nodes, pair.a), way_of_b = excess.share * excess.way;
+        of_a.go_back(way_of_a, excess.normal, round);
+        of_b.go_back(way_of_b, excess.normal, round);
     }
+    for (const Mechanism* of : {&of_a, &of_b})
+        of->for_nodes([&](uint32_t node) {
+            for_colliders(nodes, colliders, node, [&](uint32_t c) {
+                pairs.pace[c].moved = true;
+                pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
+            });
+        });
     return true;
 }
 
-// Picks the pairs that may have passed, and finds those that did and of which a side moved.
+// Whether a collider was put back in this round; its course follows.
+bool anew(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c, uint8_t round,
+          Pairs& pairs) {
+    const Collider& collider = colliders.record[c];
+    if (!std::isinf(pairs.courses[c].chord)) return pairs.pace[c].moved;
+    if (!span_put_back(pairs.mechanisms, collider, round)) return false;
+    pairs.courses[c] = course_of(nodes, collider, shapes, pairs.pace[c]);
+    return true;
+}
+
+// Puts back what passed, one after the other; what was put back already is asked again. Whether anything was.
+bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints& joints, uint8_t round, Pairs& pairs,
+                 Nodes& nodes) {
+    for (Pace& pace : pairs.pace) pace.moved = false;
+    bool any = false;
+    for (const uint32_t i : pairs.picked) {
+        const NearPair& near = pair_at(pairs, i);
+        bool ask = near.passed;
+        if (any) {
+            const bool a_anew = anew(nodes, colliders, shapes, near.collider_a(), round, pairs),
+                       b_anew = anew(nodes, colliders, shapes, near.collider_b(), round, pairs);
+            ask = ask || ((a_anew || b_anew) && may_pass(pairs, near));
+        }
+        if (!ask) continue;
+        const Couple pair(colliders, shapes, pairs.courses, near);
+        any = part(pair, excess_of(nodes, pair), colliders, shapes, joints, round, pairs, nodes) || any;
+    }
+    return any;
+}
+
+// Picks the pairs that may have passed, in the order of their keys, and finds those that did and of which a side moved.
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
-    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked, [&](uint32_t i) {
-        NearPair& near = pairs.near[i];
-        if (moved(pairs, near)) near.strides = strides(colliders, pairs, near);
+    gather(team, count_of(pairs), pairs.picked, [&](uint32_t i) {
+        NearPair& near = pair_at(pairs, i);
+        if (moved(pairs, near)) {
+            near.strides = strides(colliders, pairs, near);
+            near.passed = near.strides && may_pass(pairs, near);
+        } else if (near.passed) {
+            near.passed = false;
+        }
         return near.strides;
     });
+    sort_in_late(pairs);
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
-        // Apart from the casts, so that processors work on several at once.
         for (uint32_t i = begin; i < end; ++i) {
-            NearPair& near = pairs.near[pairs.picked[i]];
-            near.passed = moved(pairs, near) && may_pass(pairs, near);
-        }
-        for (uint32_t i = begin; i < end; ++i) {
-            NearPair& near = pairs.near[pairs.picked[i]];
+            NearPair& near = pair_at(pairs, pairs.picked[i]);
             if (near.passed) near.passed = excess_of(nodes, Couple(colliders, shapes, pairs.courses, near)).share > 0;
         }
     });
@@ -119,33 +223,22 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
 // Who passed is found for all pairs at once, after the first round for those alone of which a side was put back in the
 // last. They are put back one after the other, where those of which a side was put back already are asked again.
 void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
-               Nodes& nodes) {
+               collision::Broadphase& broadphase, Nodes& nodes) {
     Mechanisms& mechanisms = pairs.mechanisms;
     mechanisms.root.clear();
     bool again = true;
     for (uint8_t round = 1; again && round <= kRounds; ++round) {
-        again = false;
         const bool any_astray = find_astray(team, nodes, colliders, shapes, round, pairs);
         if (round == 1 && !any_astray && !pairs.any_fast) {
             let_go(pairs.courses);
             break;
         }
+        if (any_astray) find_late(team, nodes, colliders, shapes, pairs, broadphase);
         find_courses(team, nodes, colliders, shapes, pairs);
         find_passed(team, nodes, colliders, shapes, pairs);
-        for (const uint32_t i : pairs.picked) {
-            const NearPair& near = pairs.near[i];
-            bool anew = false;
-            for (const uint32_t c : {near.collider_a(), near.collider_b()}) {
-                const Collider& collider = colliders.record[c];
-                if (!again || !put_back(mechanisms, collider, round)) continue;
-                pairs.courses[c] = course_of(nodes, collider, shapes, pairs.pace[c]);
-                anew = true;
-            }
-            if (!near.passed && !(anew && may_pass(pairs, near))) continue;
-            const Couple pair(colliders, shapes, pairs.courses, near);
-            again = part(pair, excess_of(nodes, pair), joints, round, mechanisms, nodes) || again;
-        }
+        again = part_passed(colliders, shapes, joints, round, pairs, nodes);
     }
+    let_go(pairs.late);
     end_stays(mechanisms);
 }
 

@@ -25,12 +25,13 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 // After the solve: contacts are found once a frame, and what they turn or turn aside may pass a wall in the rest of it.
 // Of pairs that were fast, or of which one went elsewhere than its speed told, the way of the smaller one's core (of
 // the ball inside, about collision::middle(); of a segment between two particles also about its ends) against the other
-// ends where it meets it. What is too much both go back, each along its own way, which was free. A mechanism goes back
-// as one and without turning, so that its joints stay as they are, and only across the surface; where it hangs on the
-// world, or still passes something, it stays where it was before the step. Velocities stay: the next frame finds the
-// contact. No pair is looked after that the host or a one-way collider may ignore.
+// ends where it meets it. What the broadphase did not foresee is asked for then. What is too much both go back, each
+// along its own way, which was free. A mechanism goes back as one and without turning, so that its joints stay as they
+// are, and only across the surface; where it hangs on the world, or still passes something, it stays where it was
+// before the step. Velocities stay: the next frame finds the contact. No pair is looked after that the host or a
+// one-way collider may ignore.
 void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
-               Nodes& nodes);
+               collision::Broadphase& broadphase, Nodes& nodes);
 
 // Whether balls about the centres that two colliders turn about, each as large as to hold its shape, stay apart on
 // their ways: such two do not meet, which costs less to know than when they do. False in doubt.

@@ -22,6 +22,16 @@ public:
 
     bool has(uint32_t node) const { return node != kNone && nodes_.solved(node) && all_.root[node] == root_; }
 
+    template <class Act>
+    void for_nodes(Act&& act) const {
+        if (!moves_) return;
+        uint32_t node = root_;
+        do {
+            act(node);
+            node = all_.next[node];
+        } while (node != root_);
+    }
+
     // One body along its way, which is free; more of them only as far as they must.
     void go_back(const Vec3& way, const Vec3& normal, uint8_t round) {
         if (all_.ties[root_] & kAnchored) return stay(round);
@@ -42,13 +52,10 @@ public:
 private:
     template <class Act>
     void for_each(uint8_t round, Act&& act) {
-        if (!moves_) return;
-        uint32_t node = root_;
-        do {
+        for_nodes([&](uint32_t node) {
             act(node);
             all_.put_back[node] = round;
-            node = all_.next[node];
-        } while (node != root_);
+        });
     }
 
     Nodes& nodes_;

@@ -88,11 +88,14 @@ private:
     double thickness_b_;
 };
 
-// The least distance of a way from the origin.
-double nearest_on(const Vec3& from, const Vec3& way) {
-    const double squared = way.squaredNorm();
-    const double at = squared > 0 ? std::clamp(-from.dot(way) / squared, 0.0, 1.0) : 0.0;
-    return (from + at * way).norm();
+// Whether a way comes within a distance of the origin: at its start, at its end or, where it comes by in between, with
+// |from|^2 - (from . way)^2 / |way|^2 <= distance^2.
+bool comes_within(const Vec3& from, const Vec3& way, double distance) {
+    const double start = from.squaredNorm(), squared = way.squaredNorm(), nearer = -from.dot(way);
+    const double reach = distance * distance;
+    if (nearer <= 0) return start <= reach;
+    if (nearer >= squared) return (from + way).squaredNorm() <= reach;
+    return (start - reach) * squared <= nearer * nearer;
 }
 
 double reach_of(const Collider& collider, const ShapeRecord& record) {
@@ -137,7 +140,7 @@ bool may_pass(const Course& one, const Course& other) {
     const Course &a = one.reach < other.reach ? other : one, &b = one.reach < other.reach ? one : other;
     const Vec3 from = b.from - a.from, along = b.along - a.along;
     const double reach = static_cast<double>(a.reach + a.round) + kLargest * static_cast<double>(b.thickness);
-    return nearest_on(from, along) <= reach + static_cast<double>(a.chord) * (from + along).norm();
+    return comes_within(from, along, reach + static_cast<double>(a.chord) * (from + along).norm());
 }
 
 Excess excess_of(const Nodes& nodes, const Couple& couple) {
@@ -168,6 +171,16 @@ Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shape
     const Vec3 middle = collision::middle(shapes.record[collider.shape].shape);
     const Vec3 lever = collider.position + collider.rotation * middle - centre;
     return way + now.q * lever - before.rotation * lever;
+}
+
+collision::Box bounds_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+    return collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider));
+}
+
+collision::Box box_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+    const collision::Box then = collision::bounds(shapes.record[collider.shape].shape, placed_before(nodes, collider)),
+                         now = bounds_of(nodes, collider, shapes);
+    return {then.lo.cwiseMin(now.lo), then.hi.cwiseMax(now.hi)};
 }
 
 Couple::Couple(const Passage& one, const Passage& other)

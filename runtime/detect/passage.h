@@ -12,6 +12,9 @@ namespace taut {
 
 // Of a collider's middle in this step, but for the turn of a slow one [m].
 Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
+// Hold its shape as it is; as it is and as it was before the step [m].
+collision::Box bounds_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
+collision::Box box_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes);
 Course course_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Pace& pace);
 // Whether the core of the one that reaches less far may have met the ball about the other: false spares the rest.
 bool may_pass(const Course& one, const Course& other);

@@ -6,6 +6,11 @@
 
 namespace taut {
 
+const NearPair* find_pair(const Array<NearPair>& list, uint64_t key) {
+    const auto at = std::ranges::lower_bound(list, key, {}, &NearPair::key);
+    return at != list.end() && at->key == key ? &*at : nullptr;
+}
+
 void reserve_slots(Pairs& pairs, size_t more) {
     if (more > pairs.free.size()) pairs.list.reserve(pairs.list.size() + more - pairs.free.size());
     reserve_more(pairs.free, pairs.list.capacity() - pairs.free.size());

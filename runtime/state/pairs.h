@@ -229,6 +229,7 @@ struct Pairs {
     explicit Pairs(Memory& memory)
         : near(memory),
           resting(memory),
+          late(memory),
           list(memory),
           free(memory),
           arrived(memory),
@@ -258,6 +259,7 @@ struct Pairs {
 
     Array<NearPair> near;             // sorted by key
     Array<NearPair> resting;          // sorted likewise: pairs of which no side moves and one is asleep
+    Array<NearPair> late;             // sorted likewise, of this step: whom ways led together that nobody foresaw
     bool complete = false;            // all pairs of the broadphase are in one of the two
     SegmentedArray<Pair> list;        // slots, in no order; free ones have no points
     Array<uint32_t> free;             // of them; room for all
@@ -284,6 +286,9 @@ struct Pairs {
     Array<Pair> arriving;                   // scratch: records that have no slots yet; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };
+
+// The record of a key in a sorted list; null: it has none.
+const NearPair* find_pair(const Array<NearPair>& list, uint64_t key);
 
 // Room for so many pairs with points beyond those that there are.
 void reserve_slots(Pairs& pairs, size_t more);

@@ -43,8 +43,10 @@ void gather(Team& team, uint32_t count, Array<uint32_t>& picked, Picks&& picks) 
     blocks.for_each(team, [&](uint32_t block) {
         uint32_t* const first = picked.data() + blocks.begin(block);
         uint32_t* to = first;
-        for (uint32_t i = blocks.begin(block); i < blocks.end(block); ++i)
-            if (picks(i)) *to++ = i;
+        for (uint32_t i = blocks.begin(block); i < blocks.end(block); ++i) {
+            *to = i;  // stays if picked; no branch, for which are is often random
+            to += picks(i) ? 1 : 0;
+        }
         found[block] = static_cast<uint32_t>(to - first);
     });
     auto kept = picked.begin();
