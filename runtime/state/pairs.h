@@ -11,10 +11,9 @@
 #include "base/segmented_array.h"
 #include "collision/collide.h"
 #include "state/colliders.h"
+#include "state/motion.h"
 
 namespace taut {
-
-using Quatf = Eigen::Quaternion<float, Eigen::DontAlign>;
 
 // How far apart two surfaces get contact points [m]; tight boxes are grown by it before they enter the broadphase.
 constexpr float kContactMargin = 0.01f;
@@ -162,67 +161,6 @@ struct ActivePair {
     bool spans() const { return a2 != kNone || b2 != kNone; }
     std::array<uint32_t, 2> sides() const { return {a, b}; }
     std::array<uint32_t, 4> nodes() const { return {a, b, a2, b2}; }
-};
-
-// Where a collider may be until the next frame.
-struct Reach {
-    collision::Box box;  // tight, grown by the contact margin, of which kBoxLag may be used up, and the motion [m]
-    Vec3f ahead;         // the motion [m]
-    bool left = false;   // is outside its fat box
-    double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
-};
-
-// How a collider's shape stands and moves; place_collider().
-struct Stance {
-    Quatf turn = Quatf::Identity();                        // world from shape
-    Vec3f velocity = Vec3f::Zero(), spin = Vec3f::Zero();  // of its origin [m/s]; [rad/s]
-    Vec3f from_node = Vec3f::Zero();                       // from the node's origin to its own, world axes [m]
-    float reach = 0, size = 0;                             // as in ShapeRecord [m]
-    bool placed = false;                                   // else all of this is yet to come
-};
-
-// What a collider's points covered so far, and may cover.
-struct Travel {
-    double way = 0;       // of its furthest point, at least as long as from each place to the next [m]
-    float ahead = 0;      // the same of the next frame, by its velocities [m]
-    float thickness = 0;  // as in Pace [m]
-};
-
-// How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
-struct Pace {
-    double thickness = 0;  // [m]; infinite: not to be looked for
-    double turning = 0;    // way of its furthest point about the centre of mass [m]
-    float round = 0;       // collision::ball_radius() [m]
-    bool rolls = false;    // collision::rolls()
-    bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
-    bool moved = false;    // by the round of hold_back() before, or it is the first one
-};
-
-// Where a collider's middle went in this step, for what may have gone through each other; course_of().
-struct Course {
-    Vec3 from = Vec3::Zero(), along = Vec3::Zero();  // [m]
-    float thickness = 0;                             // as in Pace [m]
-    float reach = 0;                                 // of its core about its origin [m]
-    float round = 0;                                 // reach and this: of a ball about the middle that holds it [m]
-    float chord = 0;                                 // of its turn, at least, at radius 1; infinite: its ends go apart
-};
-
-// A mechanism that hold_back() leaves where it was before the step.
-struct Stay {
-    uint32_t root;
-    uint32_t frames;  // one after another
-    bool now;         // in this one too
-};
-
-// Nodes that joints tie together, by node; hold_back().
-struct Mechanisms {
-    explicit Mechanisms(Memory& memory) : root(memory), next(memory), ties(memory), put_back(memory), stays(memory) {}
-
-    Array<uint32_t> root;     // the least of them; empty: not found yet
-    Array<uint32_t> next;     // of the ring of them
-    Array<uint8_t> ties;      // of a root; detect/mechanism.h
-    Array<uint8_t> put_back;  // the last round in which it was; 0: none
-    Array<Stay> stays;        // outlive the step
 };
 
 struct Pairs {
