@@ -58,7 +58,8 @@ public:
 
 private:
     static_assert(std::is_trivially_destructible_v<T>);
-    static constexpr size_t kSegment = 32;  // elements
+    static constexpr size_t kBytes = 16384;  // a size of which Memory wastes nothing
+    static constexpr size_t kSegment = kBytes / sizeof(T);
 
     HostAllocator<T> allocator_;
     Array<T*> segment_;
