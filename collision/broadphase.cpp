@@ -164,12 +164,12 @@ bool Broadphase::State::find_changes() {
         if (leaves[uint32_t(key >> 32)].stale || leaves[uint32_t(key)].stale) gone.push_back(key);
     auto kept_fresh = fresh.begin(), kept_gone = gone.begin();
     auto was = gone.begin();
-    for (auto is = fresh.begin(); is != fresh.end(); ++is) {
-        while (was != gone.end() && *was < *is) *kept_gone++ = *was++;
-        if (was != gone.end() && *was == *is)
+    for (const uint64_t is : fresh) {
+        while (was != gone.end() && *was < is) *kept_gone++ = *was++;
+        if (was != gone.end() && *was == is)
             ++was;
         else
-            *kept_fresh++ = *is;
+            *kept_fresh++ = is;
     }
     kept_gone = std::copy(was, gone.end(), kept_gone);
     fresh.erase(kept_fresh, fresh.end());

@@ -12,9 +12,9 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 32, kArrivalGrain = 8;          // pairs that a thread takes at a time
-constexpr uint32_t kFewArriving = 32, kMostArriving = 256;  // records
-constexpr uint32_t kSoon = 4;                               // pairs that a loop asks the memory for ahead of itself
+constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
+constexpr uint32_t kFewArriving = 32, kMostArriving = 384;
+constexpr uint32_t kSoon = 4;  // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
@@ -65,38 +65,41 @@ void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
            [&](uint32_t i) { return pairs.near[i].changes; });
 }
 
-// Room for about as many arrivals as there were in this frame; not for few, nor for those of a world's first frame.
-void prepare_arrivals(uint32_t number, Array<Pair>& arriving) {
-    if (4 * number < arriving.size()) {
+// Room for about so many arrivals, if they are not few.
+void prepare_arrivals(uint32_t number, Array<Arrival>& arriving) {
+    const uint32_t wanted = std::min(number, kMostArriving);
+    if (4 * wanted < arriving.size()) {
         arriving.clear();
-        Array<Pair>(arriving.get_allocator()).swap(arriving);
-    } else if (number > arriving.size() && number >= kFewArriving && number <= kMostArriving) {
+        Array<Arrival>(arriving.get_allocator()).swap(arriving);
+    } else if (wanted > arriving.size() && wanted >= kFewArriving) {
         arriving.clear();
-        arriving.resize(std::min(number + number / 4, kMostArriving));
+        arriving.resize(std::min(wanted + wanted / 4, kMostArriving));
     }
 }
 
-// Slots of pairs that got their first points: given in the order of keys. Points of those that had no record are found
-// again, side by side.
+// Records of pairs that got their first points: given in the order of keys, filled side by side.
 void admit_arriving(Team& team, const Detection& of, Arrivals& arrivals) {
     Pairs& pairs = of.pairs;
     const uint32_t number = arrivals.number();
     if (number == 0) return;
     reserve_slots(pairs, number);
-    const std::span<const Pair> found = arrivals.sort();
+    const std::span<const Arrival> found = arrivals.sort();
     auto next = found.begin();
     for (const uint32_t i : pairs.picked) {
         NearPair& near = pairs.near[i];
         if (!near.arrives) continue;
         near.pair = take_slot(pairs, near.ends(of.colliders));
-        near.arrives = next == found.end() || next->key != near.key;  // is still to be found
-        if (!near.arrives) pairs.list[near.pair] = *next++;
+        if (next == found.end() || next->key != near.key) continue;
+        if (next->manifold.count > 0) {
+            pairs.list[near.pair].manifold = next->manifold;
+            pairs.list[near.pair].cache = next->cache;
+        }
+        ++next;
     }
-    if (number == found.size()) return;
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kArrivalGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t k = begin; k < end; ++k) {
             NearPair& near = pairs.near[pairs.picked[k]];
-            if (near.arrives) find_points(of, near.fast, near, pairs.list[near.pair]);
+            if (near.arrives) admit(of, near, pairs.list[near.pair]);
         }
     });
 }
@@ -169,10 +172,12 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                    double time_step, double lead) {
     const Detection of{nodes, colliders, shapes, pairs, time_step, lead};
     note_changes(colliders, pairs);
+    const bool is_first = pairs.list.size() == 0;
+    if (is_first) prepare_arrivals(static_cast<uint32_t>(pairs.near.size()), pairs.arriving);
     Arrivals arrivals(pairs.arriving);
     look_at_all(team, of, arrivals);
     admit_arriving(team, of, arrivals);
-    prepare_arrivals(arrivals.number(), pairs.arriving);
+    prepare_arrivals(is_first ? 0 : arrivals.number(), pairs.arriving);
     settle_changing(of);
     order_slots(pairs);
     list_active(team, pairs);

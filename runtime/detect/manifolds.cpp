@@ -66,11 +66,12 @@ void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
 void keep_cache(const collision::PairCache& cache, NearPair& near) {
     std::copy_n(cache.words, near.cache.size(), near.cache.begin());
 }
+void keep_cache(const collision::PairCache& cache, PointsCache& of_points) {
+    std::copy_n(cache.words + std::size(cache.words) - of_points.size(), of_points.size(), of_points.begin());
+}
 
-// What was found for a pair without a surface, into its record.
-void take_over(const Shaped& shaped, const Detection& of, const collision::PairCache& cache,
-               const collision::Manifold& old, NearPair& near, Pair& pair) {
-    std::copy_n(cache.words + near.cache.size(), pair.cache.size(), pair.cache.begin());
+// What was found for a pair without a surface, and is in its record.
+void take_over(const Shaped& shaped, const Detection& of, const collision::Manifold& old, NearPair& near, Pair& pair) {
     near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
     near.changed = false;
     if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
@@ -154,27 +155,34 @@ void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
     std::ranges::copy(pair.cache, std::ranges::copy(near.cache, cache.words).out);
     const float gap = shaped.find_points(cache, pair.manifold);
     keep_cache(cache, near);
+    keep_cache(cache, pair.cache);
     note_clear(of.pairs, gap, near);
-    take_over(shaped, of, cache, old, near, pair);
+    take_over(shaped, of, old, near, pair);
 }
 
 bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near) {
     collision::PairCache cache;
     std::ranges::copy(near.cache, cache.words);
     collision::Manifold manifold;
-    const PairEnds ends = near.ends(of.colliders);
-    const Shaped shaped(of, ends, near.fast);
+    const Shaped shaped(of, near.ends(of.colliders), near.fast);
     const float gap = shaped.find_points(cache, manifold);
-    Pair* const pair = manifold.count > 0 ? arrivals.take() : nullptr;
-    if (manifold.count > 0 && !pair) return true;
+    if (manifold.count > 0) {
+        Arrival* const arrival = arrivals.take();
+        if (!arrival) return true;
+        arrival->key = near.key;
+        arrival->manifold.count = 0;
+        if (shaped.then() > 0) return true;
+        arrival->manifold = manifold;
+        keep_cache(cache, arrival->cache);
+    }
     keep_cache(cache, near);
     note_clear(of.pairs, gap, near);
-    if (!pair) return false;
-    *pair = Pair();
-    static_cast<PairEnds&>(*pair) = ends;
-    pair->manifold = manifold;
-    take_over(shaped, of, cache, {}, near, *pair);
-    return true;
+    return manifold.count > 0;
+}
+
+void admit(const Detection& of, NearPair& near, Pair& pair) {
+    if (pair.manifold.count == 0) return find_points(of, near.fast, near, pair);
+    take_over(Shaped(of, pair, false), of, {}, near, pair);
 }
 
 void find_parts(const Detection& of, NearPair& near) {

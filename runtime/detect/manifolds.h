@@ -66,35 +66,37 @@ private:
     collision::Placement met_[2];         // where they meet, or will be
 };
 
-// Records that pairs with their first points have until they get slots. Who comes first takes the next; where none is
-// left, the points are found again once there is a slot.
+// The first points of pairs until they get records. Who comes first takes the next place; where none is left, the
+// points are found again once there is a record.
 class Arrivals {
 public:
-    explicit Arrivals(Array<Pair>& records) : records_(records) {}
+    explicit Arrivals(Array<Arrival>& records) : records_(records) {}
     // Null: none is left.
-    Pair* take() {
+    Arrival* take() {
         const uint32_t index = taken_.fetch_add(1, std::memory_order_relaxed);
         return index < records_.size() ? &records_[index] : nullptr;
     }
     // How many were asked for.
     uint32_t number() const { return taken_.load(std::memory_order_relaxed); }
     // Those taken, in the order of their keys.
-    std::span<const Pair> sort() {
+    std::span<const Arrival> sort() {
         const auto end = records_.begin() + std::min<ptrdiff_t>(number(), std::ssize(records_));
-        std::sort(records_.begin(), end, [](const Pair& one, const Pair& other) { return one.key < other.key; });
+        std::sort(records_.begin(), end, [](const Arrival& one, const Arrival& other) { return one.key < other.key; });
         return {records_.begin(), end};
     }
 
 private:
-    Array<Pair>& records_;
+    Array<Arrival>& records_;
     std::atomic<uint32_t> taken_ = 0;
 };
 
 // The manifold of a pair without a surface, with the impulses of the last one.
 void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair);
-// Whether a pair that has no record gets points: they are among the arrivals. If there is no place left, the cache
-// stays as it was, so that whoever finds the points starts from the same.
+// Whether a pair that has no record gets points: they are among the arrivals. If there is no place left, or if they are
+// of a later moment, the cache stays as it was, so that whoever finds the points again starts from the same.
 bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near);
+// A record with points that arrived, or without: then they are found again.
+void admit(const Detection& of, NearPair& near, Pair& pair);
 // The parts that a pair with a surface touches, in place of its records of the last frame.
 void find_parts(const Detection& of, NearPair& near);
 // A part of a pair whose parts were just found again: one that is not among them loses its points.

@@ -125,6 +125,13 @@ struct Pair : PairEnds {
     }
 };
 
+// What was found of a pair that has no record yet.
+struct Arrival {
+    uint64_t key = 0;
+    collision::Manifold manifold;
+    PointsCache cache{};
+};
+
 // The smaller index first; of colliders or of nodes.
 constexpr uint64_t pair_key(uint32_t one, uint32_t other) {
     return one < other ? static_cast<uint64_t>(one) << 32 | other : static_cast<uint64_t>(other) << 32 | one;
@@ -221,7 +228,7 @@ struct Pairs {
     Array<Stance> stance;                   // by collider; place_collider()
     Array<Travel> travel;                   // by collider; place_collider(), ahead: update_bounds()
     Array<uint32_t> picked;                 // scratch: what gather() found last
-    Array<Pair> arriving;                   // scratch: records that have no slots yet; find_contacts()
+    Array<Arrival> arriving;                // scratch; find_contacts()
     collision::Parts parts;                 // of the pair looked at last
 };
 

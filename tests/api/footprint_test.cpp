@@ -88,7 +88,7 @@ TEST_F(Footprint, OfAContact) {
         add_body(world_, body_def(TAUT_BODY_STATIC, box, 3.0 * i, -0.5));
         bodies.push_back(add_body(world_, body_def(TAUT_BODY_DYNAMIC, box, 3.0 * i, 100)));
     }
-    expect_at_most(1130, "contact", bytes_of_each(ledger_, world_, [&](int i) {
+    expect_at_most(1160, "contact", bytes_of_each(ledger_, world_, [&](int i) {
                        EXPECT_OK(set_pose(bodies[static_cast<size_t>(i)], at(3.0 * i, 0.5, 0)));
                    }));
 }
