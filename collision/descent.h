@@ -10,8 +10,10 @@ namespace taut::collision {
 // Without branches: of the boxes that a descent asks, every other one is met.
 inline bool meet(const btDbvtVolume& a, const btDbvtVolume& b) {
     const btVector3 &a_lo = a.Mins(), &a_hi = a.Maxs(), &b_lo = b.Mins(), &b_hi = b.Maxs();
-    return (a_lo.x() <= b_hi.x()) & (b_lo.x() <= a_hi.x()) & (a_lo.y() <= b_hi.y()) & (b_lo.y() <= a_hi.y()) &
-           (a_lo.z() <= b_hi.z()) & (b_lo.z() <= a_hi.z());
+    const int x = int(a_lo.x() <= b_hi.x()) & int(b_lo.x() <= a_hi.x());
+    const int y = int(a_lo.y() <= b_hi.y()) & int(b_lo.y() <= a_hi.y());
+    const int z = int(a_lo.z() <= b_hi.z()) & int(b_lo.z() <= a_hi.z());
+    return (x & y & z) != 0;
 }
 
 // Goes through what is below some nodes. Breadth first, so that processors work on several nodes at once; where more
