@@ -2,6 +2,7 @@
 // frame that adds the most.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 
@@ -28,7 +29,8 @@ class SegmentedArray {
 public:
     explicit SegmentedArray(Memory& memory) : allocator_(memory), segment_(memory) {}
     ~SegmentedArray() {
-        for (T* segment : segment_) allocator_.deallocate(segment, kSegment);
+        for (size_t i = 0; i < segment_.size(); i += kTogether)
+            allocator_.deallocate(segment_[i], kTogether * kSegment);
     }
     SegmentedArray(const SegmentedArray&) = delete;
     SegmentedArray& operator=(const SegmentedArray&) = delete;
@@ -41,8 +43,9 @@ public:
     // Throws std::bad_alloc and stays as it is, but for room that it got.
     void reserve(size_t size) {
         while (capacity() < size) {
-            reserve_more(segment_, 1);
-            segment_.push_back(allocator_.allocate(kSegment));
+            reserve_more(segment_, kTogether);
+            T* const piece = allocator_.allocate(kTogether * kSegment);
+            for (size_t i = 0; i < kTogether; ++i) segment_.push_back(piece + i * kSegment);
         }
     }
     // Throws as reserve().
@@ -58,8 +61,9 @@ public:
 
 private:
     static_assert(std::is_trivially_destructible_v<T>);
-    static constexpr size_t kBytes = 16384;  // a size of which Memory wastes nothing
-    static constexpr size_t kSegment = kBytes / sizeof(T);
+    // A power of two is found fast; so many at once come in a size of which Memory wastes little.
+    static constexpr size_t kSegment = 16;
+    static constexpr size_t kTogether = std::max<size_t>(32768 / (kSegment * sizeof(T)), 1);
 
     HostAllocator<T> allocator_;
     Array<T*> segment_;
