@@ -188,15 +188,19 @@ void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& 
 
 }  // namespace
 
-collision::Placement place_between(const Vec3& from, const Vec3& to) {
+NodePose pose_between(const Vec3& from, const Vec3& to) {
     const Vec3 along = to - from;
     const double length = along.norm();
-    const Quat q = length > 0 ? turn_between(Vec3::UnitY(), along / length) : Quat::Identity();
-    return {0.5 * (from + to), q.toRotationMatrix().cast<float>()};
+    return {0.5 * (from + to), length > 0 ? turn_between(Vec3::UnitY(), along / length) : Quat::Identity()};
+}
+
+collision::Placement placement_of(const NodePose& pose) {
+    return {pose.position, pose.rotation.toRotationMatrix().cast<float>()};
 }
 
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed) {
-    if (collider.node_b != kNone) return place_between(nodes.motion[collider.node].x, nodes.motion[collider.node_b].x);
+    if (collider.node_b != kNone)
+        return placement_of(pose_between(nodes.motion[collider.node].x, nodes.motion[collider.node_b].x));
     const CentrePose pose = pose_of(nodes, collider.node, elapsed);
     const Mat3 R = pose.q.toRotationMatrix();
     const Vec3 origin = pose.x - R * nodes.mass[collider.node].centre;

@@ -13,7 +13,8 @@
 namespace taut {
 
 // A capsule's y axis from one point to another.
-collision::Placement place_between(const Vec3& from, const Vec3& to);
+NodePose pose_between(const Vec3& from, const Vec3& to);
+collision::Placement placement_of(const NodePose& pose);
 // Where a collider's shape is, `elapsed` after the start of the frame: kinematic bodies move at its end.
 collision::Placement placement_of(const Nodes& nodes, const Collider& collider, double elapsed = 0);
 // Brings Pairs::placement, stance and way of a collider to that moment.

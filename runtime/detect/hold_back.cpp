@@ -16,6 +16,10 @@ constexpr double kStride = 0.25;  // of the ball inside a shape: who moved less 
 constexpr uint8_t kRounds = 3;    // where a mechanism was put back, other parts of it may have passed
 constexpr uint32_t kGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
+// Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
+// spans two nodes.
+enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4 };
+
 // By the host's function or a one-way direction: what goes through on purpose is not held back.
 bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
     const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
@@ -28,52 +32,68 @@ bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8
            (mechanisms.put_back[collider.node] == round || mechanisms.put_back[collider.node_b] == round);
 }
 
-// Marks what went elsewhere than its speed told before the step, further from there than a part of its thickness: of
-// all, after the first round of what the last one put back. Whether anything did.
-bool find_astray(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
-                 Pairs& pairs) {
+// Whether a body's collider went elsewhere than its speed told before the step, further from there than a part of its
+// thickness.
+bool went_astray(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Vec3f& ahead,
+                 double thickness) {
+    if (!nodes.solved(collider.node)) return false;
+    const double stride = kStride * thickness;
+    const Vec3 off = way_along(nodes, collider, shapes) - ahead.cast<double>();
+    return off.squaredNorm() > stride * stride;
+}
+
+// Of all colliders, after the first round of what the last one put back. Whether any went astray.
+bool find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
+                Pairs& pairs) {
     std::atomic<bool> any = false;
+    pairs.marks.resize(pairs.pace.size());
     team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
-            Pace& pace = pairs.pace[c];
-            if (collider.node == kNone) continue;
-            pace.moved = round == 1 || pace.moved || span_put_back(pairs.mechanisms, collider, round - 1);
-            if (!pace.moved) continue;
-            if (collider.node_b != kNone || !nodes.solved(collider.node)) continue;
-            const double stride = kStride * pace.thickness;
-            const Vec3 off = way_along(nodes, collider, shapes) - pairs.reach[c].ahead.cast<double>();
-            pace.astray = off.squaredNorm() > stride * stride;
-            if (pace.astray) any.store(true, std::memory_order_relaxed);
+            uint8_t& mark = pairs.marks[c];
+            if (round == 1) mark = collider.node == kNone ? 0 : kMoved;
+            if (round > 1 && span_put_back(pairs.mechanisms, collider, round - 1)) mark |= kMoved;
+            if (!(mark & kMoved)) continue;
+            if (collider.node_b != kNone) {
+                mark = kMoved | kSpans;
+            } else if (went_astray(nodes, collider, shapes, pairs.reach[c].ahead, pairs.pace[c].thickness)) {
+                mark = kMoved | kAstray;
+                any.store(true, std::memory_order_relaxed);
+            } else {
+                mark = kMoved;
+            }
         }
     });
     return any.load(std::memory_order_relaxed);
 }
 
+void find_course(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c, Pairs& pairs) {
+    pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
+    pairs.strides[c] = {pairs.courses[c].along.cast<float>(), pairs.courses[c].thickness};
+}
+
 void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     pairs.courses.resize(pairs.pace.size());
+    pairs.strides.resize(pairs.pace.size());
     team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c)
-            if (colliders.record[c].node != kNone && pairs.pace[c].moved)
-                pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
+            if (pairs.marks[c] & kMoved) find_course(nodes, colliders, shapes, c, pairs);
     });
+}
+
+uint8_t marks_of(const Pairs& pairs, const NearPair& near) {
+    return pairs.marks[near.collider_a()] | pairs.marks[near.collider_b()];
 }
 
 // Whether a pair that may have passed moved further against each other than a part of its thickness.
 bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
-    const uint32_t a = near.collider_a(), b = near.collider_b();
-    const Pace &pace_a = pairs.pace[a], &pace_b = pairs.pace[b];
-    if (near.filtered || !(near.fast | pace_a.astray | pace_b.astray)) return false;
-    const Course &one = pairs.courses[a], &other = pairs.courses[b];
+    if (near.filtered || !(near.fast || (marks_of(pairs, near) & kAstray))) return false;
+    const Stride &one = pairs.strides[near.collider_a()], &other = pairs.strides[near.collider_b()];
     if (std::isinf(one.thickness + other.thickness)) return false;  // not to be looked for
     const float thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
                                                                    : std::max(one.thickness, other.thickness);
-    const double stride = kStride * static_cast<double>(thinner);
+    const float stride = static_cast<float>(kStride) * thinner;
     return (one.along - other.along).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
-}
-
-bool moved(const Pairs& pairs, const NearPair& near) {
-    return pairs.pace[near.collider_a()].moved || pairs.pace[near.collider_b()].moved;
 }
 
 bool may_pass(const Pairs& pairs, const NearPair& near) {
@@ -110,8 +130,7 @@ void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const
                collision::Broadphase& broadphase) {
     gather(team, static_cast<uint32_t>(pairs.pace.size()), pairs.picked, [&](uint32_t c) {
         const Collider& collider = colliders.record[c];
-        return collider.node != kNone && pairs.pace[c].moved && pairs.pace[c].astray &&
-               !broadphase.holds(c, bounds_of(nodes, collider, shapes));
+        return pairs.marks[c] == (kMoved | kAstray) && !broadphase.holds(c, bounds_of(nodes, collider, shapes));
     });
     // All boxes before any looks about itself: two of them may have met.
     for (const uint32_t c : pairs.picked) {
@@ -160,8 +179,8 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
     for (const Mechanism* of : {&of_a, &of_b})
         of->for_nodes([&](uint32_t node) {
             for_colliders(nodes, colliders, node, [&](uint32_t c) {
-                pairs.pace[c].moved = true;
-                pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
+                pairs.marks[c] |= kMoved;
+                find_course(nodes, colliders, shapes, c, pairs);
             });
         });
     return true;
@@ -170,17 +189,16 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
 // Whether a collider was put back in this round; its course follows.
 bool anew(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c, uint8_t round,
           Pairs& pairs) {
-    const Collider& collider = colliders.record[c];
-    if (!std::isinf(pairs.courses[c].chord)) return pairs.pace[c].moved;
-    if (!span_put_back(pairs.mechanisms, collider, round)) return false;
-    pairs.courses[c] = course_of(nodes, collider, shapes, pairs.pace[c]);
+    if (!(pairs.marks[c] & kSpans)) return pairs.marks[c] & kMoved;
+    if (!span_put_back(pairs.mechanisms, colliders.record[c], round)) return false;
+    find_course(nodes, colliders, shapes, c, pairs);
     return true;
 }
 
 // Puts back what passed, one after the other; what was put back already is asked again. Whether anything was.
 bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints& joints, uint8_t round, Pairs& pairs,
                  Nodes& nodes) {
-    for (Pace& pace : pairs.pace) pace.moved = false;
+    for (uint8_t& mark : pairs.marks) mark &= static_cast<uint8_t>(~kMoved);
     bool any = false;
     for (const uint32_t i : pairs.picked) {
         const NearPair& near = pair_at(pairs, i);
@@ -201,7 +219,7 @@ bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints&
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     gather(team, count_of(pairs), pairs.picked, [&](uint32_t i) {
         NearPair& near = pair_at(pairs, i);
-        if (moved(pairs, near)) {
+        if (marks_of(pairs, near) & kMoved) {
             near.strides = strides(colliders, pairs, near);
             near.passed = near.strides && may_pass(pairs, near);
         } else if (near.passed) {
@@ -228,9 +246,10 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     mechanisms.root.clear();
     bool again = true;
     for (uint8_t round = 1; again && round <= kRounds; ++round) {
-        const bool any_astray = find_astray(team, nodes, colliders, shapes, round, pairs);
+        const bool any_astray = find_marks(team, nodes, colliders, shapes, round, pairs);
         if (round == 1 && !any_astray && !pairs.any_fast) {
             let_go(pairs.courses);
+            let_go(pairs.strides);
             break;
         }
         if (any_astray) find_late(team, nodes, colliders, shapes, pairs, broadphase);

@@ -46,12 +46,12 @@ Pace pace_of(const Nodes& nodes, const Collider& collider, const ShapeRecord& re
     const auto round = static_cast<float>(collision::ball_radius(shape));
     const bool rolls = collision::rolls(shape);
     if (!looked_for(nodes, collider.node) || !looked_for(nodes, collider.node_b))
-        return {std::numeric_limits<double>::infinity(), 0, round, rolls, false};
+        return {std::numeric_limits<double>::infinity(), 0, round, rolls};
     const bool spans = collider.node_b != kNone;
     const double lever = spans ? 0 : (collider.position - nodes.mass[collider.node].centre).norm();
     const double reach = spans ? collision::spin_radius(shape, 0) : record.reach;
     const double spin = spin_of(nodes, collider.node, collider.node_b).norm();
-    return {collision::thickness(shape), spin > 0 ? time * spin * (lever + reach) : 0, round, rolls, false};
+    return {collision::thickness(shape), spin > 0 ? time * spin * (lever + reach) : 0, round, rolls};
 }
 
 bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time) {

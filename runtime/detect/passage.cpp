@@ -15,11 +15,19 @@ constexpr double kSkin = 0.02;                     // where none is, the middle 
 constexpr double kSlack = 0.01;                    // less is not put back
 constexpr double kTurn = 0.02;                     // a smaller turn moves no middle worth the name: sine of half of it
 
-collision::Placement placed_before(const Nodes& nodes, const Collider& collider) {
-    const NodePose& pose = nodes.before[collider.node];
-    if (collider.node_b != kNone) return place_between(pose.position, nodes.before[collider.node_b].position);
-    return {pose.position + pose.rotation * collider.position,
-            (pose.rotation * collider.rotation).toRotationMatrix().cast<float>()};
+// Of a collider's shape as it was before the step, and as it is.
+NodePose pose_before(const Nodes& nodes, const Collider& collider) {
+    const NodePose& body = nodes.before[collider.node];
+    if (collider.node_b != kNone) return pose_between(body.position, nodes.before[collider.node_b].position);
+    return {body.position + body.rotation * collider.position, body.rotation * collider.rotation};
+}
+NodePose pose_now(const Nodes& nodes, const Collider& collider) {
+    const NodeMotion& m = nodes.motion[collider.node];
+    if (collider.node_b != kNone) return pose_between(m.x, nodes.motion[collider.node_b].x);
+    return {nodes.origin(collider.node) + m.q * collider.position, m.q * collider.rotation};
+}
+Vec3 as_seen_from(const NodePose& pose, const Vec3& point) {
+    return pose.rotation.conjugate() * (point - pose.position);
 }
 
 // About the shape as it is.
@@ -28,35 +36,32 @@ collision::Box box_of(const Passage& passage) {
     return collision::bounds(passage.record.shape, {Vec3::Zero(), Mat3f::Identity()});
 }
 
-// Whether a ball that goes along may come by the box about a's shape, as it was before the step.
-bool comes_by(const Passage& a, const collision::Placement& before, double radius, const Vec3& from,
-              const Vec3& along) {
-    const Mat3 to_a = before.rotation.cast<double>().transpose();
-    const Vec3 start = to_a * (from - before.position), way = to_a * along;
-    const collision::Box box = box_of(a);
+// Whether a ball that goes along may come by a box.
+bool comes_by(const collision::Box& box, double radius, const Vec3& from, const Vec3& along) {
     double enter = 0, leave = 1;
     for (int i = 0; i < 3; ++i) {
-        const double lo = static_cast<double>(box.lo[i]) - radius - start[i],
-                     hi = static_cast<double>(box.hi[i]) + radius - start[i];
-        if (way[i] == 0 && (lo > 0 || hi < 0)) return false;
-        if (way[i] == 0) continue;
-        enter = std::max(enter, std::min(lo / way[i], hi / way[i]));
-        leave = std::min(leave, std::max(lo / way[i], hi / way[i]));
+        const double lo = static_cast<double>(box.lo[i]) - radius - from[i],
+                     hi = static_cast<double>(box.hi[i]) + radius - from[i];
+        if (along[i] == 0 && (lo > 0 || hi < 0)) return false;
+        if (along[i] == 0) continue;
+        enter = std::max(enter, std::min(lo / along[i], hi / along[i]));
+        leave = std::min(leave, std::max(lo / along[i], hi / along[i]));
     }
     return enter <= leave;
 }
 
-// The part of b's way along which its core is free of a, up to 1.
-double free_part(const Passage& a, const collision::Placement& a_before, const Passage& b, const Vec3& from,
-                 const Vec3& along, collision::Hit& hit) {
-    const double inside = collision::thickness(b.record.shape);
+// The part of the way of a core that is free of a shape at the origin, up to 1. inside: radius of the ball that the
+// core is a part of [m].
+double free_part(const collision::Shape& shape, double inside, const Vec3& from, const Vec3& along,
+                 collision::Hit& hit) {
+    const collision::Placement here = {Vec3::Zero(), Mat3f::Identity()};
     for (const double core : kCores) {
         collision::Shape ball;
         ball.size.x() = static_cast<float>(core * inside);
-        if (!collision::cast_shape(ball, {from, Mat3f::Identity()}, along, a.record.shape, a_before, 1, hit)) return 1;
+        if (!collision::cast_shape(ball, {from, Mat3f::Identity()}, along, shape, here, 1, hit)) return 1;
         if (!hit.inside) return hit.fraction;
     }
-    if (!collision::cast_ray(a.record.shape, a_before, from, along, 1, hit) || hit.inside) return 1;
+    if (!collision::cast_ray(shape, here, from, along, 1, hit) || hit.inside) return 1;
     return std::max(0.0, hit.fraction - kSkin * inside / -hit.normal.dot(along));
 }
 
@@ -65,37 +70,31 @@ class Ways {
 public:
     Ways(const Nodes& nodes, const Couple& couple)
         : a_(couple.a),
-          b_(couple.b),
-          a_before_(placed_before(nodes, couple.a.collider)),
-          a_now_(placement_of(nodes, couple.a.collider)),
+          a_before_(pose_before(nodes, a_.collider)),
+          a_now_(pose_now(nodes, a_.collider)),
           thickness_b_(collision::thickness(couple.b.record.shape)) {}
 
     Excess excess_along(const Vec3& before, const Vec3& now) const {
-        const Mat3 then = a_before_.rotation.cast<double>(), to_now = a_now_.rotation.cast<double>() * then.transpose();
-        const Vec3 to = a_before_.position + to_now.transpose() * (now - a_now_.position);
-        const Vec3 along = to - before;
+        const Vec3 from = as_seen_from(a_before_, before), along = as_seen_from(a_now_, now) - from;
         const double slack = kSlack * thickness_b_;
-        if (along.norm() < slack || !comes_by(a_, a_before_, kLargest * thickness_b_, before, along)) return {};
+        if (along.norm() < slack || !comes_by(box_of(a_), kLargest * thickness_b_, from, along)) return {};
         collision::Hit hit;
-        const double met = free_part(a_, a_before_, b_, before, along, hit);
+        const double met = free_part(a_.record.shape, thickness_b_, from, along, hit);
         if ((1 - met) * along.norm() < slack) return {};
-        return {1 - met, to_now * hit.normal, now - before};
+        return {1 - met, a_now_.rotation * hit.normal, now - before};
     }
 
 private:
-    const Passage &a_, &b_;
-    collision::Placement a_before_, a_now_;
+    const Passage& a_;
+    NodePose a_before_, a_now_;
     double thickness_b_;
 };
 
-// Whether a way comes within a distance of the origin: at its start, at its end or, where it comes by in between, with
-// |from|^2 - (from . way)^2 / |way|^2 <= distance^2.
+// Whether a way comes within a distance of the origin.
 bool comes_within(const Vec3& from, const Vec3& way, double distance) {
-    const double start = from.squaredNorm(), squared = way.squaredNorm(), nearer = -from.dot(way);
-    const double reach = distance * distance;
-    if (nearer <= 0) return start <= reach;
-    if (nearer >= squared) return (from + way).squaredNorm() <= reach;
-    return (start - reach) * squared <= nearer * nearer;
+    const double squared = way.squaredNorm();
+    const double nearest = squared > 0 ? std::clamp(-from.dot(way) / squared, 0.0, 1.0) : 0.0;
+    return (from + nearest * way).squaredNorm() <= distance * distance;
 }
 
 double reach_of(const Collider& collider, const ShapeRecord& record) {
@@ -147,8 +146,7 @@ Excess excess_of(const Nodes& nodes, const Couple& couple) {
     const Ways ways(nodes, couple);
     const Passage& b = couple.b;
     if (!b.spans()) return ways.excess_along(b.course.from, b.course.from + b.course.along);
-    Excess most =
-        ways.excess_along(placed_before(nodes, b.collider).position, placement_of(nodes, b.collider).position);
+    Excess most = ways.excess_along(pose_before(nodes, b.collider).position, pose_now(nodes, b.collider).position);
     for (const uint32_t end : {b.collider.node, b.collider.node_b}) {
         const Excess of_end = ways.excess_along(nodes.before[end].position, nodes.motion[end].x);
         if (of_end.depth() > most.depth()) most = of_end;
@@ -158,7 +156,7 @@ Excess excess_of(const Nodes& nodes, const Couple& couple) {
 
 Vec3 way_of(const Nodes& nodes, const Passage& passage) {
     if (!passage.spans()) return passage.course.along;
-    return placement_of(nodes, passage.collider).position - placed_before(nodes, passage.collider).position;
+    return pose_now(nodes, passage.collider).position - pose_before(nodes, passage.collider).position;
 }
 
 Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
@@ -178,7 +176,8 @@ collision::Box bounds_of(const Nodes& nodes, const Collider& collider, const Sha
 }
 
 collision::Box box_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
-    const collision::Box then = collision::bounds(shapes.record[collider.shape].shape, placed_before(nodes, collider)),
+    const collision::Placement before = placement_of(pose_before(nodes, collider));
+    const collision::Box then = collision::bounds(shapes.record[collider.shape].shape, before),
                          now = bounds_of(nodes, collider, shapes);
     return {then.lo.cwiseMin(now.lo), then.hi.cwiseMax(now.hi)};
 }

@@ -41,8 +41,6 @@ struct Pace {
     double turning = 0;    // way of its furthest point about the centre of mass [m]
     float round = 0;       // collision::ball_radius() [m]
     bool rolls = false;    // collision::rolls()
-    bool astray = false;   // moved otherwise than its speed told before the step; hold_back()
-    bool moved = false;    // by the round of hold_back() before, or it is the first one
 };
 
 // Where a collider's middle went in this step, for what may have gone through each other; course_of().
@@ -52,6 +50,12 @@ struct Course {
     float reach = 0;                                 // of its core about its origin [m]
     float round = 0;                                 // reach and this: of a ball about the middle that holds it [m]
     float chord = 0;                                 // of its turn, at least, at radius 1; infinite: its ends go apart
+};
+
+// Of a course, what all pairs are asked.
+struct Stride {
+    Vec3f along;      // [m]
+    float thickness;  // [m]
 };
 
 // A mechanism that hold_back() leaves where it was before the step.

@@ -58,7 +58,8 @@ struct NearPair {
     bool touching : 1 = false;    // had a point at the end of the last step, on any part
     bool touched : 1 = false;     // the same of the step before
     bool hit : 1 = false;         // gave a hit event in the last step
-    bool kept : 1 = false;        // all its records hold their manifolds as found; detect/reuse.h
+    bool present : 1 = false;     // its points were found as its colliders stand, none of them later on their way
+    bool kept : 1 = false;        // and all its records hold them as found; detect/reuse.h
     bool reused : 1 = false;      // and these go on in this frame
     bool changed : 1 = false;     // the host may have changed a collider since the pair was looked at
 
@@ -68,7 +69,7 @@ struct NearPair {
     void forget_shapes() {
         cache = {};
         clear = 0;
-        kept = false;
+        present = kept = false;
     }
     PairEnds ends(const Colliders& colliders) const {
         const Collider &a = colliders.record[collider_a()], &b = colliders.record[collider_b()];
@@ -186,6 +187,8 @@ struct Pairs {
           reach(memory),
           pace(memory),
           courses(memory),
+          strides(memory),
+          marks(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -222,6 +225,8 @@ struct Pairs {
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     Array<Course> courses;            // by collider, scratch; hold_back()
+    Array<Stride> strides;            // by collider, scratch; hold_back()
+    Array<uint8_t> marks;             // by collider, scratch: bits of hold_back()
     bool any_fast = false;            // of near, in this frame; find_contacts()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
