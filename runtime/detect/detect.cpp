@@ -172,9 +172,10 @@ void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& 
     if (spans) {
         const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
         shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
-        ahead = reach_of(nodes, collider.node_b, time_step, along_way);
-        least = least.cwiseMin(ahead);
-        most = most.cwiseMax(ahead);
+        const Vec3f ahead_b = reach_of(nodes, collider.node_b, time_step, along_way);
+        least = least.cwiseMin(ahead_b);
+        most = most.cwiseMax(ahead_b);
+        ahead = 0.5f * (ahead + ahead_b);
     }
     collision::Box box = grown(collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]));
     box.lo += least;

@@ -32,12 +32,17 @@ bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8
            (mechanisms.put_back[collider.node] == round || mechanisms.put_back[collider.node_b] == round);
 }
 
-// Whether a body's collider went elsewhere than its speed told before the step, further from there than a part of its
-// thickness.
+bool solved(const Nodes& nodes, const Collider& collider) {
+    return nodes.solved(collider.node) || (collider.node_b != kNone && nodes.solved(collider.node_b));
+}
+
+// Whether a collider's middle went elsewhere than its speed told before the step, further from there than a part of its
+// thickness; one that spans two nodes, which is thin, than what stays within the contact margin.
 bool went_astray(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Vec3f& ahead,
                  double thickness) {
-    if (!nodes.solved(collider.node)) return false;
-    const double stride = kStride * thickness;
+    if (!solved(nodes, collider)) return false;
+    double stride = kStride * thickness;
+    if (collider.node_b != kNone) stride = std::max(stride, 0.4 * static_cast<double>(kContactMargin));
     const Vec3 off = way_along(nodes, collider, shapes) - ahead.cast<double>();
     return off.squaredNorm() > stride * stride;
 }
@@ -54,14 +59,10 @@ bool find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, cons
             if (round == 1) mark = collider.node == kNone ? 0 : kMoved;
             if (round > 1 && span_put_back(pairs.mechanisms, collider, round - 1)) mark |= kMoved;
             if (!(mark & kMoved)) continue;
-            if (collider.node_b != kNone) {
-                mark = kMoved | kSpans;
-            } else if (went_astray(nodes, collider, shapes, pairs.reach[c].ahead, pairs.pace[c].thickness)) {
-                mark = kMoved | kAstray;
-                any.store(true, std::memory_order_relaxed);
-            } else {
-                mark = kMoved;
-            }
+            mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
+            if (!went_astray(nodes, collider, shapes, pairs.reach[c].ahead, pairs.pace[c].thickness)) continue;
+            mark |= kAstray;
+            any.store(true, std::memory_order_relaxed);
         }
     });
     return any.load(std::memory_order_relaxed);
@@ -130,7 +131,8 @@ void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const
                collision::Broadphase& broadphase) {
     gather(team, static_cast<uint32_t>(pairs.pace.size()), pairs.picked, [&](uint32_t c) {
         const Collider& collider = colliders.record[c];
-        return pairs.marks[c] == (kMoved | kAstray) && !broadphase.holds(c, bounds_of(nodes, collider, shapes));
+        return (pairs.marks[c] & kMoved) && (pairs.marks[c] & kAstray) &&
+               !broadphase.holds(c, bounds_of(nodes, collider, shapes));
     });
     // All boxes before any looks about itself: two of them may have met.
     for (const uint32_t c : pairs.picked) {
@@ -172,7 +174,7 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
         of_a.stay(round);
         of_b.stay(round);
     } else {
-        const Vec3 way_of_a = excess.share * way_of(nodes, pair.a), way_of_b = excess.share * excess.way;
+        const Vec3 way_of_a = excess.share * pair.a.course.along, way_of_b = excess.share * excess.way;
         of_a.go_back(way_of_a, excess.normal, round);
         of_b.go_back(way_of_b, excess.normal, round);
     }

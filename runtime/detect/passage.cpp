@@ -97,6 +97,12 @@ bool comes_within(const Vec3& from, const Vec3& way, double distance) {
     return (from + nearest * way).squaredNorm() <= distance * distance;
 }
 
+// Of the middle between two nodes.
+Vec3 way_between(const Nodes& nodes, const Collider& collider) {
+    const uint32_t a = collider.node, b = collider.node_b;
+    return 0.5 * (nodes.motion[a].x - nodes.before[a].position + nodes.motion[b].x - nodes.before[b].position);
+}
+
 double reach_of(const Collider& collider, const ShapeRecord& record) {
     return collider.node_b == kNone ? record.reach : collision::spin_radius(record.shape, 0);
 }
@@ -124,7 +130,12 @@ Course course_of(const Nodes& nodes, const Collider& collider, const Shapes& sha
                   static_cast<float>(reach_of(collider, record)),
                   pace.round + static_cast<float>(middle.norm()),
                   std::numeric_limits<float>::infinity()};
-    if (collider.node_b == kNone) course.chord = chord_of(nodes, collider.node);
+    if (collider.node_b != kNone) {
+        course.from = 0.5 * (before.position + nodes.before[collider.node_b].position);
+        course.along = way_between(nodes, collider);
+        return course;
+    }
+    course.chord = chord_of(nodes, collider.node);
     if (const Vec3 lever = collider.position + collider.rotation * middle; lever != Vec3::Zero()) {
         const Vec3 then = before.rotation * lever;
         course.from += then;
@@ -145,8 +156,8 @@ bool may_pass(const Course& one, const Course& other) {
 Excess excess_of(const Nodes& nodes, const Couple& couple) {
     const Ways ways(nodes, couple);
     const Passage& b = couple.b;
-    if (!b.spans()) return ways.excess_along(b.course.from, b.course.from + b.course.along);
-    Excess most = ways.excess_along(pose_before(nodes, b.collider).position, pose_now(nodes, b.collider).position);
+    Excess most = ways.excess_along(b.course.from, b.course.from + b.course.along);
+    if (!b.spans()) return most;
     for (const uint32_t end : {b.collider.node, b.collider.node_b}) {
         const Excess of_end = ways.excess_along(nodes.before[end].position, nodes.motion[end].x);
         if (of_end.depth() > most.depth()) most = of_end;
@@ -154,12 +165,8 @@ Excess excess_of(const Nodes& nodes, const Couple& couple) {
     return most;
 }
 
-Vec3 way_of(const Nodes& nodes, const Passage& passage) {
-    if (!passage.spans()) return passage.course.along;
-    return pose_now(nodes, passage.collider).position - pose_before(nodes, passage.collider).position;
-}
-
 Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
+    if (collider.node_b != kNone) return way_between(nodes, collider);
     const NodePose& before = nodes.before[collider.node];
     const NodeMotion& now = nodes.motion[collider.node];
     const Vec3& centre = nodes.mass[collider.node].centre;

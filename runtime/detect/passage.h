@@ -27,9 +27,6 @@ struct Passage {
 
     bool spans() const { return collider.node_b != kNone; }
 };
-// Of its middle [m].
-Vec3 way_of(const Nodes& nodes, const Passage& passage);
-
 // The one that reaches further, a, is as it was; the other goes along.
 class Couple {
 public:

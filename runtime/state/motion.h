@@ -14,7 +14,7 @@ using Quatf = Eigen::Quaternion<float, Eigen::DontAlign>;
 // Where a collider may be until the next frame.
 struct Reach {
     collision::Box box;  // tight, grown by the contact margin, of which kBoxLag may be used up, and the motion [m]
-    Vec3f ahead;         // the motion [m]
+    Vec3f ahead;         // the motion, of the middle [m]
     bool left = false;   // is outside its fat box
     double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
 };
