@@ -160,24 +160,41 @@ void sort_in_late(Pairs& pairs) {
         std::rotate(std::ranges::upper_bound(picked.begin(), late, key_of(*late), {}, key_of), late, late + 1);
 }
 
-// Puts back a pair that had passed; in the last round it stays where it was. Whether it did.
-bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, const Shapes& shapes,
-          const Joints& joints, uint8_t round, Pairs& pairs, Nodes& nodes) {
-    if (!(excess.share > 0)) return false;
-    Mechanisms& mechanisms = pairs.mechanisms;
-    if (mechanisms.root.empty()) find_mechanisms(nodes, joints, mechanisms);
-    Mechanism of_a(nodes, mechanisms, pair.a.collider.node), of_b(nodes, mechanisms, pair.b.collider.node);
-    if (of_a.has(pair.b.collider.node)) return false;
+// Each goes back along its way; in the last round it stays where it was. Whether it may.
+bool go_back(const Couple& pair, const Excess& excess, uint8_t round, Mechanism& of_a, Mechanism& of_b) {
     if (round == kRounds) {
         const bool a_may = of_a.may_stay(), b_may = of_b.may_stay();
         if (!a_may || !b_may) return false;
         of_a.stay(round);
         of_b.stay(round);
     } else {
-        const Vec3 way_of_a = excess.share * pair.a.course.along, way_of_b = excess.share * excess.way;
-        of_a.go_back(way_of_a, excess.normal, round);
-        of_b.go_back(way_of_b, excess.normal, round);
+        of_a.go_back(excess.share * pair.a.course.along, excess.normal, round);
+        of_b.go_back(excess.share * excess.way, excess.normal, round);
     }
+    return true;
+}
+
+// Of the two of a pair the one that drives more takes the other along: a kinematic body most, then what it drives.
+int drive_of(const Nodes& nodes, uint32_t node, const Mechanism& of) {
+    return nodes.info[node].kind == NodeKind::kinematic ? 2 : of.is_driven() ? 1 : 0;
+}
+
+// Parts a pair that had passed. Whether it did.
+bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, const Shapes& shapes,
+          const Joints& joints, uint8_t round, Pairs& pairs, Nodes& nodes) {
+    if (!(excess.share > 0)) return false;
+    Mechanisms& mechanisms = pairs.mechanisms;
+    if (mechanisms.root.empty()) find_mechanisms(nodes, joints, mechanisms);
+    const uint32_t a = pair.a.collider.node, b = pair.b.collider.node;
+    Mechanism of_a(nodes, mechanisms, a), of_b(nodes, mechanisms, b);
+    if (of_a.has(b)) return false;
+    const int a_drives = drive_of(nodes, a, of_a), b_drives = drive_of(nodes, b, of_b);
+    if (a_drives > b_drives && nodes.solved(b))
+        of_b.go_along(-excess.share * excess.seen, excess.normal, round);
+    else if (b_drives > a_drives && nodes.solved(a))
+        of_a.go_along(excess.share * excess.seen, excess.normal, round);
+    else if ((a_drives > 0 && b_drives > 0) || !go_back(pair, excess, round, of_a, of_b))
+        return false;
     for (const Mechanism* of : {&of_a, &of_b})
         of->for_nodes([&](uint32_t node) {
             for_colliders(nodes, colliders, node, [&](uint32_t c) {

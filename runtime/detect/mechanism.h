@@ -7,7 +7,8 @@
 
 namespace taut {
 
-constexpr uint8_t kJointed = 1, kAnchored = 2;  // Mechanisms::ties; anchored: also to what does not move by forces
+// Mechanisms::ties. Anchored: also to what does not move by forces; driven: by a kinematic body, in this step.
+constexpr uint8_t kJointed = 1, kAnchored = 2, kDriven = 4;
 
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
 
@@ -37,6 +38,13 @@ public:
         if (all_.ties[root_] & kAnchored) return stay(round);
         const Vec3 back = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
+    }
+    // With what comes along and stops for nothing.
+    bool is_driven() const { return moves_ && (all_.ties[root_] & kDriven); }
+    void go_along(const Vec3& way, const Vec3& normal, uint8_t round) {
+        all_.ties[root_] |= kDriven;
+        const Vec3 on = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
+        for_each(round, [&](uint32_t node) { nodes_.motion[node].x += on; });
     }
     // Not in frame after frame: whose joints pull it into what it may not pass would hang there for good.
     bool may_stay();

@@ -81,7 +81,7 @@ public:
         collision::Hit hit;
         const double met = free_part(a_.record.shape, thickness_b_, from, along, hit);
         if ((1 - met) * along.norm() < slack) return {};
-        return {1 - met, a_now_.rotation * hit.normal, now - before};
+        return {1 - met, a_now_.rotation * hit.normal, now - before, a_now_.rotation * along};
     }
 
 private:

@@ -42,7 +42,8 @@ private:
 struct Excess {
     double share = 0;            // of each
     Vec3 normal = Vec3::Zero();  // of the surface met, at the present poses
-    Vec3 way = Vec3::Zero();     // of the point of b that met it [m]
+    Vec3 way = Vec3::Zero();     // of the point of b that met it [m],
+    Vec3 seen = Vec3::Zero();    // and of the same as a sees it
 
     double depth() const { return share * std::abs(normal.dot(way)); }
 };
