@@ -151,7 +151,7 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
         ActivePair& active = pairs.active[p];
         Pair& pair = pairs.list[active.pair];
         NearPair& near = pairs.near[active.near];
-        if (elapsed == 0 && (pair.patch == 0 || near.present || near.fast)) continue;
+        if (elapsed == 0 && (pair.patch == 0 || near.kept || near.fast)) continue;
         for (uint32_t c : {pair.collider_a(), pair.collider_b()})
             place_collider(nodes, shapes, colliders.record[c], elapsed, pairs, c);
         const bool fast = is_fast(nodes, pairs, pair, substep);
@@ -159,12 +159,10 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             if (fast || !near.kept || !reuse(of, near, pair)) find_points(of, fast, near, pair);
         } else {
             const Shaped shaped(of, pair, fast);
-            if (pair.key != found) {
-                shaped.find_parts(pairs.parts);
-                near.present = near.kept = shaped.can_be_kept();
-            }
+            if (pair.key != found) shaped.find_parts(pairs.parts);
             found = pair.key;
-            refresh_part(shaped, of, near, pair);
+            refresh_part(shaped, of, pair);
+            near.kept = shaped.can_be_kept();
         }
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }

@@ -12,8 +12,9 @@
 namespace taut {
 namespace {
 
-constexpr double kStride = 0.25;  // of the ball inside a shape: who moved less against each other is not looked after
-constexpr uint8_t kRounds = 3;    // where a mechanism was put back, other parts of it may have passed
+constexpr double kStride = 0.25;    // of the ball inside a shape: who moved less against each other is not looked after
+constexpr uint8_t kRounds = 3;      // where a mechanism was put back, other parts of it may have passed
+constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have passed the next
 constexpr uint32_t kGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
@@ -160,26 +161,22 @@ void sort_in_late(Pairs& pairs) {
         std::rotate(std::ranges::upper_bound(picked.begin(), late, key_of(*late), {}, key_of), late, late + 1);
 }
 
-// Each goes back along its way; in the last round it stays where it was. Whether it may.
+// Each goes back along its way; in the last round it stays where it was, unless it is driven. Whether it may.
 bool go_back(const Couple& pair, const Excess& excess, uint8_t round, Mechanism& of_a, Mechanism& of_b) {
-    if (round == kRounds) {
-        const bool a_may = of_a.may_stay(), b_may = of_b.may_stay();
-        if (!a_may || !b_may) return false;
-        of_a.stay(round);
-        of_b.stay(round);
-    } else {
+    if (round < kRounds || of_a.is_driven() || of_b.is_driven()) {
         of_a.go_back(excess.share * pair.a.course.along, excess.normal, round);
         of_b.go_back(excess.share * excess.way, excess.normal, round);
+        return true;
     }
+    if (round > kRounds) return false;
+    const bool a_may = of_a.may_stay(), b_may = of_b.may_stay();
+    if (!a_may || !b_may) return false;
+    of_a.stay(round);
+    of_b.stay(round);
     return true;
 }
 
-// Of the two of a pair the one that drives more takes the other along: a kinematic body most, then what it drives.
-int drive_of(const Nodes& nodes, uint32_t node, const Mechanism& of) {
-    return nodes.info[node].kind == NodeKind::kinematic ? 2 : of.is_driven() ? 1 : 0;
-}
-
-// Parts a pair that had passed. Whether it did.
+// Parts a pair that had passed; what stands has the last word. Whether it did.
 bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, const Shapes& shapes,
           const Joints& joints, uint8_t round, Pairs& pairs, Nodes& nodes) {
     if (!(excess.share > 0)) return false;
@@ -188,12 +185,12 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
     const uint32_t a = pair.a.collider.node, b = pair.b.collider.node;
     Mechanism of_a(nodes, mechanisms, a), of_b(nodes, mechanisms, b);
     if (of_a.has(b)) return false;
-    const int a_drives = drive_of(nodes, a, of_a), b_drives = drive_of(nodes, b, of_b);
-    if (a_drives > b_drives && nodes.solved(b))
-        of_b.go_along(-excess.share * excess.seen, excess.normal, round);
-    else if (b_drives > a_drives && nodes.solved(a))
-        of_a.go_along(excess.share * excess.seen, excess.normal, round);
-    else if ((a_drives > 0 && b_drives > 0) || !go_back(pair, excess, round, of_a, of_b))
+    const bool may_drive = round < kMostRounds;
+    if (may_drive && of_b.goes_along_with(of_a))
+        of_b.go_along_with(of_a, -excess.share * excess.seen, excess.normal, round);
+    else if (may_drive && of_a.goes_along_with(of_b))
+        of_a.go_along_with(of_b, excess.share * excess.seen, excess.normal, round);
+    else if ((of_a.is_driven() && of_b.is_driven()) || !go_back(pair, excess, round, of_a, of_b))
         return false;
     for (const Mechanism* of : {&of_a, &of_b})
         of->for_nodes([&](uint32_t node) {
@@ -263,8 +260,9 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
                collision::Broadphase& broadphase, Nodes& nodes) {
     Mechanisms& mechanisms = pairs.mechanisms;
     mechanisms.root.clear();
+    mechanisms.any_driven = false;
     bool again = true;
-    for (uint8_t round = 1; again && round <= kRounds; ++round) {
+    for (uint8_t round = 1; again && round <= (mechanisms.any_driven ? kMostRounds : kRounds); ++round) {
         const bool any_astray = find_marks(team, nodes, colliders, shapes, round, pairs);
         if (round == 1 && !any_astray && !pairs.any_fast) {
             let_go(pairs.courses);

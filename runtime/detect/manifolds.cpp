@@ -43,9 +43,8 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
     pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
 }
 
-// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one. Whether
-// it can be reused.
-bool adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
+// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
+void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
     if (shaped.lead() > 0)
         bring_back(of, shaped.lead(), from_a, pair);
@@ -61,7 +60,7 @@ bool adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
     shaped.bring_to_present(pair);
     meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
     carry(old, before, pair);
-    return shaped.can_be_kept() && keep_manifold(of.pairs, of.time, pair);
+    if (shaped.can_be_kept()) keep_manifold(of.pairs, pair);
 }
 
 void keep_cache(const collision::PairCache& cache, NearPair& near) {
@@ -73,9 +72,9 @@ void keep_cache(const collision::PairCache& cache, PointsCache& of_points) {
 
 // What was found for a pair without a surface, and is in its record.
 void take_over(const Shaped& shaped, const Detection& of, const collision::Manifold& old, NearPair& near, Pair& pair) {
-    near.present = shaped.can_be_kept();
+    near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
     near.changed = false;
-    near.kept = pair.manifold.count > 0 && adopt(shaped, of, old, pair, pair);
+    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -191,7 +190,7 @@ void find_parts(const Detection& of, NearPair& near) {
     const PairEnds ends = near.ends(of.colliders);
     const Shaped shaped(of, ends, near.fast);
     shaped.find_parts(pairs.parts);
-    near.present = near.kept = shaped.can_be_kept();
+    near.kept = shaped.can_be_kept();
     near.changed = false;
     if (pairs.parts.found.empty()) return lose_points(of, near);
     reserve_slots(pairs, pairs.parts.found.size());
@@ -209,17 +208,16 @@ void find_parts(const Detection& of, NearPair& near) {
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        const bool kept = adopt(shaped, of, before ? before->manifold : nothing, before ? *before : pair, pair);
-        near.kept = near.kept && kept;
+        adopt(shaped, of, before ? before->manifold : nothing, before ? *before : pair, pair);
     }
 }
 
-void refresh_part(const Shaped& shaped, const Detection& of, NearPair& near, Pair& pair) {
+void refresh_part(const Shaped& shaped, const Detection& of, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : of.pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    if (pair.manifold.count > 0 && !adopt(shaped, of, old, pair, pair)) near.kept = false;
+    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
 }
 
 bool reuse(const Detection& of, const NearPair& near, Pair& pair) {

@@ -47,6 +47,9 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
         root[node] = find(node);
         if (root[node] != node) of.next[node] = std::exchange(of.next[root[node]], node);
     }
+    of.drive.assign(slots, 0);
+    for (uint32_t node = 0; node < slots; ++node)
+        if (!held(node)) of.drive[root[node]] += static_cast<float>(nodes.mass[node].mass);
     of.ties.assign(slots, 0);
     for (const Joint& joint : joints.record) {
         const auto ends = joint.nodes();

@@ -7,8 +7,11 @@
 
 namespace taut {
 
-// Mechanisms::ties. Anchored: also to what does not move by forces; driven: by a kinematic body, in this step.
+// Mechanisms::ties. Anchored: also to what does not move by forces; driven: by a heavier one, in this step.
 constexpr uint8_t kJointed = 1, kAnchored = 2, kDriven = 4;
+// Who drives with so many times as much as the other takes it along.
+constexpr float kDrives = 10;
+constexpr float kKinematic = 1e30f;  // what kinematic bodies drive with [kg]
 
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
 
@@ -19,7 +22,11 @@ void end_stays(Mechanisms& of);
 class Mechanism {
 public:
     Mechanism(Nodes& nodes, Mechanisms& all, uint32_t node)
-        : nodes_(nodes), all_(all), root_(all.root[node]), moves_(nodes.solved(node)) {}
+        : nodes_(nodes),
+          all_(all),
+          root_(all.root[node]),
+          moves_(nodes.solved(node)),
+          kinematic_(nodes.info[node].kind == NodeKind::kinematic) {}
 
     bool has(uint32_t node) const { return node != kNone && nodes_.solved(node) && all_.root[node] == root_; }
 
@@ -39,10 +46,18 @@ public:
         const Vec3 back = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
     }
-    // With what comes along and stops for nothing.
+    // By what it drives others [kg]: its mass, or a share of what it is driven by, so that both drive it on.
+    float drive() const { return kinematic_ ? kKinematic : moves_ ? all_.drive[root_] : 0; }
     bool is_driven() const { return moves_ && (all_.ties[root_] & kDriven); }
-    void go_along(const Vec3& way, const Vec3& normal, uint8_t round) {
+    // Whether the other does not stop for it. What is anchored yields to kinematic bodies alone, and what they drive.
+    bool goes_along_with(const Mechanism& other) const {
+        const bool held = (all_.ties[root_] & kAnchored) && other.drive() < 1e-10f * kKinematic;
+        return moves_ && !held && other.drive() > kDrives * drive();
+    }
+    void go_along_with(const Mechanism& other, const Vec3& way, const Vec3& normal, uint8_t round) {
+        all_.any_driven = true;
         all_.ties[root_] |= kDriven;
+        all_.drive[root_] = other.drive() / (2 * kDrives);
         const Vec3 on = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x += on; });
     }
@@ -69,7 +84,7 @@ private:
     Nodes& nodes_;
     Mechanisms& all_;
     uint32_t root_;
-    bool moves_;
+    bool moves_, kinematic_;
 };
 
 }  // namespace taut

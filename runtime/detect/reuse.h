@@ -15,9 +15,8 @@
 
 namespace taut {
 
-// Keeps a pair's manifold as it was found at the present placements, unless the two will move against each other in the
-// time ahead [s] by so much that it would not be reused. Whether it did.
-bool keep_manifold(const Pairs& pairs, double time, Pair& pair);
+// Keeps a pair's manifold as it was found at the present placements.
+void keep_manifold(const Pairs& pairs, Pair& pair);
 
 // Brings the manifold that a pair keeps to the present placements; false, and nothing done, if it is to be found again:
 // the two moved against each other, or will in the time ahead [s].

@@ -58,8 +58,7 @@ struct NearPair {
     bool touching : 1 = false;    // had a point at the end of the last step, on any part
     bool touched : 1 = false;     // the same of the step before
     bool hit : 1 = false;         // gave a hit event in the last step
-    bool present : 1 = false;     // its points were found as its colliders stand, none of them later on their way
-    bool kept : 1 = false;        // and all its records hold them as found; detect/reuse.h
+    bool kept : 1 = false;        // all its records hold their manifolds as found; detect/reuse.h
     bool reused : 1 = false;      // and these go on in this frame
     bool changed : 1 = false;     // the host may have changed a collider since the pair was looked at
 
@@ -69,7 +68,7 @@ struct NearPair {
     void forget_shapes() {
         cache = {};
         clear = 0;
-        present = kept = false;
+        kept = false;
     }
     PairEnds ends(const Colliders& colliders) const {
         const Collider &a = colliders.record[collider_a()], &b = colliders.record[collider_b()];
