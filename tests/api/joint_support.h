@@ -79,6 +79,17 @@ struct TwoBoxes {
     taut_body a, b;
 };
 
+// A box of 1000 kg, 2 m beside the point of the world to which it is fixed.
+inline taut_joint add_beam(taut_world world) {
+    taut_fixed_joint_def def;
+    taut_fixed_joint_def_init(&def);
+    def.body_b = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
+    EXPECT_OK(taut_joint_frames_from_world(world, {0}, def.body_b, {0, 5, 0}, {1, 0, 0}, &def.frame_a, &def.frame_b));
+    taut_joint joint = {0};
+    EXPECT_OK(taut_world_add_fixed_joint(world, &def, &joint));
+    return joint;
+}
+
 inline taut_axis_def axis_def(taut_axis_mode mode) {
     taut_axis_def def;
     taut_axis_def_init(&def);

@@ -98,12 +98,6 @@ std::vector<taut_contact> contacts_of(taut_world world) {
     return out;
 }
 
-taut_events events_of(taut_world world) {
-    taut_events out;
-    EXPECT_OK(taut_world_get_events(world, &out));
-    return out;
-}
-
 TEST(Contacts, OfABoxAtRest) {
     const taut_world world = make_world();
     const taut_body ground = add_body(world, body_def(TAUT_BODY_STATIC, add_plane(world)));
