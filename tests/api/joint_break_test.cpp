@@ -104,12 +104,9 @@ TEST(Break, LetsItsBodiesCollide) {
 }
 
 TEST(CollideConnected, ChangesBothWays) {
-    const taut_world world = make_world();
-    ASSERT_OK(taut_world_set_gravity(world, {0, 0, 0}));
-    const taut_shape box = add_box(world);
-    const taut_body a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0, 0, 0));
-    const taut_body b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0.999, 0, 0));
-    const taut_joint joint = add_ball(world, a, b, {0.4995, 0, 0}, {-0.4995, 0, 0});
+    const TwoBoxes boxes(0.999);
+    const taut_world world = boxes.world;
+    const taut_joint joint = add_ball(world, boxes.a, boxes.b, {0.4995, 0, 0}, {-0.4995, 0, 0});
     taut_contact contacts[8];
     for (uint32_t collide : {0u, 1u, 0u, 1u}) {
         ASSERT_OK(taut_joint_set_collide_connected(joint, collide));
@@ -119,7 +116,6 @@ TEST(CollideConnected, ChangesBothWays) {
         EXPECT_EQ(count, collide ? 4u : 0u);
         EXPECT_EQ(events.begin_count, collide);
     }
-    EXPECT_OK(taut_world_destroy(world));
 }
 
 }  // namespace

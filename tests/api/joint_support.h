@@ -53,15 +53,15 @@ inline const std::vector<FramedKind>& framed_kinds() {
 
 inline taut_frame frame(double x, double y, double z, taut_quat q = {0, 0, 0, 1}) { return {{x, y, z}, q}; }
 
-// Two boxes of 1 m, one beside the other, in a world without gravity; b turned about y.
+// Two boxes of 1 m, one beside the other along x, in a world without gravity.
 struct TwoBoxes {
-    TwoBoxes() : world(make_world()) {
+    explicit TwoBoxes(double apart = 2) : world(make_world()) {
         EXPECT_EQ(taut_world_set_gravity(world, {0, 0, 0}), TAUT_OK);
         box = add_box(world);
-        a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, -1, 5, 0));
-        b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 1, 5, 0));
+        a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, -0.5 * apart, 5, 0));
+        b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0.5 * apart, 5, 0));
     }
-    ~TwoBoxes() { taut_world_destroy(world); }
+    ~TwoBoxes() { EXPECT_OK(taut_world_destroy(world)); }
     TwoBoxes(const TwoBoxes&) = delete;
     TwoBoxes& operator=(const TwoBoxes&) = delete;
 
