@@ -8,25 +8,10 @@
 #include "constraints/distance.h"
 #include "constraints/joint_frames.h"
 #include "sleep/wake.h"
+#include "state/joint_data.h"
 #include "state/joint_reading.h"
 
 namespace taut {
-
-// A joint's data, or what it begins with. Eigen's vectors are plain numbers, though not trivially copyable by the
-// letter.
-template <class Data>
-Data read_data(const Joint& joint) {
-    static_assert(sizeof(Data) <= Joint::kDataSize && std::is_trivially_destructible_v<Data>);
-    Data data;
-    std::memcpy(static_cast<void*>(&data), joint.data, sizeof data);
-    return data;
-}
-
-template <class Data>
-void write_data(Joint& joint, const Data& data) {
-    static_assert(sizeof(Data) <= Joint::kDataSize && std::is_trivially_destructible_v<Data>);
-    std::memcpy(joint.data, static_cast<const void*>(&data), sizeof data);
-}
 
 // ---------------------------------------------------------------- ends
 

@@ -1,8 +1,7 @@
-#include <algorithm>
 #include <cmath>
-#include <span>
+#include <utility>
 
-#include "check/lint.h"
+#include "check/lint_context.h"
 #include "models/cable.h"
 
 namespace taut {
@@ -26,8 +25,8 @@ double bend_at_point(const World& world, const Cable& cable, uint32_t point) {
 
 class CableLint {
 public:
-    CableLint(World& world, Array<taut_lint_entry>& found)
-        : world_(world), found_(found), on_round_(world.nodes.slots(), uint8_t{0}, world.memory) {}
+    explicit CableLint(const LintContext& context)
+        : context_(context), world_(context.world), on_round_(context.nodes.slots(), uint8_t{0}, context.memory) {}
 
     void run() {
         mark_what_is_on_round();
@@ -54,11 +53,6 @@ private:
         });
     }
 
-    void add(taut_lint_kind kind, const Cable& cable, uint32_t segment, double value, double limit) {
-        found_.push_back({kind, 0, world_.body_handle(cable.node[segment]), taut_joint{0}, static_cast<float>(value),
-                          static_cast<float>(limit)});
-    }
-
     // Between two segments, one of which lies on something round.
     void sharpest_bend(const Cable& cable) {
         double most = 0;
@@ -69,13 +63,14 @@ private:
             const double bend = bend_at_point(world_, cable, point);
             if (bend > most) most = bend, at = point;
         }
-        if (most > kMostBend) add(TAUT_LINT_CABLE_COARSE, cable, at, most, kMostBend);
+        context_.add_above(TAUT_LINT_CABLE_COARSE, cable.node[at], kNone, most, kMostBend);
     }
 
     // The nominal one: those at the ends are short while they are reeled.
     void shortest_segment(const Cable& cable) {
         const double slimness = cable.nominal / (2 * cable.radius);
-        if (slimness < kLeastSlimness) add(TAUT_LINT_CABLE_SHORT_SEGMENTS, cable, 0, slimness, kLeastSlimness);
+        if (slimness < kLeastSlimness)
+            context_.add(TAUT_LINT_CABLE_SHORT_SEGMENTS, cable.node[0], kNone, slimness, kLeastSlimness);
     }
 
     void largest_strain(const Cable& cable) {
@@ -85,16 +80,16 @@ private:
             const double strain = cable.stretch_compliance * cable_tension(world_, cable, segment);
             if (strain > most) most = strain, at = segment;
         }
-        if (most > kMostStrain) add(TAUT_LINT_CABLE_STRAIN, cable, at, most, kMostStrain);
+        context_.add_above(TAUT_LINT_CABLE_STRAIN, cable.node[at], kNone, most, kMostStrain);
     }
 
+    const LintContext& context_;
     const World& world_;
-    Array<taut_lint_entry>& found_;
     Array<uint8_t> on_round_;  // of nodes
 };
 
 }  // namespace
 
-void lint_cables(World& world, Array<taut_lint_entry>& found) { CableLint(world, found).run(); }
+void lint_cables(const LintContext& context) { CableLint(context).run(); }
 
 }  // namespace taut

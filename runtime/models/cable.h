@@ -46,43 +46,4 @@ double cable_length(const Cable& cable);
 // Before a step: pays out and hauls in at all cables' ends. Throws std::bad_alloc before any length changes.
 void reel_cables(World& world);
 
-// ---------------------------------------------------------------- for the files of this room
-
-// The joint before or after a link or, of an end, the one that holds it.
-inline const JointRef& joint_before(const Cable& c, uint32_t i) { return i == 0 ? c.end[0].joint : c.joint[i - 1]; }
-inline const JointRef& joint_after(const Cable& c, uint32_t i) {
-    return i + 1 == c.node.size() ? c.end[1].joint : c.joint[i];
-}
-// Metres of cable whose stretching and bending a joint does.
-double span_before(const Cable& cable, uint32_t i);
-double span_after(const Cable& cable, uint32_t i);
-
-void set_softness(const Cable& cable, Joint& joint, double span);
-// Length and softness of a segment of particles.
-void set_segment(const Cable& cable, Joint& joint, double length);
-// Joint i with its data, between nodes whose segments have their lengths.
-Joint make_inner_joint(const Cable& cable, uint32_t i);
-
-// Of particles: what bends at a point. An end's is there where it is clamped.
-inline JointRef bend_at(const Cable& c, uint32_t point) {
-    if (point == 0) return c.end[0].clamp;
-    if (point == c.segments()) return c.end[1].clamp;
-    return c.bend.empty() ? JointRef{} : c.bend[point - 1];
-}
-Joint make_bend(const Cable& cable, uint32_t point);
-// The capsule of a segment, which is its first point's; and leading it to the present end of the segment, with room
-// reserved for the end events of its pairs.
-void add_segment(World& world, const Cable& cable, uint32_t node, uint32_t next, double length);
-void tie_segment(World& world, const Cable& cable, uint32_t segment);
-// Nodes and softness of the bend at a point, if there is one, after changes beside it.
-void tie_bend(World& world, const Cable& cable, uint32_t point);
-// Removes what has no hold any more where a joint of a cable of particles is gone: bends and capsules.
-void drop_loose_parts(World& world);
-
-uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, double length);
-// Mass, inertia and shape of node i after a change of length.
-void set_cable_mass(World& world, const Cable& cable, uint32_t i);
-// Removes a node on which no joint ends any more. reserve_ended for it has gone before.
-void drop_cable_node(World& world, uint32_t node);
-
 }  // namespace taut

@@ -141,7 +141,7 @@ void Reel::blend(const JointRef& ref, double weight, double* force) const {
 void Reel::load(Joint& joint, const double* force) {
     for (int r = 0; r < joint.type->rows; ++r) {
         joint.lambda[r] = force[r];
-        joint.drift[r] = (is_angle(joint, r) ? joint.angular_compliance : joint.compliance) * force[r];
+        joint.drift[r] = row_compliance(joint, r) * force[r];
     }
 }
 

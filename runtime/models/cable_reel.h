@@ -4,7 +4,7 @@
 #pragma once
 
 #include "models/bodies.h"
-#include "models/cable.h"
+#include "models/cable_parts.h"
 #include "state/joint_reading.h"
 
 namespace taut {
@@ -42,7 +42,7 @@ private:
     bool can_join() const;
 
     double step() const { return world_.def.time_step; }
-    bool links() const { return c_.kind == CableKind::links; }
+    bool links() const { return taut::links(c_); }
     uint32_t at() const { return e_ == 0 ? 0 : c_.segments() - 1; }  // the end segment
     double& length() const { return c_.length[at()]; }
     uint32_t outer() const { return e_ == 0 ? c_.node.front() : c_.node.back(); }

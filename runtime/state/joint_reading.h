@@ -27,6 +27,11 @@ JointReading read_joint(const Nodes& nodes, const Joint& joint);
 
 inline bool is_angle(const Joint& joint, int row) { return (joint.type->angular >> row & 1) != 0; }
 inline bool is_locked(const Joint& joint, int row) { return joint.axis[row].mode == AxisMode::locked; }
+// Of a locked row [m/N or rad/(N m)].
+inline double row_compliance(const Joint& joint, int row) {
+    return is_angle(joint, row) ? joint.angular_compliance : joint.compliance;
+}
+inline bool is_rigid(const Joint& joint, int row) { return is_locked(joint, row) && row_compliance(joint, row) == 0; }
 
 // d(coordinate)/dt [m/s or rad/s].
 double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);

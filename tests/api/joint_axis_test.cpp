@@ -420,13 +420,7 @@ TEST(Frames, FromWorldRefuse) {
 // A weight on a beam that is fixed to the wall: force and torque on it, at the wall, as of statics.
 TEST(JointTorque, IsThatOfTheWeightOnItsBeam) {
     const taut_world world = make_world();
-    const taut_body box = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
-    taut_fixed_joint_def def;
-    taut_fixed_joint_def_init(&def);
-    def.body_b = box;
-    ASSERT_OK(taut_joint_frames_from_world(world, {0}, box, {0, 5, 0}, {1, 0, 0}, &def.frame_a, &def.frame_b));
-    taut_joint joint;
-    ASSERT_OK(taut_world_add_fixed_joint(world, &def, &joint));
+    const taut_joint joint = add_beam(world);
     taut_vec3 force, torque;
     ASSERT_OK(taut_joint_get_torque(joint, &torque));
     EXPECT_EQ(torque.z, 0);  // not solved yet

@@ -7,9 +7,7 @@ namespace {
 
 taut_events step_for_events(taut_world world) {
     EXPECT_OK(taut_world_step(world));
-    taut_events out;
-    EXPECT_OK(taut_world_get_events(world, &out));
-    return out;
+    return events_of(world);
 }
 
 // A weight of 1 kg hangs from a thread that holds more or less than that.
@@ -47,13 +45,7 @@ TEST(Break, AboveTheForceAndNotBelow) {
 TEST(Break, AboveTheTorque) {
     for (float most : {0.0f, 2.1e4f, 1.9e4f}) {  // the weight's is 1.962e4
         const taut_world world = make_world();
-        const taut_body box = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
-        taut_fixed_joint_def def;
-        taut_fixed_joint_def_init(&def);
-        def.body_b = box;
-        ASSERT_OK(taut_joint_frames_from_world(world, {0}, box, {0, 5, 0}, {1, 0, 0}, &def.frame_a, &def.frame_b));
-        taut_joint joint;
-        ASSERT_OK(taut_world_add_fixed_joint(world, &def, &joint));
+        const taut_joint joint = add_beam(world);
         for (int i = 0; i < 60; ++i) ASSERT_OK(taut_world_step(world));
         ASSERT_OK(taut_joint_set_break(joint, 0, most));
         const taut_events events = step_for_events(world);
@@ -112,12 +104,9 @@ TEST(Break, LetsItsBodiesCollide) {
 }
 
 TEST(CollideConnected, ChangesBothWays) {
-    const taut_world world = make_world();
-    ASSERT_OK(taut_world_set_gravity(world, {0, 0, 0}));
-    const taut_shape box = add_box(world);
-    const taut_body a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0, 0, 0));
-    const taut_body b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0.999, 0, 0));
-    const taut_joint joint = add_ball(world, a, b, {0.4995, 0, 0}, {-0.4995, 0, 0});
+    const TwoBoxes boxes(0.999);
+    const taut_world world = boxes.world;
+    const taut_joint joint = add_ball(world, boxes.a, boxes.b, {0.4995, 0, 0}, {-0.4995, 0, 0});
     taut_contact contacts[8];
     for (uint32_t collide : {0u, 1u, 0u, 1u}) {
         ASSERT_OK(taut_joint_set_collide_connected(joint, collide));
@@ -127,7 +116,6 @@ TEST(CollideConnected, ChangesBothWays) {
         EXPECT_EQ(count, collide ? 4u : 0u);
         EXPECT_EQ(events.begin_count, collide);
     }
-    EXPECT_OK(taut_world_destroy(world));
 }
 
 }  // namespace

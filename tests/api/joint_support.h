@@ -53,15 +53,15 @@ inline const std::vector<FramedKind>& framed_kinds() {
 
 inline taut_frame frame(double x, double y, double z, taut_quat q = {0, 0, 0, 1}) { return {{x, y, z}, q}; }
 
-// Two boxes of 1 m, one beside the other, in a world without gravity; b turned about y.
+// Two boxes of 1 m, one beside the other along x, in a world without gravity.
 struct TwoBoxes {
-    TwoBoxes() : world(make_world()) {
+    explicit TwoBoxes(double apart = 2) : world(make_world()) {
         EXPECT_EQ(taut_world_set_gravity(world, {0, 0, 0}), TAUT_OK);
         box = add_box(world);
-        a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, -1, 5, 0));
-        b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 1, 5, 0));
+        a = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, -0.5 * apart, 5, 0));
+        b = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0.5 * apart, 5, 0));
     }
-    ~TwoBoxes() { taut_world_destroy(world); }
+    ~TwoBoxes() { EXPECT_OK(taut_world_destroy(world)); }
     TwoBoxes(const TwoBoxes&) = delete;
     TwoBoxes& operator=(const TwoBoxes&) = delete;
 
@@ -78,6 +78,17 @@ struct TwoBoxes {
     taut_shape box;
     taut_body a, b;
 };
+
+// A box of 1000 kg, 2 m beside the point of the world to which it is fixed.
+inline taut_joint add_beam(taut_world world) {
+    taut_fixed_joint_def def;
+    taut_fixed_joint_def_init(&def);
+    def.body_b = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
+    EXPECT_OK(taut_joint_frames_from_world(world, {0}, def.body_b, {0, 5, 0}, {1, 0, 0}, &def.frame_a, &def.frame_b));
+    taut_joint joint = {0};
+    EXPECT_OK(taut_world_add_fixed_joint(world, &def, &joint));
+    return joint;
+}
 
 inline taut_axis_def axis_def(taut_axis_mode mode) {
     taut_axis_def def;

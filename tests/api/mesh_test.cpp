@@ -19,12 +19,7 @@ protected:
 TEST_F(Meshes, RefuseBadDefs) {
     taut_vec3 vertices[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
     uint32_t indices[] = {0, 1, 2};
-    taut_mesh_def def;
-    taut_mesh_def_init(&def);
-    def.vertices = vertices;
-    def.vertex_count = 3;
-    def.indices = indices;
-    def.triangle_count = 1;
+    taut_mesh_def def = mesh_def(vertices, indices);
     DefCheck check(p.world, "taut_world_add_mesh", taut_world_add_mesh);
     check.run(def, {});
     for (float bad : {NAN, INFINITY, 1.1e4f}) {
@@ -107,12 +102,7 @@ TEST_F(Meshes, SendEventsByPair) {
     taut_shape steps{};
     const taut_vec3 vertices[] = {{-9, 0, -9}, {-9, 0, 9}, {0, 0, 9}, {0, 0, -9}, {9, 1, 9}, {9, 1, -9}};
     const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 3, 2, 4, 3, 4, 5};
-    taut_mesh_def def;
-    taut_mesh_def_init(&def);
-    def.vertices = vertices;
-    def.vertex_count = 6;
-    def.indices = indices;
-    def.triangle_count = 4;
+    const taut_mesh_def def = mesh_def(vertices, indices);
     ASSERT_OK(taut_world_add_mesh(world, &def, &steps));
     add_body(world, body_def(TAUT_BODY_STATIC, steps));
     const taut_body box = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), -2, 0.5, 0));
@@ -120,17 +110,14 @@ TEST_F(Meshes, SendEventsByPair) {
     uint32_t begun = 0, ended = 0;
     for (int i = 0; i < 30; ++i) {
         ASSERT_OK(taut_world_step(world));
-        taut_events events;
-        ASSERT_OK(taut_world_get_events(world, &events));
+        const taut_events events = events_of(world);
         begun += events.begin_count, ended += events.end_count;
     }
     EXPECT_EQ(begun, 1u);
     EXPECT_EQ(ended, 0u);
     ASSERT_OK(taut_body_remove(box));
     ASSERT_OK(taut_world_step(world));
-    taut_events events;
-    ASSERT_OK(taut_world_get_events(world, &events));
-    EXPECT_EQ(events.end_count, 1u);
+    EXPECT_EQ(events_of(world).end_count, 1u);
     ASSERT_OK(taut_world_destroy(world));
 }
 
@@ -140,12 +127,7 @@ TEST_F(Meshes, GiveWayToABoxAndComeBack) {
     taut_shape floor{};
     const taut_vec3 vertices[] = {{-9, 0, -9}, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}};
     const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
-    taut_mesh_def def;
-    taut_mesh_def_init(&def);
-    def.vertices = vertices;
-    def.vertex_count = 4;
-    def.indices = indices;
-    def.triangle_count = 2;
+    const taut_mesh_def def = mesh_def(vertices, indices);
     ASSERT_OK(taut_world_add_mesh(world, &def, &floor));
     const taut_body ground = add_body(world, body_def(TAUT_BODY_STATIC, floor));
     const taut_shape cube = add_box(world);
@@ -157,9 +139,7 @@ TEST_F(Meshes, GiveWayToABoxAndComeBack) {
         ASSERT_OK(taut_collider_set_shape(collider, shape, {0, y, 0}, {0, 0, 0, 1}));
         for (int i = 0; i < 10; ++i) {
             ASSERT_OK(taut_world_step(world));
-            taut_events events;
-            ASSERT_OK(taut_world_get_events(world, &events));
-            EXPECT_EQ(events.end_count, 0u) << i;
+            EXPECT_EQ(events_of(world).end_count, 0u) << i;
             taut_contact contacts[8];
             ASSERT_OK(taut_world_get_contacts(world, contacts, 8, &count));
             EXPECT_EQ(count, 4u) << i;

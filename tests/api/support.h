@@ -91,6 +91,13 @@ inline uint64_t hash_of(taut_world world) {
     return hash;
 }
 
+// Of the last step.
+inline taut_events events_of(taut_world world) {
+    taut_events out;
+    EXPECT_OK(taut_world_get_events(world, &out));
+    return out;
+}
+
 struct Counts {
     uint32_t bodies = 0, shapes = 0, joints = 0;
     bool operator==(const Counts&) const = default;
@@ -167,16 +174,23 @@ inline taut_shape add_hull(taut_world world, float length = 1) {
     return shape;
 }
 
-// Two triangles, one unit square.
-inline taut_result make_mesh(taut_world world, taut_shape* out) {
-    static const taut_vec3 vertices[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}};
-    static const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+// Of arrays that outlive it.
+template <size_t Vertices, size_t Indices>
+taut_mesh_def mesh_def(const taut_vec3 (&vertices)[Vertices], const uint32_t (&indices)[Indices]) {
     taut_mesh_def def;
     taut_mesh_def_init(&def);
     def.vertices = vertices;
-    def.vertex_count = 4;
+    def.vertex_count = Vertices;
     def.indices = indices;
-    def.triangle_count = 2;
+    def.triangle_count = Indices / 3;
+    return def;
+}
+
+// Two triangles, one unit square.
+inline taut_result make_mesh(taut_world world, taut_shape* out) {
+    const taut_vec3 vertices[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}};
+    const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    const taut_mesh_def def = mesh_def(vertices, indices);
     return taut_world_add_mesh(world, &def, out);
 }
 
@@ -190,28 +204,25 @@ inline taut_result make_height_field(taut_world world, taut_shape* out) {
     return taut_world_add_height_field(world, &def, out);
 }
 
-inline taut_joint add_ball(taut_world world, taut_body a, taut_body b, taut_pos anchor_a = {}, taut_pos anchor_b = {}) {
-    taut_ball_joint_def def;
-    taut_ball_joint_def_init(&def);
+// Of a joint between two anchors, with defaults otherwise.
+template <class Def>
+taut_joint add_anchored(void (*init)(Def*), taut_result (*add)(taut_world, const Def*, taut_joint*), taut_world world,
+                        taut_body a, taut_body b, taut_pos anchor_a, taut_pos anchor_b) {
+    Def def;
+    init(&def);
     def.body_a = a;
     def.body_b = b;
     def.anchor_a = anchor_a;
     def.anchor_b = anchor_b;
     taut_joint joint = {0};
-    EXPECT_EQ(taut_world_add_ball_joint(world, &def, &joint), TAUT_OK) << taut_last_error();
+    EXPECT_EQ(add(world, &def, &joint), TAUT_OK) << taut_last_error();
     return joint;
 }
-
+inline taut_joint add_ball(taut_world world, taut_body a, taut_body b, taut_pos anchor_a = {}, taut_pos anchor_b = {}) {
+    return add_anchored(taut_ball_joint_def_init, taut_world_add_ball_joint, world, a, b, anchor_a, anchor_b);
+}
 inline taut_joint add_rod(taut_world world, taut_body a, taut_body b, taut_pos anchor_a = {}, taut_pos anchor_b = {}) {
-    taut_distance_joint_def def;
-    taut_distance_joint_def_init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    def.anchor_a = anchor_a;
-    def.anchor_b = anchor_b;
-    taut_joint joint = {0};
-    EXPECT_EQ(taut_world_add_distance_joint(world, &def, &joint), TAUT_OK) << taut_last_error();
-    return joint;
+    return add_anchored(taut_distance_joint_def_init, taut_world_add_distance_joint, world, a, b, anchor_a, anchor_b);
 }
 
 inline taut_pose at(double x, double y, double z, taut_quat q = {0, 0, 0, 1}) { return {{x, y, z}, q, {0, 0}}; }

@@ -20,10 +20,8 @@ INSTANTIATE_TEST_SUITE_P(Of, EitherCable, testing::Values(TAUT_CABLE_PARTICLES, 
 TEST_P(EitherCable, CarriesTheWeightBelow) {
     constexpr double kLength = 10, kPerMetre = 2, kLoad = 500;
     CableLab lab;
-    taut_cable_def d = CableLab::plan(GetParam());
     const taut_body load = lab.add({.position = {0, -kLength, 0}, .mass = kLoad, .inertia = {10, 10, 10}});
-    d.end[0] = to_world({0, 0, 0});
-    d.end[1] = to_body(load);
+    taut_cable_def d = CableLab::plan(GetParam(), load);
     d.mass_per_metre = kPerMetre;
     d.segment_count = 20;
     const taut_cable cable = lab.cable(d);
@@ -88,10 +86,8 @@ TEST_P(EitherCable, HangsAsACatenary) {
 TEST_P(EitherCable, StretchesByItsCompliance) {
     constexpr double kLength = 10, kPerMetre = 2, kLoad = 100, kCompliance = 1e-5;
     CableLab lab;
-    taut_cable_def d = CableLab::plan(GetParam());
     const taut_body load = lab.particle(kLoad, {0, -kLength, 0});
-    d.end[0] = to_world({0, 0, 0});
-    d.end[1] = to_body(load);
+    taut_cable_def d = CableLab::plan(GetParam(), load);
     d.mass_per_metre = kPerMetre;
     d.segment_count = 20;
     d.stretch_compliance = static_cast<float>(kCompliance);
@@ -108,13 +104,8 @@ TEST_P(EitherCable, SagsAsABeam) {
     constexpr double kLength = 2, kPerMetre = 1, kStiffness = 400;
     for (const double load : {0.0, 2.0}) {
         CableLab lab(calm);
-        taut_cable_def d = CableLab::plan(GetParam());
-        const taut_pos path[2] = {{0, 0, 0}, {kLength, 0, 0}};
-        d.points = path;
-        d.point_count = 2;
-        d.end[0] = to_world({0, 0, 0});
-        d.end[0].clamped = 1;
-        d.segment_count = 20;
+        Beam beam(GetParam(), {kLength, 0, 0});
+        taut_cable_def& d = beam.def;
         d.mass_per_metre = kPerMetre;
         d.bending_stiffness = kStiffness;
         d.bending_damping = 5;
@@ -131,13 +122,8 @@ TEST_P(EitherCable, SagsAsABeam) {
 TEST_P(EitherCable, SwingsAsABeam) {
     constexpr double kLength = 2, kPerMetre = 1, kStiffness = 50;
     CableLab lab([](taut_world_def& def) { def.gravity = {}; });
-    taut_cable_def d = CableLab::plan(GetParam());
-    const taut_pos path[2] = {{0, 0, 0}, {kLength, 0, 0}};
-    d.points = path;
-    d.point_count = 2;
-    d.end[0] = to_world({0, 0, 0});
-    d.end[0].clamped = 1;
-    d.segment_count = 20;
+    Beam beam(GetParam(), {kLength, 0, 0});
+    taut_cable_def& d = beam.def;
     d.mass_per_metre = kPerMetre;
     d.bending_stiffness = kStiffness;
     const taut_cable cable = lab.cable(d);
@@ -168,13 +154,8 @@ TEST_P(EitherCable, BucklesAsEulersColumn) {
     const double critical = kPi * kPi * kStiffness / (4 * kLength * kLength);
     for (const double share : {0.9, 1.1}) {
         CableLab lab(calm);
-        taut_cable_def d = CableLab::plan(GetParam());
-        const taut_pos path[2] = {{0, 0, 0}, {0, kLength, 0}};
-        d.points = path;
-        d.point_count = 2;
-        d.end[0] = to_world({0, 0, 0});
-        d.end[0].clamped = 1;
-        d.segment_count = 20;
+        Beam beam(GetParam(), {0, kLength, 0});
+        taut_cable_def& d = beam.def;
         d.mass_per_metre = 0.01f;
         d.gravity_scale = 0;
         d.bending_stiffness = kStiffness;
@@ -213,10 +194,8 @@ TEST_P(Reeling, MovesTheLoadWithoutKicks) {
     const Winch& w = GetParam();
     const double start = w.speed > 0 ? 4 : 12;
     CableLab lab;
-    taut_cable_def d = CableLab::plan(w.kind);
     const taut_body load = lab.add({.position = {0, -start, 0}, .mass = w.load, .inertia = {10, 10, 10}});
-    d.end[0] = to_world({0, 0, 0});
-    d.end[1] = to_body(load);
+    taut_cable_def d = CableLab::plan(w.kind, load);
     d.segment_length = 0.5f;
     d.mass_per_metre = kPerMetre;
     d.stretch_compliance = static_cast<float>(w.compliance);
@@ -270,10 +249,8 @@ INSTANTIATE_TEST_SUITE_P(
 // A crane hauls in a load that swings, and pays it out again: bent ends are joined and cut, both ends at work.
 TEST_P(EitherCable, IsReeledWhileItSwings) {
     CableLab lab;
-    taut_cable_def d = CableLab::plan(GetParam());
     const taut_body load = lab.add({.position = {6, -6, 0}, .mass = 200, .inertia = {10, 10, 10}});
-    d.end[0] = to_world({0, 0, 0});
-    d.end[1] = to_body(load);
+    taut_cable_def d = CableLab::plan(GetParam(), load);
     d.segment_length = 0.4f;
     const taut_cable cable = lab.cable(d);
     const double start = length_of(cable);
@@ -306,10 +283,8 @@ TEST_P(EitherCable, IsReeledWhileItSwings) {
 // The last segment is not hauled in, and nothing breaks.
 TEST_P(EitherCable, IsHauledInToItsLastSegment) {
     CableLab lab;
-    taut_cable_def d = CableLab::plan(GetParam());
     const taut_body load = lab.add({.position = {0, -2, 0}, .mass = 100, .inertia = {1, 1, 1}});
-    d.end[0] = to_world({0, 0, 0});
-    d.end[1] = to_body(load);
+    taut_cable_def d = CableLab::plan(GetParam(), load);
     d.segment_length = 0.5f;
     const taut_cable cable = lab.cable(d);
     ok(taut_cable_reel(cable, 0, -5));
@@ -329,10 +304,8 @@ TEST_P(EitherCable, IsHauledInToItsLastSegment) {
 TEST_P(EitherCable, IsHauledInAtAnySpeed) {
     for (int percent : {5, 10, 20, 30, 36, 40, 43, 46, 48, 50}) {
         CableLab lab;
-        taut_cable_def d = CableLab::plan(GetParam());
         const taut_body load = lab.add({.position = {0, -4, 0}, .mass = 100, .inertia = {1, 1, 1}});
-        d.end[0] = to_world({0, 0, 0});
-        d.end[1] = to_body(load);
+        taut_cable_def d = CableLab::plan(GetParam(), load);
         d.segment_length = 0.1f;
         const taut_cable cable = lab.cable(d);
         const double speed = 0.01 * percent * 0.1 / lab.frame();
@@ -347,15 +320,13 @@ TEST_P(EitherCable, IsHauledInAtAnySpeed) {
 // A path's own stretches are segments: a long one beside short ones is cut more than once when they are joined.
 TEST_P(EitherCable, HaulsInUnevenSegments) {
     CableLab lab;
-    taut_cable_def d = CableLab::plan(GetParam());
     std::vector<taut_pos> path = {{0, 0, 0}};
     for (double length : {0.1, 0.02, 0.9, 0.05, 0.03, 0.7, 0.02, 1.3, 0.1})
         path.push_back({0, path.back().y - length, 0});
     const taut_body load = lab.add({.position = path.back(), .mass = 10, .inertia = {1, 1, 1}});
+    taut_cable_def d = CableLab::plan(GetParam(), load);
     d.points = path.data();
     d.point_count = static_cast<uint32_t>(path.size());
-    d.end[0] = to_world({0, 0, 0});
-    d.end[1] = to_body(load);
     const taut_cable cable = lab.cable(d);
     const double before = length_of(cable);
     ok(taut_cable_set_reel_speed(cable, 0, -3, 0));

@@ -2,17 +2,12 @@
 #include <bit>
 #include <set>
 
-#include "physics/lab.h"
+#include "physics/contact_lab.h"
+#include "physics/surface_lab.h"
 
 namespace {
 
 using namespace lab;
-
-taut_events events_of(const World& world) {
-    taut_events out{};
-    ok(taut_world_get_events(world.handle, &out));
-    return out;
-}
 
 std::function<void(taut_world_def&)> asking_for(uint32_t contact_events, taut_solver solver = TAUT_SOLVER_BLOCK_LDLT,
                                                 uint32_t threads = 1) {
@@ -117,17 +112,9 @@ TEST(ContactEvents, ABlocksContactsCarryItsWeight) {
 // The parts of a mesh that a body touches make one event with the points of all.
 TEST(ContactEvents, AMeshIsOneCollider) {
     World world(asking_for(TAUT_CONTACT_EVENTS_ALL));
-    const taut_vec3 roof[] = {{-2, 0, -2}, {-2, 0, 2}, {0, 0, 2}, {0, 0, -2}, {2, 2, 2}, {2, 2, -2}};
-    const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 3, 2, 4, 3, 4, 5};
-    taut_mesh_def def;
-    taut_mesh_def_init(&def);
-    def.vertices = roof;
-    def.vertex_count = 6;
-    def.indices = triangles;
-    def.triangle_count = 4;
-    taut_shape mesh{};
-    ok(taut_world_add_mesh(world.handle, &def, &mesh));
-    world.add({.kind = TAUT_BODY_STATIC, .shape = mesh, .friction = 0});
+    const Triangles roof = {{{-2, 0, -2}, {-2, 0, 2}, {0, 0, 2}, {0, 0, -2}, {2, 2, 2}, {2, 2, -2}},
+                            {0, 1, 2, 0, 2, 3, 3, 2, 4, 3, 4, 5}};
+    world.add({.kind = TAUT_BODY_STATIC, .shape = mesh(world, roof), .friction = 0});
     world.add(
         {.shape = world.sphere(0.25), .position = {-0.2, 0.3, 0}, .velocity = {0.5, 0, 0}, .mass = 2, .friction = 0});
     uint32_t begins = 0, most = 0;

@@ -1,17 +1,10 @@
 // Bodies that hardly move against what they lie on, whose contacts are not asked for in every step: what they do in
 // the long run, and what the host changes under them.
-#include "physics/lab.h"
+#include "physics/contact_lab.h"
 
 namespace {
 
 using namespace lab;
-
-taut_collider collider_of(taut_body body) {
-    taut_collider collider{};
-    uint32_t count = 0;
-    ok(taut_body_get_colliders(body, &collider, 1, &count));
-    return collider;
-}
 
 // At 0.3 to 100 um a step, so that contacts live for one step up to hundreds.
 TEST(ContactReuse, ABoxThatIsPushedSlowlyStaysAtWhatPushesIt) {

@@ -1,6 +1,6 @@
 // Axes of joints by every solver: stops, drives and friction, against what mechanics says of them. Sweeps and Jacobi
 // are given the iterations that they need.
-#include "physics/joint_lab.h"
+#include "physics/joint_experiments.h"
 
 namespace {
 
@@ -51,45 +51,15 @@ TEST_P(AxisUnder, SwingsFreely) {
 }
 
 TEST_P(AxisUnder, StopCatchesABarAndCarriesIt) {
-    const World world = with_solver();
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, limited(-30 * kDegree, 60 * kDegree));
-    double overrun = 0;
-    for (int frame = 0; frame < 300; ++frame) {
-        world.step();
-        overrun = std::max(overrun, -30 * kDegree - motion(joint).value);
-    }
-    EXPECT_LE(overrun, 1 * kDegree) << "at the blow";
-    EXPECT_NEAR(motion(joint).value, -30 * kDegree, 0.1 * kDegree);
-    EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
-    const double moment = kBarMass * kG * 0.5 * std::cos(30 * kDegree);
-    EXPECT_NEAR(forces(joint).stop, moment, 0.01 * moment);
-    EXPECT_EQ(forces(joint).active_stop, -1);
+    catch_a_bar(with_solver(), {.blow = 1 * kDegree, .rest = 0.1 * kDegree, .moment = 0.01});
 }
 
-TEST_P(AxisUnder, CompliantStopYields) {
-    const World world = with_solver();
-    taut_axis_def axis = limited(0, 1);
-    axis.stop_compliance = 0.01f;
-    axis.stop_damping = 5;
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, axis);
-    world.step(600);
-    const double yielded = motion(joint).value;
-    EXPECT_NEAR(yielded, -0.01 * kBarMass * kG * 0.5 * std::cos(yielded), 5e-4);
-}
+TEST_P(AxisUnder, CompliantStopYields) { yield_at_a_stop(with_solver(), 5e-4); }
 
 TEST_P(AxisUnder, MotorAcceleratesByItsTorqueThenHoldsItsSpeed) {
     constexpr double kInertia = 0.5;
     const World world = with_solver(0);
-    const taut_body rotor = world.add({.mass = 1, .inertia = {0.3, 0.3, kInertia}});
-    const taut_joint joint = hinge(world, {}, rotor, {0, 0, 0}, {0, 0, 1}, motor(6, 3));
-    const double reached = 6 * kInertia / 3;  // [s]
-    const int before = static_cast<int>(0.5 * reached / world.frame());
-    world.step(before);
-    EXPECT_NEAR(motion(joint).rate, 3 / kInertia * before * world.frame(), 1e-3);
-    EXPECT_NEAR(forces(joint).drive, 3, 1e-5);
-    world.step(static_cast<int>(reached / world.frame()));
-    EXPECT_NEAR(motion(joint).rate, 6, 1e-3);
-    EXPECT_NEAR(forces(joint).drive, 0, 0.02);
+    const taut_joint joint = reach_a_speed(world, world.add({.mass = 1, .inertia = {0.3, 0.3, kInertia}}), kInertia);
     // Switched off it leaves nothing behind.
     const taut_axis_def off = free_axis();
     ok(taut_joint_set_axis(joint, 0, &off));
@@ -97,45 +67,11 @@ TEST_P(AxisUnder, MotorAcceleratesByItsTorqueThenHoldsItsSpeed) {
     EXPECT_NEAR(motion(joint).rate, 6, 2e-3);
 }
 
-TEST_P(AxisUnder, MotorGivesWayBeyondItsTorque) {
-    const World world = with_solver();
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, motor(0, 4));
-    world.step(20);
-    EXPECT_LT(motion(joint).value, -0.2);
-    EXPECT_NEAR(forces(joint).drive, 4, 1e-4);
-    const taut_axis_def enough = motor(0, kBarMass * kG);
-    ok(taut_joint_set_axis(joint, 0, &enough));
-    world.step(60);
-    const double held = motion(joint).value;
-    world.step(60);
-    EXPECT_NEAR(motion(joint).value, held, 5e-3);
-}
+TEST_P(AxisUnder, MotorGivesWayBeyondItsTorque) { give_way_and_hold(with_solver(), 5e-3); }
 
-TEST_P(AxisUnder, DriveHoldsATargetLikeASpring) {
-    const World world = with_solver();
-    taut_axis_def axis = free_axis();
-    axis.drive.stiffness = 200;
-    axis.drive.damping = 20;
-    axis.drive.target = 0.4f;
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, axis);
-    world.step(600);
-    const double angle = motion(joint).value, moment = kBarMass * kG * 0.5 * std::cos(angle);
-    EXPECT_NEAR(200 * (0.4 - angle), moment, 0.01 * moment);
-    EXPECT_NEAR(forces(joint).drive, moment, 0.01 * moment);
-}
+TEST_P(AxisUnder, DriveHoldsATargetLikeASpring) { hold_like_a_spring(with_solver(), 0.01); }
 
-TEST_P(AxisUnder, FrictionStopsARotorAfterItsTime) {
-    const World world = with_solver(0);
-    const taut_body body = world.add({.spin = {0, 0, 10}, .mass = 1, .inertia = {0.3, 0.3, 0.5}});
-    const taut_joint joint = hinge(world, {}, body, {0, 0, 0}, {0, 0, 1}, with_friction(2));
-    const double stops = 10 * 0.5 / 2;  // [s]
-    const int half = static_cast<int>(0.5 * stops / world.frame());
-    world.step(half);
-    EXPECT_NEAR(motion(joint).rate, 10 - 2 / 0.5 * half * world.frame(), 1e-2);
-    EXPECT_NEAR(forces(joint).friction, -2, 1e-5);
-    world.step(half + 20);
-    EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
-}
+TEST_P(AxisUnder, FrictionStopsARotorAfterItsTime) { stop_a_rotor(with_solver(0), 1e-2); }
 
 // What rubs on a swing rubs on its way around the cone too: a body that goes around the rim comes to rest after
 // I u / torque.
@@ -170,14 +106,7 @@ TEST_P(AxisUnder, FrictionOfASwingActsAroundItsCone) {
 }
 
 TEST_P(AxisUnder, FrictionHoldsBelowItsForceAndSlipsAbove) {
-    for (const double factor : {0.9, 1.1}) {
-        const World world = with_solver();
-        const taut_joint joint = slider(world, {}, world.add({.mass = 2, .inertia = {1, 1, 1}}), {0, 0, 0}, {0, 1, 0},
-                                        with_friction(2 * kG / factor));
-        world.step(120);
-        const double slid = -motion(joint).value, net = kG * (1 - 1 / factor), t = 120 * world.frame();
-        EXPECT_NEAR(slid, factor < 1 ? 0 : 0.5 * net * t * t, 0.02) << factor;
-    }
+    for (const double factor : {0.9, 1.1}) hold_or_slip(with_solver(), factor, 0.02, 0.02);
 }
 
 std::string solver_name(const testing::TestParamInfo<taut_solver>& tested) {

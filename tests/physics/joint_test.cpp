@@ -1,5 +1,5 @@
 // Joints with stops, drives and friction, against what mechanics says of them.
-#include "physics/joint_lab.h"
+#include "physics/joint_experiments.h"
 
 namespace {
 
@@ -8,36 +8,13 @@ using namespace lab;
 // ---------------------------------------------------------------- stops
 
 TEST(HingeStop, CatchesABarAndCarriesIt) {
-    World world;
-    const taut_body body = bar(world);
-    const taut_joint joint = hinge(world, {}, body, {0, 0, 0}, {0, 0, 1}, limited(-30 * kDegree, 60 * kDegree));
-    double overrun = 0;
-    for (int frame = 0; frame < 300; ++frame) {
-        world.step();
-        overrun = std::max(overrun, -30 * kDegree - motion(joint).value);
-    }
-    EXPECT_LE(overrun, 0.3 * kDegree) << "at the blow";
-    EXPECT_NEAR(motion(joint).value, -30 * kDegree, 0.02 * kDegree);
-    EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
-    const taut_axis_forces f = forces(joint);
-    const double moment = kBarMass * kG * 0.5 * std::cos(30 * kDegree);
-    EXPECT_NEAR(f.stop, moment, 0.002 * moment);
-    EXPECT_EQ(f.active_stop, -1);
+    const World world;
+    const taut_joint joint = catch_a_bar(world, {.blow = 0.3 * kDegree, .rest = 0.02 * kDegree, .moment = 0.002});
     EXPECT_LT(error(joint), 1e-5);
     EXPECT_LT(angular_error(joint), 1e-4);
 }
 
-// A stop of compliance c yields by moment * c.
-TEST(HingeStop, YieldsByItsCompliance) {
-    World world;
-    taut_axis_def axis = limited(0, 1);
-    axis.stop_compliance = 0.01f;
-    axis.stop_damping = 5;
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, axis);
-    world.step(600);
-    const double yielded = motion(joint).value;
-    EXPECT_NEAR(yielded, -0.01 * kBarMass * kG * 0.5 * std::cos(yielded), 2e-4);
-}
+TEST(HingeStop, YieldsByItsCompliance) { yield_at_a_stop(World(), 2e-4); }
 
 // Fifty bodies with stops at 20 degrees, 1000 kg at the end: each angle stays within its stops.
 TEST(HingeStop, HoldsUnderAThousandTimesTheWeight) {
@@ -113,45 +90,12 @@ TEST(ConeTwist, KeepsItsCone) {
 
 TEST(Motor, AcceleratesByItsTorqueThenHoldsItsSpeed) {
     const World world = weightless();
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, motor(6, 3));
-    const double reached = 6 * kAboutEnd / 3;  // [s]
-    const int before = static_cast<int>(0.5 * reached / world.frame());
-    world.step(before);
-    EXPECT_NEAR(motion(joint).rate, 3 / kAboutEnd * before * world.frame(), 1e-3);
-    EXPECT_NEAR(forces(joint).drive, 3, 1e-5);
-    world.step(static_cast<int>(reached / world.frame()));
-    EXPECT_NEAR(motion(joint).rate, 6, 1e-3);
-    EXPECT_NEAR(forces(joint).drive, 0, 0.02);
+    reach_a_speed(world, bar(world), kAboutEnd);
 }
 
-// Against a load beyond its strength it slips at its limit.
-TEST(Motor, GivesWayBeyondItsTorque) {
-    World world;
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, motor(0, 4));
-    world.step(20);
-    EXPECT_LT(motion(joint).value, -0.2);
-    EXPECT_NEAR(forces(joint).drive, 4, 1e-4);
-    const double strong = kBarMass * kG;
-    const taut_axis_def enough = motor(0, strong);
-    ok(taut_joint_set_axis(joint, 0, &enough));
-    world.step(60);
-    const double held = motion(joint).value;
-    world.step(60);
-    EXPECT_NEAR(motion(joint).value, held, 1e-3);
-}
+TEST(Motor, GivesWayBeyondItsTorque) { give_way_and_hold(World(), 1e-3); }
 
-TEST(Drive, HoldsATargetLikeASpring) {
-    World world;
-    taut_axis_def axis = free_axis();
-    axis.drive.stiffness = 200;
-    axis.drive.damping = 20;
-    axis.drive.target = 0.4f;
-    const taut_joint joint = hinge(world, {}, bar(world), {0, 0, 0}, {0, 0, 1}, axis);
-    world.step(600);
-    const double angle = motion(joint).value;
-    EXPECT_NEAR(200 * (0.4 - angle), kBarMass * kG * 0.5 * std::cos(angle), 0.02);
-    EXPECT_NEAR(forces(joint).drive, kBarMass * kG * 0.5 * std::cos(angle), 0.02);
-}
+TEST(Drive, HoldsATargetLikeASpring) { hold_like_a_spring(World(), 0.002); }
 
 // Given as 2 Hz undamped: what it swings with, but for the damping of implicit Euler.
 TEST(Drive, SwingsAtTheFrequencyGiven) {
@@ -177,31 +121,10 @@ TEST(Drive, SwingsAtTheFrequencyGiven) {
 
 // ---------------------------------------------------------------- friction
 
-TEST(JointFriction, StopsARotorAfterItsTime) {
-    const World world = weightless();
-    const taut_body body = world.add({.spin = {0, 0, 10}, .mass = 1, .inertia = {0.3, 0.3, 0.5}});
-    const taut_joint joint = hinge(world, {}, body, {0, 0, 0}, {0, 0, 1}, with_friction(2));
-    const double stops = 10 * 0.5 / 2;  // [s]
-    const int half = static_cast<int>(0.5 * stops / world.frame());
-    world.step(half);
-    EXPECT_NEAR(motion(joint).rate, 10 - 2 / 0.5 * half * world.frame(), 1e-3);
-    EXPECT_NEAR(forces(joint).friction, -2, 1e-5);
-    world.step(half + 20);
-    EXPECT_NEAR(motion(joint).rate, 0, 1e-3);
-}
+TEST(JointFriction, StopsARotorAfterItsTime) { stop_a_rotor(weightless(), 1e-3); }
 
 TEST(JointFriction, HoldsBelowItsForceAndSlipsAbove) {
-    for (const double factor : {0.9, 1.1}) {
-        World world;
-        const taut_joint joint = slider(world, {}, world.add({.mass = 2, .inertia = {1, 1, 1}}), {0, 0, 0}, {0, 1, 0},
-                                        with_friction(2 * kG / factor));
-        world.step(120);
-        const double slid = -motion(joint).value;
-        if (factor < 1)
-            EXPECT_LT(slid, 1e-3);
-        else
-            EXPECT_NEAR(slid, 0.5 * (kG - kG / factor) * 4, 0.01);
-    }
+    for (const double factor : {0.9, 1.1}) hold_or_slip(World(), factor, 1e-3, 0.01);
 }
 
 // ---------------------------------------------------------------- what is locked

@@ -1,16 +1,9 @@
 // The host's filter and one-way colliders: what they ignore goes free, what they accept moves as mechanics says.
-#include "physics/lab.h"
+#include "physics/contact_lab.h"
 
 namespace {
 
 using namespace lab;
-
-taut_collider collider_of(taut_body body) {
-    taut_collider out{};
-    uint32_t count = 0;
-    ok(taut_body_get_colliders(body, &out, 1, &count));
-    return out;
-}
 
 // A host whose answer is a function, with all that it was asked.
 struct Host {

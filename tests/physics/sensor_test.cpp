@@ -2,18 +2,12 @@
 #include <random>
 #include <set>
 
-#include "physics/lab.h"
+#include "physics/contact_lab.h"
+#include "physics/surface_lab.h"
 
 namespace {
 
 using namespace lab;
-
-taut_collider collider_of(taut_body body) {
-    taut_collider out{};
-    uint32_t count = 0;
-    ok(taut_body_get_colliders(body, &out, 1, &count));
-    return out;
-}
 
 taut_body add_sensor(const World& world, taut_body_kind kind, taut_shape shape, const Vec& position,
                      uint32_t flags = TAUT_COLLIDER_SENSOR) {
@@ -41,12 +35,6 @@ std::set<uint64_t> overlaps_of(taut_collider sensor) {
     std::set<uint64_t> out;
     for (const taut_collider each : found) out.insert(each.bits);
     EXPECT_EQ(out.size(), found.size());
-    return out;
-}
-
-taut_events events_of(const World& world) {
-    taut_events out{};
-    ok(taut_world_get_events(world.handle, &out));
     return out;
 }
 
@@ -89,16 +77,7 @@ TEST(Sensor, DetectsWhatItsRuleSays) {
     const taut_body plain = add_sensor(world, TAUT_BODY_STATIC, box, {0, 0, 0});
     const taut_body other =
         add_sensor(world, TAUT_BODY_KINEMATIC, box, {0.2, 0, 0}, TAUT_COLLIDER_SENSOR | TAUT_COLLIDER_SENSES_STATIC);
-    const taut_vec3 corners[] = {{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}};
-    const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
-    taut_mesh_def mesh;
-    taut_mesh_def_init(&mesh);
-    mesh.vertices = corners;
-    mesh.vertex_count = 4;
-    mesh.indices = triangles;
-    mesh.triangle_count = 2;
-    taut_shape floor{};
-    ok(taut_world_add_mesh(world.handle, &mesh, &floor));
+    const taut_shape floor = mesh(world, {{{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}}, {0, 1, 2, 0, 2, 3}});
     const taut_body ground = world.add({.kind = TAUT_BODY_STATIC, .shape = floor});
     const taut_body wall = world.add({.kind = TAUT_BODY_STATIC, .shape = world.plane(), .position = {0, 0.1, 0}});
     const taut_body moving = world.add({.kind = TAUT_BODY_KINEMATIC, .shape = ball});

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "physics/contact_lab.h"
 #include "scenes/running_scene.h"
 
 namespace lab {
@@ -18,12 +19,6 @@ inline bool all_asleep(const std::vector<taut_body>& bodies) {
     return std::none_of(bodies.begin(), bodies.end(), awake);
 }
 inline bool all_awake(const std::vector<taut_body>& bodies) { return std::all_of(bodies.begin(), bodies.end(), awake); }
-
-inline taut_events events_of(taut_world world) {
-    taut_events events{};
-    ok(taut_world_get_events(world, &events));
-    return events;
-}
 
 // Poses and velocities to the last bit.
 struct Bits {

@@ -1,0 +1,63 @@
+// What a cable is made of, for the files that make, change and read cables.
+#pragma once
+
+#include "models/cable.h"
+
+namespace taut {
+
+inline bool links(const Cable& cable) { return cable.kind == CableKind::links; }
+// From a link's centre of mass.
+inline Vec3 along(double length) { return {0, length, 0}; }
+
+// ---------------------------------------------------------------- nodes and capsules
+
+// Metres of cable that are the mass of node i, or that bend at point i.
+double share_of(const Cable& cable, uint32_t i);
+uint32_t add_cable_node(World& world, uint32_t index, const NodeMotion& motion, double length);
+// Mass, inertia and shape of node i after a change of length.
+void set_cable_mass(World& world, const Cable& cable, uint32_t i);
+// Removes a node on which no joint ends any more. reserve_ended for it has gone before.
+void drop_cable_node(World& world, uint32_t node);
+
+// Of particles, the capsule of a segment, which is its first point's; and leading it to the present end of the segment,
+// with room reserved for the end events of its pairs.
+void add_segment(World& world, const Cable& cable, uint32_t node, uint32_t next, double length);
+void tie_segment(World& world, const Cable& cable, uint32_t segment);
+// With its shape, which is its own.
+void drop_capsule(World& world, uint32_t collider);
+
+// ---------------------------------------------------------------- joints
+
+// The joint before or after a link or, of an end, the one that holds it.
+inline const JointRef& joint_before(const Cable& c, uint32_t i) { return i == 0 ? c.end[0].joint : c.joint[i - 1]; }
+inline const JointRef& joint_after(const Cable& c, uint32_t i) {
+    return i + 1 == c.node.size() ? c.end[1].joint : c.joint[i];
+}
+// Metres of cable whose stretching and bending a joint does.
+double span_before(const Cable& cable, uint32_t i);
+double span_after(const Cable& cable, uint32_t i);
+
+void set_softness(const Cable& cable, Joint& joint, double span);
+// Length and softness of a segment of particles.
+void set_segment(const Cable& cable, Joint& joint, double length);
+// Joint i with its data, between nodes whose segments have their lengths.
+Joint make_inner_joint(const Cable& cable, uint32_t i);
+// What holds end e.
+Joint make_end_joint(const World& world, const Cable& cable, int e, const CableTie& tie);
+
+// Of particles: what bends at a point. An end's is there where it is clamped.
+inline JointRef bend_at(const Cable& c, uint32_t point) {
+    if (point == 0) return c.end[0].clamp;
+    if (point == c.segments()) return c.end[1].clamp;
+    return c.bend.empty() ? JointRef{} : c.bend[point - 1];
+}
+Joint make_bend(const Cable& cable, uint32_t point);
+// The bend at a clamped end: the body that holds the end has a point a segment behind it.
+Joint make_clamp(const World& world, const Cable& cable, int e, const CableTie& tie);
+// Nodes and softness of the bend at a point, if there is one, after changes beside it.
+void tie_bend(World& world, const Cable& cable, uint32_t point);
+
+// Removes what has no hold any more where a joint of a cable of particles is gone: bends and capsules.
+void drop_loose_parts(World& world);
+
+}  // namespace taut
