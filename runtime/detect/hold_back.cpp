@@ -260,9 +260,9 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
                collision::Broadphase& broadphase, Nodes& nodes) {
     Mechanisms& mechanisms = pairs.mechanisms;
     mechanisms.root.clear();
-    mechanisms.any_driven = false;
+    mechanisms.any_drives = false;
     bool again = true;
-    for (uint8_t round = 1; again && round <= (mechanisms.any_driven ? kMostRounds : kRounds); ++round) {
+    for (uint8_t round = 1; again && round <= (mechanisms.any_drives ? kMostRounds : kRounds); ++round) {
         const bool any_astray = find_marks(team, nodes, colliders, shapes, round, pairs);
         if (round == 1 && !any_astray && !pairs.any_fast) {
             let_go(pairs.courses);

@@ -6,7 +6,17 @@
 
 namespace taut {
 
+namespace {
+
 constexpr uint32_t kMostStays = 10;  // frames; in the next it goes on
+
+// A kinematic body on its way.
+bool drives(const Nodes& nodes, uint32_t node) {
+    const NodeMotion& m = nodes.motion[node];
+    return nodes.info[node].kind == NodeKind::kinematic && (m.v != Vec3::Zero() || m.w != Vec3::Zero());
+}
+
+}  // namespace
 
 bool Mechanism::may_stay() {
     if (!moves_) return true;
@@ -48,8 +58,10 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
         if (root[node] != node) of.next[node] = std::exchange(of.next[root[node]], node);
     }
     of.drive.assign(slots, 0);
-    for (uint32_t node = 0; node < slots; ++node)
+    for (uint32_t node = 0; node < slots; ++node) {
         if (!held(node)) of.drive[root[node]] += static_cast<float>(nodes.mass[node].mass);
+        of.any_drives = of.any_drives || drives(nodes, node);
+    }
     of.ties.assign(slots, 0);
     for (const Joint& joint : joints.record) {
         const auto ends = joint.nodes();

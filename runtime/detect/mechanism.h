@@ -55,7 +55,7 @@ public:
         return moves_ && !held && other.drive() > kDrives * drive();
     }
     void go_along_with(const Mechanism& other, const Vec3& way, const Vec3& normal, uint8_t round) {
-        all_.any_driven = true;
+        all_.any_drives = true;
         all_.ties[root_] |= kDriven;
         all_.drive[root_] = other.drive() / (2 * kDrives);
         const Vec3 on = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;

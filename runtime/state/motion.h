@@ -74,7 +74,7 @@ struct Mechanisms {
     Array<uint32_t> next;     // of the ring of them
     Array<uint8_t> ties;      // of a root; detect/mechanism.h
     Array<float> drive;       // of a root; detect/mechanism.h [kg]
-    bool any_driven = false;  // in this step
+    bool any_drives = false;  // any of them others, in this step
     Array<uint8_t> put_back;  // the last round in which it was; 0: none
     Array<Stay> stays;        // outlive the step
 };

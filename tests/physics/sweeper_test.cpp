@@ -182,4 +182,70 @@ TEST(TurningBlade, TakesAlongWhatItMeets) {
         }
 }
 
+// Two metres wide, of walls of 10 cm, with a dozen things in it; kinematic or of 100 t.
+struct Container {
+    static constexpr double kHalf = 1, kWall = 0.05;  // [m]
+
+    CableLab lab;
+    taut_body body;
+    Bodies content;
+
+    Container(taut_body_kind kind, std::mt19937& random) {
+        taut_body_def def;
+        taut_body_def_init(&def);
+        def.kind = kind;
+        if (kind == TAUT_BODY_DYNAMIC) {
+            def.mass = def.inertia.xx = def.inertia.yy = def.inertia.zz = 1e5f;
+            def.gravity_scale = 0;
+        }
+        ok(taut_world_add_body(lab.handle, &def, &body));
+        for (const Vec& out : {Vec(1, 0, 0), Vec(0, 1, 0), Vec(0, 0, 1)})
+            for (double side : {-kHalf, kHalf}) add_wall(out, side);
+        const auto within = [&] { return between(random, -0.7, 0.7); };
+        for (int i = 0; i < 12; ++i)
+            content.push_back(add(lab, kThings[i % 5], {within(), within(), within()}, random).front());
+    }
+    void add_wall(const Vec& out, double side) {
+        taut_collider_def def;
+        taut_collider_def_init(&def);
+        const double wide = kHalf + kWall;
+        def.shape = lab.box(Vec(wide, wide, wide) - (wide - kWall) * out);
+        def.position = (side * out).narrow();
+        taut_collider collider{};
+        ok(taut_body_add_collider(body, &def, &collider));
+    }
+    // Every third of a second it jumps from rest to a speed some way, turning, or back.
+    void shake(double speed, std::mt19937& random) {
+        for (int jolt = 0; jolt < 12; ++jolt) {
+            const double now = jolt % 2 ? 0 : speed;
+            ok(taut_body_set_velocity(body, (now * direction(random)).narrow(),
+                                      (now / 5 * direction(random)).narrow()));
+            lab.step(20);
+        }
+    }
+    int outside() const {
+        const BodyState at = state(body);
+        return static_cast<int>(std::count_if(content.begin(), content.end(), [&](taut_body thing) {
+            const Vec p = at.rotation.rotate_back(position(thing) - at.position);
+            return !(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < kHalf);
+        }));
+    }
+};
+
+// A few that others press against a wall are pressed through it.
+TEST(ShakenContainer, KeepsWhatIsInIt) {
+    for (taut_body_kind kind : {TAUT_BODY_KINEMATIC, TAUT_BODY_DYNAMIC})
+        for (double speed : {2.0, 5.0, 20.0, 50.0, 100.0}) {
+            std::mt19937 random(13);
+            int lost = 0;
+            for (int start = 0; start < 8; ++start) {
+                Container container(kind, random);
+                container.lab.step(30);
+                container.shake(speed, random);
+                lost += container.outside();
+            }
+            EXPECT_LE(lost, speed > 10 ? 14 : 2) << "of 96 at " << speed << " m/s";
+        }
+}
+
 }  // namespace
