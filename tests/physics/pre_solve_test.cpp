@@ -182,7 +182,7 @@ TEST(PreSolve, RefusesAnswersOutOfRangeWithAWarning) {
                               {1, 0, -0.1f},
                               {2, 0, 0},
                               {-1, 0, 0}}) {
-        host.answer = [&](const taut_pre_solve&, taut_pre_solve_answer& answer) {
+        host.answer = [bad](const taut_pre_solve&, taut_pre_solve_answer& answer) {
             answer = {bad.friction, bad.restitution};
             return bad.said;
         };
