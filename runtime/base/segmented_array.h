@@ -30,22 +30,22 @@ public:
     explicit SegmentedArray(Memory& memory) : allocator_(memory), segment_(memory) {}
     ~SegmentedArray() {
         for (size_t i = 0; i < segment_.size(); i += kTogether)
-            allocator_.deallocate(segment_[i], kTogether * kSegment);
+            allocator_.deallocate(segment_[i].first, kTogether * kSegment);
     }
     SegmentedArray(const SegmentedArray&) = delete;
     SegmentedArray& operator=(const SegmentedArray&) = delete;
 
     size_t size() const { return size_; }
     size_t capacity() const { return segment_.size() * kSegment; }
-    T& operator[](size_t index) { return segment_[index / kSegment][index % kSegment]; }
-    const T& operator[](size_t index) const { return segment_[index / kSegment][index % kSegment]; }
+    T& operator[](size_t index) { return segment_[index / kSegment].first[index % kSegment]; }
+    const T& operator[](size_t index) const { return segment_[index / kSegment].first[index % kSegment]; }
 
     // Throws std::bad_alloc and stays as it is, but for room that it got.
     void reserve(size_t size) {
         while (capacity() < size) {
             reserve_more(segment_, kTogether);
             T* const piece = allocator_.allocate(kTogether * kSegment);
-            for (size_t i = 0; i < kTogether; ++i) segment_.push_back(piece + i * kSegment);
+            for (size_t i = 0; i < kTogether; ++i) segment_.push_back({piece + i * kSegment});
         }
     }
     // Throws as reserve().
@@ -65,8 +65,12 @@ private:
     static constexpr size_t kSegment = 16;
     static constexpr size_t kTogether = std::max<size_t>(32768 / (kSegment * sizeof(T)), 1);
 
+    struct Segment {
+        T* first;
+    };
+
     HostAllocator<T> allocator_;
-    Array<T*> segment_;
+    Array<Segment> segment_;
     size_t size_ = 0;
 };
 
