@@ -145,8 +145,8 @@ TEST_P(OverADrum, SlidesOrHolds) {
         depth = std::max(depth, deepest(lab));
     }
     const double sunk = settled - position(heavy).y;
-    const auto sinks = [&](double limit) {  // where friction takes a ratio of so much
-        return 0.5 * kG * (c.ratio - limit) / (c.ratio + limit) * (1.5 * 1.5 - 0.5 * 0.5);
+    const auto sinks = [ratio = c.ratio](double limit) {  // where friction takes a ratio of so much
+        return 0.5 * kG * (ratio - limit) / (ratio + limit) * (1.5 * 1.5 - 0.5 * 0.5);
     };
     const double coulomb = sinks(std::exp(c.friction * kPi)), free = sinks(1);
     RecordProperty("sunk_mm", std::to_string(1e3 * sunk));
@@ -245,7 +245,7 @@ class DroppedSegment : public testing::TestWithParam<Bounce> {};
 TEST_P(DroppedSegment, ReboundsToTheSquareOfRestitution) {
     const auto [solver, e] = GetParam();
     constexpr double kDrop = 1, r = 0.5 * kDiameter;
-    CableLab lab([&](taut_world_def& def) { def.solver = solver, def.fixed_substeps = 1; });
+    CableLab lab([kind = solver](taut_world_def& def) { def.solver = kind, def.fixed_substeps = 1; });
     lab.add_ground(0, 0);
     taut_cable_def d = CableLab::plan(TAUT_CABLE_PARTICLES);
     const taut_pos path[2] = {{-0.2, r + kDrop, 0}, {0.2, r + kDrop, 0}};

@@ -75,7 +75,7 @@ void Playground::add_shapes() {
 }
 
 void Playground::add_terrain() {
-    const int side = static_cast<int>(2 * kHalf / kCell);
+    constexpr int side = static_cast<int>(2 * kHalf / kCell);
     std::vector<taut_vec3> vertices;
     std::vector<uint32_t> indices;
     for (int row = 0; row <= side; ++row)
@@ -83,7 +83,7 @@ void Playground::add_terrain() {
             const double x = kCell * column - kHalf, z = kCell * row - kHalf;
             vertices.push_back(Vec(x, height(x, z), z).narrow());
         }
-    const auto at = [side](int row, int column) { return static_cast<uint32_t>(row * (side + 1) + column); };
+    const auto at = [](int row, int column) { return static_cast<uint32_t>(row * (side + 1) + column); };
     for (int row = 0; row < side; ++row)
         for (int column = 0; column < side; ++column) {
             const uint32_t a = at(row, column), b = at(row + 1, column), c = at(row, column + 1),
