@@ -9,6 +9,7 @@
 #include "detect/impact.h"
 #include "detect/sensors.h"
 #include "integrate/integrate.h"
+#include "integrate/substeps.h"
 #include "models/cable.h"
 #include "publish/publish.h"
 #include "sleep/sleep.h"
@@ -61,6 +62,16 @@ void detect(World& w, Stopwatch& watch) {
     w.profile.narrowphase_us = watch.lap();
 }
 
+// Rows and lanes of a group for the frame.
+void build_group(World& w, const Group& group, const Solver& solver, const ContactKernels& kernels) {
+    build_rows(w.system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
+    if (solver.lanes) {
+        build_lanes(w.team, w.system, group, w.pairs, w.nodes, kernels);
+        build_joint_lanes(w.team, w.system, group, w.def.time_step);
+    }
+    watch_group(group, w.system, w.pairs, w.watch);
+}
+
 // All substeps of a group of islands, which no other group touches.
 void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSettings& settings, SolverReport& report,
                  Stopwatch& watch) {
@@ -68,38 +79,40 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     Group& group = w.partition.groups[index];
     const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
     const double frame = w.def.time_step;
-    system.h = frame / group.substeps;
-    build_rows(system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
-    if (solver.lanes) {
-        build_lanes(w.team, system, group, w.pairs, w.nodes, *settings.kernels);
-        build_joint_lanes(w.team, system, group, frame);
-    }
-    watch_group(group, system, w.pairs, w.watch);
+    Substeps part(frame, group.substeps, solver.direct && w.def.fixed_substeps == 0);
+    system.h = part.length();
+    build_group(w, group, solver, *settings.kernels);
     w.profile.predict_us += watch.lap();
 
     bool loaded = false, sane = false;  // the nodes, as far as is known
-    for (uint32_t i = 0; i < group.substeps; ++i) {
+    while (!part.done()) {
+        const uint32_t i = part.number();
+        if (part.length() != system.h) change_length(w.team, system, group, part.length(), frame);
         if (loaded || !sane) loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
-        find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, i * system.h, system.h);
-        shift_kinematic(system, w.nodes, i * system.h);
+        find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.h);
+        shift_kinematic(system, w.nodes, part.begin());
         predict(w.team, system, group, w.nodes, gravity);
         if (solver.lanes && i > 0) turn_lanes(w.team, system, *settings.kernels);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();
-        evaluate_rows(w.team, system, 1 - (i + 1.0) / group.substeps, frame);
+        evaluate_rows(w.team, system, part.left(), frame);
         if (solver.lanes) evaluate_joint_lanes(w.team, system, *settings.joint_kernels);
         tell(w, {Stage::assemble, index, i});
         w.profile.assemble_us += watch.lap();
-        Substep substep{w.team,    system, group,     w.partition.blocks,      w.nodes,
-                        settings,  report, w.scratch, i + 1 == group.substeps, i % 2 == 0,
-                        i % 2 == 1};
+        Substep substep{w.team, system,    group,       w.partition.blocks, w.nodes,    settings,
+                        report, w.scratch, part.last(), i % 2 == 0,         i % 2 == 1, part.most_turn()};
         solver.solve(substep);
+        if (substep.is_too_long()) {
+            part.halve();
+            w.profile.sweep_us += watch.lap();
+            continue;
+        }
         if (substep.last) report.residual = std::max(report.residual, row_residual(system, *settings.joint_kernels));
         tell(w, {Stage::solve, index, i});
         w.profile.sweep_us += watch.lap();
         commit(w.team, system, group, w.nodes);
-        shift_kinematic(system, w.nodes, (i + 1) * system.h);
+        shift_kinematic(system, w.nodes, part.end());
         if (solver.settle) {
             solver.settle(substep);
             correct(system, group, w.partition.blocks, w.nodes);
@@ -113,7 +126,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         gather_impulses(system, w.pairs, w.watch);
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
+        part.advance(substep.turn);
     }
+    w.profile.substeps = std::max(w.profile.substeps, part.number());
     if (!sane) quarantine(w.team, w.nodes, group.nodes, w.frozen);
     if (!solver.lanes) return;
     store_lanes(w.team, system, w.pairs);
@@ -133,10 +148,7 @@ void solve(World& w, Stopwatch& watch) {
     SolverReport report;
     begin_frame(w.team, w.system, w.nodes, w.joints);
     w.profile.predict_us += watch.lap();
-    for (uint32_t i = 0; i < w.partition.group_count; ++i) {
-        solve_group(w, i, solver, settings, report, watch);
-        w.profile.substeps = std::max(w.profile.substeps, w.partition.groups[i].substeps);
-    }
+    for (uint32_t i = 0; i < w.partition.group_count; ++i) solve_group(w, i, solver, settings, report, watch);
     if (const uint32_t failures = report.failures; failures > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (!w.frozen.empty()) {

@@ -84,6 +84,7 @@ void Partition::choose_substeps(const PartitionRules& rules) {
     for (Island& island : island_) {
         uint32_t factor = 1;
         island.sweeps = 1;
+        island.whips = false;
         if (island.tower) {
             island.substeps = rules.substeps;
             continue;
@@ -105,6 +106,10 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         }
         if (!block.tower && (block.mass_ratio > kExtremeMassRatio || block.memory.escalated))
             island.substeps = std::max(island.substeps, 2 * rules.substeps);
+        if (block.memory.whips_left > 0) {
+            --block.memory.whips_left;
+            island.whips = true;
+        }
     }
 }
 

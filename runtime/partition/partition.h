@@ -1,9 +1,10 @@
 // Who is solved with whom: islands, groups of islands with the same substep count, blocks, colours.
 //
-//   island  nodes connected by joints or touching pairs; independent of every other island during a frame
+//   island  nodes connected by joints or touching pairs; independent of every other island during a frame, but for the
+//           length of the substeps that it shares with its group
 //   block   nodes connected by joints, with the bodies that touch them, or a tower: solved directly, contacts included;
 //           its elimination order is kept while its graph stays
-//   group   all islands that take the same number of substeps and sweeps; solved together
+//   group   all islands that take the same number of substeps and sweeps; solved together; those that whip apart
 //   colour  constraints of a group of which no two share a moving node; within, by place: so that threads that take a
 //           part each of every colour meet at few nodes
 #pragma once
@@ -23,6 +24,7 @@ struct BlockMemory {
     uint32_t since_trip = 1u << 30;  // substeps since the guard last tripped
     bool escalated = false;          // tripped twice in a short time: the island takes more substeps
     uint32_t refused_left = 0;       // frames for which a tower that was refused takes more substeps
+    uint32_t whips_left = 0;         // frames for which its island is apart from those that need no shorter substeps
 };
 
 // What a direct solve takes together, with what it remembers over frames.
@@ -48,6 +50,7 @@ struct Block {
     uint32_t first_row_block = 0;          // its joints' rows in System::rows, of this frame
     uint32_t first_contact = 0, contact_count = 0;  // its contacts' rows, of this substep
     uint32_t first_bounded = 0, bounded_count = 0;  // its bounded rows in SolverScratch, of this substep
+    float turn = 0;                                 // of its joints' levers and lines in this substep, at most [rad]
 
     // What its direct solve keeps over substeps; see solvers/block_ldlt.cpp.
     BlockMemory memory;
@@ -114,9 +117,9 @@ private:
         // Of the frame.
         uint32_t substeps = 0, sweeps = 1, group = 0;
         float ratio = 1;  // heaviest load over its support, where any is kHeavyOnLight
-        bool tower = false;
+        bool tower = false, whips = false;
 
-        uint32_t effort() const { return substeps << 8 | sweeps; }
+        uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
     };
 
     struct Component {  // of the graph of blocks, by root

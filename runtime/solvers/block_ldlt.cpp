@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kSettleMassRatio = 100;  // see block_solve.cpp
 constexpr uint32_t kRefusedFrames = 60;   // a refused tower takes more substeps for so long
+constexpr uint32_t kWhipsFrames = 60;     // a block that turned too far is apart from calm ones for so long
 
 // The velocity that the sweeps left on a node of a block, relative to the one they were given: contact impulses.
 void add_contact_changes(Substep& s, const Block& block) {
@@ -69,7 +70,16 @@ void sweep_tower(Substep& s, Block& block) {
 }
 
 void finish(Substep& s, Block& block, BlockSolve& solve) {
-    if (!solve.finish()) sweep_tower(s, block);
+    block.turn = static_cast<float>(solve.largest_turn());
+    if (static_cast<double>(block.turn) > s.most_turn)
+        block.memory.whips_left = kWhipsFrames;
+    else if (!solve.finish())
+        sweep_tower(s, block);
+}
+
+void note_turn(Substep& s) {
+    for (uint32_t b : s.group.blocks)
+        if (!s.blocks[b].failed) s.turn = std::max(s.turn, static_cast<double>(s.blocks[b].turn));
 }
 
 // act(block) for each block of the group, several at once: blocks share no moving node.
@@ -115,7 +125,7 @@ void solve(Substep& s) {
     });
     s.report.direct_us += watch.lap();
     sweep_biased(s);
-    if (alone) return;
+    if (alone) return note_turn(s);
     watch.lap();
     for_blocks(s, [&](Block& block) {
         if (block.failed) return;
@@ -125,6 +135,7 @@ void solve(Substep& s) {
         give_to_sweeps(s, block);
         finish(s, block, solve);
     });
+    note_turn(s);
     s.report.direct_us += watch.lap();
 }
 

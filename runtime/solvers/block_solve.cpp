@@ -25,7 +25,9 @@ double squared(const double* f, int rows) {
 }  // namespace
 
 // Angular velocity of a constraint's line, as its ends move now.
-Vec3 BlockSolve::line_turn(const RowBlock& block, const Line& line) const {
+Vec3 BlockSolve::line_turn(const RowBlock& block) const {
+    const Pose poses[2] = {sys_.pose[block.node[0]], sys_.pose[block.node[1]]};
+    const Line line = block.type->line(block.data, poses);
     const Velocity &a = sys_.exact[block.node[0]], &b = sys_.exact[block.node[1]];
     const Vec3 apart = b.v + b.w.cross(line.lever_b) - a.v - a.w.cross(line.lever_a);
     return line.span.cross(apart) / line.span.squaredNorm();
@@ -59,8 +61,7 @@ void BlockSolve::filter_lines() {
     for (uint32_t j = 0; j < joints(); ++j) {
         const RowBlock& block = row(j);
         if (!block.type->line) continue;
-        const Pose poses[2] = {sys_.pose[block.node[0]], sys_.pose[block.node[1]]};
-        const Vec3 turn = line_turn(block, block.type->line(block.data, poses));
+        const Vec3 turn = line_turn(block);
         const bool first = block.fresh && b_.memory.solved == 0;
         *block.slow_turn += (first ? 1 : s_.settings.velocity_filter) * (turn - *block.slow_turn);
     }
@@ -294,6 +295,40 @@ bool BlockSolve::finish() {
     if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) filter_lines();
     ++b_.memory.solved;
     return true;
+}
+
+// The fastest of its levers, squared [rad^2/s^2]. The Jacobians of rows that are no angles are d, r x d of a direction
+// d and a lever r; of three of them sum (w . (r x d))^2 = |w x r|^2 and sum |r x d|^2 = 2 |r|^2.
+double BlockSolve::lever_turn(const RowBlock& block) const {
+    constexpr double kShort = 0.02;  // of the joint's longest lever: shorter ones do not open it
+    double across[kMaxNodes] = {}, lever[kMaxNodes] = {}, longest = 0, most = 0;
+    for (int n = 0; n < block.type->nodes; ++n) {
+        if (local(block.node[n]) == kNone) continue;
+        const Vec3& w = sys_.exact[block.node[n]].w;
+        for (int r = 0; r < block.type->rows; ++r) {
+            if (block.angular(r) || !block.locked(r)) continue;
+            const Vec3 arm = jacobian_of(sys_, block, n).row(r).tail<3>();
+            across[n] += arm.dot(w) * arm.dot(w);
+            lever[n] += 0.5 * arm.squaredNorm();
+        }
+        longest = std::max(longest, lever[n]);
+    }
+    for (int n = 0; n < block.type->nodes; ++n)
+        if (lever[n] > kShort * kShort * longest) most = std::max(most, across[n] / lever[n]);
+    return most;
+}
+
+double BlockSolve::largest_turn() const {
+    constexpr double kSlow = 0.03;  // levers on bodies that turn by less need no look [rad]
+    double fastest = 0;
+    for (uint32_t i = 0; i < nodes_; ++i) fastest = std::max(fastest, sys_.exact[b_.nodes[i] + 1].w.squaredNorm());
+    const bool slow = sys_.h * sys_.h * fastest <= kSlow * kSlow;
+    double most = slow && joints() > 0 ? fastest : 0;
+    for (uint32_t j = 0; j < joints(); ++j) {
+        if (row(j).type->line) most = std::max(most, line_turn(row(j)).squaredNorm());
+        if (!slow) most = std::max(most, lever_turn(row(j)));
+    }
+    return sys_.h * std::sqrt(most);
 }
 
 bool BlockSolve::settle() {

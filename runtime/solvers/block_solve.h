@@ -26,6 +26,8 @@ public:
     void solve_relaxed();
     // Relaxed solution, forces and memory; false: a tower is not held by this solution.
     bool finish();
+    // By how much a lever or line of its joints turns in this substep, at most [rad].
+    double largest_turn() const;
     // Displacements that close the joints at the moved positions; false if they are closed well enough.
     bool settle();
 
@@ -53,7 +55,8 @@ private:
     double loop_compliance(const RowBlock& block, int r) const;
 
     // block_solve.cpp
-    Vec3 line_turn(const RowBlock& block, const Line& line) const;
+    Vec3 line_turn(const RowBlock& block) const;
+    double lever_turn(const RowBlock& block) const;
     void slow_velocities(const RowBlock& block, double* slow) const;
     void filter_lines();
     bool solve_round();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 #include <span>
 
 #include "partition/partition.h"
@@ -66,16 +67,22 @@ struct Substep {
     SolverReport& report;
     SolverScratch& scratch;
     bool last;  // of the frame: bounces happen now
-    // Sweeps that correct, and those that relax, take the colours of contacts from the last to the first. In turns, each
-    // against the other: in one order alone a wall of ten rows or more kept swaying.
+    // Sweeps that correct, and those that relax, take the colours of contacts from the last to the first. In turns,
+    // each against the other: in one order alone a wall of ten rows or more kept swaying.
     bool corrects_backward = false, relaxes_backward = false;
+    // Of the levers and lines of joints [rad]: by how much they may turn, and do.
+    double most_turn = std::numeric_limits<double>::infinity(), turn = 0;
+
+    // What was solved is not kept: the step tries a shorter one.
+    bool is_too_long() const { return turn > most_turn; }
 };
 
 struct Solver {
     const char* name;
     bool direct;  // joints and towers form blocks; else they come as rows to sweep, by colour
     bool lanes;   // contacts and swept joints come in lanes; else contacts are rows after those of the joints
-    // From system.exact = v* to the velocity that moves the positions, with the push of overlapping contacts.
+    // From system.exact = v* to the velocity that moves the positions, with the push of overlapping contacts. Of a
+    // substep that is too long only impulses and forces are left, for the next solve to start from.
     void (*solve)(Substep&);
     // After the positions moved, may be null: what the linearisation left of the position error, as displacements in
     // System::correction of the blocks marked corrected.

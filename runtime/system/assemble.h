@@ -35,4 +35,7 @@ void evaluate_joint_lanes(Team& team, System& system, const JointKernels& kernel
 // Once a frame and group: their forces back into the joints.
 void store_joint_lanes(Team& team, const System& system);
 
+// Where the next substep has another length: forces stay, impulses become those of that length.
+void change_length(Team& team, System& system, const Group& group, double h, double frame);
+
 }  // namespace taut

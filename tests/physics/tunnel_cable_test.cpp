@@ -95,7 +95,6 @@ Outcome outcome(const Throw& row, double speed) {
 // What hits a wall by its end is stopped there and pushed on by what holds its length, in the same step.
 TEST_P(ThrownCable, StaysOnItsSideOfTheWallAndGainsNoEnergy) {
     for (double speed : kSpeeds) {
-        if (GetParam().loaded && speed > 300) continue;  // a cable on a weight that turns by more than a substep bears
         const Outcome out = outcome(GetParam(), speed);
         EXPECT_EQ(out.lost, 0) << speed << " m/s";
         EXPECT_LE(out.growth, 0.01) << speed << " m/s";
@@ -168,7 +167,7 @@ struct PulledCable {
 };
 
 TEST(JerkedCable, GoesAroundThePlateBesideIt) {
-    for (double speed : {20.0, 40.0, 60.0, 100.0, 150.0}) {
+    for (double speed : {20.0, 40.0, 60.0, 100.0, 150.0, 300.0}) {
         std::mt19937 random(77);
         int through = 0;
         for (int start = 0; start < 40; ++start) {
@@ -223,6 +222,10 @@ void launch(taut_cable cable, const Vec& velocity) {
     for (taut_body body : bodies_of(cable)) ok(taut_body_set_velocity(body, velocity.narrow(), {0, 0, 0}));
 }
 
+// Of the speed. The segments turn on in what is left of the frame, and push: at 1000 m/s by 3 % in steps sixteen times
+// finer.
+double off_the_blow(double speed) { return (speed > 300 ? 0.04 : 0.02) * speed; }
+
 // A free segment takes along what hits it about its middle, and momentum is kept.
 TEST(ThinCable, StopsABall) {
     constexpr double kBall = 0.1, kLong = 0.5, kEnd = 0.5 * kLong * kMassPerMetre;  // [kg], [m], [kg]
@@ -237,7 +240,7 @@ TEST(ThinCable, StopsABall) {
             lab.step(static_cast<int>(start / (speed * lab.frame())) + 2);
             // The blow ends their approach: p (1/m + ((1 - t)^2 + t^2) / m_end) = v
             const double t = high / kLong + 0.5, blow = speed / (1 / kBall + ((1 - t) * (1 - t) + t * t) / kEnd);
-            EXPECT_NEAR(velocity(ball).x, speed - blow / kBall, 0.02 * speed) << speed << " m/s, shot " << shot;
+            EXPECT_NEAR(velocity(ball).x, speed - blow / kBall, off_the_blow(speed)) << speed << " m/s, shot " << shot;
             double momentum = kBall * velocity(ball).x;
             for (taut_body body : bodies_of(cable)) momentum += kEnd * velocity(body).x;
             EXPECT_NEAR(momentum, kBall * speed, 1e-3 * kBall * speed);
@@ -261,7 +264,7 @@ TEST(ThinCable, StopsAnother) {
             const double t = high / kLong + 0.5, blow = speed * kEnd / (0.5 + (1 - t) * (1 - t) + t * t);
             double after = 0;
             for (taut_body body : bodies_of(thrown)) after += 0.5 * velocity(body).x;
-            EXPECT_NEAR(after, speed - blow / (2 * kEnd), 0.02 * speed) << speed << " m/s, shot " << shot;
+            EXPECT_NEAR(after, speed - blow / (2 * kEnd), off_the_blow(speed)) << speed << " m/s, shot " << shot;
         }
     }
 }
