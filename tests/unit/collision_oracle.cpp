@@ -237,12 +237,13 @@ double by_all_axes(const Core& a, const Core& b) {
 
 // Largest separation over all directions: a net over the sphere and the faces' normals, then a pattern search from the
 // best of them.
-double by_all_directions(const Core& a, const Core& b) {
+double by_all_directions(const Core& a, const Core& b, const Vec3& known) {
     const auto along = [&](const Vec3& n) { return -b.reach(-n) - a.reach(n); };
     std::vector<std::pair<double, Vec3>> tried;
     const auto test = [&](const Vec3& n) { tried.emplace_back(along(n), n); };
     for (const Vec3& n : a.normals) test(n);
     for (const Vec3& n : b.normals) test(-n);
+    if (known != Vec3::Zero()) test(known.normalized());
     constexpr int kNet = 400;
     for (int i = 0; i < kNet; ++i) {  // a spiral, turned by the golden angle
         const double y = 1 - (2 * i + 1.0) / kNet, across = std::sqrt(1 - y * y), turn = 2.39996322972865332 * i;
@@ -283,9 +284,9 @@ bool cores_overlap(const Core& a, const Core& b) {
     return ccdGJKIntersect(&a, &b, &ccd) != 0;
 }
 
-double separation(const Core& a, const Core& b) {
+double separation(const Core& a, const Core& b, const Vec3& known) {
     const double radii = a.radius + b.radius;
-    if (a.curved() || b.curved()) return by_all_directions(a, b) - radii;
+    if (a.curved() || b.curved()) return by_all_directions(a, b, known) - radii;
     const double gap = by_all_axes(a, b);
     // Two polytopes, or one and a segment, overlap if no axis separates them.
     const bool solid = !a.normals.empty() || !b.normals.empty();

@@ -57,8 +57,8 @@ struct Core {
 Core core(const Shape& shape, const Placement& at);
 
 // Signed distance of two cores less their radii: exact distance where the cores are apart, least push where
-// they overlap. Not for planes.
-double separation(const Core& a, const Core& b);
+// they overlap; of curved ones the best that a search finds, and no worse than along a direction known. Not for planes.
+double separation(const Core& a, const Core& b, const Vec3& known = Vec3::Zero());
 bool cores_overlap(const Core& a, const Core& b);  // libccd's GJK, without the radii
 
 // Signed distance of a point from a shape, at least: exact for round shapes and planes, by the faces for others.
