@@ -37,16 +37,17 @@ void hand_over(const Lost& lost, const collision::Manifold& now, const Vec3f& t1
     }
     const Vec3f moment = lost.moment - lost.normal * mean;
     const float mx = moment.dot(t1), my = moment.dot(t2);
-    const float least = 1e-3f * (xx + yy) + 1e-12f;  // points in a line bear nothing across it
+    const float least = 1e-3f * (xx + yy) + 1e-8f;  // points in a line bear nothing across it, in one place nothing
     xx += least, yy += least;
     const float det = xx * yy - xy * xy, b = (yy * mx - xy * my) / det, c = (xx * my - xy * mx) / det;
-    float borne = 1;
+    float tilt[4], sum = 0, borne = 1;
+    for (int i = 0; i < now.count; ++i) sum += tilt[i] = b * x[i] + c * y[i];
     for (int i = 0; i < now.count; ++i) {
-        const float tilt = b * x[i] + c * y[i];
-        if (even + borne * tilt < 0) borne = even / -tilt;
+        tilt[i] -= sum / static_cast<float>(now.count);  // of points in one place the mean is as far off as they are
+        if (even + borne * tilt[i] < 0) borne = even / -tilt[i];
     }
     for (int i = 0; i < now.count; ++i) {
-        const float share = even + borne * (b * x[i] + c * y[i]);
+        const float share = even + borne * tilt[i];
         to[i].normal += share;
         to[i].tangent1 += share / lost.normal * lost.friction.dot(t1);
         to[i].tangent2 += share / lost.normal * lost.friction.dot(t2);

@@ -62,9 +62,10 @@ const Support kSupports[] = {
          const auto hills = [](double x, double z) { return 0.05 * (std::sin(7 * x) + std::sin(5 * z)); };
          add_static(w, height_field(w, 25, 25, 0.25, hills), {-3, 0, -3});
      }},
-    {"logs",  // side by side
+    {"logs",  // side by side, longer than anything rolls
      [](const World& w) {
-         for (double x : {-0.2, 0.2}) add_static(w, w.cylinder(0.2, 1), {x, 0, 0}, Quat::turn({1, 0, 0}, kPi / 2));
+         for (double x : {-1.0, -0.6, -0.2, 0.2, 0.6, 1.0})
+             add_static(w, w.cylinder(0.2, 4), {x, 0, 0}, Quat::turn({1, 0, 0}, kPi / 2));
          add_static(w, w.plane(), {0, -1, 0});
      }},
 };
@@ -117,8 +118,8 @@ double most_gained(const Rocker& rocker, const Support& support, uint32_t subste
 
 class RockingOn : public testing::TestWithParam<Support> {};
 
-// Contacts that came late drove them to 0.3 J/kg and more, the height of 30 mm. 0.06 J/kg are 6 mm, by which a body may
-// be pushed out that a blow drove in: of 400 discs on an edge eleven gained more than half of that, none over 0.05.
+// Contacts that came late drove them to 0.3 J/kg and more, the height of 30 mm, and so on average. What a blow drove in
+// is pushed out by some mm, a coin that is wedged between logs by 15: 0.15 J/kg.
 TEST_P(RockingOn, GainsNoEnergy) {
     constexpr uint32_t kStarts = 12;
     for (const Rocker& rocker : kRockers)
@@ -132,7 +133,7 @@ TEST_P(RockingOn, GainsNoEnergy) {
             std::printf("%s on %s, %d substeps: gains %.4f J/kg, at most %.4f\n", rocker.name, GetParam().name,
                         static_cast<int>(substeps), mean, most);
             EXPECT_LE(mean, 0.008) << rocker.name << ", " << substeps << " substeps";
-            EXPECT_LE(most, 0.06) << rocker.name << ", " << substeps << " substeps";
+            EXPECT_LE(most, 0.15) << rocker.name << ", " << substeps << " substeps";
         }
 }
 
