@@ -286,10 +286,10 @@ TEST_P(ViolentStart, KeepsItsJointsAndGainsNoEnergy) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ViolentStart,
                          testing::Values(Seeds{1, 1, 16}, Seeds{100, 1, 16}, Seeds{1000, 1, 48}, Seeds{10000, 1, 48},
                                          Seeds{1, 1001, 1008}, Seeds{100, 1001, 1016}, Seeds{1000, 1001, 1048},
-                                         Seeds{10000, 1001, 1048}, Seeds{100000, 1, 48},
-                                         Seeds{100000, 1001, 1048}, Seeds{1000000, 1, 48, 1}, Seeds{1000000, 1001, 1048, 1}, Seeds{100000, 1, 16, 0, true},
-                                         Seeds{1000000, 1, 16, 0, true}, Seeds{100000, 1001, 1008, 0, true},
-                                         Seeds{1000000, 1001, 1008, 0, true}),
+                                         Seeds{10000, 1001, 1048}, Seeds{100000, 1, 48}, Seeds{100000, 1001, 1048},
+                                         Seeds{1000000, 1, 48, 1}, Seeds{1000000, 1001, 1048, 1},
+                                         Seeds{100000, 1, 16, 0, true}, Seeds{1000000, 1, 16, 0, true},
+                                         Seeds{100000, 1001, 1008, 0, true}, Seeds{1000000, 1001, 1008, 0, true}),
                          [](const auto& tested) {
                              return "ratio_" + std::to_string(static_cast<int>(tested.param.ratio)) + "_from_" +
                                     std::to_string(tested.param.first) + (tested.param.adaptive ? "_adaptive" : "");

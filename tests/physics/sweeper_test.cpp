@@ -232,7 +232,8 @@ struct Container {
     }
 };
 
-// A few that others press against a wall are pressed through it: of 60 starts some 4 of 96, 20 at most.
+// A few that others press against a wall are pressed through it: of 60 such counts some 4
+// of 96, 20 at most.
 TEST(ShakenContainer, KeepsWhatIsInIt) {
     for (taut_body_kind kind : {TAUT_BODY_KINEMATIC, TAUT_BODY_DYNAMIC})
         for (double speed : {2.0, 5.0, 20.0, 50.0, 100.0}) {
