@@ -38,7 +38,7 @@ struct Travel {
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
 struct Pace {
     double thickness = 0;  // [m]; infinite: not to be looked for
-    double turning = 0;    // way of its furthest point about the centre of mass [m]
+    double turning = 0;    // how far what reaches out of it gets as it turns [m]
     float round = 0;       // collision::ball_radius() [m]
     bool rolls = false;    // collision::rolls()
 };
