@@ -25,6 +25,7 @@ struct BlockMemory {
     bool escalated = false;          // tripped twice in a short time: the island takes more substeps
     uint32_t refused_left = 0;       // frames for which a tower that was refused takes more substeps
     uint32_t whips_left = 0;         // frames for which its island is apart from those that need no shorter substeps
+    uint32_t hit_left = 0;           // frames for which it takes in its contacts after a hit
 };
 
 // What a direct solve takes together, with what it remembers over frames.
@@ -93,6 +94,7 @@ struct PartitionRules {
     uint32_t substeps;  // least
     bool fixed;         // no more than the least
     bool direct;        // joints form blocks that take in their contacts, and towers are blocks; else all is swept
+    double time_step;   // [s]
 };
 
 class Partition {
@@ -127,6 +129,8 @@ private:
         double least = 1e300, most = 0;  // mass of its nodes [kg]
         bool loaded = false;             // takes in its contacts
         bool direct = false;             // its joints make a block
+        bool always = false;             // whatever they carry
+        bool hit = false;                // in this frame
     };
 
     // Parts that write nothing which another one reads.
@@ -142,8 +146,9 @@ private:
     void number_islands();
     void find_loads(const Nodes& nodes);
     void find_towers();
-    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, double time_step);
     void choose_direct(const Nodes& nodes, const Joints& joints);
+    void find_hit(const Nodes& nodes, const Pairs& pairs, double time_step);
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
