@@ -7,7 +7,11 @@
 namespace taut {
 namespace {
 
-constexpr double kClosingSpeed = 0.5;  // gaps close so fast whatever energy that takes [m/s]
+// Gaps close so fast whatever energy that takes [m/s], [rad/s]; wide ones by so much of themselves [1/s].
+constexpr double kClosingSpeed = 0.5, kClosingRate = 5;
+// A gap is wide where this would be so little of what the substep asks for: as joints are made open, or a body of a
+// mechanism is put elsewhere. Closed within a substep it leaves bodies at gap / h: 1 m is 240 m/s.
+constexpr double kWide = 0.1;
 
 }  // namespace
 
@@ -47,14 +51,17 @@ double BlockSolve::energy_between(const Array<Velocity>& a, const Array<Velocity
     return sum;
 }
 
-// The largest part of the joints' gaps, 0 to 1, that closes slowly: kClosingSpeed and less.
+// The largest part of the joints' gaps, 0 to 1, that closes slowly.
 double BlockSolve::slow_closing() const {
-    double fastest = kClosingSpeed;
+    double part = 1;
     for (uint32_t j = 0; j < joints(); ++j)
-        for (int r = 0; r < row(j).type->rows; ++r)
-            if (row(j).locked(r) && !row(j).angular(r) && ideal(row(j), r))
-                fastest = std::max(fastest, std::abs(row_terms(row(j), r, sys_.h).rate * error_of(row(j), r)));
-    return kClosingSpeed / fastest;
+        for (int r = 0; r < row(j).type->rows; ++r) {
+            if (!row(j).locked(r) || !ideal(row(j), r)) continue;
+            const double gap = std::abs(error_of(row(j), r)), slow = std::max(kClosingSpeed, kClosingRate * gap);
+            const double speed = row_terms(row(j), r, sys_.h).rate * gap;
+            if (speed > slow) part = std::min(part, slow / speed);
+        }
+    return part;
 }
 
 void BlockSolve::solve_closing(double part) {
@@ -70,16 +77,18 @@ void BlockSolve::solve_closing(double part) {
 // linear in the part a of the gaps that is closed, and with q the energy of their difference between a = 0 and a = 1
 //   gain(a) = gain(0) + (gain(1) - gain(0) - q) a + q a^2
 void BlockSolve::limit_gain() {
-    if (!is_guarded(b_) || joints() == 0) return;
-    gained_ = energy_gain(s_, b_, set.work() + joint_work());
-    if (!gained_.excessive()) return;
+    if (joints() == 0) return;
     const double slow = slow_closing();
-    if (slow >= b_.closing) return;
+    const bool wide = slow < kWide * b_.closing;
+    if (!is_guarded(b_) && !wide) return;
+    gained_ = energy_gain(s_, b_, set.work() + joint_work());
+    const double most = wide ? 1 : patience(b_);
+    if (!gained_.excessive(most) || slow >= b_.closing) return;
     const EnergyGain first = gained_;  // what the guard hears of
     relaxed_ = false;
     std::fill_n(b_.known.begin(), nodes_ * kDof, 0.0);  // of nodes
     solve_closing(b_.closing);
-    if (gained_.excessive()) {
+    if (gained_.excessive(most)) {
         const double tried = b_.closing, whole = gained_.gain;
         for (uint32_t node : b_.nodes) sys_.kept[node + 1] = sys_.exact[node + 1];
         solve_closing(0);

@@ -10,11 +10,13 @@ struct EnergyGain {
     double gain = 0;     // [J]
     double allowed = 0;  // what the block's internal motion and the step's error account for [J]
     double fall = 0;     // what gravity gives the block from rest within the substep [J]
-    bool excessive() const { return gain > allowed + fall; }
+    bool excessive(double patience) const { return gain > patience * allowed + fall; }
 };
 
-// Light parts under a heavy load, whose forces are no longer settling.
+// Whose forces are no longer settling.
 bool is_guarded(const Block& block);
+// How many times what is allowed it may gain: 1 with light parts under a heavy load.
+double patience(const Block& block);
 // Of the block's present solution. row_work: of its contacts, stops, drives, springs and led joints [J].
 EnergyGain energy_gain(const Substep& substep, const Block& block, double row_work);
 

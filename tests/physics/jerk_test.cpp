@@ -1,4 +1,5 @@
 // Chains whose upper end is jerked about: slack links snap taut under a weight.
+#include "physics/cable_lab.h"
 #include "physics/joint_lab.h"
 #include "physics/tunnel_lab.h"
 
@@ -116,6 +117,36 @@ TEST(JerkedChainsSubsteps, HardlyChangeWhatANeighbourDoes) {
     };
     const auto beside = top_of_stack(true), alone = top_of_stack(false);
     for (size_t i = 0; i < alone.size(); ++i) EXPECT_LT(norm(beside[i] - alone[i]), 1e-3) << "frame " << i;
+}
+
+// Two boxes of 1 kg on a slack cable of links of 30 g part until it snaps taut. Of forty such starts some burst: links
+// reached 2700 m/s and joints opened by a metre.
+TEST(SlackCable, SnapsTautWithoutABurst) {
+    constexpr double kSpeed = 20;
+    double fastest = 0, gap = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        std::mt19937 random(seed);
+        const CableLab world([](taut_world_def& def) { weightless(def); });
+        const taut_shape box = world.box({0.3, 0.3, 0.3});
+        const taut_body one = world.add(
+            {.shape = box, .position = {-2, 0, 0}, .velocity = {-kSpeed, between(random, -6, 6), 0}, .mass = 1});
+        const taut_body other =
+            world.add({.shape = box, .position = {2, 0, 0}, .velocity = {0, 0, between(random, -1, 1)}, .mass = 1});
+        taut_cable_def def = CableLab::plan(TAUT_CABLE_LINKS);
+        def.end[0] = to_body(one, {0.3, 0, 0});
+        def.end[1] = to_body(other, {-0.3, 0, 0});
+        def.segment_count = 12;
+        def.mass_per_metre = 0.1f;
+        def.length = static_cast<float>(3.4 * (1 + between(random, 0, 0.3)));
+        const std::vector<taut_body> links = bodies_of(world.cable(def));
+        for (int frame = 0; frame < 240; ++frame) {
+            world.step();
+            for (const taut_body link : links) fastest = std::max(fastest, norm(velocity(link)));
+            gap = std::max(gap, static_cast<double>(world.profile().joint_error));
+        }
+    }
+    EXPECT_LT(fastest, 4 * kSpeed);
+    EXPECT_LT(gap, 0.05);
 }
 
 }  // namespace
