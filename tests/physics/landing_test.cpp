@@ -1,4 +1,4 @@
-// What falls onto a plane: thin things lie down on it.
+// What falls onto a plane: thin things lie down on it, and fast ones land on all their corners.
 #include <algorithm>
 
 #include "physics/tunnel_lab.h"
@@ -76,5 +76,37 @@ const Thin kThin[] = {
     {"prism_10mm", prism_corners(0.15, 0.005), true},
 };
 INSTANTIATE_TEST_SUITE_P(Each, ThinOnPlane, testing::ValuesIn(kThin), [](const auto& thin) { return thin.param.name; });
+
+struct FastOnPlane : testing::TestWithParam<double> {};
+
+// Falls nearly flat, all corners within one frame. Bounds are a quarter of a frame's fall, and a fraction of what a
+// box that stops on one corner makes of its speed.
+TEST_P(FastOnPlane, LandsOnAllItsCorners) {
+    const double speed = GetParam();
+    std::mt19937 random(5);
+    for (const double thickness : {0.1, 0.3}) {
+        for (int start = 0; start < 20; ++start) {
+            World world;
+            world.add_ground();
+            const Vec half(0.25, thickness / 2, 0.2), axis(between(random, -1, 1), 0, between(random, -1, 1));
+            const taut_body body = world.add({.shape = world.box(half),
+                                              .position = {0, 0.5 + between(random, 0, speed / 60), 0},
+                                              .rotation = Quat::turn(axis, between(random, 0, 0.03)),
+                                              .velocity = {0, -speed, 0}});
+            double deepest = 0, spin = 0, up = 0;
+            for (int frame = 0; frame < 60; ++frame) {
+                world.step();
+                deepest = std::max(deepest, depth_of(body, box_corners(half)));
+                spin = std::max(spin, norm(state(body).spin));
+                up = std::max(up, velocity(body).y);
+            }
+            EXPECT_LT(deepest, 0.25 * speed / 60) << thickness << " m thick, start " << start;
+            EXPECT_LT(spin * norm(half), 0.3 * speed) << thickness << " m thick, start " << start;
+            EXPECT_LT(up, 0.05 * speed) << thickness << " m thick, start " << start;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(MetresPerSecond, FastOnPlane, testing::Values(10.0, 20.0, 40.0));
 
 }  // namespace
