@@ -20,13 +20,13 @@ struct Chosen {
 // Diagonals keep the widest support for a box on a box; the factor breaks the ties of regular polygons.
 constexpr float kDiagonals[4][2] = {{-1, -1.02f}, {1, -1.02f}, {-1, 1.02f}, {1, 1.02f}};
 
-Chosen choose(const ClipPoint* points, int count) {
+Chosen choose(const ClipPoint* points, int count, float slope = 0) {
     Chosen chosen;
     for (const auto& [dx, dy] : kDiagonals) {
         int best = 0;
-        float most = dx * points[0].x + dy * points[0].y;
+        float most = dx * points[0].x + dy * points[0].y - slope * points[0].z;
         for (int i = 1; i < count; ++i) {
-            const float reach = dx * points[i].x + dy * points[i].y;
+            const float reach = dx * points[i].x + dy * points[i].y - slope * points[i].z;
             if (reach > most) {
                 most = reach;
                 best = i;
@@ -109,7 +109,8 @@ void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
     }
 }
 
-void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out) {
+void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out,
+                float slope) {
     ClipPoint low[kMaxClip];
     int count = 0;
     for (int i = 0; i < polygon.count; ++i) {
@@ -120,7 +121,7 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen.add(i);
     } else {
-        chosen = choose(low, count);
+        chosen = choose(low, count, slope);
     }
     for (int i = 0; i < chosen.count && out.count < 4; ++i) {
         const ClipPoint& p = low[chosen.index[i]];

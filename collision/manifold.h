@@ -39,8 +39,9 @@ inline float flush_slack(float size) { return std::min(1e-3f, 0.01f * size); }
 
 // Appends the polygon's points lower than margin, at most four: the supports of the plane's four diagonals, and
 // the deepest where it is clearly deeper. Positions are midway between plane and point; ids name base and the two
-// lines that meet.
-void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out);
+// lines that meet. The diagonals go down by slope, where the points are not those of one face.
+void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out,
+                float slope = 0);
 
 // Keeps the four points that add_points would take of them, in no particular order.
 void reduce(Polygon& points);

@@ -38,6 +38,10 @@ Core capsule_core(const Shape& shape, CoreStore& store) {
 
 Core hull_core(const Shape& shape, CoreStore&) { return {shape.hull->vertices, 0}; }
 
+// Of all corners within the margin none takes the place of one that it lies above by more than 35 degrees, as the top
+// of a thin plate would that of its bottom: add_points' diagonals are sqrt 2 long.
+constexpr float kSlope = 2;
+
 constexpr Core (*kCores[])(const Shape&, CoreStore&) = {nullptr, box_core, sphere_core, capsule_core, hull_core};
 
 }  // namespace
@@ -70,7 +74,7 @@ float core_plane(const Pair& pair, Manifold& out) {
         polygon.points[polygon.count++] = {plane.u.dot(p), plane.v.dot(p), z, uint32_t(i)};
     }
     if (polygon.count == 0) return least;
-    add_points(polygon, plane, 0, pair.margin, out);
+    add_points(polygon, plane, 0, pair.margin, out, kSlope);
     out.normal = -up_in_a;
     return 0;
 }

@@ -109,8 +109,7 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
             throw;
         }
         world.nodes.before[node] = origin_pose(world, node);  // no streak while rendering between the two
-        wake(world, node);
-        wake_near(world, node);
+        wake_about(world, node);
         for_pairs(world.pairs, [&](Pair& pair) {
             if (ends_on(node)(pair)) std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
         });

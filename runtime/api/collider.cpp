@@ -246,8 +246,7 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         ++world.shapes.record[changed.shape].users;
         collider = changed;
         world.pairs.forget_place(index);
-        wake(world, collider.node);
-        wake_near(world, collider.node);
+        wake_about(world, collider.node);
         for_near(world.pairs, [&](NearPair& near) {
             if (near.collider_a() != index && near.collider_b() != index) return;
             near.forget_shapes();
@@ -275,8 +274,7 @@ taut_result taut_collider_set_filter(taut_collider handle, const taut_filter* fi
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
         world.colliders.traits.reserve_values(1);
-        wake(world, world.colliders.record[collider].node);
-        wake_near(world, world.colliders.record[collider].node);
+        wake_about(world, world.colliders.record[collider].node);
         forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));  // asked anew by the step
         world.colliders.change_traits(collider, [&](ColliderTraits& own) { own.filter = *filter; });
         return TAUT_OK;
@@ -331,6 +329,7 @@ taut_result taut_collider_set_pre_solve(taut_collider handle, int32_t pre_solve)
     if (!check.boolean("pre_solve", static_cast<uint32_t>(pre_solve))) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         ask_for(world.colliders.change(collider), kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
+        wake_about(world, world.colliders.record[collider].node);
         return TAUT_OK;
     });
 }
@@ -341,6 +340,7 @@ taut_result taut_collider_set_one_way(taut_collider handle, taut_vec3 direction)
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         world.colliders.change_traits(
             collider, [&](ColliderTraits& own) { set_one_way(direction, own, world.colliders.record[collider]); });
+        wake_about(world, world.colliders.record[collider].node);
         return TAUT_OK;
     });
 }

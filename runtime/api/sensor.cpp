@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/access.h"
+#include "sleep/wake.h"
 
 using namespace taut;
 
@@ -13,7 +14,8 @@ taut_result taut_collider_set_sensor(taut_collider handle, int32_t sensor) {
         Collider& collider = world.colliders.record[index];
         check.require(world.nodes.info[collider.node].cable == kNone, "the body is part of a cable", TAUT_IN_USE);
         if (!check || collider.sensor == (sensor != 0)) return check.result();
-        world.colliders.reserve_sensor();                                                  // what may fail comes first
+        world.colliders.reserve_sensor();  // what may fail comes first
+        wake_about(world, collider.node);
         forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(index));  // asked anew by the step
         collider.sensor = sensor != 0;
         world.colliders.list_sensor(index, collider.sensor);

@@ -12,13 +12,13 @@
 namespace taut {
 namespace {
 
-// How far two bodies can approach each other in a frame, so that a fast pair meets its contacts before it overlaps.
-float margin_of(const Nodes& nodes, const PairEnds& pair, double time_step) {
+// How far two bodies can approach each other in a time, so that a fast pair meets its contacts before it overlaps.
+float margin_of(const Nodes& nodes, const PairEnds& pair, double time) {
     double fastest = 0;
     for_sides(pair, [&](uint32_t a, uint32_t b) {
         fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).norm());
     });
-    return kContactMargin + static_cast<float>(std::min(kMaxReach, fastest * time_step));
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, fastest * time));
 }
 
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
@@ -118,15 +118,16 @@ Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead
         return;
     }
     encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
-    look_ahead(of.time);
+    look_ahead(of, pair);
 }
 
-// The far end of a side that spans two nodes goes on when the near one is stopped: it gets its point too.
-void Shaped::look_ahead(double time) {
-    then_ = encounter_->meeting(time);
+// What comes down in the rest of the frame gets its point too: one corner alone would turn the body over. The far end
+// of a side that spans two nodes goes its own way when the near one is stopped.
+void Shaped::look_ahead(const Detection& of, const PairEnds& pair) {
+    then_ = encounter_->meeting(of.time);
     if (then_ == 0 || !std::isfinite(then_)) return;
     place_after(then_);
-    if (!spans_) margin_ = kContactMargin;
+    if (!spans_) margin_ = margin_of(of.nodes, pair, of.time - then_);
 }
 
 void Shaped::place_after(double time) {

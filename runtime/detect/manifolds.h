@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    void look_ahead(double time);
+    void look_ahead(const Detection& of, const PairEnds& pair);
     void place_after(double time);
 
     const collision::Shape &a_, &b_;

@@ -113,6 +113,10 @@ float chord_of(const Nodes& nodes, uint32_t node) {
     return static_cast<float>(2 * (nodes.motion[node].q.coeffs() - nodes.before[node].rotation.coeffs()).norm());
 }
 
+// Of a ball about the middle that holds the collider [m]: the core of what is round alone may be a point.
+float radius_of(const Course& course) { return course.reach + course.round; }
+bool reaches_less_far(const Course& one, const Course& other) { return radius_of(one) < radius_of(other); }
+
 Passage passage_of(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, uint32_t collider) {
     const Collider& record = colliders.record[collider];
     return {record, shapes.record[record.shape], courses[collider]};
@@ -147,9 +151,10 @@ Course course_of(const Nodes& nodes, const Collider& collider, const Shapes& sha
 // As the one sees it the other's middle ends elsewhere by the chord of the one's turn.
 bool may_pass(const Course& one, const Course& other) {
     if (std::isinf(one.chord) || std::isinf(other.chord)) return true;  // their ends go ways of their own
-    const Course &a = one.reach < other.reach ? other : one, &b = one.reach < other.reach ? one : other;
+    const bool less = reaches_less_far(one, other);
+    const Course &a = less ? other : one, &b = less ? one : other;
     const Vec3 from = b.from - a.from, along = b.along - a.along;
-    const double reach = static_cast<double>(a.reach + a.round) + kLargest * static_cast<double>(b.thickness);
+    const double reach = static_cast<double>(radius_of(a)) + kLargest * static_cast<double>(b.thickness);
     return comes_within(from, along, reach + static_cast<double>(a.chord) * (from + along).norm());
 }
 
@@ -190,7 +195,8 @@ collision::Box box_along(const Nodes& nodes, const Collider& collider, const Sha
 }
 
 Couple::Couple(const Passage& one, const Passage& other)
-    : a(one.course.reach < other.course.reach ? other : one), b(one.course.reach < other.course.reach ? one : other) {}
+    : a(reaches_less_far(one.course, other.course) ? other : one),
+      b(reaches_less_far(one.course, other.course) ? one : other) {}
 
 Couple::Couple(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, const NearPair& near)
     : Couple(passage_of(colliders, shapes, courses, near.collider_a()),

@@ -45,7 +45,7 @@ struct Excess {
     Vec3 way = Vec3::Zero();     // of the point of b that met it [m],
     Vec3 seen = Vec3::Zero();    // and of the same as a sees it
 
-    double depth() const { return share * std::abs(normal.dot(way)); }
+    double depth() const { return share * std::abs(normal.dot(seen)); }
 };
 
 // Of b's core, whose way is as a sees it, which turns as well; about its middle, and of a segment between two particles

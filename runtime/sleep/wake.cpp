@@ -68,6 +68,11 @@ void wake_near(World& world, uint32_t node) {
     });
 }
 
+void wake_about(World& world, uint32_t node) {
+    wake(world, node);
+    wake_near(world, node);
+}
+
 void wake_box(World& world, const collision::Box& box) {
     if (!world.def.sleeping) return;
     struct Found final : collision::Visitor {

@@ -12,6 +12,8 @@ void wake(World& world, uint32_t node);
 void wake_all(World& world);
 // What a node that forces do not move may have come to touch, by its place, shapes or filters.
 void wake_near(World& world, uint32_t node);
+// Both, for what changes whom a node may touch.
+void wake_about(World& world, uint32_t node);
 // The islands of which a collider's tight box meets this one.
 void wake_box(World& world, const collision::Box& box);
 

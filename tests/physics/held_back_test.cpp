@@ -78,4 +78,23 @@ TEST(WhippedThroughAPlate, IsHeldBack) {
         }
 }
 
+// A small thing deep in a ball, which is far larger and heavier: it is pushed out, and not held back as one that the
+// ball would pass.
+TEST(DeepInABall, ComesOut) {
+    std::mt19937 random(3);
+    for (const double size : {0.01, 0.05})
+        for (int start = 0; start < 24; ++start) {
+            World world(weightless);
+            const taut_shape pebbles[] = {world.box({size, size, size}), world.box({size, 0.1 * size, 0.7 * size}),
+                                          world.capsule(0.5 * size, 0.6 * size), world.cone(size, size)};
+            const taut_body ball = world.add({.shape = world.sphere(1), .mass = 100});
+            const taut_body pebble = world.add({.shape = pebbles[start % 4],
+                                                .position = between(random, 0, 0.7) * direction(random),
+                                                .rotation = Quat::turn(direction(random), between(random, 0, 2 * kPi)),
+                                                .mass = 1});
+            world.step(150);
+            EXPECT_GT(norm(position(pebble) - position(ball)), 1) << size << " m, start " << start;
+        }
+}
+
 }  // namespace

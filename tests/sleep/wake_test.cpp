@@ -158,6 +158,19 @@ const Call kCalls[] = {
          const taut_filter nothing{};
          ok(taut_collider_set_filter(first_collider(s.slab), &nothing));
      }},
+    {"set_sensor", [](Sleepers& s) { ok(taut_collider_set_sensor(first_collider(s.stack[2]), 1)); }},
+    {"set_sensor_of_support", [](Sleepers& s) { ok(taut_collider_set_sensor(first_collider(s.slab), 1)); }},
+    {"set_sensor_as_it_is", [](Sleepers& s) { ok(taut_collider_set_sensor(first_collider(s.slab), 0)); }, false},
+    {"set_one_way",
+     [](Sleepers& s) {
+         ok(taut_collider_set_one_way(first_collider(s.stack[1]), {0, -1, 0}));
+     }},
+    {"set_one_way_of_support",
+     [](Sleepers& s) {
+         ok(taut_collider_set_one_way(first_collider(s.slab), {0, -1, 0}));
+     }},
+    {"set_pre_solve", [](Sleepers& s) { ok(taut_collider_set_pre_solve(first_collider(s.stack[3]), 1)); }},
+    {"set_pre_solve_of_support", [](Sleepers& s) { ok(taut_collider_set_pre_solve(first_collider(s.slab), 1)); }},
     {"set_shape",
      [](Sleepers& s) {
          ok(taut_collider_set_shape(first_collider(s.stack[0]), s.world.sphere(0.2), {}, {0, 0, 0, 1}));
@@ -233,6 +246,30 @@ TEST_P(CallsWake, TheIslandAndNotTheNeighbour) {
 
 INSTANTIATE_TEST_SUITE_P(Each, CallsWake, testing::ValuesIn(kCalls),
                          [](const auto& tested) -> std::string { return tested.param.name; });
+
+// What lies inside of a static body that was a sensor, or let it through, is pushed out as soon as it no longer does.
+TEST(Wakes, WhatLiesInAColliderThatBeginsToStopIt) {
+    for (const bool one_way : {false, true}) {
+        World world(let_sleep);
+        world.add_ground();
+        const taut_body block = world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({1, 0.2, 1})});
+        const taut_collider collider = first_collider(block);
+        if (one_way)
+            ok(taut_collider_set_one_way(collider, {0, -1, 0}));
+        else
+            ok(taut_collider_set_sensor(collider, 1));
+        const std::vector<taut_body> stack = add_stack(world, 2);
+        ASSERT_GT(steps_to_sleep(world, stack), 0);
+        const double before = position(stack[0]).y;
+        if (one_way)
+            ok(taut_collider_set_one_way(collider, {}));
+        else
+            ok(taut_collider_set_sensor(collider, 0));
+        EXPECT_TRUE(all_awake(stack));
+        world.step(120);
+        EXPECT_GT(position(stack[0]).y, before + 0.15) << one_way;
+    }
+}
 
 TEST(Wakes, EveryoneWhenGravityChanges) {
     Sleepers s;
