@@ -61,7 +61,8 @@ public:
         all_.any_drives = true;
         all_.ties[root_] |= kDriven;
         all_.drive[root_] = other.drive() / (2 * kDrives);
-        const Vec3 on = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
+        const bool across = (all_.ties[root_] & kJointed) || round < kRounds;
+        const Vec3 on = across ? Vec3(normal.dot(way) * normal) : way;
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x += on; });
     }
     // Not in frame after frame: whose joints pull it into what it may not pass would hang there for good.
