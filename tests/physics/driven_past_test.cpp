@@ -1,4 +1,5 @@
 // What a joint to the world drives past something within a frame stops there. It neither passes nor hangs in the air.
+// What drives it against its own stops is no stronger than they are.
 #include "physics/joint_lab.h"
 #include "physics/tunnel_lab.h"
 
@@ -55,5 +56,36 @@ TEST(DrivenPastAPost, DoesNotHang) {
         EXPECT_LE(hangs, 10) << "seed " << seed;
     }
 }
+
+class DrivenAgainstAStop : public testing::TestWithParam<taut_joint_solve> {};
+
+TEST_P(DrivenAgainstAStop, StaysThere) {
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        std::mt19937 random(seed);
+        World world = weightless();
+        const taut_body arm =
+            world.add({.shape = world.box({0.5, 0.05, 0.05}), .position = {0.5, 0, 0}, .mass = between(random, 1, 10)});
+        auto def = at(world, taut_hinge_joint_def_init, taut_body{}, arm, {0, 0, 0}, {0, 0, 1});
+        const double stop = between(random, 0.3, 1.5);
+        const double speed = between(random, 1, 50) * (seed % 2 ? 1 : -1), force = std::pow(10, between(random, 3, 6));
+        def.angle = motor(speed, force);  // [rad/s], [N m]
+        def.angle.mode = TAUT_AXIS_LIMITED;
+        def.angle.lower = static_cast<float>(-stop);
+        def.angle.upper = static_cast<float>(stop);
+        def.solve = GetParam();
+        taut_joint joint{};
+        ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
+        double over = 0;  // [rad]
+        for (int frame = 0; frame < 120; ++frame) {
+            world.step();
+            over = std::max(over, angular_error(joint));
+        }
+        EXPECT_LT(over, 0.01) << "seed " << seed;
+        EXPECT_NEAR(std::abs(motion(joint).value), stop, 0.01) << "seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solve, DrivenAgainstAStop,
+                         testing::Values(TAUT_JOINT_SOLVE_DIRECT, TAUT_JOINT_SOLVE_SOFT, TAUT_JOINT_SOLVE_BY_LOAD));
 
 }  // namespace
