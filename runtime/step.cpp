@@ -90,6 +90,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         if (part.length() != system.h) change_length(w.team, system, group, part.length(), frame);
         if (loaded || !sane) loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
         find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.h);
+        turn_kinematic(system, w.nodes, part.begin());
         shift_kinematic(system, w.nodes, part.begin());
         predict(w.team, system, group, w.nodes, gravity);
         if (solver.lanes && i > 0) turn_lanes(w.team, system, *settings.kernels);

@@ -13,7 +13,6 @@ namespace taut {
 namespace {
 
 constexpr double kStride = 0.25;    // of the ball inside a shape: who moved less against each other is not looked after
-constexpr uint8_t kRounds = 3;      // where a mechanism was put back, other parts of it may have passed
 constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have passed the next
 constexpr uint32_t kGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
@@ -164,8 +163,8 @@ void sort_in_late(Pairs& pairs) {
 // Each goes back along its way; in the last round it stays where it was, unless it is driven. Whether it may.
 bool go_back(const Couple& pair, const Excess& excess, uint8_t round, Mechanism& of_a, Mechanism& of_b) {
     if (round < kRounds || of_a.is_driven() || of_b.is_driven()) {
-        of_a.go_back(excess.share * pair.a.course.along, excess.normal, round);
-        of_b.go_back(excess.share * excess.way, excess.normal, round);
+        of_a.go_back(excess.share, pair.a.course.along, excess.normal, round);
+        of_b.go_back(excess.share, excess.way, excess.normal, round);
         return true;
     }
     if (round > kRounds) return false;

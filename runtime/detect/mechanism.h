@@ -13,6 +13,8 @@ constexpr uint8_t kJointed = 1, kAnchored = 2, kDriven = 4;
 constexpr float kDrives = 10;
 constexpr float kKinematic = 1e30f;  // what kinematic bodies drive with [kg]
 
+constexpr uint8_t kRounds = 3;  // where a mechanism was put back, other parts of it may have passed
+
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
 
 // After all rounds: forgets the stays of mechanisms that did not stay in this frame, and those that lasted too long.
@@ -40,10 +42,11 @@ public:
         } while (node != root_);
     }
 
-    // One body along its way, which is free; more of them only as far as they must.
-    void go_back(const Vec3& way, const Vec3& normal, uint8_t round) {
-        if (all_.ties[root_] & kAnchored) return stay(round);
-        const Vec3 back = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
+    // A share of the way. One body along it, which is free; more of them only as far as they must; what is anchored
+    // each along its own, and in the last rounds, or where its joints would open, all of it.
+    void go_back(double share, const Vec3& way, const Vec3& normal, uint8_t round) {
+        if (all_.ties[root_] & kAnchored) return stay_behind(round < kRounds && may_part() ? share : 1, round);
+        const Vec3 back = share * (all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way);
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
     }
     // By what it drives others [kg]: its mass, or a share of what it is driven by, so that both drive it on.
@@ -58,21 +61,41 @@ public:
         all_.any_drives = true;
         all_.ties[root_] |= kDriven;
         all_.drive[root_] = other.drive() / (2 * kDrives);
-        const Vec3 on = all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way;
+        const bool across = (all_.ties[root_] & kJointed) || round < kRounds;
+        const Vec3 on = across ? Vec3(normal.dot(way) * normal) : way;
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x += on; });
     }
     // Not in frame after frame: whose joints pull it into what it may not pass would hang there for good.
     bool may_stay();
     // Where they were before the step.
-    void stay(uint8_t round) {
-        for_each(round, [&](uint32_t node) {
-            const NodePose& before = nodes_.before[node];
-            nodes_.motion[node].q = before.rotation;
-            nodes_.motion[node].x = before.position + before.rotation * nodes_.mass[node].centre;
-        });
-    }
+    void stay(uint8_t round) { stay_behind(1, round); }
 
 private:
+    // Whether its joints stay closed on a part of its way: those between bodies that turn far do not.
+    bool may_part() const {
+        constexpr double kFar = 0.25;  // [rad]
+        bool near = true;
+        for_nodes([&](uint32_t node) {
+            const Quat turn = nodes_.motion[node].q * nodes_.before[node].rotation.conjugate();
+            near = near && turn.vec().squaredNorm() < 0.25 * kFar * kFar;
+        });
+        return near || all_.next[root_] == root_;
+    }
+    // By a share s of their way d in the step, on which they turn by theta: along d and, as what turns about an anchor
+    // goes on an arc, off it by s (1 - s)/2 theta x d.
+    void stay_behind(double share, uint8_t round) {
+        for_each(round, [&](uint32_t node) {
+            const NodePose& before = nodes_.before[node];
+            NodeMotion& m = nodes_.motion[node];
+            Quat turn = m.q * before.rotation.conjugate();
+            if (turn.w() < 0) turn.coeffs() *= -1;
+            const Vec3 was = before.position + before.rotation * nodes_.mass[node].centre, way = m.x - was;
+            m.x = was + (1 - share) * (way - share * turn.vec().cross(way));
+            turn.coeffs() *= 1 - share;
+            turn.w() += share;
+            m.q = turn.normalized() * before.rotation;
+        });
+    }
     template <class Act>
     void for_each(uint8_t round, Act&& act) {
         for_nodes([&](uint32_t node) {

@@ -1,5 +1,7 @@
 #include "integrate/gyroscopic.h"
 
+#include <cmath>
+
 #include <Eigen/LU>
 
 namespace taut {
@@ -90,11 +92,15 @@ bool gyroscopic_midpoint(const Triple& w0, const Inertia& inertia, double h, Tri
     return dot(residual, residual) <= kGood * kGood * scale;
 }
 
-// One Newton step of implicit Euler, I (w - w0) + h w x I w = 0: damps, and is stable at any speed.
-Vec3 gyroscopic_euler(const Vec3& w0, const Mat3& inertia, double h) {
-    const Vec3 l = inertia * w0;
-    const Mat3 derivative = inertia + h * (hat(w0) * inertia - hat(l));
-    return w0 - derivative.inverse() * (h * w0.cross(l));
+// One Newton step of implicit Euler, I (w - w0) + h w x I w = 0: damps, but goes astray where a substep turns the body
+// by radians (measured: a plate at 1000 rad/s gained 9400 times its energy). So w.I w does not rise, and of a body that
+// is to keep it |I w| does not fall further than that asks.
+Vec3 gyroscopic_euler(const Vec3& w0, const Mat3& inertia, double h, bool damped) {
+    const Vec3 l0 = inertia * w0;
+    const Mat3 derivative = inertia + h * (hat(w0) * inertia - hat(l0));
+    const Vec3 w = w0 - derivative.inverse() * (h * w0.cross(l0)), l = inertia * w;
+    const double before = w0.dot(l0), after = w.dot(l), scale = damped ? 1 : std::sqrt(l0.dot(l0) / l.dot(l));
+    return (scale * scale * after > before ? std::sqrt(before / after) : scale) * w;
 }
 
 }  // namespace
@@ -111,7 +117,7 @@ Vec3 gyroscopic(const Vec3& w0, const NodeMass& mass, double h, bool damped) {
                 : gyroscopic_midpoint(Triple(w0), FullInertia{i, inverse}, h, w);
         if (solved) return w.vector();
     }
-    return gyroscopic_euler(w0, i.matrix(), h);
+    return gyroscopic_euler(w0, i.matrix(), h, damped);
 }
 
 }  // namespace taut

@@ -50,17 +50,22 @@ void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const
 // Contacts, found once a frame, turn their levers and masses with bodies that turned by more than this since they last
 // did [rad]. With levers of the frame's beginning and masses of now thin bodies gain energy without bound.
 constexpr double kTurn = 0.05;
+// Kinematic bodies do not yield: what they seem to move at beside their way is forced on what they carry.
+constexpr double kKinematicTurn = 1e-3;
 
-void note_turn(System& system, uint32_t node, const Quat& q) {
+void note_turn(System& system, uint32_t node, const Quat& q, double least) {
     System::Found& found = system.found[node + 1];
     const Quat turn = q * found.q.conjugate();
-    system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * kTurn * kTurn;
+    system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * least * least;
     if (!system.turned[node + 1]) return;
     system.turn[node + 1] = turn.cast<float>();
     found.q = q;
     std::fill_n(system.shift[node + 1].dq, 3, 0.0f);
     system.shift[node + 1].dq[3] = 1;
 }
+
+// Of a kinematic body at its own velocity.
+Quat rotation_after(const NodeMotion& m, double time) { return (rotation_from_vector(time * m.w) * m.q).normalized(); }
 
 // The spin of a body that turned in this substep, found for the pose that it turned from: it is that spin as seen from
 // the body. Kept in the world, what contacts changed of it since the body was moved would turn about axes of another
@@ -143,7 +148,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
         if (nodes.info[node].kind == NodeKind::dynamic) {
             pose.R = m.q.toRotationMatrix();
             const Mat3& R = pose.R;
-            note_turn(system, node, m.q);
+            note_turn(system, node, m.q, kTurn);
             if (!mass.isotropic) {
                 u.w = R * gyroscopic(R.transpose() * m.w, mass, h, system.in_block[node + 1] != 0);
                 if (system.turned[node + 1] || system.in_block[node + 1])
@@ -191,12 +196,20 @@ bool store_velocity(Team& team, const System& system, const Group& group, Nodes&
     return all_sane.load(std::memory_order_relaxed);
 }
 
+void turn_kinematic(System& system, const Nodes& nodes, double time) {
+    for (uint32_t node : system.kinematic) {
+        const NodeMotion& m = nodes.motion[node];
+        if (time == 0) system.found[node + 1].q = m.q;  // the group before this one left it at its last substep
+        note_turn(system, node, rotation_after(m, time), kKinematicTurn);
+    }
+}
+
 void shift_kinematic(System& system, const Nodes& nodes, double time) {
     for (uint32_t node : system.kinematic) {
         const NodeMotion& m = nodes.motion[node];
-        const Quat turned = (rotation_from_vector(time * m.w) * m.q).normalized();
+        const Quat turned = rotation_after(m, time);
         system.pose[node + 1] = {m.x + time * m.v, turned.toRotationMatrix()};
-        set_shift(system.shift[node + 1], time * m.v, turned * m.q.conjugate());
+        set_shift(system.shift[node + 1], time * m.v, turned * system.found[node + 1].q.conjugate());
         set_sweep_pose(system, node, time * m.v, turned);
     }
 }
@@ -206,7 +219,7 @@ void commit_kinematic(const System& system, Nodes& nodes, double time_step) {
         if (nodes.rest[node] != Rest::awake) continue;
         NodeMotion& m = nodes.motion[node];
         m.x += time_step * m.v;
-        m.q = (rotation_from_vector(time_step * m.w) * m.q).normalized();
+        m.q = rotation_after(m, time_step);
     }
 }
 

@@ -23,8 +23,10 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
 // The kept velocity back into the state; s += kappa (v - s) for nodes in blocks. False: some motion is not sane.
 bool store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter);
 
-// Kinematic nodes that begin_frame() found awake move at their own velocity: where they are after `time` of the frame,
-// as the solvers see them ...
+// Kinematic nodes that begin_frame() found awake move at their own velocity: how far they turned by a substep's begin,
+// for the levers of what they touch in the group being solved, ...
+void turn_kinematic(System& system, const Nodes& nodes, double time);
+// ... where they are after `time` of the frame, as the solvers see them, ...
 void shift_kinematic(System& system, const Nodes& nodes, double time);
 // ... and, once all groups are done, in the state.
 void commit_kinematic(const System& system, Nodes& nodes, double time_step);

@@ -12,7 +12,9 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kParts = 4;  // of AxisRow::part
+// AxisRow::part of a row, in the order in which they are swept. The last has its way: what drives against a stop, or
+// rubs, is not stronger than it is, however strong.
+constexpr uint32_t kParts = 4, kOrder[kParts] = {2, kRubbing, 0, 1};
 constexpr uint32_t kGrain = 8;  // lane groups that a thread takes at a time
 
 // A stop that nothing reaches within a substep at this speed, and that does not push, is left out [m/s or rad/s].
@@ -42,7 +44,7 @@ void add_axes(System& system, JointGroup& g, std::span<const uint32_t> blocks) {
                       [&](uint32_t r, const AxisRow& axis) { has[r][axis.part] = true; });
     g.first_axis = size_of(lanes.axis);
     for (uint32_t r = 0; r < g.rows; ++r) {
-        for (uint32_t part = 0; part < kParts; ++part) {
+        for (const uint32_t part : kOrder) {
             if (!has[r][part]) continue;
             LaneAxis& axis = lanes.axis.emplace_back();
             axis.row = r;

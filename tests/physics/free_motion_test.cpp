@@ -1,5 +1,5 @@
 // Bodies that nothing touches: parabola, tumbling, and chains in free space.
-#include "physics/lab.h"
+#include "physics/tunnel_lab.h"
 
 namespace {
 
@@ -88,6 +88,24 @@ INSTANTIATE_TEST_SUITE_P(About, FreeSpin,
                          testing::Values(Tumble{"least_axis", {5, 0, 0}}, Tumble{"intermediate_axis", {1e-3, 5, 1e-3}},
                                          Tumble{"largest_axis", {0, 0, 5}}, Tumble{"no_axis", {3, 2, 4}}),
                          [](const auto& tested) { return tested.param.name; });
+
+// At a thousand radians a second and more, where a substep turns it by several.
+TEST(FreeSpin, NeverGainsEnergyOrMomentum) {
+    std::mt19937 random(1);
+    for (int start = 0; start < 60; ++start) {
+        World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+        const double speed = std::pow(10, between(random, 2.7, 4));
+        const taut_body body = world.add({.shape = world.box({0.1, start % 2 ? 0.015 : 0.07, 0.07}),
+                                          .rotation = Quat::turn(direction(random), between(random, 0, kPi)),
+                                          .spin = speed * direction(random)});
+        const Totals before = totals({body});
+        world.step(240);
+        const Totals after = totals({body});
+        EXPECT_LT(after.kinetic / before.kinetic, 1.001) << "start " << start << ", " << speed << " rad/s";
+        EXPECT_GT(after.kinetic / before.kinetic, 0.3) << "start " << start << ", " << speed << " rad/s";
+        EXPECT_LT(norm(after.spin) / norm(before.spin), 1.001) << "start " << start << ", " << speed << " rad/s";
+    }
+}
 
 // A symmetric top precesses about its angular momentum at |L| / I_transverse (Landau, Lifshitz, section 33).
 TEST(FreeSpin, SymmetricTopPrecessesAtItsRate) {
