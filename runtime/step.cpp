@@ -183,8 +183,9 @@ void step(World& w) {
     watch_contacts(w.nodes, w.pairs, w.watch);
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.nodes);
+    const taut_vec3 g = w.def.gravity;
     w.partition.build(w.team, w.nodes, w.joints, w.pairs,
-                      {w.def.substeps, w.def.fixed_substeps != 0, solver.direct, w.def.time_step});
+                      {w.def.substeps, w.def.fixed_substeps != 0, solver.direct, w.def.time_step, Vec3(g.x, g.y, g.z)});
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);

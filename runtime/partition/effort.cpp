@@ -1,5 +1,7 @@
 // How many substeps and sweeps an island takes, by what rests on what.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "partition/partition.h"
 
@@ -10,44 +12,68 @@ namespace {
 // heavy top's weight; a block of very unequal masses outruns the lag of its forces.
 constexpr uint32_t kTallLevels = 12;       // more bodies above one another than this, and
 constexpr uint32_t kSlenderness = 4;       // at most this many bodies a level: twice the substeps
+constexpr uint32_t kLowLevels = 2;         // or more than this, so small that they
+constexpr double kBuckling = 0.8;          // buckle: see find_slender()
 constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
 constexpr float kHeavyOnLight = 10;        // load over support mass: four times the substeps
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 
 constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
 
+// Of a column of such bodies, breadth^2 over height [m]: of cubes, their side. By their moments of inertia, which for
+// a slab of sides b, b and t are m b^2/6 and m (b^2 + t^2)/12: exact for cubes, too small by half for thin plates.
+// What does not turn, a particle, has none.
+double footing(const NodeMass& body) {
+    const Sym3& i = body.inertia;
+    const auto [least, most] = std::minmax({i.xx, i.yy, i.zz});
+    return most > 0 ? least * std::sqrt(6 / (body.mass * most)) : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 // Levels: bodies on the shortest way down to a fixed or kinematic support, by breadth-first search over contacts.
+// What is only about to touch counts for what rests on nothing else: a slab that comes down on stones, or a sheet on a
+// pile of them, is not on the ground because it nears that too.
 void Partition::find_levels(const Nodes&) {
+    const auto& touches = graph_.touches;
     std::fill(level_.begin(), level_.end(), 0);
     std::fill(adjacency_begin_.begin(), adjacency_begin_.end(), 0);
-    uint32_t reached = 0;  // in queue_
-    for (const auto& [a, b] : graph_.touches) {
-        if (a != kNone && b != kNone) {
-            ++adjacency_begin_[a + 2];
-            ++adjacency_begin_[b + 2];
-        } else if (a != b) {
-            const uint32_t node = std::min(a, b);
-            if (level_[node] == 0) queue_[reached++] = node;
-            level_[node] = 1;
-        }
+    for (const auto& [a, b] : touches) {
+        if (a == kNone || b == kNone) continue;
+        ++adjacency_begin_[a + 2];
+        ++adjacency_begin_[b + 2];
     }
     for (size_t i = 2; i < adjacency_begin_.size(); ++i) adjacency_begin_[i] += adjacency_begin_[i - 1];
-    for (const auto& [a, b] : graph_.touches) {
+    for (size_t p = 0; p < touches.size(); ++p) {
+        const auto& [a, b] = touches[p];
         if (a == kNone || b == kNone) continue;
-        adjacency_[adjacency_begin_[a + 1]++] = b;
-        adjacency_[adjacency_begin_[b + 1]++] = a;
+        adjacency_[adjacency_begin_[a + 1]++] = b << 1 | graph_.rests[p];
+        adjacency_[adjacency_begin_[b + 1]++] = a << 1 | graph_.rests[p];
     }
-    for (uint32_t head = 0; head < reached; ++head) {
-        const uint32_t node = queue_[head], above = level_[node] + 1;
-        for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k) {
-            const uint32_t next = adjacency_[k];
-            if (level_[next] != 0) continue;
-            level_[next] = above;
-            queue_[reached++] = next;
+    uint32_t reached = 0;  // in queue_
+    const auto reach = [&](uint32_t node, uint32_t level) {
+        if (level_[node] != 0) return;
+        level_[node] = level;
+        queue_[reached++] = node;
+    };
+    const auto stand = [&](uint8_t rests) {
+        for (size_t p = 0; p < touches.size(); ++p) {
+            const auto& [a, b] = touches[p];
+            if ((a == kNone || b == kNone) && a != b && graph_.rests[p] >= rests) reach(std::min(a, b), 1);
         }
-    }
+    };
+    const auto climb = [&](uint32_t rests) {
+        for (uint32_t head = 0; head < reached; ++head) {
+            const uint32_t node = queue_[head];
+            for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k)
+                if ((adjacency_[k] & 1) >= rests) reach(adjacency_[k] >> 1, level_[node] + 1);
+        }
+    };
+    stand(1);
+    climb(1);
+    climb(0);
+    stand(0);
+    climb(0);
 }
 
 // Whether any load can be a heavy one.
@@ -72,11 +98,32 @@ void Partition::find_loads(const Nodes& nodes) {
     }
 }
 
+// A column of n bodies buckles under its own weight. What one sweep leaves of the weight m g i of the i bodies above
+// sinks in by about g i h^2: as if each contact were a spring of m/h^2 to either side of a base of breadth b, which
+// holds a tilt with m b^2/(4 h^2). A rod of such hinges, one every height t, of weight m g/t and height n t, buckles
+// (Greenhill 1881) once
+//   b^2/t < g h^2 n^3 / 1.96
+// kBuckling takes the place of 1/1.96: with 0.6, cubes that start askew still leaned over at 1.07 times that.
+void Partition::find_slender(const Nodes& nodes, const PartitionRules& rules) {
+    const double h = rules.time_step / rules.substeps, sag = kBuckling * rules.gravity.norm() * h * h;
+    const auto narrow = [](const Island& island) { return island.nodes <= kSlenderness * island.levels; };
+    const auto may_buckle = [&](const Island& island) {
+        return island.levels > kLowLevels && narrow(island) && !island.jointed && !island.slender;
+    };
+    for (Island& island : island_) island.slender = island.levels > kTallLevels && narrow(island);
+    if (std::none_of(island_.begin(), island_.end(), may_buckle)) return;
+    for (const uint32_t node : graph_.movers) {
+        Island& island = island_[island_of_[node]];
+        const double n = island.levels;
+        island.slender = island.slender || (may_buckle(island) && footing(nodes.mass[node]) < sag * n * n * n);
+    }
+}
+
 // Islands without joints in which weight rests on what sweeps cannot hold.
 void Partition::find_towers() {
     for (Island& island : island_) {
-        const bool slender = island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels;
-        island.tower = !island.jointed && island.nodes <= kMostTower && (island.ratio >= kHeavyOnLight || slender);
+        const bool hard = island.ratio >= kHeavyOnLight || island.slender;
+        island.tower = !island.jointed && island.nodes <= kMostTower && hard;
     }
 }
 
@@ -91,7 +138,7 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         }
         if (island.ratio >= kHeavyOnLight && !island.jointed)
             factor = 4;
-        else if (island.levels > kTallLevels && island.nodes <= kSlenderness * island.levels)
+        else if (island.slender)
             factor = 2;
         else if (island.levels > kSwayingLevels)
             island.sweeps = rules.fixed ? 1 : 2;

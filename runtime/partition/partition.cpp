@@ -56,18 +56,22 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     static constexpr Part kOfGraph[] = {&Partition::find_levels, &Partition::find_places, &Partition::unite_touching,
                                         &Partition::colour_touches, &Partition::weigh};
     try {
-        if (graph_.update(team, nodes, joints, pairs)) {
+        const bool changed = graph_.update(team, nodes, joints, pairs), settled = graph_.update_rests(team, pairs);
+        if (changed) {
             make_room();
             run(team, kOfGraph, nodes);
             number_islands();
         } else {
             run(team, kOfFrame, nodes);
+            if (settled) find_levels(nodes);
         }
+        if (changed || settled) count_levels();
     } catch (...) {  // out of memory: what follows from the graph may not be there
         graph_.moves.clear();
         throw;
     }
     find_loads(nodes);
+    find_slender(nodes, rules);
     for (Island& island : island_) island.tower = false;
     if (rules.direct) find_towers();
     const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });
@@ -124,14 +128,20 @@ void Partition::number_islands() {
             island_of_[node] = static_cast<uint32_t>(island_.size());
             island_.emplace_back();
         }
-        Island& island = island_[island_of_[node] = island_of_[root]];
-        ++island.nodes;
-        island.levels = std::max(island.levels, level_[node]);
+        ++island_[island_of_[node] = island_of_[root]].nodes;
     }
     islands = static_cast<uint32_t>(island_.size());
     for (const TouchGraph::Tie& tie : graph_.ties)
         for (const uint32_t node : tie)
             if (node != kNone) island_[island_of_[node]].jointed = true;
+}
+
+void Partition::count_levels() {
+    for (Island& island : island_) island.levels = 0;
+    for (const uint32_t node : graph_.movers) {
+        uint32_t& levels = island_[island_of_[node]].levels;
+        levels = std::max(levels, level_[node]);
+    }
 }
 
 void Partition::forget_blocks(const Joints& joints) {

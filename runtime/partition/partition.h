@@ -91,10 +91,11 @@ constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
 constexpr uint32_t kSlices = 64;      // along the line on which the moving nodes are spread widest
 
 struct PartitionRules {
-    uint32_t substeps;  // least
-    bool fixed;         // no more than the least
-    bool direct;        // joints form blocks that take in their contacts, and towers are blocks; else all is swept
-    double time_step;   // [s]
+    uint32_t substeps;     // least
+    bool fixed;            // no more than the least
+    bool direct;           // joints form blocks that take in their contacts, and towers are blocks; else all is swept
+    double time_step = 0;  // of a frame [s]
+    Vec3 gravity = Vec3::Zero();  // [m/s^2]
 };
 
 class Partition {
@@ -118,7 +119,8 @@ private:
         bool jointed = false;
         // Of the frame.
         uint32_t substeps = 0, sweeps = 1, group = 0;
-        float ratio = 1;  // heaviest load over its support, where any is kHeavyOnLight
+        float ratio = 1;       // heaviest load over its support, where any is kHeavyOnLight
+        bool slender = false;  // a column that sweeps of the world's substeps cannot hold
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -144,7 +146,9 @@ private:
 
     void make_room();
     void number_islands();
+    void count_levels();
     void find_loads(const Nodes& nodes);
+    void find_slender(const Nodes& nodes, const PartitionRules& rules);
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     void choose_direct(const Nodes& nodes, const Joints& joints);
@@ -194,7 +198,7 @@ private:
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
-    Array<uint32_t> adjacency_begin_, adjacency_;  // touching pairs by node, for levels
+    Array<uint32_t> adjacency_begin_, adjacency_;  // by node: those it touches << 1, + 1 where it rests
 };
 
 }  // namespace taut

@@ -3,8 +3,9 @@
 // must move as that of one metre does. What does not are lengths that the library states in metres; how much they are
 // felt is what is measured here. Sizes are the edge of a box.
 #include <algorithm>
+#include <random>
 
-#include "physics/lab.h"
+#include "physics/tunnel_lab.h"
 
 namespace {
 
@@ -153,6 +154,50 @@ TEST(Size, BouncesAlikeWhereApproachesAreFasterThanAMetreASecond) {
     // Contacts are looked for within 0.5 m of motion ahead: what does more in a frame may bounce one frame later.
     for (double size : {30.0, 100.0}) EXPECT_LE(apart(one, bounce({size, 0})), 0.2) << size;
     EXPECT_NEAR(bounce({0.01, 0}).back().y, 0.5, 0.01) << "6 cm/s";
+}
+
+// A column sags by a length that knows no size, g h^2, and buckles by it where it is small.
+TEST(Size, SmallColumnsStandAsBigOnesDo) {
+    std::mt19937 random(5);
+    for (int start = 0; start < 20; ++start) {
+        const double side = 0.02 * std::pow(10.0, between(random, 0, 1));
+        const int count = 5 + start % 8;
+        const bool plane = start % 2 == 0;
+        World world;
+        if (plane)
+            world.add_ground(0.5);
+        else
+            world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({2, 0.5, 2}), .position = {0, -0.5, 0}});
+        taut_body top{};
+        for (int i = 0; i < count; ++i) {
+            const Vec at(between(random, -0.02, 0.02), i + 0.5, between(random, -0.02, 0.02));
+            top = world.add({.shape = world.box(0.5 * side * Vec(1, 1, 1)), .position = side * at});
+        }
+        world.step(600);
+        EXPECT_GT(position(top).y, (count - 0.6) * side) << count << " cubes of " << side << " m, start " << start;
+    }
+}
+
+// What comes down on small stones is not on the ground because it nears that too.
+TEST(Size, HeavySlabsComeToRestOnSmallStones) {
+    const double size = 0.03;
+    std::mt19937 random(7);
+    for (double mass : {10.0, 100.0, 1000.0})
+        for (int start = 0; start < 4; ++start) {
+            World world;
+            world.add_ground();
+            const double turn = between(random, 0, kPi);
+            for (int i = 0; i < 4; ++i) {
+                const double angle = turn + i * kPi / 2;
+                world.add({.shape = start % 2 ? world.sphere(size / 2) : world.box(size / 2 * Vec(1, 1, 1)),
+                           .position = {0.4 * std::cos(angle), size / 2, 0.4 * std::sin(angle)},
+                           .mass = 0.01});
+            }
+            const taut_body slab =
+                world.add({.shape = world.box({0.5, 0.25, 0.5}), .position = {0, size + 0.25 + 0.2, 0}, .mass = mass});
+            world.step(120);
+            EXPECT_NEAR(position(slab).y, size + 0.25, 0.1 * size) << mass << " kg, start " << start;
+        }
 }
 
 }  // namespace
