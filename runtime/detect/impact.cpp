@@ -16,6 +16,7 @@ constexpr double kDepth = 0.25;  // of the thinner one: what stays above grazes,
 // it grazes what it turns past, by as little as this in a frame [rad]. Cubes, stones and bricks of 2:1:1 lie within,
 // rods do not.
 constexpr double kThick = 2.5, kMostThick = 1;
+constexpr double kLeastThick = 0.02;  // below, nothing gets far either way [rad]
 
 // World from body, as placed.
 Mat3 rotation_of(const Collider& collider, const collision::Placement& at) {
@@ -50,7 +51,7 @@ double turning_way(const Nodes& nodes, const Collider& collider, const ShapeReco
     if (collider.node_b != kNone) return angle * collision::spin_radius(shape, 0);
     const Vec3 lever = collider.position - nodes.mass[collider.node].centre;
     const double core = lever.norm() + record.reach;
-    if (angle > kMostThick) return angle * core;
+    if (angle < kLeastThick || angle > kMostThick) return angle * core;
     const Vec3 middle = lever + collider.rotation * collision::middle(shape);
     const double ball = std::max(0.0, collision::thickness(shape) - middle.norm());
     return angle * std::clamp(core + collision::ball_radius(shape) - kThick * ball, 0.0, core);

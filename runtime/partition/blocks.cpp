@@ -23,7 +23,7 @@ constexpr double kHit = 0.5;  // that a contact would give a body that nothing h
 // Or what the sweeps let sink in, as where a knee comes to its stop and drives the foot into the ground.
 constexpr double kSunk = 0.005;  // [m]
 // Until the impulse of the hit is none that sweeps start from.
-constexpr uint32_t kHitFor = 3;  // frames
+constexpr uint8_t kHitFor = 3;  // frames
 
 // Beyond these, mechanisms of joints solved by load are blocks. Their contacts stay swept.
 constexpr double kSweptLoad = 1000;     // likewise [m/s^2]: such a joint yields by .4 mm at 240 substeps a second
@@ -275,8 +275,11 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
         }
     }
     for (Block& block : spare_) {
-        uint32_t& left = block.memory.hit_left;
-        left = component_[find(block.nodes[0])].hit ? kHitFor : std::max(left, 1u) - 1;
+        uint8_t& left = block.memory.hit_left;
+        if (component_[find(block.nodes[0])].hit)
+            left = kHitFor;
+        else if (left > 0)
+            --left;
     }
     blocks.swap(spare_);
     block_of_.assign(nodes.slots(), kNone);

@@ -32,48 +32,35 @@ double footing(const NodeMass& body) {
 }  // namespace
 
 // Levels: bodies on the shortest way down to a fixed or kinematic support, by breadth-first search over contacts.
-// What is only about to touch counts for what rests on nothing else: a slab that comes down on stones, or a sheet on a
-// pile of them, is not on the ground because it nears that too.
 void Partition::find_levels(const Nodes&) {
-    const auto& touches = graph_.touches;
     std::fill(level_.begin(), level_.end(), 0);
     std::fill(adjacency_begin_.begin(), adjacency_begin_.end(), 0);
-    for (const auto& [a, b] : touches) {
-        if (a == kNone || b == kNone) continue;
-        ++adjacency_begin_[a + 2];
-        ++adjacency_begin_[b + 2];
+    uint32_t reached = 0;  // in queue_
+    for (const auto& [a, b] : graph_.touches) {
+        if (a != kNone && b != kNone) {
+            ++adjacency_begin_[a + 2];
+            ++adjacency_begin_[b + 2];
+        } else if (a != b) {
+            const uint32_t node = std::min(a, b);
+            if (level_[node] == 0) queue_[reached++] = node;
+            level_[node] = 1;
+        }
     }
     for (size_t i = 2; i < adjacency_begin_.size(); ++i) adjacency_begin_[i] += adjacency_begin_[i - 1];
-    for (size_t p = 0; p < touches.size(); ++p) {
-        const auto& [a, b] = touches[p];
+    for (const auto& [a, b] : graph_.touches) {
         if (a == kNone || b == kNone) continue;
-        adjacency_[adjacency_begin_[a + 1]++] = b << 1 | graph_.rests[p];
-        adjacency_[adjacency_begin_[b + 1]++] = a << 1 | graph_.rests[p];
+        adjacency_[adjacency_begin_[a + 1]++] = b;
+        adjacency_[adjacency_begin_[b + 1]++] = a;
     }
-    uint32_t reached = 0;  // in queue_
-    const auto reach = [&](uint32_t node, uint32_t level) {
-        if (level_[node] != 0) return;
-        level_[node] = level;
-        queue_[reached++] = node;
-    };
-    const auto stand = [&](uint8_t rests) {
-        for (size_t p = 0; p < touches.size(); ++p) {
-            const auto& [a, b] = touches[p];
-            if ((a == kNone || b == kNone) && a != b && graph_.rests[p] >= rests) reach(std::min(a, b), 1);
+    for (uint32_t head = 0; head < reached; ++head) {
+        const uint32_t node = queue_[head], above = level_[node] + 1;
+        for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k) {
+            const uint32_t next = adjacency_[k];
+            if (level_[next] != 0) continue;
+            level_[next] = above;
+            queue_[reached++] = next;
         }
-    };
-    const auto climb = [&](uint32_t rests) {
-        for (uint32_t head = 0; head < reached; ++head) {
-            const uint32_t node = queue_[head];
-            for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k)
-                if ((adjacency_[k] & 1) >= rests) reach(adjacency_[k] >> 1, level_[node] + 1);
-        }
-    };
-    stand(1);
-    climb(1);
-    climb(0);
-    stand(0);
-    climb(0);
+    }
 }
 
 // Whether any load can be a heavy one.

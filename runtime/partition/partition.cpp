@@ -56,16 +56,13 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     static constexpr Part kOfGraph[] = {&Partition::find_levels, &Partition::find_places, &Partition::unite_touching,
                                         &Partition::colour_touches, &Partition::weigh};
     try {
-        const bool changed = graph_.update(team, nodes, joints, pairs), settled = graph_.update_rests(team, pairs);
-        if (changed) {
+        if (graph_.update(team, nodes, joints, pairs)) {
             make_room();
             run(team, kOfGraph, nodes);
             number_islands();
         } else {
             run(team, kOfFrame, nodes);
-            if (settled) find_levels(nodes);
         }
-        if (changed || settled) count_levels();
     } catch (...) {  // out of memory: what follows from the graph may not be there
         graph_.moves.clear();
         throw;
@@ -128,20 +125,14 @@ void Partition::number_islands() {
             island_of_[node] = static_cast<uint32_t>(island_.size());
             island_.emplace_back();
         }
-        ++island_[island_of_[node] = island_of_[root]].nodes;
+        Island& island = island_[island_of_[node] = island_of_[root]];
+        ++island.nodes;
+        island.levels = std::max(island.levels, level_[node]);
     }
     islands = static_cast<uint32_t>(island_.size());
     for (const TouchGraph::Tie& tie : graph_.ties)
         for (const uint32_t node : tie)
             if (node != kNone) island_[island_of_[node]].jointed = true;
-}
-
-void Partition::count_levels() {
-    for (Island& island : island_) island.levels = 0;
-    for (const uint32_t node : graph_.movers) {
-        uint32_t& levels = island_[island_of_[node]].levels;
-        levels = std::max(levels, level_[node]);
-    }
 }
 
 void Partition::forget_blocks(const Joints& joints) {

@@ -23,9 +23,9 @@ struct BlockMemory {
     uint32_t guard_left = 0;         // substeps for which no slow velocity is spared
     uint32_t since_trip = 1u << 30;  // substeps since the guard last tripped
     bool escalated = false;          // tripped twice in a short time: the island takes more substeps
-    uint32_t refused_left = 0;       // frames for which a tower that was refused takes more substeps
-    uint32_t whips_left = 0;         // frames for which its island is apart from those that need no shorter substeps
-    uint32_t hit_left = 0;           // frames for which it takes in its contacts after a hit
+    uint8_t refused_left = 0;        // frames for which a tower that was refused takes more substeps
+    uint8_t whips_left = 0;          // frames for which its island is apart from those that need no shorter substeps
+    uint8_t hit_left = 0;            // frames for which it takes in its contacts after a hit
 };
 
 // What a direct solve takes together, with what it remembers over frames.
@@ -91,11 +91,11 @@ constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
 constexpr uint32_t kSlices = 64;      // along the line on which the moving nodes are spread widest
 
 struct PartitionRules {
-    uint32_t substeps;     // least
-    bool fixed;            // no more than the least
-    bool direct;           // joints form blocks that take in their contacts, and towers are blocks; else all is swept
-    double time_step = 0;  // of a frame [s]
-    Vec3 gravity = Vec3::Zero();  // [m/s^2]
+    uint32_t substeps;  // least
+    bool fixed;         // no more than the least
+    bool direct;        // joints form blocks that take in their contacts, and towers are blocks; else all is swept
+    double time_step;   // of a frame [s]
+    Vec3 gravity;       // [m/s^2]
 };
 
 class Partition {
@@ -146,7 +146,6 @@ private:
 
     void make_room();
     void number_islands();
-    void count_levels();
     void find_loads(const Nodes& nodes);
     void find_slender(const Nodes& nodes, const PartitionRules& rules);
     void find_towers();

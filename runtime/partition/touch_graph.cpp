@@ -6,8 +6,7 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 512;    // elements that a thread takes at a time
-constexpr float kResting = 0.001f;  // what is further apart may touch within the frame, no more [m]
+constexpr uint32_t kGrain = 512;  // elements that a thread takes at a time
 
 // Brings a list up to date with now(index) below count. True: it changed.
 template <class T, class Now>
@@ -51,15 +50,6 @@ bool TouchGraph::update_touches(Team& team, const Pairs& pairs) {
     for (const ActivePair& pair : pairs.active)
         if (pair.spans()) spans.push_back({mover(pair.a), mover(pair.b), mover(pair.a2), mover(pair.b2)});
     return true;
-}
-
-bool TouchGraph::update_rests(Team& team, const Pairs& pairs) {
-    return renew(team, rests, pairs.active.size(), [&](uint32_t p) -> uint8_t {
-        const Pair& pair = pairs.list[pairs.active[p].pair];
-        const auto& points = pair.manifold.points;
-        return pair.then == 0 && std::any_of(points, points + pair.manifold.count,
-                                             [](const auto& point) { return point.separation < kResting; });
-    });
 }
 
 bool TouchGraph::update_ties(Team& team, const Joints& joints) {

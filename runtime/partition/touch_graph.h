@@ -12,13 +12,10 @@ namespace taut {
 
 class TouchGraph {
 public:
-    explicit TouchGraph(Memory& memory)
-        : moves(memory), movers(memory), touches(memory), spans(memory), ties(memory), rests(memory) {}
+    explicit TouchGraph(Memory& memory) : moves(memory), movers(memory), touches(memory), spans(memory), ties(memory) {}
 
     // As it is in this frame. False: just as in the last one.
     bool update(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs);
-    // Likewise, of rests alone, after that.
-    bool update_rests(Team& team, const Pairs& pairs);
 
     // Ends that forces move; kNone in place of all others.
     struct Touch {
@@ -32,7 +29,6 @@ public:
     Array<Touch> touches;    // by index in Pairs::active
     Array<Tie> spans;        // all ends of the pairs with a side of two nodes; with any, each frame counts as changed
     Array<Tie> ties;         // by slot of a joint
-    Array<uint8_t> rests;    // of a touch: the two are not only about to touch
 
 private:
     bool update_moves(Team& team, const Nodes& nodes);

@@ -175,7 +175,7 @@ uint64_t state_hash(const World& world) {
     for (const Block& block : world.partition.blocks) {
         hash.add(block.memory.excess_energy);
         hash.add(static_cast<uint64_t>(block.memory.guard_left) << 1 | block.memory.escalated);
-        hash.add(static_cast<uint64_t>(block.memory.whips_left) << 32 | block.memory.hit_left);
+        hash.add(uint64_t{block.memory.whips_left} << 8 | block.memory.hit_left);
         hash.add(static_cast<uint64_t>(block.memory.solved));
         hash.add(static_cast<uint64_t>(block.memory.since_trip));
         hash.add(static_cast<uint64_t>(block.memory.refused_left));

@@ -82,7 +82,7 @@ void BlockSolve::limit_gain() {
     const bool wide = slow < kWide * b_.closing;
     if (!is_guarded(b_) && !wide) return;
     gained_ = energy_gain(s_, b_, set.work() + joint_work());
-    const double most = wide ? 1 : patience(b_);
+    const double most = wide ? 1 : may_burst(b_);
     if (!gained_.excessive(most) || slow >= b_.closing) return;
     const EnergyGain first = gained_;  // what the guard hears of
     relaxed_ = false;

@@ -14,8 +14,9 @@ namespace {
 constexpr uint32_t kGuardSubsteps = 60;  // how long a trip lasts
 constexpr uint32_t kWarmup = 3;          // substeps of a new block: its forces are still settling
 constexpr double kUnequal = 100;         // mass ratio, from which on blocks gain energy easily
-// Blocks of more equal masses gain a little here and there, which comes to nothing, and would be solved twice for it.
-constexpr double kPatience = 12;  // times as much
+// Blocks of more equal masses gain a little here and there, which comes to nothing, and would be solved twice for it:
+// so many times as much, of one solution and on the whole.
+constexpr double kBurst = 12, kPatience = 20;
 
 double kinetic_energy(const Substep& s, const Block& block, const Array<Velocity>& velocity) {
     double sum = 0;
@@ -59,7 +60,7 @@ double internal_energy(const Substep& s, const Block& block, double kinetic) {
 
 }  // namespace
 
-double patience(const Block& block) { return block.mass_ratio >= kUnequal ? 1 : kPatience; }
+double may_burst(const Block& block) { return block.mass_ratio >= kUnequal ? 1 : kBurst; }
 
 bool is_guarded(const Block& block) { return block.memory.solved >= kWarmup; }
 
@@ -85,7 +86,10 @@ void guard_energy(Substep& s, Block& block, const EnergyGain& gained) {
     if (memory.since_trip < 1u << 30) ++memory.since_trip;
     if (!is_guarded(block)) return;
     memory.excess_energy = std::max(0.0, 0.9 * memory.excess_energy + gained.gain);
-    if (!(memory.excess_energy > patience(block) * gained.allowed)) return;
+    const bool unequal = block.mass_ratio >= kUnequal;
+    // A body alone has no motion within, and adaptive damping takes what bursts of itself.
+    if (!unequal && (block.nodes.size() == 1 || s.settings.adaptive_damping)) return;
+    if (!(memory.excess_energy > (unequal ? 1 : kPatience) * gained.allowed)) return;
     ++s.report.guard_trips;
     if (memory.since_trip < kGuardSubsteps) memory.escalated = true;
     memory.since_trip = 0;

@@ -10,13 +10,13 @@ struct EnergyGain {
     double gain = 0;     // [J]
     double allowed = 0;  // what the block's internal motion and the step's error account for [J]
     double fall = 0;     // what gravity gives the block from rest within the substep [J]
-    bool excessive(double patience) const { return gain > patience * allowed + fall; }
+    bool excessive(double times) const { return gain > times * allowed + fall; }
 };
 
 // Whose forces are no longer settling.
 bool is_guarded(const Block& block);
-// How many times what is allowed it may gain: 1 with light parts under a heavy load.
-double patience(const Block& block);
+// How many times what is allowed one solution may gain: 1 with light parts under a heavy load.
+double may_burst(const Block& block);
 // Of the block's present solution. row_work: of its contacts, stops, drives, springs and led joints [J].
 EnergyGain energy_gain(const Substep& substep, const Block& block, double row_work);
 

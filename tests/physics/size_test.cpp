@@ -178,26 +178,4 @@ TEST(Size, SmallColumnsStandAsBigOnesDo) {
     }
 }
 
-// What comes down on small stones is not on the ground because it nears that too.
-TEST(Size, HeavySlabsComeToRestOnSmallStones) {
-    const double size = 0.03;
-    std::mt19937 random(7);
-    for (double mass : {10.0, 100.0, 1000.0})
-        for (int start = 0; start < 4; ++start) {
-            World world;
-            world.add_ground();
-            const double turn = between(random, 0, kPi);
-            for (int i = 0; i < 4; ++i) {
-                const double angle = turn + i * kPi / 2;
-                world.add({.shape = start % 2 ? world.sphere(size / 2) : world.box(size / 2 * Vec(1, 1, 1)),
-                           .position = {0.4 * std::cos(angle), size / 2, 0.4 * std::sin(angle)},
-                           .mass = 0.01});
-            }
-            const taut_body slab =
-                world.add({.shape = world.box({0.5, 0.25, 0.5}), .position = {0, size + 0.25 + 0.2, 0}, .mass = mass});
-            world.step(120);
-            EXPECT_NEAR(position(slab).y, size + 0.25, 0.1 * size) << mass << " kg, start " << start;
-        }
-}
-
 }  // namespace

@@ -282,13 +282,6 @@ struct Written {
                 if (carried == 0 && gap > 50 * kStep) return;
                 solve_row(r, sign, kStep * carried, c, gap > 0 || c > 0 ? -gap / kStep : push, 0, 1e30);
             };
-            if (axis.mode == AxisMode::limited) {
-                const double middle = 0.5 * (axis.lower + axis.upper), turn = 2 * M_PI;
-                const double at =
-                    block.angular(r) ? error[r] - turn * std::round((error[r] - middle) / turn) : error[r];
-                stop(1, at - axis.lower, memory.lower);
-                stop(-1, axis.upper - at, memory.upper);
-            }
             if (axis.max_force > 0) {
                 const double k = axis.stiffness, d = axis.damping, rate = kStep * k + d, turn = 2 * M_PI;
                 const double at = block.angular(r) ? error[r] - turn * std::round(error[r] / turn) : error[r];
@@ -297,6 +290,13 @@ struct Written {
                           most);
             }
             if (axis.friction > 0) solve_row(r, 1, rubbed(r), 0, 0, -most_friction(r), most_friction(r));
+            if (axis.mode == AxisMode::limited) {
+                const double middle = 0.5 * (axis.lower + axis.upper), turn = 2 * M_PI;
+                const double at =
+                    block.angular(r) ? error[r] - turn * std::round((error[r] - middle) / turn) : error[r];
+                stop(1, at - axis.lower, memory.lower);
+                stop(-1, axis.upper - at, memory.upper);
+            }
         }
     }
 };

@@ -92,7 +92,7 @@ public:
     // As at the start of a frame of one group: partition, rows, lanes.
     void begin(const Solver& with) {
         solver = with;
-        w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct, 1.0 / 60});
+        w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct, 1.0 / 60, Vec3::Zero()});
         begin_frame(w.team, w.system, w.nodes, w.joints);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
