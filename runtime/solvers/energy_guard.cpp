@@ -16,7 +16,7 @@ constexpr uint32_t kWarmup = 3;          // substeps of a new block: its forces 
 constexpr double kUnequal = 100;         // mass ratio, from which on blocks gain energy easily
 // Blocks of more equal masses gain a little here and there, which comes to nothing, and would be solved twice for it:
 // so many times as much, of one solution and on the whole.
-constexpr double kBurst = 12, kPatience = 20;
+constexpr double kBurst = 12, kPatience = 40;
 
 double kinetic_energy(const Substep& s, const Block& block, const Array<Velocity>& velocity) {
     double sum = 0;
