@@ -15,8 +15,8 @@ namespace taut {
 namespace {
 
 constexpr double kSettleMassRatio = 100;  // see block_solve.cpp
-constexpr uint8_t kRefusedFrames = 60;   // a refused tower takes more substeps for so long
-constexpr uint8_t kWhipsFrames = 60;     // a block that turned too far is apart from calm ones for so long
+constexpr uint8_t kRefusedFrames = 60;    // a refused tower takes more substeps for so long
+constexpr uint8_t kWhipsFrames = 60;      // a block that turned too far is apart from calm ones for so long
 
 // The velocity that the sweeps left on a node of a block, relative to the one they were given: contact impulses.
 void add_contact_changes(Substep& s, const Block& block) {

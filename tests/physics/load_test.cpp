@@ -78,8 +78,8 @@ TEST(HangingChain, JointForcesAreTheWeightsBelow) {
     }
 }
 
-// Five links of 1 kg whose end is pulled at: swept with a force that sweeps hold, solved directly beyond, without a jump
-// at the change.
+// Five links of 1 kg whose end is pulled at: swept with a force that sweeps hold, solved directly beyond, without a
+// jump at the change.
 TEST(ByLoad, HoldsDirectlyWhatSweepsWouldNot) {
     World world;
     taut_body before{};

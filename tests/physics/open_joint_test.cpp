@@ -30,7 +30,9 @@ struct Row {
     }
     void put(size_t i, const Vec& by, const Quat& turn) const {
         const BodyState now = state(bodies[i]);
-        const taut_pose pose = {(now.position + by).pos(), (turn * now.rotation).narrow(), 0};
+        taut_pose pose{};
+        pose.position = (now.position + by).pos();
+        pose.rotation = (turn * now.rotation).narrow();
         ok(taut_body_set_pose(bodies[i], &pose));
     }
     double fastest() const {
