@@ -33,22 +33,18 @@ constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
 // landed, mostly after the hit was over, and its joints opened as far as without.
 constexpr uint8_t kSweptAfter = 6, kSweptFor = 15;
 
-// Of nodes: with a joint that is solved directly, or in a tower; or taken in with a contact.
-constexpr uint8_t kHeld = 1, kTaken = 2;
-
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 
 bool by_load(const Joint& joint) { return joint.solve == JointSolve::by_load; }
 uint8_t loaded_after(const Joint& joint) { return by_load(joint) ? kSweptAfter : kLoadedAfter; }
 
 // By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
-// infinite where it sank in or carries what sweeps do not hold.
-double hit_of(const Nodes& nodes, const Pair& pair, double time_step, double substep) {
+// infinite where it sank in.
+double hit_of(const Nodes& nodes, const Pair& pair, double time_step) {
     const RelativeMotion motion = relative_motion(nodes, pair);
-    double fastest = 0, carried = 0;
+    double fastest = 0;
     for (int k = 0; k < pair.manifold.count; ++k) {
         const collision::ContactPoint& point = pair.manifold.points[k];
-        carried += static_cast<double>(pair.impulse[k].normal);
         const double speed = static_cast<double>(motion.approach(point.position, pair.manifold.normal));
         const auto separation = static_cast<double>(point.separation);
         if (separation < -kSunk) return std::numeric_limits<double>::infinity();
@@ -56,7 +52,6 @@ double hit_of(const Nodes& nodes, const Pair& pair, double time_step, double sub
     }
     double inverse = 0;  // of the reduced mass [1/kg]
     for (const uint32_t side : {pair.a, pair.b}) inverse += moving(nodes, side) ? nodes.mass[side].inv_mass : 0;
-    if (carried * inverse > kLoad * substep) return std::numeric_limits<double>::infinity();
     return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
 }
 
@@ -124,16 +119,13 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
         if (first == kNone) continue;  // a quarantined body at rest on a fixed one
         const bool tower = island_[island_of_[first]].tower;
         auto takes_in = [&](uint32_t node) {
-            return moving(nodes, node) && core_[node] == kHeld && component_[find(node)].loaded;
+            return moving(nodes, node) && core_[node] && component_[find(node)].loaded;
         };
         if (!tower && std::none_of(ends.begin(), ends.end(), takes_in)) continue;
         pair_in_block_[p] = std::all_of(
             ends.begin(), ends.end(), [&](uint32_t node) { return !moving(nodes, node) || join_contact(first, node); });
-        if (!pair_in_block_[p]) continue;
-        for (const uint32_t node : ends)
-            if (moving(nodes, node) && core_[node] == 0) core_[node] = tower ? kHeld : kTaken;
+        if (tower && pair_in_block_[p]) core_[first] = 1;  // in a block, with or without a joint
     }
-    take_between(nodes, pairs);
     fill_blocks(nodes, joints, pairs);
     recall_blocks(nodes, joints);
 }
@@ -158,27 +150,13 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
         if (!may(joint) || !is_block(component_[find(end(joint))])) continue;
         joint_in_block_[j] = 1;
         for (uint32_t node : joint.nodes())
-            if (moving(nodes, node)) core_[node] = kHeld;
+            if (moving(nodes, node)) core_[node] = 1;
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
     for (uint32_t i = nodes.slots(); i-- > 0;) {  // other nodes stand alone; their root is smallest, so last
         if (is_block(component_[parent_[i]])) continue;
         parent_[i] = i;
         component_[i] = {};
-    }
-}
-
-// What lies between a mechanism that takes it in and the world: its contact with the world as well, lest a press go
-// through what it presses.
-void Partition::take_between(const Nodes& nodes, const Pairs& pairs) {
-    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
-        if (pair_in_block_[p]) continue;
-        const auto ends = pairs.active[p].nodes();
-        const auto is_held = [&](uint32_t node) { return !moving(nodes, node) || core_[node] == kTaken; };
-        if (mover(nodes, ends) == kNone || !std::all_of(ends.begin(), ends.end(), is_held)) continue;
-        const uint32_t block = find(mover(nodes, ends));
-        pair_in_block_[p] = std::all_of(ends.begin(), ends.end(),
-                                        [&](uint32_t node) { return !moving(nodes, node) || find(node) == block; });
     }
 }
 
@@ -191,7 +169,7 @@ void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const Partition
             return moving(nodes, node) && component_[find(node)].always && !component_[find(node)].hit;
         };
         if (!waits(pair.a) && !waits(pair.b)) continue;
-        const double hit = hit_of(nodes, pairs.list[pair.pair], rules.time_step, rules.time_step / rules.substeps);
+        const double hit = hit_of(nodes, pairs.list[pair.pair], rules.time_step);
         for (const uint32_t node : {pair.a, pair.b})
             if (waits(node) && hit > kHit * nodes.mass[node].mass)
                 component_[find(node)].loaded = component_[find(node)].hit = true;

@@ -46,25 +46,5 @@ TEST_P(HitOn, NothingBouncesWithoutRestitution) {
 INSTANTIATE_TEST_SUITE_P(Panel, HitOn, testing::Values(Held::fixed, Held::at_its_stop),
                          [](const auto& of) { return of.param == Held::fixed ? "fixed" : "at_its_stop"; });
 
-// A plate on a motor comes down on a box of 1 kg and 10 cm. What the box presses on was swept, and the plate went on to
-// the ground from 10 kN on.
-TEST(Press, StopsAtWhatItPresses) {
-    for (const double mass : {10.0, 100.0, 1e3, 1e4})
-        for (const double force : {1e2, 1e3, 1e4, 1e5}) {
-            World w;
-            w.add_ground();
-            w.add({.shape = w.box({0.05, 0.05, 0.05}), .position = {0, 0.05, 0}, .mass = 1});
-            const taut_body plate =
-                w.add({.shape = w.box({0.5, 0.1, 0.5}), .position = {0, 0.35, 0}, .mass = mass, .gravity_scale = 0});
-            slider(w, {}, plate, {0, 0.35, 0}, {0, 1, 0}, motor(-0.1, force));
-            double lowest = 1;
-            for (int frame = 0; frame < 300; ++frame) {
-                w.step();
-                lowest = std::min(lowest, position(plate).y - 0.1);
-            }
-            EXPECT_GT(lowest, 0.095) << mass << " kg, " << force << " N";
-        }
-}
-
 }  // namespace
 }  // namespace lab
