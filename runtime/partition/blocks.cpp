@@ -1,8 +1,6 @@
 // Which joints are solved directly, together with which contacts.
 #include <algorithm>
-#include <limits>
 
-#include "detect/approach.h"
 #include "partition/movers.h"
 #include "partition/partition.h"
 
@@ -17,11 +15,10 @@ constexpr uint32_t kMostGrown = 64;
 // ragdolls in a heap. Beyond, a light body between a heavy one and an edge sinks in.
 constexpr double kLoad = 300;             // force of a joint over the mass of its lighter body [m/s^2]
 constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses always takes them in
-// And what hits. Sweeps take the hit body for free, its joint stops it after them, and from substep to substep the
-// impulse grows beyond what stops the other: a ball of 300 kg at 50 m/s came back from a door of 30 kg with 24 m/s.
-constexpr double kHit = 0.5;  // that a contact would give a body that nothing holds [m/s]
-// Or what the sweeps let sink in, as where a knee comes to its stop and drives the foot into the ground.
-constexpr double kSunk = 0.005;  // [m]
+// And what the sweeps let sink in: they take a hit body for free, its joint stops it after them, and from substep to
+// substep the impulse grows. A ball of 300 kg at 50 m/s came back from a door of 30 kg with 24 m/s; a knee that comes
+// to its stop drives the foot into the ground.
+constexpr float kSunk = 0.005f;  // [m]
 // Until the impulse of the hit is none that sweeps start from.
 constexpr uint8_t kHitFor = 3;  // frames
 
@@ -38,21 +35,9 @@ constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with mor
 bool by_load(const Joint& joint) { return joint.solve == JointSolve::by_load; }
 uint8_t loaded_after(const Joint& joint) { return by_load(joint) ? kSweptAfter : kLoadedAfter; }
 
-// By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
-// infinite where it sank in.
-double hit_of(const Nodes& nodes, const Pair& pair, double time_step) {
-    const RelativeMotion motion = relative_motion(nodes, pair);
-    double fastest = 0;
-    for (int k = 0; k < pair.manifold.count; ++k) {
-        const collision::ContactPoint& point = pair.manifold.points[k];
-        const double speed = static_cast<double>(motion.approach(point.position, pair.manifold.normal));
-        const auto separation = static_cast<double>(point.separation);
-        if (separation < -kSunk) return std::numeric_limits<double>::infinity();
-        if (separation < speed * time_step) fastest = std::max(fastest, speed);
-    }
-    double inverse = 0;  // of the reduced mass [1/kg]
-    for (const uint32_t side : {pair.a, pair.b}) inverse += moving(nodes, side) ? nodes.mass[side].inv_mass : 0;
-    return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
+bool sank_in(const collision::Manifold& manifold) {
+    return std::any_of(manifold.points, manifold.points + manifold.count,
+                       [](const collision::ContactPoint& point) { return point.separation < -kSunk; });
 }
 
 }  // namespace
@@ -94,8 +79,7 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
 
 // Components of the graph of direct joints and the contacts that they take in. Symbolic work happens at a block's
 // first solve.
-void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs,
-                             const PartitionRules& rules) {
+void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
     const uint32_t slots = nodes.slots();
     for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
     for (size_t j = 0; j < joints.record.size(); ++j)
@@ -112,7 +96,7 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
         component.most = std::max(component.most, nodes.mass[i].mass);
     }
     choose_direct(nodes, joints);
-    find_hit(nodes, pairs, rules);
+    find_hit(nodes, pairs);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const auto ends = pairs.active[p].nodes();
         const uint32_t first = mover(nodes, ends);
@@ -161,7 +145,7 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
 }
 
 // What is hit takes in its contacts, from this frame on.
-void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules) {
+void Partition::find_hit(const Nodes& nodes, const Pairs& pairs) {
     for (const Block& block : blocks)  // of the last frame
         if (block.memory.hit_left > 0 && moving(nodes, block.nodes[0])) component_[find(block.nodes[0])].loaded = true;
     for (const ActivePair& pair : pairs.active) {
@@ -169,10 +153,9 @@ void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const Partition
             return moving(nodes, node) && component_[find(node)].always && !component_[find(node)].hit;
         };
         if (!waits(pair.a) && !waits(pair.b)) continue;
-        const double hit = hit_of(nodes, pairs.list[pair.pair], rules.time_step);
+        if (!sank_in(pairs.list[pair.pair].manifold)) continue;
         for (const uint32_t node : {pair.a, pair.b})
-            if (waits(node) && hit > kHit * nodes.mass[node].mass)
-                component_[find(node)].loaded = component_[find(node)].hit = true;
+            if (waits(node)) component_[find(node)].loaded = component_[find(node)].hit = true;
     }
 }
 

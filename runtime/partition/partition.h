@@ -149,9 +149,9 @@ private:
     void find_loads(const Nodes& nodes);
     void find_slender(const Nodes& nodes, const PartitionRules& rules);
     void find_towers();
-    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);
-    void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
+    void find_hit(const Nodes& nodes, const Pairs& pairs);
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
