@@ -52,7 +52,8 @@ typedef struct taut_pre_solve_answer {
 typedef int32_t (*taut_pre_solve_fn)(const taut_pre_solve* contact, taut_pre_solve_answer* answer, void* user_data);
 
 /**
- * Sets the function that steps of this world ask; null: none, all contacts are accepted.
+ * Sets the function that steps of this world ask; null: none, all contacts are accepted. Bodies with colliders that
+ * ask wake up, and what touches them.
  * Thread safety: one thread at a time per world, not inside a step.
  * @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED.
  */

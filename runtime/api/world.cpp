@@ -188,6 +188,8 @@ taut_result taut_world_set_hit_speed(taut_world handle, float hit_speed) {
 taut_result taut_world_set_pre_solve(taut_world handle, taut_pre_solve_fn pre_solve, void* user_data) {
     return with_world(__func__, handle, Use::write, [&](World& world) {
         world.pre_solve = {pre_solve, user_data};
+        for (const Collider& collider : world.colliders.record)
+            if (collider.node != kNone && (collider.asks & kAsksPreSolve) != 0) wake_about(world, collider.node);
         return TAUT_OK;
     });
 }

@@ -271,6 +271,23 @@ TEST(Wakes, WhatLiesInAColliderThatBeginsToStopIt) {
     }
 }
 
+TEST(Wakes, WhatAnotherPreSolveFunctionMayLetThrough) {
+    World world(let_sleep);
+    world.add_ground();
+    const taut_body shelf =
+        world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({1, 0.2, 1}), .position = {0, 2, 0}});
+    ok(taut_collider_set_pre_solve(first_collider(shelf), 1));
+    const taut_body on_shelf = world.add({.shape = world.box({0.25, 0.25, 0.25}), .position = {0, 2.45, 0}});
+    const taut_body on_ground = world.add({.shape = world.box({0.25, 0.25, 0.25}), .position = {5, 0.25, 0}});
+    ASSERT_GT(steps_to_sleep(world, {on_shelf, on_ground}), 0);
+    const taut_pre_solve_fn lets_through = [](const taut_pre_solve*, taut_pre_solve_answer*, void*) { return 0; };
+    ok(taut_world_set_pre_solve(world.handle, lets_through, nullptr));
+    EXPECT_TRUE(awake(on_shelf));
+    EXPECT_FALSE(awake(on_ground));
+    world.step(60);
+    EXPECT_LT(position(on_shelf).y, 1.5);
+}
+
 TEST(Wakes, EveryoneWhenGravityChanges) {
     Sleepers s;
     ok(taut_world_set_gravity(s.world.handle, s.world.def.gravity));
