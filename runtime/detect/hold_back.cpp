@@ -182,7 +182,7 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
     Mechanisms& mechanisms = pairs.mechanisms;
     if (mechanisms.root.empty()) find_mechanisms(nodes, joints, mechanisms);
     const uint32_t a = pair.a.collider.node, b = pair.b.collider.node;
-    Mechanism of_a(nodes, mechanisms, a), of_b(nodes, mechanisms, b);
+    Mechanism of_a(nodes, joints, mechanisms, a), of_b(nodes, joints, mechanisms, b);
     if (of_a.has(b)) return false;
     const bool may_drive = round < kMostRounds;
     if (may_drive && of_b.goes_along_with(of_a))

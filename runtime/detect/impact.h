@@ -28,8 +28,8 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 // ends where it meets it. What the broadphase did not foresee is asked for then. What is too much both go back, each
 // along its own way, which was free. A mechanism goes back as one and without turning, so that its joints stay as they
 // are, and only across the surface; where it hangs on the world, each of it a share of its own way, so that it does not
-// stand in the air for good; where that would open its joints, or it still passes something, it stays where it was
-// before the step. Velocities stay: the next frame finds the contact. No pair is looked after that the host or a
+// stand in the air for good, and its joints are closed after that; where it still passes something, it stays where it
+// was before the step. Velocities stay: the next frame finds the contact. No pair is looked after that the host or a
 // one-way collider may ignore.
 void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
                collision::Broadphase& broadphase, Nodes& nodes);

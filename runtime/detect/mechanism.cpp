@@ -69,6 +69,14 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
         for (const uint32_t node : ends)
             if (!held(node)) of.ties[root[node]] |= anchored ? kJointed | kAnchored : kJointed;
     }
+    of.first_joint.assign(slots, kNone);
+    of.next_joint.assign(joints.record.size(), kNone);
+    of.open.reserve(joints.record.size());
+    for (uint32_t j = static_cast<uint32_t>(joints.record.size()); j-- > 0;) {
+        const auto ends = joints.record[j].nodes();
+        const auto end = std::find_if_not(ends.begin(), ends.end(), held);
+        if (end != ends.end()) of.next_joint[j] = std::exchange(of.first_joint[root[*end]], j);
+    }
     of.put_back.assign(slots, 0);
 }
 

@@ -23,8 +23,9 @@ void end_stays(Mechanisms& of);
 // A body and what joints tie to it, which stay as they are against each other.
 class Mechanism {
 public:
-    Mechanism(Nodes& nodes, Mechanisms& all, uint32_t node)
+    Mechanism(Nodes& nodes, const Joints& joints, Mechanisms& all, uint32_t node)
         : nodes_(nodes),
+          joints_(joints),
           all_(all),
           root_(all.root[node]),
           moves_(nodes.solved(node)),
@@ -43,9 +44,12 @@ public:
     }
 
     // A share of the way. One body along it, which is free; more of them only as far as they must; what is anchored
-    // each along its own, and in the last rounds, or where its joints would open, all of it.
+    // each along its own, and in the last rounds all of it.
     void go_back(double share, const Vec3& way, const Vec3& normal, uint8_t round) {
-        if (all_.ties[root_] & kAnchored) return stay_behind(round < kRounds && may_part() ? share : 1, round);
+        if (all_.ties[root_] & kAnchored) {
+            stay_behind(round < kRounds ? share : 1, round);
+            return close_joints();
+        }
         const Vec3 back = share * (all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way);
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
     }
@@ -71,16 +75,6 @@ public:
     void stay(uint8_t round) { stay_behind(1, round); }
 
 private:
-    // Whether its joints stay closed on a part of its way: those between bodies that turn far do not.
-    bool may_part() const {
-        constexpr double kFar = 0.25;  // [rad]
-        bool near = true;
-        for_nodes([&](uint32_t node) {
-            const Quat turn = nodes_.motion[node].q * nodes_.before[node].rotation.conjugate();
-            near = near && turn.vec().squaredNorm() < 0.25 * kFar * kFar;
-        });
-        return near || all_.next[root_] == root_;
-    }
     // By a share s of their way d in the step, on which they turn by theta: along d and, as what turns about an anchor
     // goes on an arc, off it by s (1 - s)/2 theta x d.
     void stay_behind(double share, uint8_t round) {
@@ -104,7 +98,11 @@ private:
         });
     }
 
+    // What turns far does not keep its joints closed on a part of its way.
+    void close_joints();
+
     Nodes& nodes_;
+    const Joints& joints_;
     Mechanisms& all_;
     uint32_t root_;
     bool moves_, kinematic_;

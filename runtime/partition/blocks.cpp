@@ -1,6 +1,8 @@
 // Which joints are solved directly, together with which contacts.
 #include <algorithm>
+#include <limits>
 
+#include "detect/approach.h"
 #include "partition/movers.h"
 #include "partition/partition.h"
 
@@ -15,10 +17,11 @@ constexpr uint32_t kMostGrown = 64;
 // ragdolls in a heap. Beyond, a light body between a heavy one and an edge sinks in.
 constexpr double kLoad = 300;             // force of a joint over the mass of its lighter body [m/s^2]
 constexpr double kLoadedMassRatio = 100;  // a block of more unequal masses always takes them in
-// And what the sweeps let sink in: they take a hit body for free, its joint stops it after them, and from substep to
-// substep the impulse grows. A ball of 300 kg at 50 m/s came back from a door of 30 kg with 24 m/s; a knee that comes
-// to its stop drives the foot into the ground.
-constexpr float kSunk = 0.005f;  // [m]
+// And what hits. Sweeps take the hit body for free, its joint stops it after them, and from substep to substep the
+// impulse grows beyond what stops the other: a ball of 300 kg at 50 m/s came back from a door of 30 kg with 24 m/s.
+constexpr double kHit = 0.5;  // that a contact would give a body that nothing holds [m/s]
+// Or what the sweeps let sink in, as where a knee comes to its stop and drives the foot into the ground.
+constexpr double kSunk = 0.005;  // [m]
 // Until the impulse of the hit is none that sweeps start from.
 constexpr uint8_t kHitFor = 3;  // frames
 
@@ -30,14 +33,31 @@ constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
 // landed, mostly after the hit was over, and its joints opened as far as without.
 constexpr uint8_t kSweptAfter = 6, kSweptFor = 15;
 
+// Of nodes: with a joint that is solved directly, or in a tower; or taken in with a contact.
+constexpr uint8_t kHeld = 1, kTaken = 2;
+
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 
 bool by_load(const Joint& joint) { return joint.solve == JointSolve::by_load; }
 uint8_t loaded_after(const Joint& joint) { return by_load(joint) ? kSweptAfter : kLoadedAfter; }
 
-bool sank_in(const collision::Manifold& manifold) {
-    return std::any_of(manifold.points, manifold.points + manifold.count,
-                       [](const collision::ContactPoint& point) { return point.separation < -kSunk; });
+// By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
+// infinite where it sank in or carries what sweeps do not hold.
+double hit_of(const Nodes& nodes, const Pair& pair, double time_step, double substep) {
+    const RelativeMotion motion = relative_motion(nodes, pair);
+    double fastest = 0, carried = 0;
+    for (int k = 0; k < pair.manifold.count; ++k) {
+        const collision::ContactPoint& point = pair.manifold.points[k];
+        carried += static_cast<double>(pair.impulse[k].normal);
+        const double speed = static_cast<double>(motion.approach(point.position, pair.manifold.normal));
+        const auto separation = static_cast<double>(point.separation);
+        if (separation < -kSunk) return std::numeric_limits<double>::infinity();
+        if (separation < speed * time_step) fastest = std::max(fastest, speed);
+    }
+    double inverse = 0;  // of the reduced mass [1/kg]
+    for (const uint32_t side : {pair.a, pair.b}) inverse += moving(nodes, side) ? nodes.mass[side].inv_mass : 0;
+    if (carried * inverse > kLoad * substep) return std::numeric_limits<double>::infinity();
+    return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
 }
 
 }  // namespace
@@ -79,7 +99,8 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
 
 // Components of the graph of direct joints and the contacts that they take in. Symbolic work happens at a block's
 // first solve.
-void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
+void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs,
+                             const PartitionRules& rules) {
     const uint32_t slots = nodes.slots();
     for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
     for (size_t j = 0; j < joints.record.size(); ++j)
@@ -96,20 +117,23 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
         component.most = std::max(component.most, nodes.mass[i].mass);
     }
     choose_direct(nodes, joints);
-    find_hit(nodes, pairs);
+    find_hit(nodes, pairs, rules);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const auto ends = pairs.active[p].nodes();
         const uint32_t first = mover(nodes, ends);
         if (first == kNone) continue;  // a quarantined body at rest on a fixed one
         const bool tower = island_[island_of_[first]].tower;
         auto takes_in = [&](uint32_t node) {
-            return moving(nodes, node) && core_[node] && component_[find(node)].loaded;
+            return moving(nodes, node) && core_[node] == kHeld && component_[find(node)].loaded;
         };
         if (!tower && std::none_of(ends.begin(), ends.end(), takes_in)) continue;
         pair_in_block_[p] = std::all_of(
             ends.begin(), ends.end(), [&](uint32_t node) { return !moving(nodes, node) || join_contact(first, node); });
-        if (tower && pair_in_block_[p]) core_[first] = 1;  // in a block, with or without a joint
+        if (!pair_in_block_[p]) continue;
+        for (const uint32_t node : ends)
+            if (moving(nodes, node) && core_[node] == 0) core_[node] = tower ? kHeld : kTaken;
     }
+    take_between(nodes, pairs);
     fill_blocks(nodes, joints, pairs);
     recall_blocks(nodes, joints);
 }
@@ -134,7 +158,7 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
         if (!may(joint) || !is_block(component_[find(end(joint))])) continue;
         joint_in_block_[j] = 1;
         for (uint32_t node : joint.nodes())
-            if (moving(nodes, node)) core_[node] = 1;
+            if (moving(nodes, node)) core_[node] = kHeld;
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
     for (uint32_t i = nodes.slots(); i-- > 0;) {  // other nodes stand alone; their root is smallest, so last
@@ -144,8 +168,22 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
     }
 }
 
+// What lies between a mechanism that takes it in and the world: its contact with the world as well, lest a press go
+// through what it presses.
+void Partition::take_between(const Nodes& nodes, const Pairs& pairs) {
+    for (uint32_t p = 0; p < pairs.active.size(); ++p) {
+        if (pair_in_block_[p]) continue;
+        const auto ends = pairs.active[p].nodes();
+        const auto is_held = [&](uint32_t node) { return !moving(nodes, node) || core_[node] == kTaken; };
+        if (mover(nodes, ends) == kNone || !std::all_of(ends.begin(), ends.end(), is_held)) continue;
+        const uint32_t block = find(mover(nodes, ends));
+        pair_in_block_[p] = std::all_of(ends.begin(), ends.end(),
+                                        [&](uint32_t node) { return !moving(nodes, node) || find(node) == block; });
+    }
+}
+
 // What is hit takes in its contacts, from this frame on.
-void Partition::find_hit(const Nodes& nodes, const Pairs& pairs) {
+void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules) {
     for (const Block& block : blocks)  // of the last frame
         if (block.memory.hit_left > 0 && moving(nodes, block.nodes[0])) component_[find(block.nodes[0])].loaded = true;
     for (const ActivePair& pair : pairs.active) {
@@ -153,9 +191,10 @@ void Partition::find_hit(const Nodes& nodes, const Pairs& pairs) {
             return moving(nodes, node) && component_[find(node)].always && !component_[find(node)].hit;
         };
         if (!waits(pair.a) && !waits(pair.b)) continue;
-        if (!sank_in(pairs.list[pair.pair].manifold)) continue;
+        const double hit = hit_of(nodes, pairs.list[pair.pair], rules.time_step, rules.time_step / rules.substeps);
         for (const uint32_t node : {pair.a, pair.b})
-            if (waits(node)) component_[find(node)].loaded = component_[find(node)].hit = true;
+            if (waits(node) && hit > kHit * nodes.mass[node].mass)
+                component_[find(node)].loaded = component_[find(node)].hit = true;
     }
 }
 

@@ -73,7 +73,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     if (rules.direct) find_towers();
     const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });
     if (rules.direct && any)
-        build_blocks(nodes, joints, pairs);
+        build_blocks(nodes, joints, pairs, rules);
     else
         forget_blocks(joints);
     choose_substeps(rules);

@@ -149,9 +149,10 @@ private:
     void find_loads(const Nodes& nodes);
     void find_slender(const Nodes& nodes, const PartitionRules& rules);
     void find_towers();
-    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     void choose_direct(const Nodes& nodes, const Joints& joints);
-    void find_hit(const Nodes& nodes, const Pairs& pairs);
+    void take_between(const Nodes& nodes, const Pairs& pairs);
+    void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
@@ -181,7 +182,7 @@ private:
     Array<uint32_t> level_;      // by slot: bodies between it and a support
     Array<Island> island_;
     Array<Component> component_;     // by slot of a root
-    Array<uint8_t> core_;            // by slot: has a joint that is solved directly
+    Array<uint8_t> core_;            // by slot: whether and how it is in a block
     Array<uint8_t> pair_in_block_;   // by index in Pairs::active
     Array<uint8_t> joint_in_block_;  // by slot
     Array<uint32_t> block_of_;       // by slot: its block in the last frame, or kNone

@@ -68,15 +68,26 @@ struct Stay {
 // Nodes that joints tie together, by node; hold_back().
 struct Mechanisms {
     explicit Mechanisms(Memory& memory)
-        : root(memory), next(memory), ties(memory), drive(memory), put_back(memory), stays(memory) {}
+        : root(memory),
+          next(memory),
+          first_joint(memory),
+          next_joint(memory),
+          open(memory),
+          ties(memory),
+          drive(memory),
+          put_back(memory),
+          stays(memory) {}
 
-    Array<uint32_t> root;     // the least of them; empty: not found yet
-    Array<uint32_t> next;     // of the ring of them
-    Array<uint8_t> ties;      // of a root; detect/mechanism.h
-    Array<float> drive;       // of a root; detect/mechanism.h [kg]
-    bool any_drives = false;  // any of them others, in this step
-    Array<uint8_t> put_back;  // the last round in which it was; 0: none
-    Array<Stay> stays;        // outlive the step
+    Array<uint32_t> root;         // the least of them; empty: not found yet
+    Array<uint32_t> next;         // of the ring of them
+    Array<uint32_t> first_joint;  // of a root, or kNone
+    Array<uint32_t> next_joint;   // by joint: the next one of its mechanism, or kNone
+    Array<uint32_t> open;         // scratch: joints to be closed
+    Array<uint8_t> ties;          // of a root; detect/mechanism.h
+    Array<float> drive;           // of a root; detect/mechanism.h [kg]
+    bool any_drives = false;      // any of them others, in this step
+    Array<uint8_t> put_back;      // the last round in which it was; 0: none
+    Array<Stay> stays;            // outlive the step
 };
 
 }  // namespace taut

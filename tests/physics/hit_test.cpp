@@ -34,18 +34,37 @@ double least_after_hit(Held held, double mass, double speed, std::mt19937& rando
 class HitOn : public testing::TestWithParam<Held> {};
 
 // Swept after the joint was solved, the panel gives way in each substep as if free, and the impulse grows: balls of 30
-// to 300 kg came back with a third to a half of their speed, 44 of 64 with more than a twentieth.
-TEST_P(HitOn, HardlyAnythingBouncesWithoutRestitution) {
+// to 300 kg came back with a third to a half of their speed.
+TEST_P(HitOn, NothingBouncesWithoutRestitution) {
     std::mt19937 random(1);
-    int back = 0;
     for (const double mass : {3.0, 30.0, 300.0, 1000.0})
         for (const double speed : {5.0, 50.0})
-            for (int start = 0; start < 8; ++start) back += least_after_hit(GetParam(), mass, speed, random) < -0.06;
-    EXPECT_LE(back, 16);
+            for (int start = 0; start < 8; ++start)
+                EXPECT_GT(least_after_hit(GetParam(), mass, speed, random), -0.06) << mass << " kg at " << speed;
 }
 
 INSTANTIATE_TEST_SUITE_P(Panel, HitOn, testing::Values(Held::fixed, Held::at_its_stop),
                          [](const auto& of) { return of.param == Held::fixed ? "fixed" : "at_its_stop"; });
+
+// A plate on a motor comes down on a box of 1 kg and 10 cm. What the box presses on was swept, and the plate went on to
+// the ground from 10 kN on.
+TEST(Press, StopsAtWhatItPresses) {
+    for (const double mass : {10.0, 100.0, 1e3, 1e4})
+        for (const double force : {1e2, 1e3, 1e4, 1e5}) {
+            World w;
+            w.add_ground();
+            w.add({.shape = w.box({0.05, 0.05, 0.05}), .position = {0, 0.05, 0}, .mass = 1});
+            const taut_body plate =
+                w.add({.shape = w.box({0.5, 0.1, 0.5}), .position = {0, 0.35, 0}, .mass = mass, .gravity_scale = 0});
+            slider(w, {}, plate, {0, 0.35, 0}, {0, 1, 0}, motor(-0.1, force));
+            double lowest = 1;
+            for (int frame = 0; frame < 300; ++frame) {
+                w.step();
+                lowest = std::min(lowest, position(plate).y - 0.1);
+            }
+            EXPECT_GT(lowest, 0.095) << mass << " kg, " << force << " N";
+        }
+}
 
 }  // namespace
 }  // namespace lab
