@@ -67,8 +67,9 @@ TEST_P(DrivenAgainstAStop, StaysThere) {
             world.add({.shape = world.box({0.5, 0.05, 0.05}), .position = {0.5, 0, 0}, .mass = between(random, 1, 10)});
         auto def = at(world, taut_hinge_joint_def_init, taut_body{}, arm, {0, 0, 0}, {0, 0, 1});
         const double stop = between(random, 0.3, 1.5);
-        const double speed = between(random, 1, 50) * (seed % 2 ? 1 : -1), force = std::pow(10, between(random, 3, 6));
-        def.angle = motor(speed, force);  // [rad/s], [N m]
+        const double speed = between(random, 1, 100) * (seed % 2 ? 1 : -1), force = std::pow(10, between(random, 3, 6));
+        const bool unlimited = seed % 4 < 2;
+        def.angle = motor(speed, unlimited ? std::numeric_limits<double>::infinity() : force);  // [rad/s], [N m]
         def.angle.mode = TAUT_AXIS_LIMITED;
         def.angle.lower = static_cast<float>(-stop);
         def.angle.upper = static_cast<float>(stop);
