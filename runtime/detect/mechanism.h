@@ -43,9 +43,15 @@ public:
     }
 
     // A share of the way. One body along it, which is free; more of them only as far as they must; what is anchored
-    // each along its own, and in the last rounds, or where its joints would open, all of it.
+    // each along its own, and in the last rounds, or where its joints would open, all of it, though not for good.
     void go_back(double share, const Vec3& way, const Vec3& normal, uint8_t round) {
-        if (all_.ties[root_] & kAnchored) return stay_behind(round < kRounds && may_part() ? share : 1, round);
+        if (all_.ties[root_] & kAnchored) {
+            if (round < kRounds && may_part())
+                stay_behind(share, round);
+            else if (may_stay())
+                stay(round);
+            return;
+        }
         const Vec3 back = share * (all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way);
         for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
     }
