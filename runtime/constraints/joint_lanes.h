@@ -58,6 +58,7 @@ struct alignas(32) LaneCoordinate {
 constexpr uint32_t kRubbing = 3;  // AxisRow::part
 
 // A stop, drive or friction along a row: sign J v + c mu = target, least <= mu <= most. Empty places have no mass.
+// c = max(compliance, softness J W J^T) of its law.
 struct alignas(64) LaneAxis {
     float sign[kLanes];
     float mass[kLanes];  // 1 / (k + c); 0 where it does nothing in this substep
@@ -81,6 +82,7 @@ struct alignas(32) LaneAxisLaw {
     float open[kLanes], closed[kLanes], relaxed[kLanes];  // [1/s]
     float friction[kLanes];                               // of a part that is one: most torque or force, by h [N s]
     float reach[kLanes];                                  // with a larger gap and no impulse it does nothing [m or rad]
+    float compliance[kLanes], softness[kLanes];           // [1/kg], [1]
 };
 
 // What the kernels see.

@@ -132,7 +132,9 @@ struct JointSweep {
         F::if_greater(target, push, push, target).store(axis.target);
         (base - F::if_greater(gap, zero, open, F::load(law.relaxed)) * gap).store(axis.relaxed_target);
 
-        const F filled = F::load(law.filled), whole = k + F::load(axis.compliance);
+        const F compliance = F::max(F::load(law.compliance), F::load(law.softness) * k);
+        compliance.store(axis.compliance);
+        const F filled = F::load(law.filled), whole = k + compliance;
         const F far = F::if_greater(F::load(axis.impulse), zero, filled, zero);
         const F used = F::if_greater(gap, F::load(law.reach), far, filled);
         F::if_greater(used * whole, tiny, used / F::max(whole, tiny), zero).store(axis.mass);

@@ -44,10 +44,13 @@ public:
     }
 
     // A share of the way. One body along it, which is free; more of them only as far as they must; what is anchored
-    // each along its own, and in the last rounds all of it.
+    // each along its own, and in the last rounds all of it, though not for good.
     void go_back(double share, const Vec3& way, const Vec3& normal, uint8_t round) {
         if (all_.ties[root_] & kAnchored) {
-            stay_behind(round < kRounds ? share : 1, round);
+            if (round < kRounds)
+                stay_behind(share, round);
+            else if (may_stay())
+                stay(round);
             return close_joints();
         }
         const Vec3 back = share * (all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way);

@@ -158,8 +158,21 @@ void ActiveSet::gather() {
     }
 }
 
+bool ActiveSet::undoes_overlaps() const {
+    const auto all = rows();
+    return std::any_of(all.begin(), all.end(), [](const BoundedRow& r) { return r.on && r.target > r.relaxed_target; });
+}
+
+void ActiveSet::ease(double part) {
+    for (BoundedRow& r : rows()) r.target = r.relaxed_target + part * (r.target - r.relaxed_target);
+}
+
 void ActiveSet::aim_biased() {
     for (BoundedRow& r : rows()) r.goal = r.target;
+}
+
+void ActiveSet::aim_unbiased() {
+    for (BoundedRow& r : rows()) r.goal = r.relaxed_target;
 }
 
 // Rows that rest keep the impulse they have, mu, in spite of their softness.

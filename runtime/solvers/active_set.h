@@ -29,11 +29,14 @@ public:
     // Bounded rows of the block from its row blocks, at the velocities in System::exact.
     void gather();
     bool empty() const { return b_.bounded_count == 0; }
-    // At ratios of 10000 an impact with eight left one chain in eight caught on the rim by a link's end, with twelve one
-    // in 48. Of heaps of 100 ragdolls that fell with four in blocks without contacts, 4 of 26 jammed for seconds.
+    bool undoes_overlaps() const;
+    // At ratios of 10000 an impact with eight left one chain in eight caught on the rim by a link's end, with twelve
+    // one in 48. Of heaps of 100 ragdolls that fell with four in blocks without contacts, 4 of 26 jammed for seconds.
     uint32_t rounds() const { return b_.tower ? 8 : 16; }
 
     void aim_biased();                      // goals of the solve that moves positions
+    void aim_unbiased();                    // likewise without the push that undoes overlaps
+    void ease(double part);                 // leaves so much of that push, in this substep
     void aim_relaxed(bool with_reference);  // of the one whose velocities are kept
     // Impulses of the rows that are on, from System::exact.
     void take_impulses();

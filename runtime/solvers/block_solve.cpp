@@ -232,6 +232,7 @@ bool BlockSolve::factor_rounds() {
         if (!set.drop_pulling()) break;
     }
     stop_short();
+    limit_push();
     return true;
 }
 

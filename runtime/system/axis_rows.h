@@ -55,6 +55,8 @@ inline AxisRow drive_row(double c, const Axis& axis, double h, AxisMemory& memor
     return row;
 }
 
+inline bool is_driven(const Axis& axis) { return axis.max_force > 0 && (axis.stiffness > 0 || axis.damping > 0); }
+
 // Calls visit(AxisRow) for each scalar row on row r of a block with axes.
 template <class Visit>
 void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit visit) {
@@ -67,8 +69,7 @@ void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit v
         if (std::isfinite(axis.upper)) visit(stop_row(-1, axis.upper - at, axis, h, &memory.upper));
     }
     if (axis.mode == AxisMode::locked) return;
-    const bool springs = axis.stiffness > 0 || axis.damping > 0;
-    if (axis.max_force > 0 && springs) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
+    if (is_driven(axis)) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
     if (axis.friction > 0) visit(AxisRow{kRubbing, 1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
 }
 

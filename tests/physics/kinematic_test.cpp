@@ -1,5 +1,7 @@
 // Kinematic bodies carry and push, and are not pushed.
-#include "physics/lab.h"
+#include <random>
+
+#include "physics/tunnel_lab.h"
 
 namespace {
 
@@ -100,6 +102,40 @@ TEST(KinematicPusher, ReachesTheTargetOfMoveKinematic) {
     EXPECT_LT(norm(position(mover) - Vec(target.position)), 1e-6);
     const Quat q = state(mover).rotation;
     EXPECT_NEAR(std::abs(q.x * turn.x + q.y * turn.y + q.z * turn.z + q.w * turn.w), 1, 1e-6);
+}
+
+// A plate of 10 cm is put 7 to 20 cm higher in each of 20 frames, through a chain of limbs that lies on it: above and
+// below it, they are pushed apart. They may hang on it, but not be flung away.
+TEST(TeleportedPlate, DoesNotFlingLimbs) {
+    constexpr double kStep[] = {0.07, 0.1, 0.15, 0.2};  // [m]
+    int flung = 0;
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        std::mt19937 random(seed);
+        const World world;
+        const taut_body plate =
+            world.add({.kind = TAUT_BODY_KINEMATIC, .shape = world.box({2, 0.05, 2}), .position = {0, -0.05, 0}});
+        std::vector<taut_body> limbs;
+        for (int i = 0; i < 6; ++i) {
+            limbs.push_back(world.add({.shape = i == 0 ? world.sphere(0.15) : world.capsule(0.06, 0.14),
+                                       .position = {0, 0.4 + 0.4 * i, 0},
+                                       .mass = i == 0 ? 5.0 : 1.0}));
+            if (i > 0) world.ball(limbs[static_cast<size_t>(i) - 1], {0, 0.2, 0}, limbs.back(), {0, -0.2, 0});
+        }
+        const Vec push(between(random, -2, 2), 0, between(random, -2, 2));
+        ok(taut_body_set_velocity(limbs.back(), push.narrow(), {0, 0, 0}));
+        world.step(120);
+        double fastest = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+            taut_pose pose{};
+            pose.position = {0, -0.05 + kStep[seed % 4] * std::min(frame, 20), 0};
+            pose.rotation = {0, 0, 0, 1};
+            ok(taut_body_set_pose(plate, &pose));
+            world.step();
+            for (const taut_body limb : limbs) fastest = std::max(fastest, norm(velocity(limb)));
+        }
+        flung += fastest > 16;
+    }
+    EXPECT_LE(flung, 1);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "constraints/instance.h"
 #include "constraints/random.h"
 #include "system/assemble.h"
+#include "system/axis_rows.h"
 #include "system/soft_contact.h"
 
 namespace taut::test {
@@ -279,15 +280,15 @@ struct Written {
             auto stop = [&](double sign, double gap, double carried) {
                 const double c = axis.limit_compliance / (kStep * kStep);
                 const double push = std::min<double>(soft.push, -soft.bias_rate * gap);
-                if (carried == 0 && gap > 50 * kStep) return;
+                if (carried == 0 && gap > 50 * kStep && !is_driven(axis)) return;
                 solve_row(r, sign, kStep * carried, c, gap > 0 || c > 0 ? -gap / kStep : push, 0, 1e30);
             };
             if (axis.max_force > 0) {
                 const double k = axis.stiffness, d = axis.damping, rate = kStep * k + d, turn = 2 * M_PI;
                 const double at = block.angular(r) ? error[r] - turn * std::round(error[r] / turn) : error[r];
-                const double most = kStep * axis.max_force;
-                solve_row(r, 1, kStep * memory.drive, 1 / (kStep * rate), (d * axis.speed - k * at) / rate, -most,
-                          most);
+                const double most = kStep * axis.max_force, softest = 2 * s(r, r) * kStep * k / rate;
+                solve_row(r, 1, kStep * memory.drive, std::max(1 / (kStep * rate), softest),
+                          (d * axis.speed - k * at) / rate, -most, most);
             }
             if (axis.friction > 0) solve_row(r, 1, rubbed(r), 0, 0, -most_friction(r), most_friction(r));
             if (axis.mode == AxisMode::limited) {
