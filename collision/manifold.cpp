@@ -1,6 +1,7 @@
 #include "collision/manifold.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace taut::collision {
 namespace {
@@ -139,6 +140,37 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
         out.points[out.count++] = {plane.u * p.x + plane.v * p.y + plane.normal * (plane.offset + 0.5f * p.z), p.z,
                                    base | p.id};
     }
+}
+
+// Of all corners within the margin none takes the place of one that it lies above by more than 35 degrees, as the top
+// of a thin plate would that of its bottom: add_points' diagonals are sqrt 2 long.
+constexpr float kSlope = 2;
+
+float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, float margin,
+                  Manifold& out) {
+    // Tangents from the shape's own axes turn with it, so that the same corners are chosen every frame.
+    int k = 0;
+    for (int i = 1; i < 3; ++i) {
+        if (std::fabs(up[i]) < std::fabs(up[k]) - 1e-3f) k = i;
+    }
+    ReferencePlane plane;
+    plane.normal = up;
+    plane.u = (Vec3f::Unit(k) - up * up[k]).normalized();
+    plane.v = up.cross(plane.u);
+    plane.offset = -height;
+    Polygon polygon;
+    float least = 1e30f;
+    for (size_t i = 0; i < corners.size(); ++i) {
+        const Vec3f& p = corners[i];
+        const float z = up.dot(p) + height - radius;
+        least = std::min(least, z);
+        if (z > margin) continue;
+        polygon.points[polygon.count++] = {plane.u.dot(p), plane.v.dot(p), z, vertex_feature(int(i))};
+    }
+    if (polygon.count == 0) return least;
+    add_points(polygon, plane, 0, margin, out, kSlope);
+    out.normal = -up;
+    return 0;
 }
 
 void reduce(Polygon& points) {
