@@ -1,6 +1,7 @@
 #include "collision/manifold.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace taut::collision {
 namespace {
@@ -57,6 +58,21 @@ Chosen choose(const ClipPoint* points, int count, float slope = 0) {
     }
     chosen.index[nearest] = lowest;
     return chosen;
+}
+
+// What is swept in order feels, of each point, those before it: to a tilt about one axis answers a moment about the
+// other, as the sum over j < i of r_j x r_i, r from the points' mean. Around a patch all terms have one sign, and
+// towers that sway begin to whirl and never stop. That sum is r_0 x r_1 + r_2 x r_3: 0 for a rectangle in zigzag.
+// Otherwise points keep their order, so that they are swept in the same one every frame.
+void break_circle(const ClipPoint* points, int (&index)[4]) {
+    std::sort(index, index + 4);
+    float x = 0, y = 0;
+    for (const int i : index) x += 0.25f * points[i].x, y += 0.25f * points[i].y;
+    const auto cross = [&](const ClipPoint& p, const ClipPoint& q) {
+        return (p.x - x) * (q.y - y) - (p.y - y) * (q.x - x);
+    };
+    if (cross(points[index[0]], points[index[1]]) * cross(points[index[2]], points[index[3]]) > 0)
+        std::swap(index[2], index[3]);
 }
 
 }  // namespace
@@ -117,17 +133,44 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
         if (polygon.points[i].z <= margin) low[count++] = polygon.points[i];
     }
     if (count == 0) return;
-    Chosen chosen;
-    if (count <= 4) {
-        for (int i = 0; i < count; ++i) chosen.add(i);
-    } else {
-        chosen = choose(low, count, slope);
-    }
+    Chosen chosen = count > 4 ? choose(low, count, slope) : Chosen{count, {0, 1, 2, 3}};
+    if (chosen.count == 4) break_circle(low, chosen.index);
     for (int i = 0; i < chosen.count && out.count < 4; ++i) {
         const ClipPoint& p = low[chosen.index[i]];
         out.points[out.count++] = {plane.u * p.x + plane.v * p.y + plane.normal * (plane.offset + 0.5f * p.z), p.z,
                                    base | p.id};
     }
+}
+
+// Of all corners within the margin none takes the place of one that it lies above by more than 35 degrees, as the top
+// of a thin plate would that of its bottom: add_points' diagonals are sqrt 2 long.
+constexpr float kSlope = 2;
+
+float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, float margin,
+                  Manifold& out) {
+    // Tangents from the shape's own axes turn with it, so that the same corners are chosen every frame.
+    int k = 0;
+    for (int i = 1; i < 3; ++i) {
+        if (std::fabs(up[i]) < std::fabs(up[k]) - 1e-3f) k = i;
+    }
+    ReferencePlane plane;
+    plane.normal = up;
+    plane.u = (Vec3f::Unit(k) - up * up[k]).normalized();
+    plane.v = up.cross(plane.u);
+    plane.offset = -height;
+    Polygon polygon;
+    float least = 1e30f;
+    for (size_t i = 0; i < corners.size(); ++i) {
+        const Vec3f& p = corners[i];
+        const float z = up.dot(p) + height - radius;
+        least = std::min(least, z);
+        if (z > margin) continue;
+        polygon.points[polygon.count++] = {plane.u.dot(p), plane.v.dot(p), z, vertex_feature(int(i))};
+    }
+    if (polygon.count == 0) return least;
+    add_points(polygon, plane, 0, margin, out, kSlope);
+    out.normal = -up;
+    return 0;
 }
 
 void reduce(Polygon& points) {

@@ -43,6 +43,11 @@ inline float flush_slack(float size) { return std::min(1e-3f, 0.01f * size); }
 void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out,
                 float slope = 0);
 
+// Corners of a shape that touch a plane, up . p = -height in the shape's frame: as add_points, of those lower than
+// margin less the radius that they are grown by, with the normal down. Returns how high the lowest is [m].
+float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, float margin,
+                  Manifold& out);
+
 // Keeps the four points that add_points would take of them, in no particular order.
 void reduce(Polygon& points);
 

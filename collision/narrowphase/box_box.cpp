@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "collision/narrowphase/core.h"
 #include "collision/narrowphase/kernel.h"
 #include "collision/narrowphase/segment.h"
 
@@ -158,6 +159,20 @@ struct FaceView {
     Mat3f axes;                 // of the incident box
 };
 
+// Whether the incident box lies over the reference face with all of its corners, wherever it turns.
+bool is_plane(const FaceView& view, int r) {
+    const float reach = view.incident.norm();
+    return std::fabs(view.centre[next(r)]) + reach < view.reference[next(r)] &&
+           std::fabs(view.centre[next(next(r))]) + reach < view.reference[next(next(r))];
+}
+
+// Then any of them may touch it, not those of one face alone. In the incident box's frame, normal to the face.
+void touch_plane(const FaceView& view, int r, float margin, Manifold& out) {
+    const Vec3f up = view.axes.row(r).transpose() * (view.centre[r] < 0 ? -1.0f : 1.0f);
+    collision::touch_plane(box_corners(view.incident), 0, up, std::fabs(view.centre[r]) - view.reference[r], margin,
+                           out);
+}
+
 // Clips the incident face that looks most against the reference face.
 void face_contact(const FaceView& view, int r, bool reference_on_b, float margin, Manifold& out) {
     const int u = next(r);
@@ -188,12 +203,16 @@ void face_contact(const FaceView& view, int r, bool reference_on_b, float margin
 }
 
 void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out) {
-    if (axis < 3) {
-        face_contact({boxes.a, boxes.b, boxes.t, boxes.r}, axis, false, pair.margin, out);
-        return;
-    }
-    face_contact({boxes.b, boxes.a, -boxes.t_in_b, boxes.r.transpose()}, axis - 3, true, pair.margin, out);
-    move_to_a(pair.b_in_a, out);
+    const bool on_b = axis >= 3;
+    const FaceView view = on_b ? FaceView{boxes.b, boxes.a, -boxes.t_in_b, boxes.r.transpose()}
+                               : FaceView{boxes.a, boxes.b, boxes.t, boxes.r};
+    const int r = axis % 3;
+    const bool plane = is_plane(view, r);
+    if (plane)
+        touch_plane(view, r, pair.margin, out);
+    else
+        face_contact(view, r, on_b, pair.margin, out);
+    if (plane != on_b) move_to_a(pair.b_in_a, out);
 }
 
 // Points of the face next to the edges, where they cross nearly in its plane. That face need not separate best: the

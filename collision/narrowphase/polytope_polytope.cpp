@@ -33,10 +33,24 @@ public:
     }
     // How far the two are apart at most: no further than the lowest vertex is from the face's edge nearest to it.
     float most_apart() const;
+    // Whether the other lies over the face with all of its corners, wherever it turns.
+    bool is_plane() const {
+        const float x = face_.u.dot(pose_.position), y = face_.v.dot(pose_.position);
+        for (const Side& side : reference_.sides_of(face_))
+            if (side.x * x + side.y * y + reach() > side.offset) return false;
+        return true;
+    }
+    // Then any of them may touch it, not those of one face alone. In the other's frame, with the normal to the face.
+    void touch_plane(float margin, Manifold& out) const {
+        const float height = face_.normal.dot(pose_.position) - face_.offset;
+        collision::touch_plane(other_.vertices, 0, up_, height, margin, out);
+    }
     // The normal comes out of the reference face. incident: the face last found to lie against it, if known.
     void clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const;
 
 private:
+    // Of the other's corners from its origin, at most [m].
+    float reach() const { return other_.centre.norm() + other_.outer_radius; }
     float outside(const Side& side) const { return side.x * x_ + side.y * y_ - side.offset; }
     void lay_out(int incident, Polygon& polygon) const;
     // Whether one of the corners is as deep as any vertex, within tolerance [m].
@@ -116,6 +130,11 @@ void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out
 // kept: the axis is last frame's, with the face that lay against it; else the axis gets that face.
 void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Manifold& out) {
     const bool on_b = axis.kind == AxisKind::face_b;
+    if (view.is_plane()) {
+        view.touch_plane(margin, out);
+        if (!on_b) move_to_a(pair.b_in_a, out);
+        return;
+    }
     view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, out);
     if (on_b) move_to_a(pair.b_in_a, out);
 }

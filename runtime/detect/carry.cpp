@@ -97,13 +97,14 @@ void carry_turning(const collision::Manifold& old, Impulse turning, float spin_s
 
 }  // namespace
 
+void forget_impulses(Pair& pair) {
+    std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+    pair.turning = {};
+    pair.spin_slip = -1;
+}
+
 void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
-    if (old.count == 0) {
-        std::fill(pair.impulse, pair.impulse + 4, Impulse{});
-        pair.turning = {};
-        pair.spin_slip = -1;
-        return;
-    }
+    if (old.count == 0) return forget_impulses(pair);
     Impulse carried[4];
     std::copy(before.impulse, before.impulse + 4, carried);
     const bool is_round = pair.patch > 0;  // flat faces keep most of their points, and the rest are not worth the time

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "base/prefetch.h"
+#include "detect/carry.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
 #include "detect/manifolds.h"
@@ -134,6 +135,15 @@ void list_active(Team& team, Pairs& pairs) {
                });
 }
 
+// Bodies that lost a push have lost what held it too: see note_lost().
+void forget_unheld(Pairs& pairs) {
+    if (!pairs.any_unheld) return;
+    for (const ActivePair& active : pairs.active)
+        if (pairs.unheld[active.a] || pairs.unheld[active.b]) forget_impulses(pairs.list[active.pair]);
+    std::ranges::fill(pairs.unheld, uint8_t{0});
+    pairs.any_unheld = 0;
+}
+
 // All pairs, resting ones too, take over what the host changed of colliders since they were asked last.
 void note_changes(const Colliders& colliders, Pairs& pairs) {
     if (pairs.colliders_version == colliders.version) return;
@@ -172,6 +182,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                    double time_step, double lead) {
     const Detection of{nodes, colliders, shapes, pairs, time_step, lead};
     note_changes(colliders, pairs);
+    pairs.unheld.resize(nodes.motion.size());
     const bool is_first = pairs.list.size() == 0;
     if (is_first) prepare_arrivals(static_cast<uint32_t>(pairs.near.size()), pairs.arriving);
     Arrivals arrivals(pairs.arriving);
@@ -181,6 +192,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     settle_changing(of);
     order_slots(pairs);
     list_active(team, pairs);
+    forget_unheld(pairs);
 }
 
 }  // namespace taut

@@ -43,6 +43,26 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
     pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
 }
 
+// Of all points together [N s].
+Vec3f push_of(const collision::Manifold& manifold, const Impulse* impulse) {
+    Vec3f sum = Vec3f::Zero();
+    for (int k = 0; k < manifold.count; ++k) sum += impulse[k].normal * manifold.normal;
+    return sum;
+}
+
+// What is wedged is pushed by what would throw it out at a hundred metres a second, from both sides. Where one side
+// slips off, or pushes another way from now on, a substep's sweeps take no more than most of the other's away, and as
+// contacts do not pull, the rest stays. Bodies that lose more than this speed [m/s] of a push begin without any.
+void note_lost(const Detection& of, const PairEnds& pair, const Vec3f& lost) {
+    constexpr double kLost = 3;
+    const auto mark = [](uint8_t& flag) { std::atomic_ref(flag).store(1, std::memory_order_relaxed); };
+    for (const uint32_t node : {pair.a, pair.b}) {
+        if (!(static_cast<double>(lost.norm()) * of.nodes.mass[node].inv_mass > kLost)) continue;
+        mark(of.pairs.unheld[node]);
+        mark(of.pairs.any_unheld);
+    }
+}
+
 // A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
 void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
@@ -59,7 +79,10 @@ void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
     meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
+    const Vec3f was = push_of(old, before.impulse);
     carry(old, before, pair);
+    const Vec3f lost = was - push_of(pair.manifold, pair.impulse);
+    if (lost.squaredNorm() > 0.01f * was.squaredNorm()) note_lost(of, pair, lost);
     if (shaped.can_be_kept()) keep_manifold(of.pairs, pair);
 }
 
@@ -74,7 +97,10 @@ void keep_cache(const collision::PairCache& cache, PointsCache& of_points) {
 void take_over(const Shaped& shaped, const Detection& of, const collision::Manifold& old, NearPair& near, Pair& pair) {
     near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
     near.changed = false;
-    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
+    if (pair.manifold.count > 0)
+        adopt(shaped, of, old, pair, pair);
+    else
+        note_lost(of, pair, push_of(old, pair.impulse));
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no

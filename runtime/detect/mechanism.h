@@ -12,6 +12,8 @@ constexpr uint8_t kJointed = 1, kAnchored = 2, kDriven = 4;
 // Who drives with so many times as much as the other takes it along.
 constexpr float kDrives = 10;
 constexpr float kKinematic = 1e30f;  // what kinematic bodies drive with [kg]
+// More than any mass, and less than what those drive with that a few kinematic bodies' drives were handed on to [kg].
+constexpr float kOfKinematic = 1e-10f * kKinematic;
 
 constexpr uint8_t kRounds = 3;  // where a mechanism was put back, other parts of it may have passed
 
@@ -61,7 +63,7 @@ public:
     bool is_driven() const { return moves_ && (all_.ties[root_] & kDriven); }
     // Whether the other does not stop for it. What is anchored yields to kinematic bodies alone, and what they drive.
     bool goes_along_with(const Mechanism& other) const {
-        const bool held = (all_.ties[root_] & kAnchored) && other.drive() < 1e-10f * kKinematic;
+        const bool held = (all_.ties[root_] & kAnchored) && other.drive() < kOfKinematic;
         return moves_ && !held && other.drive() > kDrives * drive();
     }
     void go_along_with(const Mechanism& other, const Vec3& way, const Vec3& normal, uint8_t round) {

@@ -197,7 +197,7 @@ private:
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
-    Array<uint32_t> adjacency_begin_, adjacency_;  // by node: those it touches << 1, + 1 where it rests
+    Array<uint32_t> adjacency_begin_, adjacency_;  // scratch: by node, those it touches, for levels
 };
 
 }  // namespace taut

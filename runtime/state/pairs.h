@@ -194,6 +194,7 @@ struct Pairs {
           travel(memory),
           picked(memory),
           arriving(memory),
+          unheld(memory),
           parts(memory) {}
 
     // Of a new collider in a slot, or of one that gets another shape.
@@ -233,6 +234,8 @@ struct Pairs {
     Array<Travel> travel;                   // by collider; place_collider(), ahead: update_bounds()
     Array<uint32_t> picked;                 // scratch: what gather() found last
     Array<Arrival> arriving;                // scratch; find_contacts()
+    Array<uint8_t> unheld;                  // by node: 1 where others pushed against one that is gone; find_contacts()
+    uint8_t any_unheld = 0;                 // 1 where there is one
     collision::Parts parts;                 // of the pair looked at last
 };
 

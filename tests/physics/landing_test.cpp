@@ -1,4 +1,4 @@
-// What falls onto a plane: thin things lie down on it, and fast ones land on all their corners.
+// What falls onto a plane: thin things lie down on it, and fast ones land on all their corners; so on broad boxes.
 #include <algorithm>
 
 #include "physics/tunnel_lab.h"
@@ -108,5 +108,50 @@ TEST_P(FastOnPlane, LandsOnAllItsCorners) {
 }
 
 INSTANTIATE_TEST_SUITE_P(MetresPerSecond, FastOnPlane, testing::Values(10.0, 20.0, 40.0));
+
+struct Landing {
+    double speed, spin;
+};
+
+// Mean depth [m] of what stones, thrown down at random, go into a plane or a broad box.
+double mean_depth_of_stones(const Landing& landing, bool on_plane, int stones) {
+    std::mt19937 random(3);
+    double sum = 0;
+    for (int stone = 0; stone < stones; ++stone) {
+        World world;
+        if (on_plane)
+            world.add_ground();
+        else
+            world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({20, 0.5, 20}), .position = {0, -0.5, 0}});
+        std::vector<Vec> corners;
+        for (int i = 0; i < 14; ++i) corners.push_back(between(random, 0.24, 0.36) * direction(random));
+        const taut_body body = world.add({.shape = hull_of(world, corners),
+                                          .position = {0, between(random, 0.4, 0.8), 0},
+                                          .rotation = Quat::turn(direction(random), between(random, 0, 6)),
+                                          .velocity = {between(random, -1, 1), -landing.speed, 0},
+                                          .spin = landing.spin * direction(random),
+                                          .mass = 80});
+        double deepest = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+            world.step();
+            deepest = std::max(deepest, depth_of(body, corners));
+        }
+        sum += deepest;
+    }
+    return sum / stones;
+}
+
+struct StonesOnBox : testing::TestWithParam<Landing> {};
+
+// The corners next to those that touch first come down in the same frame: on a box, too, they have their points.
+TEST_P(StonesOnBox, GoInHardlyDeeperThanIntoAPlane) {
+    const double plane = mean_depth_of_stones(GetParam(), true, 40), box = mean_depth_of_stones(GetParam(), false, 40);
+    std::printf("%.2f mm into a plane, %.2f mm into a box\n", 1e3 * plane, 1e3 * box);
+    EXPECT_LT(box, plane + 0.003);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, StonesOnBox,
+                         testing::Values(Landing{1, 5}, Landing{4, 5}, Landing{10, 5}, Landing{1, 15}, Landing{4, 15},
+                                         Landing{10, 15}));
 
 }  // namespace
