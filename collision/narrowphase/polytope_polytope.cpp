@@ -1,10 +1,14 @@
 // Box or hull against box or hull: the axis that separated or touched last frame, else all axes; then face
 // clipping, or one point between two edges.
+#include <algorithm>
+
 #include "collision/narrowphase/core.h"
 #include "collision/narrowphase/polytope_cache.h"
 
 namespace taut::collision {
 namespace {
+
+constexpr float kUnknown = 1e30f;
 
 // A face of the reference polytope and the other polytope over it, all in the reference's frame.
 class FaceView {
@@ -45,14 +49,16 @@ public:
         const float height = face_.normal.dot(pose_.position) - face_.offset;
         collision::touch_plane(other_.vertices, 0, up_, height, margin, out);
     }
-    // The normal comes out of the reference face. incident: the face last found to lie against it, if known.
-    void clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const;
+    // The normal comes out of the reference face. incident: the face last found to lie against it, if known. Returns
+    // how far the two are apart at most, by what was clipped.
+    float clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const;
 
 private:
     // Of the other's corners from its origin, at most [m].
     float reach() const { return other_.centre.norm() + other_.outer_radius; }
     float outside(const Side& side) const { return side.x * x_ + side.y * y_ - side.offset; }
     void lay_out(int incident, Polygon& polygon) const;
+    float most_apart(const Polygon& clipped) const;
     // Whether one of the corners is as deep as any vertex, within tolerance [m].
     bool holds_deepest(const Polygon& polygon, float tolerance) const {
         float least = polygon.points[0].z;
@@ -97,7 +103,18 @@ void FaceView::lay_out(int incident, Polygon& polygon) const {
     }
 }
 
-void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const {
+// As in decides(), of the corner that is deepest where the faces lie over each other.
+float FaceView::most_apart(const Polygon& clipped) const {
+    if (clipped.count == 0) return kUnknown;
+    const ClipPoint& deepest =
+        *std::min_element(clipped.points, clipped.points + clipped.count,
+                          [](const ClipPoint& one, const ClipPoint& other) { return one.z < other.z; });
+    if (deepest.z > 0) return deepest.z;
+    const float height = deepest.z + face_.offset;
+    return collision::outside(reference_, deepest.x * face_.u + deepest.y * face_.v + height * face_.normal);
+}
+
+float FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const {
     Polygon polygon;
     if (known) lay_out(incident, polygon);
     if (!known || !holds_deepest(polygon, 0.1f * slack())) {
@@ -108,6 +125,7 @@ void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, fl
     out.normal = face_.normal;
     add_points(polygon, {face_.u, face_.v, face_.normal, face_.offset}, face_base(reference_on_b, number_, incident),
                margin, out);
+    return most_apart(polygon);
 }
 
 // Of a face axis; nearest: as in Separation, if known.
@@ -127,16 +145,18 @@ void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out
     out.points[0] = {0.5f * (a.at(nearest.s) + b.at(nearest.t)), separation, edge_feature(axis.i, axis.j)};
 }
 
-// kept: the axis is last frame's, with the face that lay against it; else the axis gets that face.
-void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Manifold& out) {
+// kept: the axis is last frame's, with the face that lay against it; else the axis gets that face. Returns how far the
+// two are apart at most, if that is found on the way.
+float face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Manifold& out) {
     const bool on_b = axis.kind == AxisKind::face_b;
     if (view.is_plane()) {
         view.touch_plane(margin, out);
         if (!on_b) move_to_a(pair.b_in_a, out);
-        return;
+        return kUnknown;
     }
-    view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, out);
+    const float most = view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, out);
     if (on_b) move_to_a(pair.b_in_a, out);
+    return most;
 }
 
 // Points of the face next to the edges, where they cross nearly in its plane.
@@ -211,13 +231,14 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const Preference preference(pair.size());
     const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
     const FaceView view = view_of(pair, face.axis, face.nearest);
-    face_points(pair, view, face.axis, false, margin, out);
+    const float most_apart = face_points(pair, view, face.axis, false, margin, out);
     // Where the faces lie over each other the two are at most so far apart.
     const float most = deepest(out);
     const Vec3f last = kept.touching && pair.valid(kept.axis) ? pair.normal(kept.axis) : Vec3f(Vec3f::Zero());
     const bool other_way = last != Vec3f::Zero() && !same_way(last, pair.normal(face.axis));
-    if (!other_way &&
-        (std::max(most, 0.0f) <= face.distance + view.slack() || view.decides(preference.ask(was_edge)))) {
+    const float ask = preference.ask(was_edge);
+    if (!other_way && (std::max(most, 0.0f) <= face.distance + view.slack() || most_apart <= face.distance + ask ||
+                       view.decides(ask))) {
         write(face.axis, true, pair, shapes.cache);
         return 0;
     }

@@ -138,8 +138,10 @@ void list_active(Team& team, Pairs& pairs) {
 // Bodies that lost a push have lost what held it too: see note_lost().
 void forget_unheld(Pairs& pairs) {
     if (!pairs.any_unheld) return;
-    for (const ActivePair& active : pairs.active)
-        if (pairs.unheld[active.a] || pairs.unheld[active.b]) forget_impulses(pairs.list[active.pair]);
+    for (const ActivePair& active : pairs.active) {
+        Pair& pair = pairs.list[active.pair];
+        if ((pairs.unheld[active.a] || pairs.unheld[active.b]) && !pair.in_block()) forget_impulses(pair);
+    }
     std::ranges::fill(pairs.unheld, uint8_t{0});
     pairs.any_unheld = 0;
 }

@@ -44,17 +44,21 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
 }
 
 // Of all points together [N s].
-Vec3f push_of(const collision::Manifold& manifold, const Impulse* impulse) {
-    Vec3f sum = Vec3f::Zero();
-    for (int k = 0; k < manifold.count; ++k) sum += impulse[k].normal * manifold.normal;
+float push_of(const collision::Manifold& manifold, const Impulse* impulse) {
+    float sum = 0;
+    for (int k = 0; k < manifold.count; ++k) sum += impulse[k].normal;
     return sum;
 }
 
 // What is wedged is pushed by what would throw it out at a hundred metres a second, from both sides. Where one side
 // slips off, or pushes another way from now on, a substep's sweeps take no more than most of the other's away, and as
-// contacts do not pull, the rest stays. Bodies that lose more than this speed [m/s] of a push begin without any.
-void note_lost(const Detection& of, const PairEnds& pair, const Vec3f& lost) {
+// contacts do not pull, the rest stays; direct solves do not lag. Bodies that lose more than this speed [m/s] of a
+// push, and this part of it, begin without any. Pushes are along the normals [N s].
+void note_lost(const Detection& of, const PairEnds& pair, float push, const Vec3f& normal, const Vec3f& left) {
     constexpr double kLost = 3;
+    constexpr float kPart = 0.1f;
+    const Vec3f lost = push * normal - left;
+    if (!(lost.squaredNorm() > kPart * kPart * push * push)) return;
     const auto mark = [](uint8_t& flag) { std::atomic_ref(flag).store(1, std::memory_order_relaxed); };
     for (const uint32_t node : {pair.a, pair.b}) {
         if (!(static_cast<double>(lost.norm()) * of.nodes.mass[node].inv_mass > kLost)) continue;
@@ -79,10 +83,9 @@ void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
     meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
-    const Vec3f was = push_of(old, before.impulse);
+    const float push = before.in_block() ? 0 : push_of(old, before.impulse);
     carry(old, before, pair);
-    const Vec3f lost = was - push_of(pair.manifold, pair.impulse);
-    if (lost.squaredNorm() > 0.01f * was.squaredNorm()) note_lost(of, pair, lost);
+    if (push > 0) note_lost(of, pair, push, old.normal, push_of(pair.manifold, pair.impulse) * pair.manifold.normal);
     if (shaped.can_be_kept()) keep_manifold(of.pairs, pair);
 }
 
@@ -99,8 +102,8 @@ void take_over(const Shaped& shaped, const Detection& of, const collision::Manif
     near.changed = false;
     if (pair.manifold.count > 0)
         adopt(shaped, of, old, pair, pair);
-    else
-        note_lost(of, pair, push_of(old, pair.impulse));
+    else if (old.count > 0 && !pair.in_block())
+        note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no

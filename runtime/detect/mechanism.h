@@ -15,7 +15,8 @@ constexpr float kKinematic = 1e30f;  // what kinematic bodies drive with [kg]
 // More than any mass, and less than what those drive with that a few kinematic bodies' drives were handed on to [kg].
 constexpr float kOfKinematic = 1e-10f * kKinematic;
 
-constexpr uint8_t kRounds = 3;  // where a mechanism was put back, other parts of it may have passed
+constexpr double kWhole = 0.99;  // such a share is all of the way
+constexpr uint8_t kRounds = 3;   // where a mechanism was put back, other parts of it may have passed
 
 void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
 
@@ -46,13 +47,12 @@ public:
     }
 
     // A share of the way. One body along it, which is free; more of them only as far as they must; what is anchored
-    // each along its own, and in the last rounds all of it, though not for good.
+    // each along its own, and in the last rounds all of it. Nobody does all of it for good.
     void go_back(double share, const Vec3& way, const Vec3& normal, uint8_t round) {
         if (all_.ties[root_] & kAnchored) {
-            if (round < kRounds)
-                stay_behind(share, round);
-            else if (may_stay())
-                stay(round);
+            if (round >= kRounds) share = 1;
+            if (share > kWhole && !may_stay()) return;
+            stay_behind(share, round);
             return close_joints();
         }
         const Vec3 back = share * (all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way);

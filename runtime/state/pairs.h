@@ -113,6 +113,7 @@ struct Pair : PairEnds {
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
     bool turns() const { return spinning > 0 || rolling > 0; }
+    bool in_block() const { return impulse[0].slip >= 0; }  // in the last substep
     bool twists() const { return turns() || patch > 0; }
     // Arms of the torques in sweeps [m]: of the surfaces, or of the patch, whichever resist more. Friction in a patch
     // of even pressure resists spinning by 2/3 mu a of the force; one that loses a part alpha of what it takes to
