@@ -113,9 +113,12 @@ void for_facets(const Meeting& meeting, const Vec3f& centre, Lowest&& lowest, Ac
         facet.offset = facet.normal.dot(seed.at[0]);
         facet.height = lowest(facet.normal) - facet.offset;
         if (facet.height > meeting.margin) continue;
-        // Behind it by more than half of the body's reach.
-        const float middle = facet.normal.dot(centre) - facet.offset;
-        if (middle < -0.5f * (middle - facet.height)) continue;
+        // By more than half of the body's reach behind it, whatever counts as the middle: a cone's is next to its base.
+        const auto is_behind = [&](float middle) { return middle < -0.5f * (middle - facet.height); };
+        if (is_behind(facet.normal.dot(centre) - facet.offset)) {
+            const float top = -lowest(-facet.normal) - facet.offset;
+            if (is_behind(0.5f * (top + facet.height))) continue;
+        }
         act(facet);
     }
 }

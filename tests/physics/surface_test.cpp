@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "physics/surface_lab.h"
+#include "physics/tunnel_lab.h"
 
 namespace {
 
@@ -112,6 +113,31 @@ TEST(FloorOfTriangles, PushesOutTheFrontWay) {
         }
         EXPECT_NEAR(position(box).y, 0.5, 2e-3) << depth;
         EXPECT_LT(top, 0.51) << depth;
+    }
+}
+
+// Cones whose middle is above it were let through if they stood on their tips' side: the mean of their corners lies
+// next to the base.
+TEST(FloorOfTriangles, PushesOutWhatIsMadeAcrossIt) {
+    std::mt19937 random(1);
+    for (int start = 0; start < 60; ++start) {
+        World world;
+        world.add({.kind = TAUT_BODY_STATIC, .shape = mesh(world, grid(8, 8, 0.5)), .position = {-4, 0, -4}});
+        const taut_shape kinds[] = {world.cone(0.3, 0.3), world.tapered_capsule(0.25, 0.1, 0.2),
+                                    world.cylinder(0.3, 0.25)};
+        std::vector<taut_body> bodies;
+        for (int i = 0; i < 3; ++i)
+            bodies.push_back(world.add({.shape = kinds[i],
+                                        .position = {1.5 * i - 1.5, between(random, 0, 0.25), between(random, -1, 1)},
+                                        .rotation = Quat::turn(direction(random), between(random, 0, 6))}));
+        double fastest = 0;
+        for (int i = 0; i < 120; ++i) {
+            world.step();
+            for (const taut_body body : bodies) fastest = std::max(fastest, norm(velocity(body)));
+        }
+        for (int i = 0; i < 3; ++i)
+            EXPECT_GT(position(bodies[static_cast<size_t>(i)]).y, 0) << "kind " << i << ", " << start;
+        EXPECT_LT(fastest, 4) << start;
     }
 }
 
