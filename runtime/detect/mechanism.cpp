@@ -71,7 +71,8 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
     }
     of.first_joint.assign(slots, kNone);
     of.next_joint.assign(joints.record.size(), kNone);
-    of.open.reserve(joints.record.size());
+    of.open.clear();
+    reserve_more(of.open, joints.record.size());
     for (uint32_t j = static_cast<uint32_t>(joints.record.size()); j-- > 0;) {
         const auto ends = joints.record[j].nodes();
         const auto end = std::find_if_not(ends.begin(), ends.end(), held);

@@ -135,7 +135,7 @@ TEST(FallingRagdoll, DoesNotBurst) {
     for (uint64_t seed = 20001; seed <= 23000; ++seed) drop_ragdoll(seed);
 }
 
-TEST(PlaygroundShort, HoldsForTenSeconds) { soak_for(600, {0.6, 0, 0.05, 60}); }  // more come until two thirds of it
+TEST(PlaygroundShort, HoldsForTenSeconds) { soak_for(600, {0.6, 0, 0.05, 80}); }  // more come until two thirds of it
 // With some 1300 shots at 60 m/s into the terrain.
 TEST(Playground, HoldsForHalfAnHour) { soak_for(108000, {0.15, 0, 0.05, 100}); }
 
