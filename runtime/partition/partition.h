@@ -22,7 +22,7 @@ struct BlockMemory {
     uint32_t solved = 0;             // substeps
     uint32_t guard_left = 0;         // substeps for which no slow velocity is spared
     uint32_t since_trip = 1u << 30;  // substeps since the guard last tripped
-    bool escalated = false;          // tripped twice in a short time: the island takes more substeps
+    bool escalated = false;          // tripped twice in a short time, of unequal masses: more substeps
     uint8_t refused_left = 0;        // frames for which a tower that was refused takes more substeps
     uint8_t whips_left = 0;          // frames for which its island is apart from those that need no shorter substeps
     uint8_t hit_left = 0;            // frames for which it takes in its contacts after a hit

@@ -91,6 +91,7 @@ void guard_energy(Substep& s, Block& block, const EnergyGain& gained) {
     if (!unequal && (block.nodes.size() == 1 || s.settings.adaptive_damping)) return;
     if (!(memory.excess_energy > (unequal ? 1 : kPatience) * gained.allowed)) return;
     ++s.report.guard_trips;
+    // Not of like masses: a ragdoll's burst would double the substeps of the heap that it lies in.
     if (unequal && memory.since_trip < kGuardSubsteps) memory.escalated = true;
     memory.since_trip = 0;
     memory.guard_left = kGuardSubsteps;
