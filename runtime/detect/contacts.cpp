@@ -142,8 +142,6 @@ void forget_unheld(Pairs& pairs) {
         Pair& pair = pairs.list[active.pair];
         if ((pairs.unheld[active.a] || pairs.unheld[active.b]) && !pair.in_block()) forget_impulses(pair);
     }
-    std::ranges::fill(pairs.unheld, uint8_t{0});
-    pairs.any_unheld = 0;
 }
 
 // All pairs, resting ones too, take over what the host changed of colliders since they were asked last.
@@ -184,7 +182,8 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
                    double time_step, double lead) {
     const Detection of{nodes, colliders, shapes, pairs, time_step, lead};
     note_changes(colliders, pairs);
-    pairs.unheld.resize(nodes.motion.size());
+    pairs.unheld.assign(nodes.motion.size(), 0);  // what substeps noted is over
+    pairs.any_unheld = 0;
     const bool is_first = pairs.list.size() == 0;
     if (is_first) prepare_arrivals(static_cast<uint32_t>(pairs.near.size()), pairs.arriving);
     Arrivals arrivals(pairs.arriving);
