@@ -1,6 +1,7 @@
 #include "collision/narrowphase/polytope_axes.h"
 
 #include <cmath>
+#include <limits>
 
 namespace taut::collision {
 namespace {
@@ -17,6 +18,12 @@ bool arcs_cross(const PolytopePair& pair, const Edge& edge_a, const Edge& edge_b
     const float l = along_b.dot(pair.a.faces[edge_a.left].normal);
     const float r = along_b.dot(pair.a.faces[edge_a.right].normal);
     return c * d < 0 && l * r < 0 && c * r > 0;
+}
+
+// How far the two are apart at most, negative, by a point of both: balls about it lie in each.
+float most_apart(const PolytopePair& pair, const Vec3f& p) {
+    const float on_a = outside(pair.a, p), on_b = outside(pair.b, pair.a_in_b * p);
+    return on_a <= 0 && on_b <= 0 ? on_a + on_b : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace
@@ -45,9 +52,10 @@ bool edges_decide(const PolytopePair& pair, Axis axis, float ask) {
     if (normal.squaredNorm() == 0) return false;
     const auto [on_a, on_b] = pair.edges(axis);
     const SegmentPair nearest = nearest_points(on_a, on_b);
-    const float separation = normal.dot(on_b.from - on_a.from);
-    const float most = separation + ask;
-    return most > 0 && (on_b.at(nearest.t) - on_a.at(nearest.s)).squaredNorm() <= most * most;
+    const Vec3f p = on_a.at(nearest.s), q = on_b.at(nearest.t);
+    const float separation = normal.dot(on_b.from - on_a.from), most = separation + ask;
+    if (separation > 0) return (q - p).squaredNorm() <= most * most;
+    return most_apart(pair, 0.5f * (p + q)) <= most;
 }
 
 FaceBeside face_beside(const PolytopePair& pair, Axis axis, const Vec3f& normal) {

@@ -47,7 +47,8 @@ struct PolytopePair {
 };
 
 // Whether no axis separates by ask more than a pair of edges: they meet in a face of the Minkowski difference, and none
-// separates by more than two points of the polytopes are apart.
+// separates by more than two points of the polytopes are apart; nor, where they overlap, by less than balls do that lie
+// in each about the same point.
 bool edges_decide(const PolytopePair& pair, Axis axis, float ask);
 
 // The face next to either of two edges that looks most along the edges' normal, and the cosine to it.

@@ -1,0 +1,78 @@
+// Whether two edges decide where polytopes touch, against the axes between all of their features.
+#include "collision/narrowphase/polytope_axes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "collision/hull.h"
+#include "collision_oracle.h"
+
+namespace taut::collision {
+namespace {
+
+using oracle::Random;
+
+// How far two polytopes are apart along a unit axis.
+float apart_along(const PolytopePair& pair, const Vec3f& n) {
+    return n.dot(pair.b_in_a.position) - highest(pair.a, n) - highest(pair.b, pair.b_in_a.rotation.transpose() * -n);
+}
+
+// The most along the normals of all faces and across all pairs of edges, both ways.
+float most_apart(const PolytopePair& pair) {
+    float most = -1e30f;
+    const auto ask = [&](const Vec3f& n) { most = std::max(most, apart_along(pair, n)); };
+    for (const Face& face : pair.a.faces) ask(face.normal);
+    for (const Face& face : pair.b.faces) ask(-(pair.b_in_a.rotation * face.normal));
+    for (const Edge& a : pair.a.edges)
+        for (const Edge& b : pair.b.edges) {
+            const Vec3f along_b = pair.b_in_a.rotation * pair.b.direction(b), n = pair.a.direction(a).cross(along_b);
+            if (n.norm() < 1e-4f * pair.a.direction(a).norm() * along_b.norm()) continue;
+            ask(n.normalized());
+            ask(-n.normalized());
+        }
+    return most;
+}
+
+// Hulls whose least overlap is about so deep.
+PolytopePair overlapping(const Hull& a, const Hull& b, double depth, Random& random) {
+    const Vec3f along = random.unit().cast<float>();
+    const Mat3f rotation = random.rotation();
+    double near = 0, far = 4;
+    for (int i = 0; i < 20; ++i) {
+        const double middle = 0.5 * (near + far);
+        const PolytopePair pair(a.view(), b.view(), {rotation, float(middle) * along});
+        (most_apart(pair) > float(-depth) ? far : near) = middle;
+    }
+    return {a.view(), b.view(), {rotation, float(near) * along}};
+}
+
+// No axis separates by ask more than edges that decide; most edges that bear an overlap of up to a centimetre do.
+TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
+    constexpr float kAsk = 0.0025f, kRounding = 2e-5f;
+    int bear = 0, decide = 0;
+    for (uint32_t seed = 1; seed <= 300; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        const Shape a = oracle::random_shape(ShapeKind::hull, random),
+                    b = oracle::random_shape(ShapeKind::hull, random);
+        const PolytopePair pair = overlapping(*a.hull, *b.hull, random.uniform(-0.005, 0.03), random);
+        const float most = most_apart(pair);
+        for (size_t i = 0; i < pair.a.edges.size(); ++i)
+            for (size_t j = 0; j < pair.b.edges.size(); ++j) {
+                const Axis axis = {AxisKind::edges, uint8_t(i), uint8_t(j)};
+                const bool decides = edges_decide(pair, axis, kAsk);
+                const float apart = apart_along(pair, pair.normal(axis));
+                EXPECT_TRUE(!decides || most <= apart + kAsk + kRounding)
+                    << i << " " << j << ": " << apart << ", " << most;
+                if (most > -kAsk || most < -4 * kAsk || apart < most - 1e-6f) continue;
+                ++bear;
+                decide += decides;
+            }
+    }
+    EXPECT_GE(bear, 25);
+    EXPECT_GE(2 * decide, bear) << decide << " of " << bear;
+}
+
+}  // namespace
+}  // namespace taut::collision
