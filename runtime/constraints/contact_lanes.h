@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 
 #include "base/memory.h"
 #include "simd/width.h"
@@ -26,6 +27,8 @@ struct alignas(32) SweepShift {        // since the contacts were found
 
 constexpr uint32_t kNoLanes = UINT32_MAX;
 
+struct LanePoint;
+
 struct alignas(64) LaneGroup {
     uint32_t a[kLanes], b[kLanes];  // index into arrays by node
     uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
@@ -33,7 +36,7 @@ struct alignas(64) LaneGroup {
     float friction[kLanes];
     float round[2][kLanes];           // of a and b: how far from their surfaces what turns ends [m]; is_round
     float turns[kLanes];              // 1: a body has turned its levers in this frame, so that it bounces as it is hit
-    uint32_t first_point;             // in LanePoint, one for each of `points`
+    LanePoint* point;                 // one for each of `points`
     uint32_t points;                  // most points of a lane
     uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no surface of a lane moves
     uint32_t any_turns = 0;           // 1: some turns is 1
@@ -71,7 +74,6 @@ struct alignas(64) LanePoint {           // empty places have zero masses
 // What the kernels see: plain pointers, so that no inline function is shared between builds.
 struct LaneView {
     const LaneGroup* group;
-    LanePoint* point;
     const LaneDrive* drive;
     LaneRolling* rolling;
     bool shared = false;  // threads share them: what a node has is often in the cache of another core
@@ -98,6 +100,48 @@ struct UnsetAllocator : HostAllocator<T> {
 template <class T>
 using UnsetArray = std::vector<T, UnsetAllocator<T>>;
 
+// Points of lane groups, in pieces that stay where they are: one array would be new memory throughout whenever it
+// grows, which takes the system longer to hand out than it takes to fill, and that in the frames that do the most.
+class LanePoints {
+public:
+    explicit LanePoints(Memory& memory) : allocator_(memory), piece_(memory) {}
+    ~LanePoints() {
+        for (LanePoint* piece : piece_) allocator_.deallocate(piece, kPiece);
+    }
+    LanePoints(const LanePoints&) = delete;
+    LanePoints& operator=(const LanePoints&) = delete;
+
+    // Takes all of them back.
+    void clear() {
+        next_piece_ = 0;
+        left_ = 0;
+    }
+    // So many side by side, at most four, which hold whatever was there before. Throws std::bad_alloc.
+    LanePoint* take(uint32_t count) {
+        if (count > left_) begin_piece();
+        left_ -= count;
+        return std::exchange(next_, next_ + count);
+    }
+
+private:
+    static constexpr uint32_t kPiece = 24;  // 32 KiB, of which Memory wastes little
+
+    void begin_piece() {
+        if (next_piece_ == piece_.size()) {
+            reserve_more(piece_, 1);
+            piece_.push_back(allocator_.allocate(kPiece));
+        }
+        next_ = piece_[next_piece_++];
+        left_ = kPiece;
+    }
+
+    HostAllocator<LanePoint> allocator_;
+    Array<LanePoint*> piece_;
+    size_t next_piece_ = 0;
+    LanePoint* next_ = nullptr;
+    uint32_t left_ = 0;  // of the piece that next_ is in
+};
+
 // A thread's lane groups of a colour: [begin, end); those before inner share moving nodes with other threads' groups,
 // of whatever colour.
 struct LanePart {
@@ -109,7 +153,7 @@ struct ContactLanes {
         : group(memory), point(memory), drive(memory), rolling(memory), part(memory), first_pair(memory), met(memory) {}
 
     UnsetArray<LaneGroup> group;  // of a colour, in the order of place but for borders
-    UnsetArray<LanePoint> point;
+    LanePoints point;
     Array<LaneDrive> drive;
     Array<LaneRolling> rolling;
     uint32_t parts = 1;          // of a colour
@@ -121,7 +165,7 @@ struct ContactLanes {
 
     std::span<const LanePart> parts_of(uint32_t colour) const { return {&part[colour * parts], parts}; }
 
-    LaneView view() { return {group.data(), point.data(), drive.data(), rolling.data(), false}; }
+    LaneView view() { return {group.data(), drive.data(), rolling.data(), false}; }
 };
 
 // Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.

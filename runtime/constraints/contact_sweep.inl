@@ -109,7 +109,7 @@ struct ContactSweep {
                                                Side& b) {
         LaneRolling& r = contacts.rolling[g.rolling];
         F load = F::all(0);
-        for (uint32_t k = 0; k < g.points; ++k) load = load + F::load(contacts.point[g.first_point + k].impulse[0]);
+        for (uint32_t k = 0; k < g.points; ++k) load = load + F::load(g.point[k].impulse[0]);
         const F old0 = F::load(r.impulse[0]), most = F::load(r.arm[0]) * load;
         const F step = F::load(r.spin_mass) * dot(b.spin() - a.spin(), f.n);
         const F least = F::all(0) - most, q0 = F::max(least, F::all(0) - F::max(least, step - old0));  // both ways
@@ -174,7 +174,7 @@ struct ContactSweep {
         b.gather(g.b, velocities, masses);
         const F inv_mass = a.inv_mass + b.inv_mass;
         for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = contacts.point[g.first_point + k];
+            LanePoint& p = g.point[k];
             const V ra = load(p.ra), rb = load(p.rb);
             const V an = cross(ra, f.n), bn = cross(rb, f.n), a1 = cross(ra, f.t1), b1 = cross(rb, f.t1);
             const V a2 = cross(ra, f.t2), b2 = cross(rb, f.t2), wa1 = a.turn(a1), wb1 = b.turn(b1);
@@ -238,7 +238,7 @@ struct ContactSweep {
             a.gather(g.a, velocities, masses);
             b.gather(g.b, velocities, masses);
             for (uint32_t k = 0; k < g.points; ++k) {
-                LanePoint& p = contacts.point[g.first_point + k];
+                LanePoint& p = g.point[k];
                 const V push =
                     F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * f.t2;
                 b.add(push, load(p.rb));
@@ -259,7 +259,7 @@ struct ContactSweep {
         a.gather(g.a, velocities, masses);
         b.gather(g.b, velocities, masses);
         for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = contacts.point[g.first_point + k];
+            LanePoint& p = g.point[k];
             point_rows(p, drive_of(contacts, g, k), f, a, b, terms(F::load(p.gap)));
         }
         if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
@@ -268,11 +268,11 @@ struct ContactSweep {
     }
 
     // Gaps of a group's points at the start of the substep.
-    static void measure_gaps(LaneView contacts, const LaneGroup& g, const Frame& f, const SweepShift* shifts) {
+    static void measure_gaps(const LaneGroup& g, const Frame& f, const SweepShift* shifts) {
         const ShiftLanes at_a(g.a, shifts), at_b(g.b, shifts);
         const V round_a = F::load(g.round[0]) * f.n, round_b = F::load(g.round[1]) * f.n;
         for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = contacts.point[g.first_point + k];
+            LanePoint& p = g.point[k];
             V core_a = load(p.ra), core_b = load(p.rb);
             if (g.is_round) core_a = core_a - round_a, core_b = core_b + round_b;
             (F::load(p.gap0) + dot(at_b.motion(core_b) - at_a.motion(core_a), f.n)).store(p.gap);
@@ -288,7 +288,7 @@ struct ContactSweep {
         for (uint32_t i = begin; i < end; ++i) {
             prefetch_next(contacts, i, end, velocities, masses, shifts);
             const LaneGroup& g = contacts.group[i];
-            if (shifts) measure_gaps(contacts, g, Frame(g), shifts);
+            if (shifts) measure_gaps(g, Frame(g), shifts);
             sweep_group(contacts, g, velocities, masses, [&](const F& gap) {
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
                                   F::if_greater(gap, zero, one, soft_mass),
@@ -321,7 +321,7 @@ struct ContactSweep {
             b.gather(g.b, velocities, masses);
             const F due = last ? one : F::load(g.turns);
             for (uint32_t k = 0; k < g.points; ++k) {
-                LanePoint& p = contacts.point[g.first_point + k];
+                LanePoint& p = g.point[k];
                 const F approach = F::load(p.approach);
                 // bounces: closed fast, and was pushed during the frame
                 const F wanted = F::if_greater(slow, approach, F::load(p.restitution) * approach, zero);

@@ -37,7 +37,7 @@ void follow_points(const collision::Manifold& now, WatchedPair& watched) {
 Impulse impulse_of(const WatchedPair& watched, const System& system, const Pair& pair, int k) {
     if (watched.lane_group == kNone) return pair.impulse[k];
     const ContactLanes& lanes = system.contacts;
-    const LanePoint& p = lanes.point[lanes.group[watched.lane_group].first_point + static_cast<uint32_t>(k)];
+    const LanePoint& p = lanes.group[watched.lane_group].point[k];
     return {p.impulse[0][watched.lane], p.impulse[1][watched.lane], p.impulse[2][watched.lane]};
 }
 

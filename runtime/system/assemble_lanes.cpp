@@ -56,7 +56,7 @@ Movement movement_of(const Nodes& nodes, uint32_t node) {
 }
 
 // One pair into one lane of a group; its points into the group's first points.
-void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
+void fill_pair(LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.friction[lane] = pair.friction;
     g.turns[lane] = 0;
@@ -71,8 +71,8 @@ void fill_pair(ContactLanes& lanes, LaneGroup& g, int lane, const Pair& pair, co
     const Movement a = movement_of(nodes, pair.a), b = movement_of(nodes, pair.b);
     const Vec3 arm_a = a.x - nodes.origin(pair.a);
     for (int k = 0; k < pair.manifold.count; ++k)
-        fill_lane(lanes.point[g.first_point + static_cast<uint32_t>(k)], lane, levers_of(pair, k, arm_a, a, b),
-                  pair.manifold.points[k].separation, pair.impulse[k], pair.restitution);
+        fill_lane(g.point[k], lane, levers_of(pair, k, arm_a, a, b), pair.manifold.points[k].separation,
+                  pair.impulse[k], pair.restitution);
 }
 
 void clear_pair(LaneGroup& g, int lane) {
@@ -95,7 +95,7 @@ void prefetch_pair(const LaneGroup* g, int lane, const Pairs& pairs) {
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
-bool fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
+bool fill_group(LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
     constexpr int kAhead = 4;  // pairs
     bool bounces = false, driven = false, turns = false, round = false;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -103,7 +103,7 @@ bool fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, const 
         prefetch_pair(here ? &g : next, here ? lane + kAhead : lane + kAhead - kLanes, pairs);
         uint32_t filled = 0;
         if (const Pair* pair = pair_of(g, lane, pairs)) {
-            fill_pair(lanes, g, lane, *pair, nodes);
+            fill_pair(g, lane, *pair, nodes);
             filled = static_cast<uint32_t>(pair->manifold.count);
             bounces = bounces || pair->restitution > 0;
             driven = driven || pair->driven;
@@ -112,7 +112,7 @@ bool fill_group(ContactLanes& lanes, LaneGroup& g, const LaneGroup* next, const 
         } else {
             clear_pair(g, lane);
         }
-        for (uint32_t k = filled; k < g.points; ++k) clear_lane(lanes.point[g.first_point + k], lane);
+        for (uint32_t k = filled; k < g.points; ++k) clear_lane(g.point[k], lane);
     }
     g.is_round = round;
     g.first_drive = driven ? 0 : kNoLanes;
@@ -160,7 +160,7 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
             LaneGroup& g = lanes.group[i];
-            if (fill_group(lanes, g, i + 1 < end ? &g + 1 : nullptr, pairs, nodes))
+            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, pairs, nodes))
                 bounces.store(true, std::memory_order_relaxed);
             if (is_special(g))
                 special.store(true, std::memory_order_relaxed);
@@ -192,7 +192,7 @@ void turn_side(const Quatf& turn, const Vec3f& skin, bool rolls, float (&r)[3][k
 }
 
 // Notes which lanes turned, each 1, else 0; false: none.
-bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system, float (&turned)[kLanes]) {
+bool turn_group(LaneGroup& g, const System& system, float (&turned)[kLanes]) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const uint32_t a = g.a[lane], b = g.b[lane];
@@ -204,7 +204,7 @@ bool turn_group(ContactLanes& lanes, LaneGroup& g, const System& system, float (
         g.any_turns = 1;
         const Vec3f n(g.normal[0][lane], g.normal[1][lane], g.normal[2][lane]);
         for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = lanes.point[g.first_point + k];
+            LanePoint& p = g.point[k];
             if (system.turned[a])
                 turn_side(system.turn[a], g.round[0][lane] * n, g.rolls[0][lane] != 0, p.ra, lane, n, -1, p);
             if (system.turned[b])
@@ -221,7 +221,7 @@ void turn_lanes(Team& team, System& system, const ContactKernels& kernels) {
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         alignas(64) float turned[kLanes];
         for (uint32_t g = begin; g < end; ++g)
-            if (turn_group(lanes, lanes.group[g], system, turned))
+            if (turn_group(lanes.group[g], system, turned))
                 kernels.renew(lanes.view(), g, turned, system.velocity.data(), system.inverse_mass.data());
     });
 }
@@ -231,7 +231,7 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
     const auto store = [&](const LaneGroup& g, int lane) {
         Pair& pair = pairs.list[g.pair[lane]];
         for (int k = 0; k < pair.manifold.count; ++k) {
-            const LanePoint& p = lanes.point[g.first_point + static_cast<uint32_t>(k)];
+            const LanePoint& p = g.point[k];
             pair.impulse[k] = {p.impulse[0][lane], p.impulse[1][lane], p.impulse[2][lane]};
         }
         if (!pair.twists()) return;

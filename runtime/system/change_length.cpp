@@ -11,7 +11,8 @@ void scale_contact_impulses(System& system, double by) {
         for (auto& lanes : rows)
             for (float& impulse : lanes) impulse *= factor;
     };
-    for (LanePoint& point : system.contacts.point) scale(point.impulse);
+    for (const LaneGroup& group : system.contacts.group)
+        for (uint32_t k = 0; k < group.points; ++k) scale(group.point[k].impulse);
     for (LaneRolling& rolling : system.contacts.rolling) scale(rolling.impulse);
     for (const RowBlock& block : system.rows.block) {
         if (!block.contact) continue;

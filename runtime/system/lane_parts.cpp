@@ -8,19 +8,15 @@ namespace {
 // The overflow colour takes one pair at a time.
 uint32_t width_of(uint32_t colour) { return colour + 1 == kMaxColours ? 1 : kLanes; }
 
-// A colour's lane groups of at least k points are those that its pairs of as many fill, the last one in part.
-void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) {
-    size_t groups = 0, points = 0;
-    for (uint32_t c = 0; c < kMaxColours; ++c) {
-        const uint32_t width = width_of(c);
-        for (uint32_t i = group.pair_colour_begin[c]; i < group.pair_colour_begin[c + 1]; i += width, ++groups)
-            points += pairs.active[group.pairs[i]].points;
-    }
-    const auto reserve = [](auto& empty, size_t needed) {
-        if (needed > empty.capacity()) empty.reserve(with_slack(needed));
-    };
-    reserve(lanes.group, groups);
-    reserve(lanes.point, points);
+uint32_t count_groups(const Group& group, uint32_t colour) {
+    const uint32_t width = width_of(colour);
+    return (group.pair_colour_begin[colour + 1] - group.pair_colour_begin[colour] + width - 1) / width;
+}
+
+void reserve_groups(ContactLanes& lanes, const Group& group) {
+    size_t groups = 0;
+    for (uint32_t c = 0; c < kMaxColours; ++c) groups += count_groups(group, c);
+    if (groups > lanes.group.capacity()) lanes.group.reserve(with_slack(groups));
 }
 
 // Lane groups of one colour, whose pairs come with the most points first, so that there are few empty places; in the
@@ -28,7 +24,7 @@ void reserve_lanes(ContactLanes& lanes, const Pairs& pairs, const Group& group) 
 void add_colour(ContactLanes& lanes, const Group& group, uint32_t colour) {
     const uint32_t width = width_of(colour);
     const uint32_t begin = group.pair_colour_begin[colour], end = group.pair_colour_begin[colour + 1];
-    const uint32_t count = (end - begin + width - 1) / width, first = static_cast<uint32_t>(lanes.group.size());
+    const uint32_t count = count_groups(group, colour), first = static_cast<uint32_t>(lanes.group.size());
     const auto place_of = [&](uint32_t i) {
         const uint32_t from = begin + i * width, to = std::min(from + width, end);
         return group.pair_place[(from + to) / 2];
@@ -111,14 +107,10 @@ private:
 // The points of the groups that a thread works on lie together, colour after colour: processors fetch ahead of what is
 // read, and would take what another thread writes.
 void place_points(ContactLanes& lanes) {
-    uint32_t points = 0;
     for (uint32_t k = 0; k < lanes.parts; ++k)
         for (uint32_t i = k; i < lanes.part.size(); i += lanes.parts)
-            for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g) {
-                lanes.group[g].first_point = points;
-                points += lanes.group[g].points;
-            }
-    lanes.point.resize(points);
+            for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)
+                lanes.group[g].point = lanes.point.take(lanes.group[g].points);
 }
 
 }  // namespace
@@ -129,7 +121,7 @@ void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group&
     lanes.point.clear();
     lanes.part.clear();
     lanes.parts = team.size();
-    reserve_lanes(lanes, pairs, group);
+    reserve_groups(lanes, group);
     lanes.first_pair.clear();
     for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c);
     Meetings meetings(lanes, inverse_mass);

@@ -118,7 +118,7 @@ void add_lanes(const World& world, Sums& sums) {
             if (group.pair[lane] == UINT32_MAX) continue;
             Hash& hash = sums.of(world.pairs.list[group.pair[lane]]);
             for (uint32_t p = 0; p < group.points; ++p)
-                for (const auto& impulse : lanes.point[group.first_point + p].impulse) hash.add(impulse[lane]);
+                for (const auto& impulse : group.point[p].impulse) hash.add(impulse[lane]);
         }
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "constraints/random.h"
 #include "rig.h"
@@ -49,7 +50,6 @@ struct Data {
         for (uint32_t i = 0; i < kGroups; ++i) {
             std::shuffle(order.begin(), order.end(), engine);
             LaneGroup g{};
-            g.first_point = static_cast<uint32_t>(point.size());
             g.points = 1 + static_cast<uint32_t>(engine() % 4);
             for (int lane = 0; lane < kLanes; ++lane) {
                 const bool empty = engine() % 8 == 0;
@@ -84,6 +84,8 @@ struct Data {
             }
             group.push_back(g);
         }
+        LanePoint* next = point.data();
+        for (LaneGroup& g : group) g.point = std::exchange(next, next + g.points);
     }
 
     template <class Any>
@@ -108,7 +110,7 @@ struct Data {
 
     // Everything that a step calls, over and over.
     void run(const ContactKernels& kernels) {
-        const LaneView view{group.data(), point.data(), drive.data(), rolling.data()};
+        const LaneView view{group.data(), drive.data(), rolling.data()};
         const SweepTerms terms = contact_terms(1.0 / 240);
         kernels.prepare(view, 0, kGroups, velocity.data(), mass.data());
         kernels.warm_start(view, 0, kGroups, velocity.data(), mass.data());
@@ -158,7 +160,7 @@ TEST(ContactKernels, EmptyPlacesStayEmpty) {
     for (const LaneGroup& g : data.group)
         for (uint32_t k = 0; k < g.points; ++k)
             for (int lane = 0; lane < kLanes; ++lane) {
-                const LanePoint& p = data.point[g.first_point + k];
+                const LanePoint& p = g.point[k];
                 if (p.ra[0][lane] != 0 || g.pair[lane] != kNone) continue;
                 EXPECT_EQ(p.impulse[0][lane], 0);
                 EXPECT_EQ(p.impulse[1][lane], 0);
@@ -283,7 +285,8 @@ TEST_P(FusedSweep, HasTheImpulsesOfTheGenericRows) {
     expect_same(lanes, rows);
 }
 
-// Between detections the anchors, each on its own surface, turn with their bodies: gap0 + n . (shift of b - shift of a) is C at the new poses.
+// Between detections the anchors, each on its own surface, turn with their bodies: gap0 + n . (shift of b - shift of a)
+// is C at the new poses.
 TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
     for (int substep = 0; substep < 3; ++substep) {
         for (Rig* rig : {&lanes, &rows}) {
@@ -316,7 +319,7 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
                     moved[end] = pair.manifold.normal.cast<double>().dot(now - at);
                 }
                 const double gap = point.separation + moved[1] - moved[0];
-                EXPECT_NEAR(rig.w.system.contacts.point[g.first_point + static_cast<uint32_t>(k)].gap[lane], gap, 1e-6);
+                EXPECT_NEAR(g.point[k].gap[lane], gap, 1e-6);
             }
         }
 }
