@@ -3,8 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <iterator>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 #include "base/memory.h"
 
@@ -13,15 +17,35 @@ namespace taut {
 // Goes through what an index finds.
 template <class List, class Element>
 struct IndexIterator {
-    List* of;
-    size_t index;
+    using value_type = std::remove_const_t<Element>;
+    using difference_type = std::ptrdiff_t;
+    using reference = Element&;
+    using pointer = Element*;
+    using iterator_category = std::random_access_iterator_tag;
+
+    List* of = nullptr;
+    size_t index = 0;
 
     Element& operator*() const { return (*of)[index]; }
-    IndexIterator& operator++() {
-        ++index;
+    Element* operator->() const { return &**this; }
+    Element& operator[](difference_type n) const { return *(*this + n); }
+    IndexIterator& operator+=(difference_type n) {
+        index += static_cast<size_t>(n);
         return *this;
     }
+    IndexIterator& operator-=(difference_type n) { return *this += -n; }
+    IndexIterator& operator++() { return *this += 1; }
+    IndexIterator& operator--() { return *this -= 1; }
+    IndexIterator operator++(int) { return std::exchange(*this, *this + 1); }
+    IndexIterator operator--(int) { return std::exchange(*this, *this - 1); }
+    friend IndexIterator operator+(IndexIterator at, difference_type n) { return at += n; }
+    friend IndexIterator operator+(difference_type n, IndexIterator at) { return at += n; }
+    friend IndexIterator operator-(IndexIterator at, difference_type n) { return at -= n; }
+    friend difference_type operator-(const IndexIterator& one, const IndexIterator& other) {
+        return static_cast<difference_type>(one.index - other.index);
+    }
     bool operator==(const IndexIterator&) const = default;
+    auto operator<=>(const IndexIterator& other) const { return index <=> other.index; }
 };
 
 template <class T>
@@ -36,6 +60,7 @@ public:
     SegmentedArray& operator=(const SegmentedArray&) = delete;
 
     size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
     size_t capacity() const { return segment_.size() * kSegment; }
     T& operator[](size_t index) { return segment_[index / kSegment].first[index % kSegment]; }
     const T& operator[](size_t index) const { return segment_[index / kSegment].first[index % kSegment]; }
@@ -52,6 +77,16 @@ public:
     T& emplace_back() {
         reserve(size_ + 1);
         return *std::construct_at(&(*this)[size_++]);
+    }
+    // New ones as T() is. Throws as reserve().
+    void resize(size_t size) {
+        reserve(size);
+        for (; size_ < size; ++size_) std::construct_at(&(*this)[size_]);
+        size_ = size;
+    }
+    template <class Condition>
+    void erase_if(Condition&& condition) {
+        size_ = static_cast<size_t>(std::remove_if(begin(), end(), condition) - begin());
     }
 
     auto begin() { return IndexIterator<SegmentedArray, T>{this, 0}; }

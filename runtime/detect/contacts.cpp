@@ -54,8 +54,8 @@ void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
     team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[i];
-            if (i + kSoon < end && pairs.near[i + kSoon].pair != kNone)
-                prefetch(pairs.list[pairs.near[i + kSoon].pair]);
+            if (const uint32_t soon = i + kSoon < end ? pairs.near[i + kSoon].pair : kNone; soon != kNone)
+                prefetch(pairs.list[soon]);
             look_at(of, arrivals, near);
             near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
             if (near.fast) any_fast.store(true, std::memory_order_relaxed);

@@ -296,7 +296,7 @@ void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, co
     if (broadphase.finish_refresh()) pairs.complete = false;
     if (pairs.complete) return;
     find_news(broadphase, was_complete, pairs);
-    reserve_more(pairs.near, pairs.arrived.size());
+    pairs.near.reserve(pairs.near.size() + pairs.arrived.size());
     drop_departed(nodes, colliders, pairs);
     merge_pairs(
         pairs.near, pairs.arrived.size(), [&] { return pairs.arrived.back(); },

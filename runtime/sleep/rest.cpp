@@ -25,10 +25,10 @@ bool rests(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.re
 
 // The pairs that meet a condition from one sorted list to another.
 template <class Condition>
-void transfer(Array<NearPair>& from, Array<NearPair>& to, Condition&& condition) {
+void transfer(NearPairs& from, NearPairs& to, Condition&& condition) {
     const auto count = static_cast<size_t>(std::count_if(from.begin(), from.end(), condition));
     if (count == 0) return;
-    reserve_more(to, count);
+    to.reserve(to.size() + count);
     size_t left = from.size();  // of which the last that meets the condition is the next to go
     const auto last = [&]() -> const NearPair& {
         while (!condition(from[left - 1])) --left;
@@ -41,7 +41,7 @@ void transfer(Array<NearPair>& from, Array<NearPair>& to, Condition&& condition)
             --left;
             return near;
         });
-    std::erase_if(from, condition);
+    from.erase_if(condition);
 }
 
 // How fast a point of a node, given from the origin of node a, comes towards the other side [m/s].

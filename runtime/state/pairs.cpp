@@ -6,11 +6,6 @@
 
 namespace taut {
 
-const NearPair* find_pair(const Array<NearPair>& list, uint64_t key) {
-    const auto at = std::ranges::lower_bound(list, key, {}, &NearPair::key);
-    return at != list.end() && at->key == key ? &*at : nullptr;
-}
-
 void reserve_slots(Pairs& pairs, size_t more) {
     if (more > pairs.free.size()) pairs.list.reserve(pairs.list.size() + more - pairs.free.size());
     reserve_more(pairs.free, pairs.list.capacity() - pairs.free.size());
@@ -44,7 +39,7 @@ namespace {
 // ones.
 uint32_t& link_to(Pairs& pairs, uint32_t slot) {
     const uint64_t key = pairs.list[slot].key;
-    for (Array<NearPair>* of : {&pairs.near, &pairs.resting}) {
+    for (NearPairs* of : {&pairs.near, &pairs.resting}) {
         const auto near = std::ranges::lower_bound(*of, key, {}, &NearPair::key);
         if (near == of->end() || near->key != key) continue;
         for (uint32_t* link = &near->pair; *link != kNone; link = &pairs.list[*link].next)

@@ -76,6 +76,8 @@ struct NearPair {
     }
 };
 
+using NearPairs = SegmentedArray<NearPair>;
+
 // A manifold as it was found, and how b's shape lay then, all as seen from a's shape; detect/reuse.h.
 struct FoundManifold {
     Quatf turn;    // of b's shape
@@ -206,8 +208,8 @@ struct Pairs {
         reach[collider].made = std::numeric_limits<double>::infinity();
     }
 
-    Array<NearPair> near;             // sorted by key
-    Array<NearPair> resting;          // sorted likewise: pairs of which no side moves and one is asleep
+    NearPairs near;                   // sorted by key
+    NearPairs resting;                // sorted likewise: pairs of which no side moves and one is asleep
     Array<NearPair> late;             // sorted likewise, of this step: whom ways led together that nobody foresaw
     bool complete = false;            // all pairs of the broadphase are in one of the two
     SegmentedArray<Pair> list;        // slots, in no order; free ones have no points
@@ -241,7 +243,11 @@ struct Pairs {
 };
 
 // The record of a key in a sorted list; null: it has none.
-const NearPair* find_pair(const Array<NearPair>& list, uint64_t key);
+template <class List>
+const NearPair* find_pair(const List& list, uint64_t key) {
+    const auto at = std::ranges::lower_bound(list, key, {}, &NearPair::key);
+    return at != list.end() && at->key == key ? &*at : nullptr;
+}
 
 // Room for so many pairs with points beyond those that there are.
 void reserve_slots(Pairs& pairs, size_t more);
@@ -258,7 +264,7 @@ void order_slots(Pairs& pairs);
 // Merges `count` records into a list, both sorted by key, in place, from the last to the first: last_key() is the key
 // of the last that is left, take() gives it away. Room was reserved before.
 template <class LastKey, class Take>
-void merge_pairs(Array<NearPair>& list, size_t count, LastKey&& last_key, Take&& take) {
+void merge_pairs(NearPairs& list, size_t count, LastKey&& last_key, Take&& take) {
     size_t from = list.size();
     list.resize(from + count);
     for (size_t to = list.size(); to > from;) {
@@ -321,8 +327,8 @@ void forget_pairs(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, 
         give_slots(pairs, near);
     });
     const auto met = [&](const NearPair& near) { return condition(near.ends(colliders)); };
-    std::erase_if(pairs.near, met);
-    std::erase_if(pairs.resting, met);
+    pairs.near.erase_if(met);
+    pairs.resting.erase_if(met);
     pairs.complete = false;
 }
 

@@ -32,7 +32,7 @@ struct Scattered {
                 pair.part = part;
                 link = &pair.next;
             }
-            (random() % 8 == 0 ? pairs.resting : pairs.near).push_back(near);
+            (random() % 8 == 0 ? pairs.resting : pairs.near).emplace_back() = near;
         }
         for (uint32_t slot : slots) pairs.free.push_back(slot);
         list();
@@ -53,7 +53,7 @@ struct Scattered {
     void expect_all_slots_once() const {
         std::vector<int> uses(pairs.list.size());
         for (uint32_t slot : pairs.free) ++uses[slot];
-        for (const Array<NearPair>* of : {&pairs.near, &pairs.resting})
+        for (const NearPairs* of : {&pairs.near, &pairs.resting})
             for (const NearPair& near : *of)
                 for (uint32_t slot = near.pair; slot != kNone; slot = pairs.list[slot].next) ++uses[slot];
         EXPECT_TRUE(std::ranges::all_of(uses, [](int n) { return n == 1; }));

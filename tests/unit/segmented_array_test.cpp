@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace {
@@ -37,6 +38,26 @@ TEST(SegmentedArray, ReserveRoomAndBeginWithNewElements) {
     const uint64_t calls = memory.calls();
     for (int i = 0; i < 100; ++i) EXPECT_EQ(list.emplace_back().value, 7);
     EXPECT_EQ(memory.calls(), calls);
+}
+
+TEST(SegmentedArray, AreSearchedAndThinnedOutLikeAnArray) {
+    Memory memory{taut_hooks{}};
+    SegmentedArray<int> list(memory);
+    EXPECT_TRUE(list.empty());
+    list.resize(1000);
+    EXPECT_TRUE(std::ranges::all_of(list, [](int x) { return x == 0; }));
+    for (int i = 0; i < 1000; ++i) list[static_cast<size_t>(i)] = 2 * i;
+    for (const int x : {-1, 0, 1, 777, 1998, 1999}) {
+        const auto at = std::ranges::lower_bound(list, x);
+        EXPECT_EQ(at - list.begin(), std::clamp((x + 1) / 2, 0, 1000)) << x;
+    }
+    list.erase_if([](int x) { return x % 3 != 0; });
+    ASSERT_EQ(list.size(), 334u);
+    for (size_t i = 0; i < list.size(); ++i) EXPECT_EQ(list[i], static_cast<int>(6 * i));
+    list.resize(10);
+    list.resize(12);
+    EXPECT_EQ(list[9], 54);
+    EXPECT_EQ(list[11], 0);
 }
 
 // A host that gives so many pieces, then none.
