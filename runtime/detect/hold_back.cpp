@@ -101,15 +101,16 @@ bool may_pass(const Pairs& pairs, const NearPair& near) {
     return may_pass(pairs.courses[near.collider_a()], pairs.courses[near.collider_b()]);
 }
 
-// Appends a collider's pairs with what its box meets, but for those that are near.
+// Adds a collider's pairs with what its box meets and it may have passed, but for those that are near.
 void add_late(const Nodes& nodes, const Colliders& colliders, const collision::Broadphase& broadphase, uint32_t c,
               Pairs& pairs) {
     struct Found final : collision::Visitor {
         Found(const Nodes& n, const Colliders& all, uint32_t one, Pairs& to)
             : nodes(n), colliders(all), c(one), pairs(to) {}
         void visit(uint32_t other, collision::Probe&) override {
+            if (other == c || !may_pass(pairs.courses[c], pairs.courses[other])) return;
             const uint64_t key = pair_key(c, other);
-            if (other == c || find_pair(pairs.near, key) || find_pair(pairs.late, key)) return;
+            if (find_pair(pairs.near, key) || find_pair(pairs.late, key)) return;
             reserve_more(pairs.late, 1);
             const NearPair pair = new_pair(nodes, colliders, pairs, key);
             pairs.late.insert(std::ranges::upper_bound(pairs.late, key, {}, &NearPair::key), pair);
@@ -234,13 +235,12 @@ bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints&
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     gather(team, count_of(pairs), pairs.picked, [&](uint32_t i) {
         NearPair& near = pair_at(pairs, i);
-        if (marks_of(pairs, near) & kMoved) {
-            near.strides = strides(colliders, pairs, near);
-            near.passed = near.strides && may_pass(pairs, near);
-        } else if (near.passed) {
-            near.passed = false;
-        }
-        return near.strides;
+        const bool moved = marks_of(pairs, near) & kMoved;
+        const bool may_stride = moved ? strides(colliders, pairs, near) : near.strides;
+        const bool may_have_passed = moved && may_stride && may_pass(pairs, near);
+        if (may_stride != near.strides) near.strides = may_stride;  // few are written
+        if (may_have_passed != near.passed) near.passed = may_have_passed;
+        return may_stride;
     });
     sort_in_late(pairs);
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
@@ -268,8 +268,8 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
             let_go(pairs.strides);
             break;
         }
-        if (any_astray) find_late(team, nodes, colliders, shapes, pairs, broadphase);
         find_courses(team, nodes, colliders, shapes, pairs);
+        if (any_astray) find_late(team, nodes, colliders, shapes, pairs, broadphase);
         find_passed(team, nodes, colliders, shapes, pairs);
         again = part_passed(colliders, shapes, joints, round, pairs, nodes);
     }
