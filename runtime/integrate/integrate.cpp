@@ -1,6 +1,8 @@
 #include "integrate/integrate.h"
 
+#include <algorithm>
 #include <atomic>
+#include <span>
 
 #include "check/quarantine.h"
 #include "integrate/gyroscopic.h"
@@ -101,6 +103,69 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node) {
     set_sweep_velocity(system.velocity[node + 1], m.v, m.w);
 }
 
+// Velocities at which nodes would go on through a substep without contacts and joints.
+struct Prediction {
+    System& system;
+    Nodes& nodes;
+    const Vec3& gravity;
+
+    // Of at most kSpins nodes.
+    void of(std::span<const uint32_t> together) const {
+        FreeSpin spins[kSpins];
+        uint32_t spinning[kSpins];
+        size_t count = 0;
+        for (const uint32_t node : together) {
+            start(node);
+            if (nodes.info[node].kind != NodeKind::dynamic) continue;
+            turn_axes(node);
+            const NodeMass& mass = nodes.mass[node];
+            if (mass.isotropic) continue;
+            spinning[count] = node;
+            spins[count++] = {system.pose[node + 1].R.transpose() * nodes.motion[node].w, &mass,
+                              system.in_block[node + 1] != 0};
+        }
+        if (count > 0) gyroscopic({spins, count}, system.h);
+        for (size_t i = 0; i < count; ++i)
+            system.exact[spinning[i] + 1].w = system.pose[spinning[i] + 1].R * spins[i].w;
+        for (const uint32_t node : together) finish(node);
+    }
+
+private:
+    void start(uint32_t node) const {
+        const NodeMotion& m = nodes.motion[node];
+        const NodeMass& mass = nodes.mass[node];
+        system.pose[node + 1].x = m.x;
+        set_sweep_pose(system, node, m.x - system.found[node + 1].x, m.q);
+        const Vec3& force = nodes.load_of(node).force;
+        system.exact[node + 1] = {m.v + system.h * (mass.gravity_scale * gravity + mass.inv_mass * force), m.w};
+        if (nodes.info[node].kind != NodeKind::fixed) return;  // else quarantined in this frame
+        system.exact[node + 1] = {};
+        system.inverse_mass[node + 1] = {};
+        if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
+    }
+    void turn_axes(uint32_t node) const {
+        const Quat& q = nodes.motion[node].q;
+        const NodeMass& mass = nodes.mass[node];
+        Mat3& R = system.pose[node + 1].R;
+        R = q.toRotationMatrix();
+        note_turn(system, node, q, kTurn);
+        if (!mass.isotropic && (system.turned[node + 1] || system.in_block[node + 1]))
+            set_inverse_mass(system.inverse_mass[node + 1], mass, R);
+        if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
+    }
+    void finish(uint32_t node) const {
+        Velocity& u = system.exact[node + 1];
+        const Vec3& torque = nodes.load_of(node).torque;
+        if (torque != Vec3::Zero() && nodes.info[node].kind == NodeKind::dynamic) {
+            const Mat3& R = system.pose[node + 1].R;
+            u.w += system.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
+        }
+        const NodeMotion& m = nodes.motion[node];
+        if (system.in_block[node + 1]) system.start[node + 1] = {m.v, m.w};
+        set_sweep_velocity(system.velocity[node + 1], u.v, u.w);
+    }
+};
+
 }  // namespace
 
 void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& joints) {
@@ -131,36 +196,10 @@ void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& j
 }
 
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
-    const double h = system.h;
-    for_nodes(team, group.nodes, [&](uint32_t node) {
-        const NodeMotion& m = nodes.motion[node];
-        const NodeMass& mass = nodes.mass[node];
-        const NodeLoad& load = nodes.load_of(node);
-        Pose& pose = system.pose[node + 1];
-        pose.x = m.x;
-        set_sweep_pose(system, node, m.x - system.found[node + 1].x, m.q);
-        Velocity u{m.v + h * (mass.gravity_scale * gravity + mass.inv_mass * load.force), m.w};
-        if (nodes.info[node].kind == NodeKind::fixed) {  // quarantined in this frame
-            u = {};
-            system.inverse_mass[node + 1] = {};
-            if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
-        }
-        if (nodes.info[node].kind == NodeKind::dynamic) {
-            pose.R = m.q.toRotationMatrix();
-            const Mat3& R = pose.R;
-            note_turn(system, node, m.q, kTurn);
-            if (!mass.isotropic) {
-                u.w = R * gyroscopic(R.transpose() * m.w, mass, h, system.in_block[node + 1] != 0);
-                if (system.turned[node + 1] || system.in_block[node + 1])
-                    set_inverse_mass(system.inverse_mass[node + 1], mass, R);
-            }
-            if (load.torque != Vec3::Zero())
-                u.w += h * (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
-            if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
-        }
-        if (system.in_block[node + 1]) system.start[node + 1] = {m.v, m.w};
-        system.exact[node + 1] = u;
-        set_sweep_velocity(system.velocity[node + 1], u.v, u.w);
+    const Prediction prediction{system, nodes, gravity};
+    team.for_ranges(static_cast<uint32_t>(group.nodes.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; i += kSpins)
+            prediction.of({&group.nodes[i], std::min<size_t>(kSpins, end - i)});
     });
 }
 

@@ -26,6 +26,11 @@ protected:
         direction_ = Vec3(random(), random(), random()).normalized();
     }
     double random() { return number_(engine_); }
+    Vec3 after_step(const Vec3& before, bool damped) const {
+        FreeSpin spin{before, &mass_, damped};
+        gyroscopic({&spin, 1}, kStep);
+        return spin.w;
+    }
 
     static constexpr double kStep = 1.0 / 240;
     NodeMass mass_;
@@ -41,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomSpin, testing::Range(1u, 201u));
 // From a millionth of a radian in a substep to a tenth.
 TEST_P(RandomSpin, SolvesTheMidpointRuleAndKeepsEnergyAndMomentum) {
     for (double turn = 1e-6; turn < 0.2; turn *= 10) {
-        const Vec3 before = turn / kStep * direction_, after = gyroscopic(before, mass_, kStep, false);
+        const Vec3 before = turn / kStep * direction_, after = after_step(before, false);
         const Vec3 middle = 0.5 * (before + after), momentum = inertia_ * before;
         const Vec3 residual = inertia_ * (after - before) + kStep * middle.cross(Vec3(inertia_ * middle));
         EXPECT_LE(residual.norm(), 1.01e-10 * momentum.norm()) << turn;
@@ -53,7 +58,7 @@ TEST_P(RandomSpin, SolvesTheMidpointRuleAndKeepsEnergyAndMomentum) {
 // Where a substep turns it by radians, one of the two is kept and the other does not rise.
 TEST_P(RandomSpin, KeepsEnergyOrMomentumAtAnySpeed) {
     for (double turn = 0.1; turn < 100; turn *= 1.5) {
-        const Vec3 before = turn / kStep * direction_, after = gyroscopic(before, mass_, kStep, false);
+        const Vec3 before = turn / kStep * direction_, after = after_step(before, false);
         const double energy = after.dot(inertia_ * after) / before.dot(inertia_ * before);
         const double momentum = (inertia_ * after).norm() / (inertia_ * before).norm();
         EXPECT_NEAR(std::max(energy, momentum), 1, 1e-5) << turn << ": " << energy << ", " << momentum;
@@ -62,8 +67,24 @@ TEST_P(RandomSpin, KeepsEnergyOrMomentumAtAnySpeed) {
 
 TEST_P(RandomSpin, LosesEnergyWhereDamped) {
     for (double turn = 1e-6; turn < 100; turn *= turn < 0.1 ? 10 : 1.5) {
-        const Vec3 before = turn / kStep * direction_, after = gyroscopic(before, mass_, kStep, true);
+        const Vec3 before = turn / kStep * direction_, after = after_step(before, true);
         EXPECT_LE(after.dot(inertia_ * after), before.dot(inertia_ * before) * (1 + 1e-12)) << turn;
+    }
+}
+
+// Nothing of a body tells on the one beside it, not even how fast that is, and one at rest stays.
+TEST_P(RandomSpin, DoesNotDependOnWhoIsBesideIt) {
+    for (double turn = 1e-6; turn < 100; turn *= 3) {
+        const Vec3 before = turn / kStep * direction_, alone = after_step(before, false);
+        for (const double beside : {0.0, 1e-9 * turn, turn, 1e3 * turn, 1e200}) {
+            FreeSpin spins[2] = {{beside * Vec3(random(), random(), random()), &mass_, false}, {before, &mass_, false}};
+            for (const int place : {1, 0}) {
+                FreeSpin together[2] = {spins[1 - place], spins[place]};
+                gyroscopic(together, kStep);
+                EXPECT_EQ(together[place].w, alone) << turn << " beside " << beside;
+                EXPECT_TRUE(beside > 0 || together[1 - place].w == Vec3::Zero());
+            }
+        }
     }
 }
 
