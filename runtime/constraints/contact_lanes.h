@@ -177,15 +177,23 @@ struct SweepTerms {
     float impulse_scale;  // of the impulse already there
 };
 
+// Of bodies a and b of a group's lanes, 1 or 0.
+struct alignas(64) LaneTurns {
+    float turned[2][kLanes];   // it turned
+    float follows[2][kLanes];  // it turned, and levers follow it: it does not roll
+};
+
 // The fused sweep of contacts: evaluate and solve in one pass over lanes [begin, end) of groups.
 // Three builds of one source give the same bits: scalar, SSE2, AVX2.
 struct ContactKernels {
     const char* name;
     // Effective masses and approach speeds from the geometry that assembly filled in.
     void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
-    // The same of one group within the frame, but only in the lanes where turned[lane] is 1, so that nothing depends on
-    // who else is in the group; an impulse that fits them no more goes.
-    void (*renew)(LaneView, uint32_t group, const float* turned, const SweepVelocity*, const SweepMass*);
+    // Of one group within the frame: levers turn with the bodies that did, and the gaps since detection go on from the
+    // new ones; then the same, but only in the lanes of such bodies, so that nothing depends on who else is in the
+    // group. An impulse that fits them no more goes. turns: of dx 0.
+    void (*turn)(LaneView, uint32_t group, const LaneTurns&, const SweepShift* turns, const SweepVelocity*,
+                 const SweepMass*);
     void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
     // Soft normal rows and friction on the cone. shifts: gaps follow from them; null: they are as measured before.
     void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepShift*,

@@ -214,9 +214,35 @@ struct ContactSweep {
     // cylinders that hit a wall at 100 m/s one in four gained energy, up to 6 times).
     static constexpr float kOtherMass = 0.2f;
 
-    static void renew(LaneView contacts, uint32_t group, const float* turned, const SweepVelocity* velocities,
-                      const SweepMass* masses) {
-        const F zero = F::all(0), part = F::all(kOtherMass), chosen = F::load(turned);
+    // Levers of one side, which end at its core; skin: from there to the surface.
+    static void turn_levers(float (&r)[3][kLanes], const V& skin, const V& change, const float (&follows)[kLanes]) {
+        const F zero = F::all(0), chosen = F::load(follows);
+        const V old = load(r), turned = old - skin + change + skin;
+        F::if_greater(chosen, zero, turned.x, old.x).store(r[0]);
+        F::if_greater(chosen, zero, turned.y, old.y).store(r[1]);
+        F::if_greater(chosen, zero, turned.z, old.z).store(r[2]);
+    }
+
+    static void turn_group(const LaneGroup& g, const LaneTurns& turns, const SweepShift* turn) {
+        const F zero = F::all(0), turned_a = F::load(turns.turned[0]), turned_b = F::load(turns.turned[1]);
+        const V n = load(g.normal), skin_a = F::load(g.round[0]) * n, skin_b = (zero - F::load(g.round[1])) * n;
+        const ShiftLanes of_a(g.a, turn), of_b(g.b, turn);
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LanePoint& p = g.point[k];
+            const V change_a = of_a.motion(load(p.ra) - skin_a), change_b = of_b.motion(load(p.rb) - skin_b);
+            turn_levers(p.ra, skin_a, change_a, turns.follows[0]);
+            turn_levers(p.rb, skin_b, change_b, turns.follows[1]);
+            const F gap_a = F::if_greater(turned_a, zero, dot(n, change_a), zero);
+            const F gap_b = F::if_greater(turned_b, zero, dot(n, change_b), zero);
+            (F::load(p.gap0) + gap_b - gap_a).store(p.gap0);
+        }
+    }
+
+    static void turn(LaneView contacts, uint32_t group, const LaneTurns& turns, const SweepShift* turn,
+                     const SweepVelocity* velocities, const SweepMass* masses) {
+        turn_group(contacts.group[group], turns, turn);
+        const F zero = F::all(0), part = F::all(kOtherMass);
+        const F chosen = F::max(F::load(turns.turned[0]), F::load(turns.turned[1]));
         const auto put = [&](const F& value, float* to) { F::if_greater(chosen, zero, value, F::load(to)).store(to); };
         const auto drop_impulse = [&](LanePoint& p, const F& mass) {
             const F was = F::load(p.normal_mass), change = F::max(mass - was, was - mass);
@@ -338,7 +364,7 @@ struct ContactSweep {
     }
 
     static constexpr ContactKernels table(const char* name) {
-        return {name, prepare, renew, warm_start, sweep_biased, sweep_relaxed, restitute};
+        return {name, prepare, turn, warm_start, sweep_biased, sweep_relaxed, restitute};
     }
 };
 

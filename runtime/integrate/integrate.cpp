@@ -60,7 +60,7 @@ void note_turn(System& system, uint32_t node, const Quat& q, double least) {
     const Quat turn = q * found.q.conjugate();
     system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * least * least;
     if (!system.turned[node + 1]) return;
-    system.turn[node + 1] = turn.cast<float>();
+    set_shift(system.turn[node + 1], Vec3::Zero(), turn);
     found.q = q;
     std::fill_n(system.shift[node + 1].dq, 3, 0.0f);
     system.shift[node + 1].dq[3] = 1;

@@ -182,35 +182,19 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
 
 namespace {
 
-// One side's levers with its body: what turns is the core; the gap since detection goes on from the new lever.
-void turn_side(const Quatf& turn, const Vec3f& skin, bool rolls, float (&r)[3][kLanes], int lane, const Vec3f& normal,
-               float sign, LanePoint& p) {
-    const Vec3f core = Vec3f(r[0][lane], r[1][lane], r[2][lane]) - skin;
-    const Vec3f turned = turn * core;
-    for (int i = 0; i < 3 && !rolls; ++i) r[i][lane] = turned[i] + skin[i];
-    p.gap0[lane] += sign * normal.dot(turned - core);
-}
-
-// Notes which lanes turned, each 1, else 0; false: none.
-bool turn_group(LaneGroup& g, const System& system, float (&turned)[kLanes]) {
+// Notes which lanes turned; false: none.
+bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
-        const uint32_t a = g.a[lane], b = g.b[lane];
-        turned[lane] = 0;
-        if (!system.turned[a] && !system.turned[b]) continue;
-        any = true;
-        turned[lane] = 1;
-        g.turns[lane] = 1;
-        g.any_turns = 1;
-        const Vec3f n(g.normal[0][lane], g.normal[1][lane], g.normal[2][lane]);
-        for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = g.point[k];
-            if (system.turned[a])
-                turn_side(system.turn[a], g.round[0][lane] * n, g.rolls[0][lane] != 0, p.ra, lane, n, -1, p);
-            if (system.turned[b])
-                turn_side(system.turn[b], -g.round[1][lane] * n, g.rolls[1][lane] != 0, p.rb, lane, n, 1, p);
-        }
+        const bool a = system.turned[g.a[lane]] != 0, b = system.turned[g.b[lane]] != 0;
+        turns.turned[0][lane] = a;
+        turns.turned[1][lane] = b;
+        turns.follows[0][lane] = a && !g.rolls[0][lane];
+        turns.follows[1][lane] = b && !g.rolls[1][lane];
+        if (a || b) g.turns[lane] = 1;
+        any = any || a || b;
     }
+    if (any) g.any_turns = 1;
     return any;
 }
 
@@ -219,10 +203,11 @@ bool turn_group(LaneGroup& g, const System& system, float (&turned)[kLanes]) {
 void turn_lanes(Team& team, System& system, const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        alignas(64) float turned[kLanes];
+        LaneTurns turns;
         for (uint32_t g = begin; g < end; ++g)
-            if (turn_group(lanes.group[g], system, turned))
-                kernels.renew(lanes.view(), g, turned, system.velocity.data(), system.inverse_mass.data());
+            if (note_turns(lanes.group[g], system, turns))
+                kernels.turn(lanes.view(), g, turns, system.turn.data(), system.velocity.data(),
+                             system.inverse_mass.data());
     });
 }
 

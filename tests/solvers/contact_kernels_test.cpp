@@ -1,6 +1,7 @@
 // The fused contact sweep: the same bits from its three builds, and the same impulses as the generic rows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <random>
@@ -26,9 +27,10 @@ struct Data {
     std::vector<LaneRolling> rolling;
     std::vector<SweepVelocity> velocity;
     std::vector<SweepMass> mass;
-    std::vector<SweepShift> shift;
+    std::vector<SweepShift> shift, turn;
+    std::vector<LaneTurns> turns;
 
-    explicit Data(uint64_t seed) : velocity(kNodes), mass(kNodes), shift(kNodes) {
+    explicit Data(uint64_t seed) : velocity(kNodes), mass(kNodes), shift(kNodes), turn(kNodes), turns(kGroups) {
         std::mt19937_64 engine(seed);
         std::uniform_real_distribution<double> number(-1, 1);
         auto any = [&] { return static_cast<float>(number(engine)); };
@@ -84,6 +86,13 @@ struct Data {
             }
             group.push_back(g);
         }
+        for (uint32_t node = 1; node < kNodes; ++node) std::ranges::copy(shift[node].dq, turn[node].dq);
+        for (LaneTurns& of : turns)
+            for (int lane = 0; lane < kLanes; ++lane)
+                for (int side = 0; side < 2; ++side) {
+                    of.turned[side][lane] = engine() % 3 == 0;
+                    of.follows[side][lane] = of.turned[side][lane] > 0 && engine() % 4 > 0;
+                }
         LanePoint* next = point.data();
         for (LaneGroup& g : group) g.point = std::exchange(next, next + g.points);
     }
@@ -114,8 +123,12 @@ struct Data {
         const SweepTerms terms = contact_terms(1.0 / 240);
         kernels.prepare(view, 0, kGroups, velocity.data(), mass.data());
         kernels.warm_start(view, 0, kGroups, velocity.data(), mass.data());
-        for (int i = 0; i < 4; ++i)
+        for (int i = 0; i < 4; ++i) {
             kernels.sweep_biased(view, 0, kGroups, velocity.data(), mass.data(), shift.data(), terms);
+            if (i == 2)
+                for (uint32_t g = 0; g < kGroups; ++g)
+                    kernels.turn(view, g, turns[g], turn.data(), velocity.data(), mass.data());
+        }
         for (int i = 0; i < 2; ++i) kernels.sweep_relaxed(view, 0, kGroups, velocity.data(), mass.data(), terms);
         kernels.restitute(view, 0, kGroups, velocity.data(), mass.data(), 1.0f, true);
     }
