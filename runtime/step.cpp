@@ -91,9 +91,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         if (loaded || !sane) loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
         find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.h);
         turn_kinematic(system, w.nodes, part.begin());
-        shift_kinematic(system, w.nodes, part.begin());
         predict(w.team, system, group, w.nodes, gravity);
-        if (solver.lanes && i > 0) turn_lanes(w.team, system, *settings.kernels);
+        if (solver.lanes && i > 0) turn_lanes(w.team, system, group, *settings.kernels);
+        shift_kinematic(system, w.nodes, part.begin());
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();

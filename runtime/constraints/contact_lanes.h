@@ -191,8 +191,8 @@ struct ContactKernels {
     void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
     // Of one group within the frame: levers turn with the bodies that did, and the gaps since detection go on from the
     // new ones; then the same, but only in the lanes of such bodies, so that nothing depends on who else is in the
-    // group. An impulse that fits them no more goes. turns: of dx 0.
-    void (*turn)(LaneView, uint32_t group, const LaneTurns&, const SweepShift* turns, const SweepVelocity*,
+    // group. An impulse that fits them no more goes. Of shifts, the rotation.
+    void (*turn)(LaneView, uint32_t group, const LaneTurns&, const SweepShift* shifts, const SweepVelocity*,
                  const SweepMass*);
     void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
     // Soft normal rows and friction on the cone. shifts: gaps follow from them; null: they are as measured before.

@@ -41,10 +41,11 @@ struct ContactSweep {
             q = {s[4], s[5], s[6]};
             w = s[7];
         }
-        V motion(const V& r) const {  // of the point at r: dx + (R r - r) = dx + 2 (w q x r + q x (q x r))
+        V turning(const V& r) const {  // of the point at r: R r - r = 2 (w q x r + q x (q x r))
             const V t = cross(q, r), d = w * t + cross(q, t);
-            return dx + (d + d);
+            return d + d;
         }
+        V motion(const V& r) const { return dx + turning(r); }
     };
 
     struct PointTerms {  // of a normal row
@@ -223,13 +224,13 @@ struct ContactSweep {
         F::if_greater(chosen, zero, turned.z, old.z).store(r[2]);
     }
 
-    static void turn_group(const LaneGroup& g, const LaneTurns& turns, const SweepShift* turn) {
+    static void turn_group(const LaneGroup& g, const LaneTurns& turns, const SweepShift* shifts) {
         const F zero = F::all(0), turned_a = F::load(turns.turned[0]), turned_b = F::load(turns.turned[1]);
         const V n = load(g.normal), skin_a = F::load(g.round[0]) * n, skin_b = (zero - F::load(g.round[1])) * n;
-        const ShiftLanes of_a(g.a, turn), of_b(g.b, turn);
+        const ShiftLanes of_a(g.a, shifts), of_b(g.b, shifts);
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
-            const V change_a = of_a.motion(load(p.ra) - skin_a), change_b = of_b.motion(load(p.rb) - skin_b);
+            const V change_a = of_a.turning(load(p.ra) - skin_a), change_b = of_b.turning(load(p.rb) - skin_b);
             turn_levers(p.ra, skin_a, change_a, turns.follows[0]);
             turn_levers(p.rb, skin_b, change_b, turns.follows[1]);
             const F gap_a = F::if_greater(turned_a, zero, dot(n, change_a), zero);
@@ -238,9 +239,9 @@ struct ContactSweep {
         }
     }
 
-    static void turn(LaneView contacts, uint32_t group, const LaneTurns& turns, const SweepShift* turn,
+    static void turn(LaneView contacts, uint32_t group, const LaneTurns& turns, const SweepShift* shifts,
                      const SweepVelocity* velocities, const SweepMass* masses) {
-        turn_group(contacts.group[group], turns, turn);
+        turn_group(contacts.group[group], turns, shifts);
         const F zero = F::all(0), part = F::all(kOtherMass);
         const F chosen = F::max(F::load(turns.turned[0]), F::load(turns.turned[1]));
         const auto put = [&](const F& value, float* to) { F::if_greater(chosen, zero, value, F::load(to)).store(to); };

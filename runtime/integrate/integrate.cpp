@@ -59,11 +59,7 @@ void note_turn(System& system, uint32_t node, const Quat& q, double least) {
     System::Found& found = system.found[node + 1];
     const Quat turn = q * found.q.conjugate();
     system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * least * least;
-    if (!system.turned[node + 1]) return;
-    set_shift(system.turn[node + 1], Vec3::Zero(), turn);
-    found.q = q;
-    std::fill_n(system.shift[node + 1].dq, 3, 0.0f);
-    system.shift[node + 1].dq[3] = 1;
+    if (system.turned[node + 1]) found.q = q;
 }
 
 // Of a kinematic body at its own velocity.
@@ -178,7 +174,6 @@ void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& j
     system.shift.resize(slots + 1);
     system.sweep_pose.resize(joints.ids.count() > 0 ? slots + 1 : 0);
     system.turned.resize(slots + 1);
-    system.turn.resize(slots + 1);
     system.in_block.resize(slots + 1);
     system.place.resize(slots + 1);
     system.kinematic.clear();

@@ -153,7 +153,8 @@ void publish_contacts(World& world) {
     Pairs& pairs = world.pairs;
     gather(world.team, static_cast<uint32_t>(pairs.active.size()), pairs.picked, [&](uint32_t i) {
         constexpr uint32_t kSoon = 4;
-        if (i + kSoon < pairs.active.size()) prefetch(pairs.list[pairs.active[i + kSoon].pair]);
+        if (i + kSoon < pairs.active.size())
+            prefetch(pairs.list[pairs.active[i + kSoon].pair], sizeof(Pair) - Pair::kSought);
         return Touch::begins(pairs, i) && update_touching(pairs, Touch::from(pairs, i));
     });
     Publisher publisher(world);

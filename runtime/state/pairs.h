@@ -91,11 +91,9 @@ struct Pair : PairEnds {
     uint32_t part = 0;             // of a surface, see collision::PartManifold; else 0
     uint32_t next = kNone;         // record of the next part, in their order
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
-    FoundManifold found;           // while NearPair::kept
     float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
     // Radii of the balls that grow the two cores to their shapes [m]; see state/levers.h.
     float round_a = 0, round_b = 0;
-    PointsCache cache{};
     Impulse impulse[4];  // by point: carried in, updated by the solver
     float friction = 0;  // of the two surfaces together
     float restitution = 0;
@@ -111,6 +109,11 @@ struct Pair : PairEnds {
     bool touching = false;                  // had a point at the end of the last step
     bool answered = false;                  // the host gave this step's friction and restitution
     uint8_t asks = 0;                       // bits of contact events, kAsks: of the world and the two colliders
+
+    // What find_contacts() alone asks for: the last kSought bytes.
+    PointsCache cache{};
+    FoundManifold found;  // while NearPair::kept
+    static constexpr size_t kSought = sizeof(PointsCache) + sizeof(FoundManifold);
 
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }

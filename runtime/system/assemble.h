@@ -25,7 +25,7 @@ void store_contact_rows(const System& system);
 void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels);
 // Once a substep: levers and effective masses of contacts on bodies that turned.
-void turn_lanes(Team& team, System& system, const ContactKernels& kernels);
+void turn_lanes(Team& team, System& system, const Group& group, const ContactKernels& kernels);
 void store_lanes(Team& team, const System& system, Pairs& pairs);
 
 // Once a frame and group: swept joints by colour into lanes.

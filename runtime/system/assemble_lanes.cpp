@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/prefetch.h"
 #include "state/levers.h"
 #include "system/assemble.h"
 #include "system/lane_parts.h"
@@ -85,22 +86,22 @@ const Pair* pair_of(const LaneGroup& g, int lane, const Pairs& pairs) {
     return g.pair[lane] == kNone ? nullptr : &pairs.list[g.pair[lane]];
 }
 
-// Records of pairs lie about in memory, or in the cache of the thread that found them.
-void prefetch_pair(const LaneGroup* g, int lane, const Pairs& pairs) {
-    constexpr size_t kCacheLine = 64;
-    const Pair* pair = g ? pair_of(*g, lane, pairs) : nullptr;
-    for (size_t at = 0; pair && at < sizeof(Pair); at += kCacheLine)
-        __builtin_prefetch(reinterpret_cast<const char*>(pair) + at);
+// Records of pairs lie about in memory, or in the cache of the thread that found them. Asks for the one that comes some
+// lanes after this; next: the group after, or null.
+void prefetch_pair(const LaneGroup& g, const LaneGroup* next, int lane, const Pairs& pairs) {
+    constexpr int kAhead = 4;  // lanes
+    const bool here = lane + kAhead < kLanes;
+    if (!here && !next) return;
+    const Pair* pair = here ? pair_of(g, lane + kAhead, pairs) : pair_of(*next, lane + kAhead - kLanes, pairs);
+    if (pair) prefetch(*pair, sizeof(Pair) - Pair::kSought);
 }
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
 bool fill_group(LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
-    constexpr int kAhead = 4;  // pairs
     bool bounces = false, driven = false, turns = false, round = false;
     for (int lane = 0; lane < kLanes; ++lane) {
-        const bool here = lane + kAhead < kLanes;
-        prefetch_pair(here ? &g : next, here ? lane + kAhead : lane + kAhead - kLanes, pairs);
+        prefetch_pair(g, next, lane, pairs);
         uint32_t filled = 0;
         if (const Pair* pair = pair_of(g, lane, pairs)) {
             fill_pair(g, lane, *pair, nodes);
@@ -200,15 +201,21 @@ bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
 
 }  // namespace
 
-void turn_lanes(Team& team, System& system, const ContactKernels& kernels) {
+void turn_lanes(Team& team, System& system, const Group& group, const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
     team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         LaneTurns turns;
         for (uint32_t g = begin; g < end; ++g)
             if (note_turns(lanes.group[g], system, turns))
-                kernels.turn(lanes.view(), g, turns, system.turn.data(), system.velocity.data(),
+                kernels.turn(lanes.view(), g, turns, system.shift.data(), system.velocity.data(),
                              system.inverse_mass.data());
     });
+    for (const uint32_t node : group.nodes) {
+        if (!system.turned[node + 1]) continue;
+        float(&dq)[4] = system.shift[node + 1].dq;  // from here on
+        dq[0] = dq[1] = dq[2] = 0;
+        dq[3] = 1;
+    }
 }
 
 void store_lanes(Team& team, const System& system, Pairs& pairs) {
@@ -225,9 +232,14 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
         pair.spin_slip = -1;
     };
     for_lane_parts(team, lanes, [&](uint32_t part) {
-        for (uint32_t g = lanes.part[part].begin; g < lanes.part[part].end; ++g)
-            for (int lane = 0; lane < kLanes; ++lane)
-                if (lanes.group[g].pair[lane] != kNone) store(lanes.group[g], lane);
+        const uint32_t end = lanes.part[part].end;
+        for (uint32_t i = lanes.part[part].begin; i < end; ++i) {
+            const LaneGroup& g = lanes.group[i];
+            for (int lane = 0; lane < kLanes; ++lane) {
+                prefetch_pair(g, i + 1 < end ? &g + 1 : nullptr, lane, pairs);
+                if (g.pair[lane] != kNone) store(g, lane);
+            }
+        }
     });
 }
 

@@ -105,7 +105,6 @@ struct System {
           inertia(memory),
           found(memory),
           turned(memory),
-          turn(memory),
           kinematic(memory),
           in_block(memory),
           place(memory),
@@ -130,7 +129,6 @@ struct System {
     Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;             // begin_frame(), predict()
     Array<uint8_t> turned;          // 1: so far that levers turn in this substep; predict(), turn_kinematic()
-    Array<SweepShift> turn;         // of those that turned: from their levers' old rotation to the new one; dx 0
     Array<uint32_t> kinematic;      // nodes; begin_frame()
     Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; build_rows()
     Array<uint32_t> place;          // in the nodes of its block, or kNone; build_rows()

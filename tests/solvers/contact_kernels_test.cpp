@@ -1,7 +1,6 @@
 // The fused contact sweep: the same bits from its three builds, and the same impulses as the generic rows.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <random>
@@ -27,10 +26,10 @@ struct Data {
     std::vector<LaneRolling> rolling;
     std::vector<SweepVelocity> velocity;
     std::vector<SweepMass> mass;
-    std::vector<SweepShift> shift, turn;
+    std::vector<SweepShift> shift;
     std::vector<LaneTurns> turns;
 
-    explicit Data(uint64_t seed) : velocity(kNodes), mass(kNodes), shift(kNodes), turn(kNodes), turns(kGroups) {
+    explicit Data(uint64_t seed) : velocity(kNodes), mass(kNodes), shift(kNodes), turns(kGroups) {
         std::mt19937_64 engine(seed);
         std::uniform_real_distribution<double> number(-1, 1);
         auto any = [&] { return static_cast<float>(number(engine)); };
@@ -86,7 +85,6 @@ struct Data {
             }
             group.push_back(g);
         }
-        for (uint32_t node = 1; node < kNodes; ++node) std::ranges::copy(shift[node].dq, turn[node].dq);
         for (LaneTurns& of : turns)
             for (int lane = 0; lane < kLanes; ++lane)
                 for (int side = 0; side < 2; ++side) {
@@ -127,7 +125,7 @@ struct Data {
             kernels.sweep_biased(view, 0, kGroups, velocity.data(), mass.data(), shift.data(), terms);
             if (i == 2)
                 for (uint32_t g = 0; g < kGroups; ++g)
-                    kernels.turn(view, g, turns[g], turn.data(), velocity.data(), mass.data());
+                    kernels.turn(view, g, turns[g], shift.data(), velocity.data(), mass.data());
         }
         for (int i = 0; i < 2; ++i) kernels.sweep_relaxed(view, 0, kGroups, velocity.data(), mass.data(), terms);
         kernels.restitute(view, 0, kGroups, velocity.data(), mass.data(), 1.0f, true);
