@@ -43,6 +43,11 @@ constexpr std::array<std::array<Entry, kShapeKinds>, kShapeKinds> kKernels = {{
     {kConvexOnPlane, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex},
 }};
 
+const Entry& entry_of(const Shape& a, const Shape& b) { return kKernels[size_t(a.kind)][size_t(b.kind)]; }
+
+// The difference of positions in double, all else in single precision.
+Vec3f apart_of(const Placement& a, const Placement& b) { return (b.position - a.position).cast<float>(); }
+
 // Where b lies as a sees it.
 Pose relative(const Placement& a, const Placement& b, const Vec3f& apart) {
     return {a.rotation.transpose() * b.rotation, a.rotation.transpose() * apart};
@@ -56,13 +61,17 @@ void to_world(const Mat3f& rotation, Manifold& manifold) {
 
 }  // namespace
 
+float held_apart(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, const PairCache& cache) {
+    if (has_parts(a) || has_parts(b)) return kNoAxis;
+    return entry_of(a, b).apart({a, b, at_a, at_b, apart_of(at_a, at_b)}, cache);
+}
+
 float collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
               PairCache& cache, Manifold& out) {
     out.count = 0;
     if (has_parts(a) || has_parts(b)) return 0;
-    const Entry& entry = kKernels[size_t(a.kind)][size_t(b.kind)];
-    // The difference of positions in double, all else in single precision.
-    const Vec3f apart = (at_b.position - at_a.position).cast<float>();
+    const Entry& entry = entry_of(a, b);
+    const Vec3f apart = apart_of(at_a, at_b);
     const float held = entry.apart({a, b, at_a, at_b, apart}, cache);
     if (held > margin) return held;
     if (!entry.swapped) {

@@ -193,6 +193,10 @@ struct PairCache {
 float collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
               PairCache& cache, Manifold& out);
 
+// How far the axis that parted two shapes last, by the cache, holds them apart [m]; negative where it does not, or
+// there is none. Costs less than collide(), which begins with it.
+float held_apart(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, const PairCache& cache);
+
 // Whether a shape touches with parts of its own; collide() finds nothing on it.
 inline bool has_parts(const Shape& shape) { return shape.kind == ShapeKind::surface; }
 

@@ -169,10 +169,10 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             if (fast || !near.kept || !reuse(of, near, pair)) find_points(of, fast, near, pair);
         } else {
             const Shaped shaped(of, pair, fast);
-            if (pair.key != found) shaped.find_parts(pairs.parts);
+            const bool is_first = pair.key != found;
+            if (is_first) shaped.find_parts(pairs.parts);
             found = pair.key;
-            refresh_part(shaped, of, pair);
-            near.kept = shaped.can_be_kept();
+            near.kept = refresh_part(shaped, of, pair) && (is_first || near.kept);
         }
         active.points = static_cast<uint32_t>(pair.manifold.count);
     }

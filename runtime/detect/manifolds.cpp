@@ -67,8 +67,9 @@ void note_lost(const Detection& of, const PairEnds& pair, float push, const Vec3
     }
 }
 
-// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one.
-void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
+// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one. Whether
+// it is kept.
+bool adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
     if (shaped.lead() > 0)
         bring_back(of, shaped.lead(), from_a, pair);
@@ -86,7 +87,7 @@ void adopt(const Shaped& shaped, const Detection& of, const collision::Manifold&
     const float push = before.in_block() ? 0 : push_of(old, before.impulse);
     carry(old, before, pair);
     if (push > 0) note_lost(of, pair, push, old.normal, push_of(pair.manifold, pair.impulse) * pair.manifold.normal);
-    if (shaped.can_be_kept()) keep_manifold(of.pairs, pair);
+    return shaped.can_be_kept() && keep_manifold(of.pairs, of.time, pair);
 }
 
 void keep_cache(const collision::PairCache& cache, NearPair& near) {
@@ -98,12 +99,23 @@ void keep_cache(const collision::PairCache& cache, PointsCache& of_points) {
 
 // What was found for a pair without a surface, and is in its record.
 void take_over(const Shaped& shaped, const Detection& of, const collision::Manifold& old, NearPair& near, Pair& pair) {
-    near.kept = shaped.can_be_kept() && pair.manifold.count > 0;
+    near.kept = pair.manifold.count > 0 && adopt(shaped, of, old, pair, pair);
     near.changed = false;
-    if (pair.manifold.count > 0)
-        adopt(shaped, of, old, pair, pair);
-    else if (old.count > 0 && !pair.in_block())
-        note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
+    if (pair.manifold.count > 0) return;
+    if (old.count > 0 && !pair.in_block()) note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
+}
+
+// Whether the axis that parted two last still does.
+bool held_apart(const Detection& of, const PairEnds& pair, const collision::PairCache& cache, NearPair& near) {
+    const auto shape = [&](uint32_t c) -> const collision::Shape& {
+        return of.shapes.record[of.colliders.record[c].shape].shape;
+    };
+    const uint32_t a = pair.collider_a(), b = pair.collider_b();
+    const collision::Placement &at_a = of.pairs.placement[a], &at_b = of.pairs.placement[b];
+    const float gap = collision::held_apart(shape(a), at_a, shape(b), at_b, cache);
+    if (!(gap > margin_of(of.nodes, pair, of.time))) return false;
+    note_clear(of.pairs, pair.spans() ? 0 : gap, near);
+    return true;
 }
 
 // The record that a part takes over: its own; else, as where a body slides from facet to facet, that of a part no
@@ -135,7 +147,7 @@ Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead
       at_a_(&of.pairs.placement[pair.collider_a()]),
       at_b_(&of.pairs.placement[pair.collider_b()]),
       margin_(margin_of(of.nodes, pair, of.time)),
-      spans_(pair.a2 != kNone || pair.b2 != kNone),
+      spans_(pair.spans()),
       lead_(lead) {
     if (lead > 0) {
         encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
@@ -193,8 +205,10 @@ void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
 bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near) {
     collision::PairCache cache;
     std::ranges::copy(near.cache, cache.words);
+    const PairEnds ends = near.ends(of.colliders);
+    if (!near.fast && held_apart(of, ends, cache, near)) return false;
     collision::Manifold manifold;
-    const Shaped shaped(of, near.ends(of.colliders), near.fast);
+    const Shaped shaped(of, ends, near.fast);
     const float gap = shaped.find_points(cache, manifold);
     if (manifold.count > 0) {
         Arrival* const arrival = arrivals.take();
@@ -220,7 +234,7 @@ void find_parts(const Detection& of, NearPair& near) {
     const PairEnds ends = near.ends(of.colliders);
     const Shaped shaped(of, ends, near.fast);
     shaped.find_parts(pairs.parts);
-    near.kept = shaped.can_be_kept();
+    near.kept = true;
     near.changed = false;
     if (pairs.parts.found.empty()) return lose_points(of, near);
     reserve_slots(pairs, pairs.parts.found.size());
@@ -238,16 +252,16 @@ void find_parts(const Detection& of, NearPair& near) {
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        adopt(shaped, of, before ? before->manifold : nothing, before ? *before : pair, pair);
+        if (!adopt(shaped, of, before ? before->manifold : nothing, before ? *before : pair, pair)) near.kept = false;
     }
 }
 
-void refresh_part(const Shaped& shaped, const Detection& of, Pair& pair) {
+bool refresh_part(const Shaped& shaped, const Detection& of, Pair& pair) {
     const collision::Manifold old = pair.manifold;
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : of.pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    if (pair.manifold.count > 0) adopt(shaped, of, old, pair, pair);
+    return pair.manifold.count > 0 && adopt(shaped, of, old, pair, pair);
 }
 
 bool reuse(const Detection& of, const NearPair& near, Pair& pair) {

@@ -99,8 +99,8 @@ bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near);
 void admit(const Detection& of, NearPair& near, Pair& pair);
 // The parts that a pair with a surface touches, in place of its records of the last frame.
 void find_parts(const Detection& of, NearPair& near);
-// A part of a pair whose parts were just found again: one that is not among them loses its points.
-void refresh_part(const Shaped& shaped, const Detection& of, Pair& pair);
+// A part of a pair whose parts were just found again: one that is not among them loses its points. Whether it is kept.
+bool refresh_part(const Shaped& shaped, const Detection& of, Pair& pair);
 
 // Brings a manifold that NearPair::kept holds to the present; false if it is to be found again.
 bool reuse(const Detection& of, const NearPair& near, Pair& pair);

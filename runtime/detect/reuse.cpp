@@ -54,8 +54,9 @@ struct Shift {
 
 }  // namespace
 
-void keep_manifold(const Pairs& pairs, Pair& pair) {
+bool keep_manifold(const Pairs& pairs, double time, Pair& pair) {
     const View view(pairs, pair);
+    if (!view.is_calm(pair.manifold.points[0].position - view.a.from_node, time)) return false;
     FoundManifold& found = pair.found;
     const Mat3f a_from_world = view.world_from_a.transpose();
     found.turn = view.turn();
@@ -65,6 +66,7 @@ void keep_manifold(const Pairs& pairs, Pair& pair) {
         found.position[k] = a_from_world * (pair.manifold.points[k].position - view.a.from_node);
         found.separation[k] = pair.manifold.points[k].separation;
     }
+    return true;
 }
 
 bool reuse_manifold(const Pairs& pairs, double time, Pair& pair) {

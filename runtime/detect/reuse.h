@@ -15,8 +15,9 @@
 
 namespace taut {
 
-// Keeps a pair's manifold as it was found at the present placements.
-void keep_manifold(const Pairs& pairs, Pair& pair);
+// Keeps a pair's manifold as it was found at the present placements. False, and nothing kept, where the two move
+// against each other: such a one is not brought to the present in the time ahead [s].
+bool keep_manifold(const Pairs& pairs, double time, Pair& pair);
 
 // Brings the manifold that a pair keeps to the present placements; false, and nothing done, if it is to be found again:
 // the two moved against each other, or will in the time ahead [s].

@@ -35,6 +35,7 @@ struct PairEnds {
 
     uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
+    bool spans() const { return a2 != kNone || b2 != kNone; }
 };
 
 // What collision::PairCache begins with, kept of all pairs that are near, and what it ends with, of those with points:
