@@ -17,14 +17,9 @@ constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have p
 constexpr uint32_t kGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
-// spans two nodes.
-enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4 };
-
-// By the host's function or a one-way direction: what goes through on purpose is not held back.
-bool may_be_ignored(const Colliders& colliders, const NearPair& pair) {
-    const unsigned asks = colliders.record[pair.collider_a()].asks | colliders.record[pair.collider_b()].asks;
-    return (asks & (kAsksOneWay | kAsksPreSolve)) != 0;
-}
+// spans two nodes; may be ignored by the host's function or a one-way direction: what goes through on purpose is not
+// held back.
+enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4, kIgnorable = 8 };
 
 // Whether a collider between two nodes was put back by either.
 bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t round) {
@@ -60,6 +55,7 @@ bool find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, cons
             if (round > 1 && span_put_back(pairs.mechanisms, collider, round - 1)) mark |= kMoved;
             if (!(mark & kMoved)) continue;
             mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
+            if (collider.asks & (kAsksOneWay | kAsksPreSolve)) mark |= kIgnorable;
             if (!went_astray(nodes, collider, shapes, pairs.reach[c].ahead, pairs.pace[c].thickness)) continue;
             mark |= kAstray;
             any.store(true, std::memory_order_relaxed);
@@ -82,23 +78,22 @@ void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, co
     });
 }
 
-uint8_t marks_of(const Pairs& pairs, const NearPair& near) {
-    return pairs.marks[near.collider_a()] | pairs.marks[near.collider_b()];
+// Whether a pair that may have passed moved further against each other than a part of its thickness. No branches, for
+// the answers are as good as random.
+bool strides(const Pairs& pairs, const AskedPair& pair) {
+    const unsigned marks = pairs.marks[pair.a] | pairs.marks[pair.b];
+    const Stride &one = pairs.strides[pair.a], &other = pairs.strides[pair.b];
+    const float thin = std::min(one.thickness, other.thickness), thick = std::max(one.thickness, other.thickness);
+    const float stride = static_cast<float>(kStride) * (thin > 0 ? thin : thick);
+    const bool asks = (pair.fast | ((marks & kAstray) != 0)) & ((marks & kIgnorable) == 0) & (pair.filtered == false);
+    const bool looked_for = thick < std::numeric_limits<float>::infinity();
+    return asks & looked_for & ((one.along - other.along).squaredNorm() > stride * stride);
 }
 
-// Whether a pair that may have passed moved further against each other than a part of its thickness.
-bool strides(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
-    if (near.filtered || !(near.fast || (marks_of(pairs, near) & kAstray))) return false;
-    const Stride &one = pairs.strides[near.collider_a()], &other = pairs.strides[near.collider_b()];
-    if (std::isinf(one.thickness + other.thickness)) return false;  // not to be looked for
-    const float thinner = one.thickness > 0 && other.thickness > 0 ? std::min(one.thickness, other.thickness)
-                                                                   : std::max(one.thickness, other.thickness);
-    const float stride = static_cast<float>(kStride) * thinner;
-    return (one.along - other.along).squaredNorm() > stride * stride && !may_be_ignored(colliders, near);
-}
+bool moved(const Pairs& pairs, const AskedPair& pair) { return (pairs.marks[pair.a] | pairs.marks[pair.b]) & kMoved; }
 
-bool may_pass(const Pairs& pairs, const NearPair& near) {
-    return may_pass(pairs.courses[near.collider_a()], pairs.courses[near.collider_b()]);
+bool may_pass(const Pairs& pairs, const AskedPair& pair) {
+    return may_pass(pairs.courses[pair.a], pairs.courses[pair.b]);
 }
 
 // Adds a collider's pairs with what its box meets and it may have passed, but for those that are near.
@@ -145,19 +140,22 @@ void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const
     for (const uint32_t c : pairs.picked) add_late(nodes, colliders, broadphase, c, pairs);
 }
 
-// Of the pairs that are near and of those that came late, one after the other.
-uint32_t count_of(const Pairs& pairs) { return static_cast<uint32_t>(pairs.near.size() + pairs.late.size()); }
-NearPair& pair_at(Pairs& pairs, uint32_t index) {
-    const size_t near = pairs.near.size();
-    return index < near ? pairs.near[index] : pairs.late[index - near];
-}
-
-// The late ones, which come last, to their places in the order of keys.
-void sort_in_late(Pairs& pairs) {
-    const auto key_of = [&](uint32_t i) { return pair_at(pairs, i).key; };
-    const auto is_near = [&](uint32_t i) { return i < pairs.near.size(); };
+// The pairs that stride into picked, in the order of their keys: near ones, of which those that moved are asked again,
+// and those that came late.
+void pick_striding(Team& team, uint8_t round, Pairs& pairs) {
+    const auto near = static_cast<uint32_t>(pairs.near.size());
+    pairs.asked.resize(near + pairs.late.size());
+    gather(team, static_cast<uint32_t>(pairs.asked.size()), pairs.picked, [&](uint32_t i) {
+        AskedPair& pair = pairs.asked[i];
+        const bool is_new = round == 1 || i >= near;
+        if (is_new) pair = AskedPair(i < near ? pairs.near[i] : pairs.late[i - near]);
+        if (is_new || moved(pairs, pair)) pair.strides = strides(pairs, pair);
+        return pair.strides;
+    });
+    // The late ones, which come last, go to their places.
+    const auto key_of = [&](uint32_t i) { return pair_key(pairs.asked[i].a, pairs.asked[i].b); };
     Array<uint32_t>& picked = pairs.picked;
-    for (auto late = std::ranges::partition_point(picked, is_near); late != picked.end(); ++late)
+    for (auto late = std::ranges::lower_bound(picked, near); late != picked.end(); ++late)
         std::rotate(std::ranges::upper_bound(picked.begin(), late, key_of(*late), {}, key_of), late, late + 1);
 }
 
@@ -217,36 +215,27 @@ bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints&
     for (uint8_t& mark : pairs.marks) mark &= static_cast<uint8_t>(~kMoved);
     bool any = false;
     for (const uint32_t i : pairs.picked) {
-        const NearPair& near = pair_at(pairs, i);
-        bool ask = near.passed;
+        const AskedPair& asked = pairs.asked[i];
+        bool ask = asked.passed;
         if (any) {
-            const bool a_anew = anew(nodes, colliders, shapes, near.collider_a(), round, pairs),
-                       b_anew = anew(nodes, colliders, shapes, near.collider_b(), round, pairs);
-            ask = ask || ((a_anew || b_anew) && may_pass(pairs, near));
+            const bool a_anew = anew(nodes, colliders, shapes, asked.a, round, pairs),
+                       b_anew = anew(nodes, colliders, shapes, asked.b, round, pairs);
+            ask = ask || ((a_anew || b_anew) && may_pass(pairs, asked));
         }
         if (!ask) continue;
-        const Couple pair(colliders, shapes, pairs.courses, near);
+        const Couple pair(colliders, shapes, pairs.courses, asked);
         any = part(pair, excess_of(nodes, pair), colliders, shapes, joints, round, pairs, nodes) || any;
     }
     return any;
 }
 
-// Picks the pairs that may have passed, in the order of their keys, and finds those that did and of which a side moved.
+// Of the pairs that stride, those that passed and of which a side moved.
 void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
-    gather(team, count_of(pairs), pairs.picked, [&](uint32_t i) {
-        NearPair& near = pair_at(pairs, i);
-        const bool moved = marks_of(pairs, near) & kMoved;
-        const bool may_stride = moved ? strides(colliders, pairs, near) : near.strides;
-        const bool may_have_passed = moved && may_stride && may_pass(pairs, near);
-        if (may_stride != near.strides) near.strides = may_stride;  // few are written
-        if (may_have_passed != near.passed) near.passed = may_have_passed;
-        return may_stride;
-    });
-    sort_in_late(pairs);
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kCastGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
-            NearPair& near = pair_at(pairs, pairs.picked[i]);
-            if (near.passed) near.passed = excess_of(nodes, Couple(colliders, shapes, pairs.courses, near)).share > 0;
+            AskedPair& pair = pairs.asked[pairs.picked[i]];
+            pair.passed = moved(pairs, pair) && may_pass(pairs, pair) &&
+                          excess_of(nodes, Couple(colliders, shapes, pairs.courses, pair)).share > 0;
         }
     });
 }
@@ -266,10 +255,12 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
         if (round == 1 && !any_astray && !pairs.any_fast) {
             let_go(pairs.courses);
             let_go(pairs.strides);
+            let_go(pairs.asked);
             break;
         }
         find_courses(team, nodes, colliders, shapes, pairs);
         if (any_astray) find_late(team, nodes, colliders, shapes, pairs, broadphase);
+        pick_striding(team, round, pairs);
         find_passed(team, nodes, colliders, shapes, pairs);
         again = part_passed(colliders, shapes, joints, round, pairs, nodes);
     }

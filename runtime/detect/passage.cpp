@@ -19,11 +19,13 @@ constexpr double kTurn = 0.02;                     // a smaller turn moves no mi
 NodePose pose_before(const Nodes& nodes, const Collider& collider) {
     const NodePose& body = nodes.before[collider.node];
     if (collider.node_b != kNone) return pose_between(body.position, nodes.before[collider.node_b].position);
+    if (collider.at_origin()) return body;
     return {body.position + body.rotation * collider.position, body.rotation * collider.rotation};
 }
 NodePose pose_now(const Nodes& nodes, const Collider& collider) {
     const NodeMotion& m = nodes.motion[collider.node];
     if (collider.node_b != kNone) return pose_between(m.x, nodes.motion[collider.node_b].x);
+    if (collider.at_origin()) return {nodes.origin(collider.node), m.q};
     return {nodes.origin(collider.node) + m.q * collider.position, m.q * collider.rotation};
 }
 Vec3 as_seen_from(const NodePose& pose, const Vec3& point) {
@@ -198,8 +200,7 @@ Couple::Couple(const Passage& one, const Passage& other)
     : a(reaches_less_far(one.course, other.course) ? other : one),
       b(reaches_less_far(one.course, other.course) ? one : other) {}
 
-Couple::Couple(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, const NearPair& near)
-    : Couple(passage_of(colliders, shapes, courses, near.collider_a()),
-             passage_of(colliders, shapes, courses, near.collider_b())) {}
+Couple::Couple(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, const AskedPair& pair)
+    : Couple(passage_of(colliders, shapes, courses, pair.a), passage_of(colliders, shapes, courses, pair.b)) {}
 
 }  // namespace taut

@@ -30,7 +30,7 @@ struct Passage {
 // The one that reaches further, a, is as it was; the other goes along.
 class Couple {
 public:
-    Couple(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, const NearPair& near);
+    Couple(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, const AskedPair& pair);
 
     const Passage a, b;
 

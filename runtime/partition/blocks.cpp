@@ -31,7 +31,7 @@ constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
 // From the sixth frame of such a load on, and for so many after. Hits in a heap last less: of 670 in a fall of 100
 // ragdolls 44 loaded a joint for three frames, two for six. From the third on, a sixth of the heap was in blocks as it
 // landed, mostly after the hit was over, and its joints opened as far as without.
-constexpr uint8_t kSweptAfter = 6, kSweptFor = 15;
+constexpr uint8_t kSweptAfter = 6, kSweptFor = 6;
 
 // Of nodes: with a joint that is solved directly, or in a tower; or taken in with a contact.
 constexpr uint8_t kHeld = 1, kTaken = 2;
@@ -212,6 +212,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
             fresh.links.clear();
             fresh.identity.clear();
             fresh.matrix.forget();
+            fresh.passing = true;
             fresh.memory = {};
         }
         return spare_[block];
@@ -222,6 +223,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
         Block& block = block_at(mover(nodes, joint.nodes()));
         block.joints.push_back(j);
         block.identity.push_back(joint.mark());
+        block.passing = block.passing && by_load(joint);
     }
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         if (!pair_in_block_[p]) continue;
@@ -245,6 +247,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
         block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
         block.mass_ratio = most / least;
         block.tower = block.joints.empty();
+        block.passing = block.passing && !block.tower && block.mass_ratio < kSweptMassRatio;
     }
 }
 

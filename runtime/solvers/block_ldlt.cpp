@@ -70,7 +70,7 @@ void sweep_tower(Substep& s, Block& block) {
 }
 
 void finish(Substep& s, Block& block, BlockSolve& solve) {
-    block.turn = static_cast<float>(solve.largest_turn());
+    block.turn = block.passing ? 0 : static_cast<float>(solve.largest_turn());
     if (static_cast<double>(block.turn) > s.most_turn)
         block.memory.whips_left = kWhipsFrames;
     else if (!solve.finish())

@@ -52,8 +52,6 @@ struct NearPair {
     bool filtered : 1 = false;    // never collides (filter, joint); kept to remember the answer
     bool on_surface : 1 = false;  // a shape has parts
     bool fast : 1 = false;        // looked for along its way in this frame; detect/impact.h
-    bool strides : 1 = false;     // may have gone through each other in this frame; hold_back()
-    bool passed : 1 = false;      // did so
     bool arrives : 1 = false;     // got its first points in this frame; find_contacts()
     bool changes : 1 = false;     // its records come or go in this frame; find_contacts()
     bool touching : 1 = false;    // had a point at the end of the last step, on any part
@@ -78,6 +76,18 @@ struct NearPair {
 };
 
 using NearPairs = SegmentedArray<NearPair>;
+
+// A pair in brief, as all are asked again each time that some were put back; hold_back().
+struct AskedPair {
+    AskedPair() = default;
+    explicit AskedPair(const NearPair& near)
+        : a(near.collider_a()), b(near.collider_b()), filtered(near.filtered), fast(near.fast) {}
+
+    uint32_t a = 0, b = 0;  // colliders, the smaller index first
+    bool filtered = false, fast = false;
+    bool strides = false;  // may have gone through each other in this frame
+    bool passed = false;   // did so
+};
 
 // A manifold as it was found, and how b's shape lay then, all as seen from a's shape; detect/reuse.h.
 struct FoundManifold {
@@ -194,6 +204,7 @@ struct Pairs {
           pace(memory),
           courses(memory),
           strides(memory),
+          asked(memory),
           marks(memory),
           mechanisms(memory),
           placement(memory),
@@ -233,6 +244,7 @@ struct Pairs {
     Array<Pace> pace;                 // by collider; update_bounds()
     Array<Course> courses;            // by collider, scratch; hold_back()
     Array<Stride> strides;            // by collider, scratch; hold_back()
+    Array<AskedPair> asked;           // near, then late; scratch of hold_back()
     Array<uint8_t> marks;             // by collider, scratch: bits of hold_back()
     bool any_fast = false;            // of near, in this frame; find_contacts()
     Mechanisms mechanisms;
