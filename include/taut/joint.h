@@ -55,7 +55,7 @@ typedef enum taut_joint_solve {
                                      own turning over the substep h squared, I / (2 h^2): some 13 Hz for limbs */
     TAUT_JOINT_SOLVE_BY_LOAD = 2, /**< for crowds: by sweeps, but directly while the bodies that such joints connect
                                      differ by 20 times or more in mass, or one of the joints bears over 1000 N per kg
-                                     of its lighter body: from the sixth step on, to six steps after. With a direct
+                                     of its lighter body: from the tenth step on, to 15 steps after. With a direct
                                      joint among them: directly */
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;

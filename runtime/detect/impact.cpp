@@ -29,6 +29,7 @@ collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const 
     const Movement m = movement_of(nodes, collider.node, collider.node_b);
     if (collider.node_b != kNone) return {at, m.x, m.v, m.w, collision::spin_radius(record.shape, 0)};
     const Vec3 lever = nodes.mass[collider.node].centre - collider.position;
+    if (lever == Vec3::Zero()) return {at, at.position, m.v, m.w, record.reach};
     return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w, record.reach + lever.norm()};
 }
 
@@ -37,7 +38,8 @@ const ShapeRecord& record_of(const Shapes& shapes, const Collider& collider) { r
 // From the origin of a collider's node to the centre that it turns about.
 Vec3 arm_of(const Nodes& nodes, const Collider& collider, const collision::Motion& motion) {
     if (collider.node_b != kNone) return motion.centre - nodes.motion[collider.node].x;
-    return rotation_of(collider, motion.at) * nodes.mass[collider.node].centre;
+    const Vec3& centre = nodes.mass[collider.node].centre;
+    return centre == Vec3::Zero() ? centre : Vec3(rotation_of(collider, motion.at) * centre);
 }
 
 bool looked_for(const Nodes& nodes, uint32_t node) {

@@ -28,10 +28,10 @@ constexpr uint8_t kHitFor = 3;  // frames
 // Beyond these, mechanisms of joints solved by load are blocks. Their contacts stay swept.
 constexpr double kSweptLoad = 1000;     // likewise [m/s^2]: such a joint yields by .4 mm at 240 substeps a second
 constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
-// From the sixth frame of such a load on, and for so many after. Hits in a heap last less: of 670 in a fall of 100
+// From the tenth frame of such a load on, and for so many after. Hits in a heap last less: of 670 in a fall of 100
 // ragdolls 44 loaded a joint for three frames, two for six. From the third on, a sixth of the heap was in blocks as it
-// landed, mostly after the hit was over, and its joints opened as far as without.
-constexpr uint8_t kSweptAfter = 6, kSweptFor = 6;
+// landed, mostly after the hit was over; from the sixth on, six dolls. Their joints opened as far as without.
+constexpr uint8_t kSweptAfter = 10, kSweptFor = 15;
 
 // Of nodes: with a joint that is solved directly, or in a tower; or taken in with a contact.
 constexpr uint8_t kHeld = 1, kTaken = 2;

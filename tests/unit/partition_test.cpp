@@ -483,9 +483,9 @@ TEST_F(PartitionTest, JointsSolvedByLoadAreABlockOnlyWhileTheyNeedIt) {
         for (int i = 0; i < frames; ++i) note_loads(joints, nodes);
         expect(blocks, swept);
     };
-    expect_after(5, 1001, 0, 2);
+    expect_after(9, 1001, 0, 2);
     expect_after(1, 999, 0, 2);
-    expect_after(5, 1001, 0, 2);
+    expect_after(9, 1001, 0, 2);
     expect_after(1, 1001, 1, 0);
     expect_after(15, 999, 1, 0);
     expect_after(1, 999, 0, 2);
