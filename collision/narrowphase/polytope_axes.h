@@ -63,8 +63,8 @@ Separation best_face_a(const PolytopePair& pair, float margin);
 Separation best_face_b(const PolytopePair& pair, float margin);
 
 // The pair of edges that separates most, among those that could bear less than depth of overlap: edges on the
-// far sides, as seen along the unit normal (a to b), can not.
-Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth);
+// far sides, as seen along the unit normal (a to b), can not. None, or any, where none separates by least.
+Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float least);
 
 // Unit normal across an edge of a and a direction that points out of a; zero for parallel ones.
 inline Vec3f edge_normal(const Polytope& a, const Edge& edge_a, const Vec3f& along_b) {

@@ -12,14 +12,36 @@ struct Heights {
     float top;
 
     Heights(const Polytope& polytope, const Vec3f& direction) : top(find_heights(polytope, direction, of)) {}
+    const Vec3f& highest(const Polytope& polytope) const {
+        return polytope.vertices[size_t(first_equal(of, int(polytope.vertices.size()), top))];
+    }
 };
 
-// The edges that reach up to the least height; returns how many.
-int edges_above(const Polytope& polytope, const Heights& heights, float least, uint8_t* index) {
+// How high a point lies over the faces of a polytope.
+struct HeightsOver {
+    alignas(16) float of[4 * kMaxPlanePacks];
+
+    HeightsOver(const Polytope& polytope, const Vec3f& point) {
+        for (size_t k = 0; k < polytope.planes.size(); ++k)
+            Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{of + 4 * k} = heights_over(polytope.planes[k], point);
+    }
+};
+
+// What an edge must do to bear: reach up to a height, and have a face over which a point of the other polytope lies as
+// high. Between the normals of two faces that it lies lower under, an edge's normal separates by less.
+struct Demand {
+    float height, over;
+};
+
+// The edges that do; returns how many.
+int edges_that_may(const Polytope& polytope, const Heights& heights, const HeightsOver& over, const Demand& demand,
+                   uint8_t* index) {
     int count = 0;
     for (size_t e = 0; e < polytope.edges.size(); ++e) {
+        const Edge& edge = polytope.edges[e];
         index[count] = uint8_t(e);
-        count += std::max(heights.of[polytope.edges[e].from], heights.of[polytope.edges[e].to]) >= least;
+        count += int(std::max(heights.of[edge.from], heights.of[edge.to]) >= demand.height) &
+                 int(std::max(over.of[edge.left], over.of[edge.right]) >= demand.over);
     }
     return count;
 }
@@ -45,18 +67,17 @@ struct EdgePack {
     VectorPack left, right;  // normals of the two faces, negated
 };
 
-// Those edges of b whose heights reach up to the least.
+// Those edges of b that may bear.
 struct EdgesOfB {
     int count = 0;
     uint8_t index[4 * kPacks];
     EdgePack packs[kPacks];
 
     int packs_used() const { return (count + 3) / 4; }
-    void gather(const PolytopePair& pair, const Heights& heights, float least);
+    void gather(const PolytopePair& pair);
 };
 
-void EdgesOfB::gather(const PolytopePair& pair, const Heights& heights, float least) {
-    count = edges_above(pair.b, heights, least, index);
+void EdgesOfB::gather(const PolytopePair& pair) {
     for (int k = 0; k < 4 * packs_used(); ++k) {
         const Edge& edge = pair.b.edges[index[std::min(k, count - 1)]];
         const float bears = k < count ? -1.0f : 0.0f;
@@ -154,14 +175,18 @@ private:
 
 // If an edge pair bears the least overlap d <= depth, its nearest points lie on the edges, d apart and both within
 // the two polytopes' overlap along normal grown by d.
-Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth) {
+Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float least) {
     const Heights up_a(pair.a, normal);
     const Heights down_b(pair.b, pair.b_in_a.rotation.transpose() * -normal);
-    const float middle = normal.dot(pair.b_in_a.position);
-    EdgesOfB b;
-    b.gather(pair, down_b, middle - up_a.top - depth);
+    const float middle = normal.dot(pair.b_in_a.position), under = std::min(least, 0.0f);
     uint8_t own[kMaxEdges];
-    const int count = edges_above(pair.a, up_a, middle - down_b.top - depth, own);
+    const HeightsOver over_a(pair.a, pair.b_in_a * down_b.highest(pair.b));
+    const int count = edges_that_may(pair.a, up_a, over_a, {middle - down_b.top - depth, under}, own);
+    EdgesOfB b;
+    const HeightsOver over_b(pair.b, pair.a_in_b * up_a.highest(pair.a));
+    b.count = edges_that_may(pair.b, down_b, over_b, {middle - up_a.top - depth, under}, b.index);
+    if (count == 0 || b.count == 0) return {};
+    b.gather(pair);
     MostApart most(pair, b);
     for (int e = 0; e < count; ++e) {
         const Edge& edge = pair.a.edges[own[e]];

@@ -245,7 +245,8 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     // Edges that separate by slop less may bear what the face misses.
     const float apart = std::min({margin, most + view.slack(), view.most_apart() + preference.slop});
     const float depth = std::max(apart, -face.distance + (other_way ? preference.keep : 0.0f));
-    const Separation edges = best_edges(pair, pair.normal(face.axis), depth);
+    const float least = face.distance - preference.slop;  // less bears nothing
+    const Separation edges = best_edges(pair, pair.normal(face.axis), depth, least);
     if (edges.distance > margin) {
         out.count = 0;
         write(edges.axis, false, pair, shapes.cache);

@@ -1,6 +1,7 @@
 #include "detect/carry.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace taut {
 namespace {
@@ -60,30 +61,36 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, bool al
                     Impulse* to) {
     const Vec3f t1 = tangent_of(now.normal), t2 = now.normal.cross(t1);
     const Vec3f o1 = tangent_of(old.normal), o2 = old.normal.cross(o1);
-    bool used[4] = {}, found[4] = {};
-    auto take = [&](int i, int k) {
+    unsigned left = (1u << old.count) - 1, missing = 0;  // bits of old points, and of new ones
+    const auto take = [&](int i, int k) {
         const Vec3f friction = from[k].tangent1 * o1 + from[k].tangent2 * o2;
         to[i] = {from[k].normal, friction.dot(t1), friction.dot(t2), from[k].slip};
-        used[k] = found[i] = true;
+        left &= ~(1u << k);
     };
-    for (int i = 0; i < now.count; ++i)
-        for (int k = 0; k < old.count && !found[i]; ++k)
-            if (!used[k] && old.points[k].feature == now.points[i].feature) take(i, k);
     for (int i = 0; i < now.count; ++i) {
-        if (found[i]) continue;
+        unsigned same = 0;
+        for (int k = 0; k < old.count; ++k) same |= unsigned(old.points[k].feature == now.points[i].feature) << k;
+        if (same &= left; same != 0)
+            take(i, std::countr_zero(same));
+        else
+            missing |= 1u << i;
+    }
+    for (; missing != 0; missing &= missing - 1) {
+        const int i = std::countr_zero(missing);
         to[i] = {};
         float nearest = kSamePoint * kSamePoint;
         int best = -1;
-        for (int k = 0; k < old.count; ++k) {
+        for (unsigned rest = left; rest != 0; rest &= rest - 1) {
+            const int k = std::countr_zero(rest);
             const float d = (old.points[k].position - now.points[i].position).squaredNorm();
-            if (!used[k] && d < nearest) nearest = d, best = k;
+            if (d < nearest) nearest = d, best = k;
         }
         if (best >= 0) take(i, best);
     }
     if (!all) return;
     Lost lost;
     for (int k = 0; k < old.count; ++k)
-        if (!used[k] && from[k].normal > 0) lost.add(old.points[k].position, from[k], o1, o2);
+        if ((left >> k & 1) && from[k].normal > 0) lost.add(old.points[k].position, from[k], o1, o2);
     if (lost.normal > 0) hand_over(lost, now, t1, t2, to);
 }
 
