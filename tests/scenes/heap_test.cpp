@@ -79,7 +79,7 @@ TEST(Heap, OfRagdollsHoldsTogetherBySweepsAlone) {
 // A body that bursts or whips has its own remedies: the substeps of all that it touches are not for it.
 TEST(Heap, OfRagdollsLandsWithFourSubsteps) {
     int more = 0;
-    for (uint64_t seed : {0u, 1u, 2u}) {
+    for (uint64_t seed : {2u, 5u, 6u, 7u}) {
         scenes::Options options;
         options.seed = seed;
         RunningScene run(scenes::make_scene("ragdolls100", options));
@@ -88,8 +88,8 @@ TEST(Heap, OfRagdollsLandsWithFourSubsteps) {
             more += run.world.profile().substeps > 4;
         }
     }
-    std::printf("%d of 360 frames with more\n", more);
-    EXPECT_LE(more, 15);
+    std::printf("%d of 480 frames with more\n", more);
+    EXPECT_LE(more, 3);
 }
 
 }  // namespace
