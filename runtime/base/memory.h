@@ -100,6 +100,18 @@ void reserve_more(Array<T>& array, size_t more) {
     if (needed > array.capacity()) array.reserve(with_slack(needed));
 }
 
+// As many elements, if there are fewer: each is written, so that the step that uses it meets no new memory. Grows into
+// all that a piece of memory holds; beyond what is kept in pieces, by a sixteenth.
+template <class T>
+void grow_to(Array<T>& array, size_t size) {
+    if (array.size() >= size) return;
+    if (size > array.capacity()) {
+        const size_t bytes = size * sizeof(T), whole = Memory::whole(bytes, HostAllocator<T>::alignment());
+        array.reserve(whole > bytes ? whole / sizeof(T) : size + size / 16);
+    }
+    array.resize(size);
+}
+
 // Empties an array that few steps use, and leaves its memory, if that is much, to whatever asks next.
 template <class T>
 void let_go(Array<T>& array) {

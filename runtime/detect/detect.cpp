@@ -238,11 +238,7 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step) {
     const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
-    pairs.reach.resize(slots);
-    pairs.pace.resize(slots);
-    pairs.placement.resize(slots);
-    pairs.stance.resize(slots);
-    pairs.travel.resize(slots);
+    pairs.make_room(slots);
     pairs.picked.resize(slots);  // nothing may fail between a new box and the broadphase's
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {

@@ -46,8 +46,8 @@ bool went_astray(const Nodes& nodes, const Collider& collider, const Shapes& sha
 bool find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
                 Pairs& pairs) {
     std::atomic<bool> any = false;
-    pairs.marks.resize(pairs.pace.size());
-    team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    pairs.marks.resize(colliders.record.size());
+    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             uint8_t& mark = pairs.marks[c];
@@ -70,9 +70,9 @@ void find_course(const Nodes& nodes, const Colliders& colliders, const Shapes& s
 }
 
 void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
-    pairs.courses.resize(pairs.pace.size());
-    pairs.strides.resize(pairs.pace.size());
-    team.for_ranges(static_cast<uint32_t>(pairs.pace.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    pairs.courses.resize(colliders.record.size());
+    pairs.strides.resize(colliders.record.size());
+    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c)
             if (pairs.marks[c] & kMoved) find_course(nodes, colliders, shapes, c, pairs);
     });
@@ -125,7 +125,7 @@ void add_late(const Nodes& nodes, const Colliders& colliders, const collision::B
 // and its pairs with what is there go into Pairs::late.
 void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                collision::Broadphase& broadphase) {
-    gather(team, static_cast<uint32_t>(pairs.pace.size()), pairs.picked, [&](uint32_t c) {
+    gather(team, static_cast<uint32_t>(colliders.record.size()), pairs.picked, [&](uint32_t c) {
         const Collider& collider = colliders.record[c];
         return (pairs.marks[c] & kMoved) && (pairs.marks[c] & kAstray) &&
                !broadphase.holds(c, bounds_of(nodes, collider, shapes));

@@ -166,16 +166,8 @@ private:
 
 void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& joints) {
     const uint32_t slots = nodes.slots();
-    system.pose.resize(slots + 1);
-    system.exact.resize(slots + 1);
-    system.found.resize(slots + 1);
-    system.velocity.resize(slots + 1);
-    system.inverse_mass.resize(slots + 1);
-    system.shift.resize(slots + 1);
+    system.make_room(slots);
     system.sweep_pose.resize(joints.ids.count() > 0 ? slots + 1 : 0);
-    system.turned.resize(slots + 1);
-    system.in_block.resize(slots + 1);
-    system.place.resize(slots + 1);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node)
         if (nodes.info[node].kind == NodeKind::kinematic && nodes.rest[node] != Rest::asleep)

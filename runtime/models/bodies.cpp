@@ -25,6 +25,7 @@ uint32_t& link_to(World& world, uint32_t node, uint32_t collider) {
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                   std::span<const ColliderPlan> colliders) {
     Nodes& nodes = world.nodes;
+    world.system.make_room(nodes.slots() + 1);
     const uint32_t node = nodes.add();
     nodes.info[node] = info;
     nodes.info[node].collider = kNone;
@@ -58,6 +59,7 @@ void remove_node(World& world, uint32_t node) {
 
 uint32_t add_collider(World& world, const ColliderPlan& collider) {
     world.colliders.reserve_one();
+    world.pairs.make_room(world.colliders.record.size() + 1);
     const uint32_t index = world.colliders.add(collider);
     Collider& record = world.colliders.record[index];
     record.next = kNone;

@@ -215,6 +215,11 @@ struct Pairs {
           unheld(memory),
           parts(memory) {}
 
+    // In what update_bounds() fills, for so many colliders: as they come, not in the step that sees them first.
+    void make_room(size_t colliders) {
+        grow_to(reach, colliders), grow_to(pace, colliders), grow_to(placement, colliders);
+        grow_to(stance, colliders), grow_to(travel, colliders);
+    }
     // Of a new collider in a slot, or of one that gets another shape.
     void forget_place(uint32_t collider) {
         if (collider >= stance.size()) return;

@@ -116,6 +116,14 @@ struct System {
           joints(memory),
           contacts(memory) {}
 
+    // In what begin_frame() fills, for so many nodes: as they come, not in the step that sees them first.
+    void make_room(size_t nodes) {
+        const size_t size = nodes + 1;
+        grow_to(pose, size), grow_to(exact, size), grow_to(found, size), grow_to(turned, size);
+        grow_to(in_block, size), grow_to(place, size);
+        grow_to(velocity, size), grow_to(inverse_mass, size), grow_to(shift, size);
+    }
+
     double h = 0;           // substep [s]
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
 
