@@ -85,7 +85,7 @@ bool strides(const Pairs& pairs, const AskedPair& pair) {
     const Stride &one = pairs.strides[pair.a], &other = pairs.strides[pair.b];
     const float thin = std::min(one.thickness, other.thickness), thick = std::max(one.thickness, other.thickness);
     const float stride = static_cast<float>(kStride) * (thin > 0 ? thin : thick);
-    const bool asks = (pair.fast | ((marks & kAstray) != 0)) & ((marks & kIgnorable) == 0) & (pair.filtered == false);
+    const bool asks = (pair.fast | ((marks & kAstray) != 0)) & ((marks & kIgnorable) == 0) & !pair.filtered;
     const bool looked_for = thick < std::numeric_limits<float>::infinity();
     return asks & looked_for & ((one.along - other.along).squaredNorm() > stride * stride);
 }

@@ -1,4 +1,5 @@
-// Whether two edges decide where polytopes touch, against the axes between all of their features.
+// Whether two edges decide where polytopes touch, against the axes between all of their features; and which edges
+// separate most.
 #include "collision/narrowphase/polytope_axes.h"
 
 #include <gtest/gtest.h>
@@ -72,6 +73,35 @@ TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
     }
     EXPECT_GE(bear, 25);
     EXPECT_GE(2 * decide, bear) << decide << " of " << bear;
+}
+
+// Edges that cannot separate by what is asked are left out; the pair that does separate most is found all the same.
+TEST(BestEdges, AreFoundWhereTheySeparateByAsMuchAsIsAsked) {
+    constexpr float kDeep = 0.1f, kAll = -1e30f, kRounding = 1e-5f;
+    int found = 0, left_out = 0;
+    for (uint32_t seed = 1; seed <= 1000; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        const Shape a = oracle::random_shape(ShapeKind::hull, random),
+                    b = oracle::random_shape(ShapeKind::hull, random);
+        const PolytopePair pair = overlapping(*a.hull, *b.hull, random.uniform(-0.02, 0.03), random);
+        const Separation face_a = best_face_a(pair, 1), face_b = best_face_b(pair, 1);
+        const Vec3f normal = pair.normal(face_a.distance > face_b.distance ? face_a.axis : face_b.axis);
+        const Separation most = best_edges(pair, normal, kDeep, kAll);
+        if (most.distance == kAll) continue;
+        ++found;
+        EXPECT_LE(most.distance, most_apart(pair) + kRounding);
+        for (const float less : {kRounding, 0.001f, 0.01f}) {
+            const Separation asked = best_edges(pair, normal, kDeep, most.distance - less);
+            EXPECT_EQ(asked.axis, most.axis);
+            EXPECT_EQ(asked.distance, most.distance);
+        }
+        const Separation more = best_edges(pair, normal, kDeep, most.distance + 0.01f);
+        EXPECT_LE(more.distance, most.distance);
+        left_out += more.distance < most.distance;
+    }
+    EXPECT_GE(found, 900);
+    EXPECT_GE(left_out, 100);
 }
 
 }  // namespace
