@@ -44,7 +44,7 @@ struct Block {
     bool tower = false;                    // no joints: bodies that stand on each other
     bool refused = false;                  // this substep's tower did not stand as one: its contacts were swept
     bool looped = false;                   // more joints than a tree
-    bool passing = false;                  // for a load that passes: sweeps hold its joints as well, and those turn far
+    bool passing = false;                  // direct while a load lasts that sweeps hold as well: it may turn far
     bool failed = false;                   // this substep's matrix could not be factored
     bool corrected = false;                // this substep's positions get a correction
     double mass_ratio = 1;                 // heaviest over lightest node

@@ -48,16 +48,27 @@ PolytopePair overlapping(const Hull& a, const Hull& b, double depth, Random& ran
     return {a.view(), b.view(), {rotation, float(near) * along}};
 }
 
+// Two random hulls, their least overlap from least to most deep [m].
+struct Overlap {
+    Overlap(uint32_t seed, double least, double most)
+        : random(seed),
+          a(oracle::random_shape(ShapeKind::hull, random)),
+          b(oracle::random_shape(ShapeKind::hull, random)),
+          pair(overlapping(*a.hull, *b.hull, random.uniform(least, most), random)) {}
+
+    Random random;
+    Shape a, b;
+    PolytopePair pair;
+};
+
 // No axis separates by ask more than edges that decide; most edges that bear an overlap of up to a centimetre do.
 TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
     constexpr float kAsk = 0.0025f, kRounding = 2e-5f;
     int bear = 0, decide = 0;
     for (uint32_t seed = 1; seed <= 300; ++seed) {
         SCOPED_TRACE(seed);
-        Random random(seed);
-        const Shape a = oracle::random_shape(ShapeKind::hull, random),
-                    b = oracle::random_shape(ShapeKind::hull, random);
-        const PolytopePair pair = overlapping(*a.hull, *b.hull, random.uniform(-0.005, 0.03), random);
+        const Overlap overlap(seed, -0.005, 0.03);
+        const PolytopePair& pair = overlap.pair;
         const float most = most_apart(pair);
         for (size_t i = 0; i < pair.a.edges.size(); ++i)
             for (size_t j = 0; j < pair.b.edges.size(); ++j) {
@@ -81,10 +92,8 @@ TEST(BestEdges, AreFoundWhereTheySeparateByAsMuchAsIsAsked) {
     int found = 0, left_out = 0;
     for (uint32_t seed = 1; seed <= 1000; ++seed) {
         SCOPED_TRACE(seed);
-        Random random(seed);
-        const Shape a = oracle::random_shape(ShapeKind::hull, random),
-                    b = oracle::random_shape(ShapeKind::hull, random);
-        const PolytopePair pair = overlapping(*a.hull, *b.hull, random.uniform(-0.02, 0.03), random);
+        const Overlap overlap(seed, -0.02, 0.03);
+        const PolytopePair& pair = overlap.pair;
         const Separation face_a = best_face_a(pair, 1), face_b = best_face_b(pair, 1);
         const Vec3f normal = pair.normal(face_a.distance > face_b.distance ? face_a.axis : face_b.axis);
         const Separation most = best_edges(pair, normal, kDeep, kAll);
