@@ -5,17 +5,27 @@ namespace {
 
 using namespace lab;
 
+// Mean slope of heaps of 1000 grains from three starts [degrees]. Random ones: poured exactly on its axis, a heap of
+// grains that do not turn wears a needle on top.
+double mean_slope(const char* friction) {
+    constexpr uint64_t kStarts = 3;
+    double sum = 0;
+    for (uint64_t seed = 1; seed <= kStarts; ++seed) {
+        RunningScene run(scenes::make_scene(std::string("grains1000_r") + friction, {.seed = seed, .mesh = {}}));
+        for (int i = 0; i < 420; ++i) run.step();
+        EXPECT_TRUE(run.sound());
+        EXPECT_LT(run.pile_speed(), 0.1) << "friction " << friction << ", seed " << seed;
+        sum += slope_of(run) * 180 / M_PI;
+    }
+    return sum / kStarts;
+}
+
 TEST(Grains, HeapAtAnAngleThatRisesWithFriction) {
     double before = 0;
     for (const char* friction : {"0.1", "0.3", "0.6"}) {
-        // A random start: poured exactly on its axis, a heap of grains that do not turn wears a needle on top.
-        RunningScene run(scenes::make_scene(std::string("grains1000_r") + friction, {.seed = 1, .mesh = {}}));
-        for (int i = 0; i < 420; ++i) run.step();
-        ASSERT_TRUE(run.sound());
-        const double slope = slope_of(run) * 180 / M_PI;
-        std::printf("friction %s: slope %.1f degrees, fastest grain %.4f m/s\n", friction, slope, run.pile_speed());
+        const double slope = mean_slope(friction);
+        std::printf("friction %s: slope %.1f degrees\n", friction, slope);
         EXPECT_GT(slope, before + 1) << "friction " << friction;
-        EXPECT_LT(run.pile_speed(), 0.1) << "friction " << friction;
         before = slope;
     }
     EXPECT_GT(before, 20);

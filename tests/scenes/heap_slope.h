@@ -1,25 +1,33 @@
 // The slope of a heap of grains.
 #pragma once
 
+#include <array>
+#include <numeric>
+
 #include "scenes/running_scene.h"
 
 namespace lab {
 
-// Slope of the heap's surface [rad]: a line through the highest grain of each ring about the axis, by least squares.
+// Slope of the heap's surface [rad]: a line, by least squares, through its height at each distance from the axis, the
+// mean over directions of the highest grain there.
 inline double slope_of(const RunningScene& run) {
-    constexpr double kRing = 0.1;  // [m]
-    std::vector<double> top;
+    constexpr double kRing = 0.1, kSingleGrain = 0.12;  // [m]
+    constexpr size_t kSectors = 8;
+    std::vector<std::array<double, kSectors>> top;
     for (int i : run.scene.roles.pile) {
         const auto x = run.body(static_cast<size_t>(i)).position;
         const size_t ring = static_cast<size_t>(std::hypot(x.x, x.z) / kRing);
-        if (ring >= top.size()) top.resize(ring + 1, 0);
-        top[ring] = std::max(top[ring], x.y);
+        const size_t sector = static_cast<size_t>((std::atan2(x.z, x.x) / (2 * M_PI) + 0.5) * kSectors) % kSectors;
+        if (ring >= top.size()) top.resize(ring + 1, {});
+        top[ring][sector] = std::max(top[ring][sector], x.y);
     }
     // From the peak, which is round, to where only single grains lie.
     double n = 0, sr = 0, sy = 0, srr = 0, sry = 0;
-    for (size_t ring = 1; ring < top.size() && top[ring] > 0.12; ++ring) {
+    for (size_t ring = 1; ring < top.size(); ++ring) {
+        if (std::ranges::max(top[ring]) <= kSingleGrain) break;
+        const double y = std::accumulate(top[ring].begin(), top[ring].end(), 0.0) / kSectors;
         const double r = (static_cast<double>(ring) + 0.5) * kRing;
-        n += 1, sr += r, sy += top[ring], srr += r * r, sry += r * top[ring];
+        n += 1, sr += r, sy += y, srr += r * r, sry += r * y;
     }
     EXPECT_GE(n, 3) << "no heap";
     return std::atan(-(n * sry - sr * sy) / (n * srr - sr * sr));
