@@ -42,10 +42,14 @@ bool went_astray(const Nodes& nodes, const Collider& collider, const Shapes& sha
     return off.squaredNorm() > stride * stride;
 }
 
-// Of all colliders, after the first round of what the last one put back. Whether any went astray.
-bool find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
-                Pairs& pairs) {
-    std::atomic<bool> any = false;
+struct Astray {
+    bool any = false, newly = false;  // newly: some that did not before the last round
+};
+
+// Of all colliders, after the first round of what the last one put back. Whether any of these went astray.
+Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
+                  Pairs& pairs) {
+    std::atomic<bool> any = false, newly = false;
     pairs.marks.resize(colliders.record.size());
     team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
@@ -54,40 +58,47 @@ bool find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, cons
             if (round == 1) mark = collider.node == kNone ? 0 : kMoved;
             if (round > 1 && span_put_back(pairs.mechanisms, collider, round - 1)) mark |= kMoved;
             if (!(mark & kMoved)) continue;
+            const bool was_astray = mark & kAstray;
             mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
             if (collider.asks & (kAsksOneWay | kAsksPreSolve)) mark |= kIgnorable;
             if (!went_astray(nodes, collider, shapes, pairs.reach[c].ahead, pairs.pace[c].thickness)) continue;
             mark |= kAstray;
             any.store(true, std::memory_order_relaxed);
+            if (!was_astray) newly.store(true, std::memory_order_relaxed);
         }
     });
-    return any.load(std::memory_order_relaxed);
+    return {any.load(std::memory_order_relaxed), newly.load(std::memory_order_relaxed)};
 }
 
 void find_course(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c, Pairs& pairs) {
     pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
-    pairs.strides[c] = {pairs.courses[c].along.cast<float>(), pairs.courses[c].thickness};
 }
 
 void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     pairs.courses.resize(colliders.record.size());
-    pairs.strides.resize(colliders.record.size());
     team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c)
             if (pairs.marks[c] & kMoved) find_course(nodes, colliders, shapes, c, pairs);
     });
 }
 
-// Whether a pair that may have passed moved further against each other than a part of its thickness. No branches, for
-// the answers are as good as random.
+// Whether a pair is looked after: two that were fast, or of which one went astray.
+bool is_asked(const Pairs& pairs, uint32_t a, uint32_t b, bool fast) {
+    const unsigned marks = pairs.marks[a] | pairs.marks[b];
+    return (fast | ((marks & kAstray) != 0)) & ((marks & kIgnorable) == 0);
+}
+bool is_asked(const Pairs& pairs, const NearPair& near) {
+    return is_asked(pairs, near.collider_a(), near.collider_b(), near.fast) & !near.filtered;
+}
+
+// Whether it moved further against each other than a part of its thickness.
 bool strides(const Pairs& pairs, const AskedPair& pair) {
-    const unsigned marks = pairs.marks[pair.a] | pairs.marks[pair.b];
-    const Stride &one = pairs.strides[pair.a], &other = pairs.strides[pair.b];
+    if (!is_asked(pairs, pair.a, pair.b, pair.fast)) return false;
+    const Course &one = pairs.courses[pair.a], &other = pairs.courses[pair.b];
     const float thin = std::min(one.thickness, other.thickness), thick = std::max(one.thickness, other.thickness);
-    const float stride = static_cast<float>(kStride) * (thin > 0 ? thin : thick);
-    const bool asks = (pair.fast | ((marks & kAstray) != 0)) & ((marks & kIgnorable) == 0) & !pair.filtered;
-    const bool looked_for = thick < std::numeric_limits<float>::infinity();
-    return asks & looked_for & ((one.along - other.along).squaredNorm() > stride * stride);
+    if (thick == std::numeric_limits<float>::infinity()) return false;
+    const double stride = kStride * static_cast<double>(thin > 0 ? thin : thick);
+    return (one.along - other.along).squaredNorm() > stride * stride;
 }
 
 bool moved(const Pairs& pairs, const AskedPair& pair) { return (pairs.marks[pair.a] | pairs.marks[pair.b]) & kMoved; }
@@ -140,23 +151,28 @@ void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const
     for (const uint32_t c : pairs.picked) add_late(nodes, colliders, broadphase, c, pairs);
 }
 
-// The pairs that stride into picked, in the order of their keys: near ones, of which those that moved are asked again,
-// and those that came late.
-void pick_striding(Team& team, uint8_t round, Pairs& pairs) {
-    const auto near = static_cast<uint32_t>(pairs.near.size());
-    pairs.asked.resize(near + pairs.late.size());
-    gather(team, static_cast<uint32_t>(pairs.asked.size()), pairs.picked, [&](uint32_t i) {
-        AskedPair& pair = pairs.asked[i];
-        const bool is_new = round == 1 || i >= near;
-        if (is_new) pair = AskedPair(i < near ? pairs.near[i] : pairs.late[i - near]);
-        if (is_new || moved(pairs, pair)) pair.strides = strides(pairs, pair);
-        return pair.strides;
-    });
-    // The late ones, which come last, go to their places.
-    const auto key_of = [&](uint32_t i) { return pair_key(pairs.asked[i].a, pairs.asked[i].b); };
-    Array<uint32_t>& picked = pairs.picked;
-    for (auto late = std::ranges::lower_bound(picked, near); late != picked.end(); ++late)
-        std::rotate(std::ranges::upper_bound(picked.begin(), late, key_of(*late), {}, key_of), late, late + 1);
+// All pairs that are looked after, in the order of their keys.
+void ask_pairs(Team& team, Pairs& pairs) {
+    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
+           [&](uint32_t i) { return is_asked(pairs, pairs.near[i]); });
+    pairs.asked.clear();
+    reserve_more(pairs.asked, pairs.picked.size() + pairs.late.size());
+    auto late = pairs.late.begin();
+    const auto add_late_before = [&](uint64_t key) {
+        for (; late != pairs.late.end() && late->key < key; ++late)
+            if (!late->filtered) pairs.asked.emplace_back(*late);
+    };
+    for (const uint32_t i : pairs.picked) {
+        add_late_before(pairs.near[i].key);
+        pairs.asked.emplace_back(pairs.near[i]);
+    }
+    add_late_before(std::numeric_limits<uint64_t>::max());
+}
+
+// Those of them that stride into picked.
+void pick_striding(Team& team, Pairs& pairs) {
+    gather(team, static_cast<uint32_t>(pairs.asked.size()), pairs.picked,
+           [&](uint32_t i) { return strides(pairs, pairs.asked[i]); });
 }
 
 // Each goes back along its way; in the last round it stays where it was, unless it is driven. Whether it may.
@@ -251,16 +267,17 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     mechanisms.any_drives = false;
     bool again = true;
     for (uint8_t round = 1; again && round <= (mechanisms.any_drives ? kMostRounds : kRounds); ++round) {
-        const bool any_astray = find_marks(team, nodes, colliders, shapes, round, pairs);
-        if (round == 1 && !any_astray && !pairs.any_fast) {
+        const Astray astray = find_marks(team, nodes, colliders, shapes, round, pairs);
+        if (round == 1 && !astray.any && !pairs.any_fast) {
             let_go(pairs.courses);
-            let_go(pairs.strides);
             let_go(pairs.asked);
             break;
         }
         find_courses(team, nodes, colliders, shapes, pairs);
-        if (any_astray) find_late(team, nodes, colliders, shapes, pairs, broadphase);
-        pick_striding(team, round, pairs);
+        const size_t late = pairs.late.size();
+        if (astray.any) find_late(team, nodes, colliders, shapes, pairs, broadphase);
+        if (round == 1 || astray.newly || pairs.late.size() > late) ask_pairs(team, pairs);
+        pick_striding(team, pairs);
         find_passed(team, nodes, colliders, shapes, pairs);
         again = part_passed(colliders, shapes, joints, round, pairs, nodes);
     }

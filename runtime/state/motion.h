@@ -52,12 +52,6 @@ struct Course {
     float chord = 0;                                 // of its turn, at least, at radius 1; infinite: its ends go apart
 };
 
-// Of a course, what all pairs are asked.
-struct Stride {
-    Vec3f along;      // [m]
-    float thickness;  // [m]
-};
-
 // A mechanism that hold_back() leaves where it was before the step.
 struct Stay {
     uint32_t root;

@@ -77,16 +77,14 @@ struct NearPair {
 
 using NearPairs = SegmentedArray<NearPair>;
 
-// A pair in brief, as all are asked again each time that some were put back; hold_back().
+// A pair that may have gone through each other in this frame, as it is asked again each time that some were put back;
+// hold_back().
 struct AskedPair {
-    AskedPair() = default;
-    explicit AskedPair(const NearPair& near)
-        : a(near.collider_a()), b(near.collider_b()), filtered(near.filtered), fast(near.fast) {}
+    explicit AskedPair(const NearPair& near) : a(near.collider_a()), b(near.collider_b()), fast(near.fast) {}
 
-    uint32_t a = 0, b = 0;  // colliders, the smaller index first
-    bool filtered = false, fast = false;
-    bool strides = false;  // may have gone through each other in this frame
-    bool passed = false;   // did so
+    uint32_t a, b;  // colliders, the smaller index first
+    bool fast;
+    bool passed = false;  // did so
 };
 
 // A manifold as it was found, and how b's shape lay then, all as seen from a's shape; detect/reuse.h.
@@ -164,8 +162,8 @@ void for_sides(const PairEnds& pair, Act&& act) {
 
 // Tangents of a contact normal: the same for the same normal, continuous but for the switch of the helper axis.
 inline Vec3f tangent_of(const Vec3f& n) {
-    const Vec3f axis = std::abs(n.x()) < 0.6f ? Vec3f::UnitX() : Vec3f::UnitY();
-    return n.cross(axis).normalized();
+    const Vec3f across = std::abs(n.x()) < 0.6f ? Vec3f(0, n.z(), -n.y()) : Vec3f(-n.z(), 0, n.x());
+    return across * (1 / across.norm());
 }
 
 // Whether they go over into each other from one normal to another nearby.
@@ -203,7 +201,6 @@ struct Pairs {
           reach(memory),
           pace(memory),
           courses(memory),
-          strides(memory),
           asked(memory),
           marks(memory),
           mechanisms(memory),
@@ -248,8 +245,7 @@ struct Pairs {
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     Array<Course> courses;            // by collider, scratch; hold_back()
-    Array<Stride> strides;            // by collider, scratch; hold_back()
-    Array<AskedPair> asked;           // near, then late; scratch of hold_back()
+    Array<AskedPair> asked;           // of near and late, in the order of their keys; scratch of hold_back()
     Array<uint8_t> marks;             // by collider, scratch: bits of hold_back()
     bool any_fast = false;            // of near, in this frame; find_contacts()
     Mechanisms mechanisms;
