@@ -102,9 +102,9 @@ void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
             const bool to_in = outside[j] <= slack;
             out->points[out->count] = from;
             out->count += from_in;
-            const float inner = from_in ? outside[i] : outside[j];
-            const float outer = from_in ? outside[j] : outside[i];
-            const float t = inner < 0 ? inner / (inner - outer) : 0.0f;  // from the inner end
+            const float inner = std::min(0.0f, std::min(outside[i], outside[j]));
+            const float outer = std::max(outside[i], outside[j]);
+            const float t = inner / (inner - outer);  // from the inner end, of a crossing
             const ClipPoint& a = from_in ? from : to;
             const ClipPoint& b = from_in ? to : from;
             out->points[out->count] = {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t,

@@ -1,12 +1,11 @@
 // How far apart a box or hull and another are along the axis that parted them, all in world axes.
+#include <cmath>
+
 #include "collision/hull.h"
 #include "collision/narrowphase/polytope_cache.h"
 
 namespace taut::collision {
 namespace {
-
-// Edges within 1e-3 rad of parallel have no axis of their own.
-constexpr float kParallel = 1e-3f;
 
 // A box or hull as axes of the world meet it.
 struct Placed {
@@ -28,21 +27,23 @@ struct Placed {
         return rotation.col(face / 2) * (face % 2 ? 1.0f : -1.0f);
     }
     float offset(int face) const { return shape.hull ? shape.hull->faces[size_t(face)].offset : shape.size[face / 2]; }
+    // Its direction, of any length.
     Vec3f edge(int number) const {
         if (!shape.hull) return rotation.col(number / 4);
         const Polytope& polytope = shape.hull->view();
-        return (rotation * polytope.direction(polytope.edges[size_t(number)])).normalized();
+        return rotation * polytope.direction(polytope.edges[size_t(number)]);
     }
     Vec3f centre() const { return shape.hull ? Vec3f(rotation * shape.hull->centre) : Vec3f::Zero(); }
 };
 
 // Along two edges' common normal.
 float edges_part(const Placed& a, const Placed& b, Axis axis, const Sides& sides) {
-    Vec3f n = a.edge(axis.i).cross(b.edge(axis.j));
-    const float sine = n.norm();
-    if (sine < kParallel) return kNoAxis;
+    const Vec3f along_a = a.edge(axis.i), along_b = b.edge(axis.j);
+    Vec3f n = along_a.cross(along_b);
+    const float squared = n.squaredNorm();
+    if (!(squared > kParallel * along_a.squaredNorm() * along_b.squaredNorm())) return kNoAxis;
     if (n.dot(sides.apart + b.centre() - a.centre()) < 0) n = -n;
-    return (n.dot(sides.apart) - a.reach(n) - b.reach(-n)) / sine;
+    return (n.dot(sides.apart) - a.reach(n) - b.reach(-n)) / std::sqrt(squared);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "collision/narrowphase/polytope_axes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -119,10 +120,11 @@ private:
 };
 
 // The face of one that separates most from the other, which lies at a pose; those with the largest bounds first.
-Separation best_face(const Polytope& one, const Polytope& other, const Pose& pose, float margin, AxisKind kind) {
+Separation best_face(const Polytope& one, const Polytope& other, const Pose& pose, float least, float margin,
+                     AxisKind kind) {
     FaceBounds bounds(one, pose * other.centre, other.inner_radius);
     Separation best;
-    while (bounds.largest() > best.distance) {
+    while (bounds.largest() > std::max(best.distance, least)) {
         const size_t i = bounds.take_largest();
         const Face& face = one.faces[i];
         const int vertex = support(other, pose.rotation.transpose() * -face.normal);
@@ -139,11 +141,11 @@ Separation best_face(const Polytope& one, const Polytope& other, const Pose& pos
 }  // namespace
 
 Separation best_face_a(const PolytopePair& pair, float margin) {
-    return best_face(pair.a, pair.b, pair.b_in_a, margin, AxisKind::face_a);
+    return best_face(pair.a, pair.b, pair.b_in_a, -1e30f, margin, AxisKind::face_a);
 }
 
-Separation best_face_b(const PolytopePair& pair, float margin) {
-    return best_face(pair.b, pair.a, pair.a_in_b, margin, AxisKind::face_b);
+Separation best_face_b(const PolytopePair& pair, float least, float margin) {
+    return best_face(pair.b, pair.a, pair.a_in_b, least, margin, AxisKind::face_b);
 }
 
 }  // namespace taut::collision

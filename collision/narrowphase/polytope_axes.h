@@ -58,17 +58,19 @@ struct FaceBeside {
 };
 FaceBeside face_beside(const PolytopePair& pair, Axis axis, const Vec3f& normal);
 
-// The face of a that separates most, and likewise of b; stops at the first beyond margin.
+// The face of a that separates most, and likewise of b; stops at the first beyond margin. Of b: none, or any, where
+// none separates by more than least.
 Separation best_face_a(const PolytopePair& pair, float margin);
-Separation best_face_b(const PolytopePair& pair, float margin);
+Separation best_face_b(const PolytopePair& pair, float least, float margin);
 
 // The pair of edges that separates most, among those that could bear less than depth of overlap: edges on the
 // far sides, as seen along the unit normal (a to b), can not. None, or any, where none separates by least.
 Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float least);
 
+constexpr float kParallel = 1e-6f;  // edges within 1e-3 rad of parallel have no axis of their own: squared
+
 // Unit normal across an edge of a and a direction that points out of a; zero for parallel ones.
 inline Vec3f edge_normal(const Polytope& a, const Edge& edge_a, const Vec3f& along_b) {
-    constexpr float kParallel = 1e-6f;  // edges within 1e-3 rad of parallel have no axis of their own
     const Vec3f along_a = a.direction(edge_a);
     const Vec3f cross = along_a.cross(along_b);
     const float squared = cross.squaredNorm();

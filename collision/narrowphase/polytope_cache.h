@@ -2,8 +2,8 @@
 // tried.
 #pragma once
 
+#include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "collision/narrowphase/polytope_axes.h"
 
@@ -20,9 +20,14 @@ struct Kept {
     int16_t columns[6] = {};
 };
 
-inline int16_t quantised(float x) { return int16_t(std::floor(x * 32767.0f + 0.5f)); }
+// Of a number from -1 to 1; from above zero on, where cutting off rounds down.
+inline int16_t quantised(float x) { return int16_t(int(x * 32767.0f + 32768.5f) - 32768); }
 
-// Word 0: kind, i, j, touching a byte each; words 1 to 3 the centre, 4 to 6 the columns.
+// Word 0: kind, i, j, touching a byte each; of those that touch words 1 to 3 the centre, 4 to 6 the columns.
+inline uint32_t word_of(Axis axis, bool touching) {
+    return uint32_t(axis.kind) | uint32_t(axis.i) << 8 | uint32_t(axis.j) << 16 | uint32_t(touching) << 24;
+}
+
 inline Kept read_axis(uint32_t word) {
     Kept kept;
     kept.axis = {AxisKind(word & 3), uint8_t(word >> 8), uint8_t(word >> 16)};
@@ -32,6 +37,7 @@ inline Kept read_axis(uint32_t word) {
 
 inline Kept read(const PairCache& cache) {
     Kept kept = read_axis(cache.words[0]);
+    if (!kept.touching) return kept;
     for (int i = 0; i < 3; ++i) {
         kept.centre[i] = std::bit_cast<float>(cache.words[1 + i]);
         kept.columns[2 * i] = int16_t(cache.words[4 + i] & 0xffff);
@@ -40,9 +46,11 @@ inline Kept read(const PairCache& cache) {
     return kept;
 }
 
-inline void write(Axis axis, bool touching, const PolytopePair& pair, PairCache& cache) {
+inline void write_apart(Axis axis, PairCache& cache) { cache.words[0] = word_of(axis, false); }
+
+inline void write_touching(Axis axis, const PolytopePair& pair, PairCache& cache) {
     const Vec3f centre = pair.b_in_a * pair.b.centre;
-    cache.words[0] = uint32_t(axis.kind) | uint32_t(axis.i) << 8 | uint32_t(axis.j) << 16 | uint32_t(touching) << 24;
+    cache.words[0] = word_of(axis, true);
     for (int i = 0; i < 3; ++i) {
         const uint16_t lo = uint16_t(quantised(pair.b_in_a.rotation(i, 0)));
         const uint16_t hi = uint16_t(quantised(pair.b_in_a.rotation(i, 1)));

@@ -40,8 +40,9 @@ int edges_that_may(const Polytope& polytope, const Heights& heights, const Heigh
     for (size_t e = 0; e < polytope.edges.size(); ++e) {
         const Edge& edge = polytope.edges[e];
         index[count] = uint8_t(e);
-        count += int(std::max(heights.of[edge.from], heights.of[edge.to]) >= demand.height) &
-                 int(std::max(over.of[edge.left], over.of[edge.right]) >= demand.over);
+        const bool reaches = (heights.of[edge.from] >= demand.height) | (heights.of[edge.to] >= demand.height);
+        const bool lies_over = (over.of[edge.left] >= demand.over) | (over.of[edge.right] >= demand.over);
+        count += reaches & lies_over;
     }
     return count;
 }

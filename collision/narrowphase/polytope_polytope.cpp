@@ -198,7 +198,7 @@ bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache&
     }
     if (out.count == 0 || is_still) return out.count > 0;
     if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, margin, out);
-    write(kept.axis, true, pair, cache);
+    write_touching(kept.axis, pair, cache);
     return true;
 }
 
@@ -206,11 +206,11 @@ bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache&
 Separation best_face(const PolytopePair& pair, const Kept& kept, float margin) {
     const Separation face_a = best_face_a(pair, margin);
     if (face_a.distance > margin) return face_a;
-    const Separation face_b = best_face_b(pair, margin);
     const float keep = Preference(pair.size()).keep;
     const bool b_was = kept.touching && kept.axis.kind == AxisKind::face_b;
-    const bool b_is = face_b.distance > margin || face_b.distance > face_a.distance + (b_was ? -keep : keep);
-    return b_is ? face_b : face_a;
+    const float least = std::min(face_a.distance + (b_was ? -keep : keep), margin);
+    const Separation face_b = best_face_b(pair, least, margin);
+    return face_b.distance > least ? face_b : face_a;
 }
 
 }  // namespace
@@ -225,7 +225,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
 
     Separation face = best_face(pair, kept, margin);
     if (face.distance > margin) {
-        write(face.axis, false, pair, shapes.cache);
+        write_apart(face.axis, shapes.cache);
         return face.distance;
     }
     const Preference preference(pair.size());
@@ -239,7 +239,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const float ask = preference.ask(was_edge);
     if (!other_way && (std::max(most, 0.0f) <= face.distance + view.slack() || most_apart <= face.distance + ask ||
                        view.decides(ask))) {
-        write(face.axis, true, pair, shapes.cache);
+        write_touching(face.axis, pair, shapes.cache);
         return 0;
     }
     // Edges that separate by slop less may bear what the face misses.
@@ -249,7 +249,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const Separation edges = best_edges(pair, pair.normal(face.axis), depth, least);
     if (edges.distance > margin) {
         out.count = 0;
-        write(edges.axis, false, pair, shapes.cache);
+        write_apart(edges.axis, shapes.cache);
         return edges.distance;
     }
     if (preference.edge_wins(edges.distance, face.distance, was_edge) ||
@@ -260,7 +260,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
         edge_point(pair, edges.axis, margin, out);
         add_face_beside(pair, edges.axis, margin, out);
     }
-    write(face.axis, true, pair, shapes.cache);
+    write_touching(face.axis, pair, shapes.cache);
     return 0;
 }
 

@@ -12,13 +12,25 @@
 namespace taut {
 namespace {
 
-// How far two bodies can approach each other in a time, so that a fast pair meets its contacts before it overlaps.
-float margin_of(const Nodes& nodes, const PairEnds& pair, double time) {
+// How fast two bodies move against each other, squared.
+double speed_squared(const Nodes& nodes, const PairEnds& pair) {
     double fastest = 0;
     for_sides(pair, [&](uint32_t a, uint32_t b) {
-        fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).norm());
+        fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).squaredNorm());
     });
-    return kContactMargin + static_cast<float>(std::min(kMaxReach, fastest * time));
+    return fastest;
+}
+
+// How far they can approach each other in a time, so that a fast pair meets its contacts before it overlaps.
+float margin_of(const Nodes& nodes, const PairEnds& pair, double time) {
+    const double way = std::sqrt(speed_squared(nodes, pair)) * time;
+    return kContactMargin + static_cast<float>(std::min(kMaxReach, way));
+}
+
+// gap > margin_of(), without a root.
+bool is_beyond_margin(float gap, const Nodes& nodes, const PairEnds& pair, double time) {
+    const double room = gap - kContactMargin;
+    return room > 0 && (room > kMaxReach || room * room > speed_squared(nodes, pair) * time * time);
 }
 
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.
@@ -113,7 +125,7 @@ bool held_apart(const Detection& of, const PairEnds& pair, const collision::Pair
     const uint32_t a = pair.collider_a(), b = pair.collider_b();
     const collision::Placement &at_a = of.pairs.placement[a], &at_b = of.pairs.placement[b];
     const float gap = collision::held_apart(shape(a), at_a, shape(b), at_b, cache);
-    if (!(gap > margin_of(of.nodes, pair, of.time))) return false;
+    if (!is_beyond_margin(gap, of.nodes, pair, of.time)) return false;
     note_clear(of.pairs, pair.spans() ? 0 : gap, near);
     return true;
 }

@@ -1,5 +1,5 @@
-// Whether two edges decide where polytopes touch, against the axes between all of their features; and which edges
-// separate most.
+// Which faces and edges of polytopes separate most, and whether two edges decide where they touch, against the axes
+// between all of their features.
 #include "collision/narrowphase/polytope_axes.h"
 
 #include <gtest/gtest.h>
@@ -61,6 +61,31 @@ struct Overlap {
     PolytopePair pair;
 };
 
+// The face found separates as much as any of its polytope; of b, where that is more than is asked.
+TEST(BestFace, SeparatesMostOfAllFaces) {
+    constexpr float kAll = -1e30f, kMargin = 1, kRounding = 1e-5f;
+    for (uint32_t seed = 1; seed <= 500; ++seed) {
+        SCOPED_TRACE(seed);
+        const Overlap overlap(seed, -0.05, 0.05);
+        const PolytopePair& pair = overlap.pair;
+        float most_of_a = kAll, most_of_b = kAll;
+        for (const Face& face : pair.a.faces) most_of_a = std::max(most_of_a, apart_along(pair, face.normal));
+        for (const Face& face : pair.b.faces)
+            most_of_b = std::max(most_of_b, apart_along(pair, -(pair.b_in_a.rotation * face.normal)));
+        const Separation of_a = best_face_a(pair, kMargin), of_b = best_face_b(pair, kAll, kMargin);
+        EXPECT_NEAR(of_a.distance, most_of_a, kRounding);
+        EXPECT_NEAR(of_b.distance, most_of_b, kRounding);
+        EXPECT_NEAR(apart_along(pair, pair.normal(of_a.axis)), most_of_a, kRounding);
+        EXPECT_NEAR(apart_along(pair, pair.normal(of_b.axis)), most_of_b, kRounding);
+        for (const float less : {0.0001f, 0.01f}) {
+            const Separation asked = best_face_b(pair, of_b.distance - less, kMargin);
+            EXPECT_EQ(asked.axis, of_b.axis);
+            EXPECT_EQ(asked.distance, of_b.distance);
+        }
+        EXPECT_LE(best_face_b(pair, of_b.distance, kMargin).distance, of_b.distance);
+    }
+}
+
 // No axis separates by ask more than edges that decide; most edges that bear an overlap of up to a centimetre do.
 TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
     constexpr float kAsk = 0.0025f, kRounding = 2e-5f;
@@ -94,7 +119,7 @@ TEST(BestEdges, AreFoundWhereTheySeparateByAsMuchAsIsAsked) {
         SCOPED_TRACE(seed);
         const Overlap overlap(seed, -0.02, 0.03);
         const PolytopePair& pair = overlap.pair;
-        const Separation face_a = best_face_a(pair, 1), face_b = best_face_b(pair, 1);
+        const Separation face_a = best_face_a(pair, 1), face_b = best_face_b(pair, kAll, 1);
         const Vec3f normal = pair.normal(face_a.distance > face_b.distance ? face_a.axis : face_b.axis);
         const Separation most = best_edges(pair, normal, kDeep, kAll);
         if (most.distance == kAll) continue;
