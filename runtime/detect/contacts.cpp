@@ -25,7 +25,7 @@ bool has_parts(const Detection& of, const NearPair& near) {
 }
 
 // Finds what a pair needs on its own, or that it is not to be asked.
-void look_at(const Detection& of, Arrivals& arrivals, NearPair& near) {
+void look_at(const Detection& of, Arrivals& arrivals, Findings& findings, NearPair& near) {
     near.arrives = near.fast = near.reused = false;
     if (near.filtered || stay_clear(of.pairs, near)) return;
     near.fast = may_be_fast(of.pairs, near) && is_fast(of.nodes, of.pairs, near.ends(of.colliders), of.time);
@@ -39,7 +39,7 @@ void look_at(const Detection& of, Arrivals& arrivals, NearPair& near) {
     }
     Pair& pair = of.pairs.list[near.pair];
     pair.answered = false;
-    find_points(of, near.fast, near, pair);
+    findings.find(near.fast, near, pair);
 }
 
 bool seeks_parts(const NearPair& near) { return near.on_surface && !near.reused && !near.filtered; }
@@ -52,14 +52,16 @@ void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
     Pairs& pairs = of.pairs;
     std::atomic<bool> any_fast = false;
     team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        Findings findings(of);
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[i];
             if (const uint32_t soon = i + kSoon < end ? pairs.near[i + kSoon].pair : kNone; soon != kNone)
                 prefetch(pairs.list[soon]);
-            look_at(of, arrivals, near);
+            look_at(of, arrivals, findings, near);
             near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
             if (near.fast) any_fast.store(true, std::memory_order_relaxed);
         }
+        findings.take_over();
     });
     pairs.any_fast = any_fast.load(std::memory_order_relaxed);
     gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,

@@ -202,17 +202,17 @@ void Shaped::find_parts(collision::Parts& parts) const {
     if (std::isfinite(then_)) collision::collide_parts(a_, *at_a_, b_, *at_b_, margin_, parts);
 }
 
-void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
-    const collision::Manifold old = pair.manifold;
-    const Shaped shaped(of, pair, fast, fast ? 0 : lead_of(of, pair));
+Finding::Finding(const Detection& of, bool fast, NearPair& near, Pair& pair)
+    : near_(near), pair_(pair), old_(pair.manifold), shaped_(of, pair, fast, fast ? 0 : lead_of(of, pair)) {
     collision::PairCache cache;
     std::ranges::copy(pair.cache, std::ranges::copy(near.cache, cache.words).out);
-    const float gap = shaped.find_points(cache, pair.manifold);
+    const float gap = shaped_.find_points(cache, pair.manifold);
     keep_cache(cache, near);
     keep_cache(cache, pair.cache);
     note_clear(of.pairs, gap, near);
-    take_over(shaped, of, old, near, pair);
 }
+
+void Finding::take_over(const Detection& of) const { taut::take_over(shaped_, of, old_, near_, pair_); }
 
 bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near) {
     collision::PairCache cache;

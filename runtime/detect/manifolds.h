@@ -90,8 +90,48 @@ private:
     std::atomic<uint32_t> taken_ = 0;
 };
 
-// The manifold of a pair without a surface, with the impulses of the last one.
-void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair);
+// The manifold of a pair without a surface: it is found, and takes over what the last one had.
+class Finding {
+public:
+    Finding(const Detection& of, bool fast, NearPair& near, Pair& pair);
+    Finding(const Finding&) = delete;
+    Finding& operator=(const Finding&) = delete;
+
+    void take_over(const Detection& of) const;
+
+private:
+    NearPair& near_;
+    Pair& pair_;
+    const collision::Manifold old_;
+    const Shaped shaped_;
+};
+inline void find_points(const Detection& of, bool fast, NearPair& near, Pair& pair) {
+    Finding(of, fast, near, pair).take_over(of);
+}
+
+// Many pairs: some are found before they take over, for a processor's first cache holds the code of either but not of
+// both.
+class Findings {
+public:
+    explicit Findings(const Detection& of) : of_(of) {}
+
+    void find(bool fast, NearPair& near, Pair& pair) {
+        if (count_ == kTogether) take_over();
+        list_[count_++].emplace(of_, fast, near, pair);
+    }
+    void take_over() {
+        for (size_t i = 0; i < count_; ++i) list_[i]->take_over(of_);
+        count_ = 0;
+    }
+
+private:
+    static constexpr size_t kTogether = 32;
+
+    const Detection& of_;
+    std::optional<Finding> list_[kTogether];
+    size_t count_ = 0;
+};
+
 // Whether a pair that has no record gets points: they are among the arrivals. If there is no place left, or if they are
 // of a later moment, the cache stays as it was, so that whoever finds the points again starts from the same.
 bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near);
