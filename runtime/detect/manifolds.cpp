@@ -14,10 +14,10 @@ namespace {
 
 // How fast two bodies move against each other, squared.
 double speed_squared(const Nodes& nodes, const PairEnds& pair) {
+    const auto of = [&](uint32_t a, uint32_t b) { return (nodes.motion[a].v - nodes.motion[b].v).squaredNorm(); };
+    if (!pair.spans()) return of(pair.a, pair.b);
     double fastest = 0;
-    for_sides(pair, [&](uint32_t a, uint32_t b) {
-        fastest = std::max(fastest, (nodes.motion[a].v - nodes.motion[b].v).squaredNorm());
-    });
+    for_sides(pair, [&](uint32_t a, uint32_t b) { fastest = std::max(fastest, of(a, b)); });
     return fastest;
 }
 
