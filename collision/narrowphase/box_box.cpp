@@ -251,14 +251,15 @@ float box_box(const Pair& pair, Manifold& out) {
     const Boxes boxes(pair);
     uint32_t& word = pair.cache.words[0];
     const int kept = int(word & 0xff) - 1;
+    const bool touched = word & kTouching && kept >= 0 && kept < kAxes;
     const Preference preference(boxes.size());
-    const Axes axes = find_axes(boxes, pair.margin, word & kTouching ? kept : -1, preference);
+    const Axes axes = find_axes(boxes, pair.margin, touched ? kept : -1, preference);
     if (axes.separating.axis >= 0) {
         word = uint32_t(axes.separating.axis + 1);
         return axes.separating.separation;
     }
-    const bool was_edge = (word & kTouching) && kept >= kFirstEdge;
-    const Vec3f last = word & kTouching ? boxes.normal(kept) : Vec3f(Vec3f::Zero());
+    const bool was_edge = touched && kept >= kFirstEdge;
+    const Vec3f last = touched ? boxes.normal(kept) : Vec3f(Vec3f::Zero());
     Best edge = axes.edge;
     bool on_edge = preference.edge_wins(edge.separation, axes.face.separation, was_edge);
     if (!on_edge && edges_bear(boxes, axes, last, preference)) {
