@@ -196,9 +196,9 @@ bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache&
         if (!is_still && !view.decides(preference.keep)) return false;
         face_points(pair, view, kept.axis, true, margin, out);
     }
-    if (out.count == 0 || is_still) return out.count > 0;
+    if (out.count == 0) return false;
     if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, margin, out);
-    write_touching(kept.axis, pair, cache);
+    if (!is_still) write_touching(kept.axis, pair, cache);
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "collision/manifold.h"
 #include "collision_oracle.h"
 
 namespace taut::collision {
@@ -249,6 +250,32 @@ TEST(CollisionContacts, FlushStackKeepsItsIdsWhileItJitters) {
             EXPECT_EQ(ids.size(), 4u);
         }
     }
+}
+
+// Asked again where they stand, two touch at the same points.
+TEST(CollisionContacts, PairThatStandsKeepsAllItsPoints) {
+    Random random(17);
+    int touching = 0, on_many = 0;
+    for (int run = 0; run < 40000; ++run) {
+        const Shape a = oracle::random_shape(ShapeKind(1 + run % 4), random);
+        const Shape b = oracle::random_shape(ShapeKind(1 + run / 4 % 4), random);
+        const Placement at_a{Vec3::Zero(), random.rotation()};
+        const Placement at_b{random.uniform(0.2, 0.9) * random.unit(), random.rotation()};
+        PairCache cache;
+        Manifold first, again;
+        collide(a, at_a, b, at_b, kMargin, cache, first);
+        if (first.count == 0 || deepest(first) < -0.02f) continue;
+        ++touching;
+        on_many += first.count > 1;
+        collide(a, at_a, b, at_b, kMargin, cache, again);
+        ASSERT_EQ(again.count, first.count) << "seed 17 run " << run;
+        for (int i = 0; i < first.count; ++i) {
+            EXPECT_EQ(again.points[i].feature, first.points[i].feature) << "seed 17 run " << run;
+            EXPECT_LT((again.points[i].position - first.points[i].position).norm(), 1e-5f) << "seed 17 run " << run;
+        }
+    }
+    EXPECT_GT(touching, 1000);
+    EXPECT_GT(on_many, 250);
 }
 
 // The cache is a hint: whatever it holds, the same overlap is found.
