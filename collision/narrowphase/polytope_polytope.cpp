@@ -49,16 +49,17 @@ public:
         const float height = face_.normal.dot(pose_.position) - face_.offset;
         collision::touch_plane(other_.vertices, 0, up_, height, margin, out);
     }
-    // The normal comes out of the reference face. incident: the face last found to lie against it, if known. Returns
-    // how far the two are apart at most, by what was clipped.
-    float clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const;
+    // The normal comes out of the reference face. incident: the face last found to lie against it, if known.
+    void clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Polygon& clipped,
+                    Manifold& out) const;
+    // As most_apart(), by what was clipped.
+    float most_apart(const Polygon& clipped) const;
 
 private:
     // Of the other's corners from its origin, at most [m].
     float reach() const { return other_.centre.norm() + other_.outer_radius; }
     float outside(const Side& side) const { return side.x * x_ + side.y * y_ - side.offset; }
     void lay_out(int incident, Polygon& polygon) const;
-    float most_apart(const Polygon& clipped) const;
     // Whether one of the corners is as deep as any vertex, within tolerance [m].
     bool holds_deepest(const Polygon& polygon, float tolerance) const {
         float least = polygon.points[0].z;
@@ -114,8 +115,8 @@ float FaceView::most_apart(const Polygon& clipped) const {
     return collision::outside(reference_, deepest.x * face_.u + deepest.y * face_.v + height * face_.normal);
 }
 
-float FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Manifold& out) const {
-    Polygon polygon;
+void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Polygon& polygon,
+                          Manifold& out) const {
     if (known) lay_out(incident, polygon);
     if (!known || !holds_deepest(polygon, 0.1f * slack())) {
         incident = uint8_t(face_against(other_, lowest_, up_));
@@ -125,7 +126,6 @@ float FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, f
     out.normal = face_.normal;
     add_points(polygon, {face_.u, face_.v, face_.normal, face_.offset}, face_base(reference_on_b, number_, incident),
                margin, out);
-    return most_apart(polygon);
 }
 
 // Of a face axis; nearest: as in Separation, if known.
@@ -145,27 +145,28 @@ void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out
     out.points[0] = {0.5f * (a.at(nearest.s) + b.at(nearest.t)), separation, edge_feature(axis.i, axis.j)};
 }
 
-// kept: the axis is last frame's, with the face that lay against it; else the axis gets that face. Returns how far the
-// two are apart at most, if that is found on the way.
-float face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Manifold& out) {
+// kept: the axis is last frame's, with the face that lay against it; else the axis gets that face. clipped: what lies
+// over the other face, if that was asked for.
+void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Polygon& clipped,
+                 Manifold& out) {
     const bool on_b = axis.kind == AxisKind::face_b;
-    if (view.is_plane()) {
+    const bool plane = view.is_plane();
+    clipped.count = 0;
+    if (plane)
         view.touch_plane(margin, out);
-        if (!on_b) move_to_a(pair.b_in_a, out);
-        return kUnknown;
-    }
-    const float most = view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, out);
-    if (on_b) move_to_a(pair.b_in_a, out);
-    return most;
+    else
+        view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, clipped, out);
+    if (plane != on_b) move_to_a(pair.b_in_a, out);
 }
 
 // Points of the face next to the edges, where they cross nearly in its plane.
 void add_face_beside(const PolytopePair& pair, Axis edges, float margin, Manifold& out) {
     FaceBeside face = face_beside(pair, edges, out.normal);
     if (face.along < kSamePlane) return;
-    Manifold clipped;
-    face_points(pair, view_of(pair, face.axis), face.axis, false, margin, clipped);
-    add_beside(clipped, out);
+    Polygon clipped;
+    Manifold points;
+    face_points(pair, view_of(pair, face.axis), face.axis, false, margin, clipped, points);
+    add_beside(points, out);
 }
 
 bool same_way(const Vec3f& one, const Vec3f& other) { return one.dot(other) > kSamePlane; }
@@ -194,7 +195,8 @@ bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache&
     } else {
         const FaceView view = view_of(pair, kept.axis);
         if (!is_still && !view.decides(preference.keep)) return false;
-        face_points(pair, view, kept.axis, true, margin, out);
+        Polygon clipped;
+        face_points(pair, view, kept.axis, true, margin, clipped, out);
     }
     if (out.count == 0) return false;
     if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, margin, out);
@@ -231,14 +233,15 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const Preference preference(pair.size());
     const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
     const FaceView view = view_of(pair, face.axis, face.nearest);
-    const float most_apart = face_points(pair, view, face.axis, false, margin, out);
+    Polygon clipped;
+    face_points(pair, view, face.axis, false, margin, clipped, out);
     // Where the faces lie over each other the two are at most so far apart.
     const float most = deepest(out);
     const Vec3f last = kept.touching && pair.valid(kept.axis) ? pair.normal(kept.axis) : Vec3f(Vec3f::Zero());
     const bool other_way = last != Vec3f::Zero() && !same_way(last, pair.normal(face.axis));
     const float ask = preference.ask(was_edge);
-    if (!other_way && (std::max(most, 0.0f) <= face.distance + view.slack() || most_apart <= face.distance + ask ||
-                       view.decides(ask))) {
+    if (!other_way && (std::max(most, 0.0f) <= face.distance + view.slack() ||
+                       view.most_apart(clipped) <= face.distance + ask || view.decides(ask))) {
         write_touching(face.axis, pair, shapes.cache);
         return 0;
     }

@@ -38,6 +38,7 @@ void look_at(const Detection& of, Arrivals& arrivals, Findings& findings, NearPa
         return;
     }
     Pair& pair = of.pairs.list[near.pair];
+    near.changed = near.changed || pair.answered;
     pair.answered = false;
     findings.find(near.fast, near, pair);
 }

@@ -79,23 +79,30 @@ void note_lost(const Detection& of, const PairEnds& pair, float push, const Vec3
     }
 }
 
-// A pair's new manifold: its place and surface, and the impulses that the record before had with the old one. Whether
-// it is kept.
-bool adopt(const Shaped& shaped, const Detection& of, const collision::Manifold& old, const Pair& before, Pair& pair) {
+// What contacts ask of the two shapes.
+void note_shapes(const Pairs& pairs, Pair& pair) {
+    const Pace &a = pairs.pace[pair.collider_a()], &b = pairs.pace[pair.collider_b()];
+    pair.rolls_a = a.rolls;
+    pair.rolls_b = b.rolls;
+    pair.round_a = a.round;
+    pair.round_b = b.round;
+    pair.patch = patch_of(pairs, pair);
+}
+
+// A pair's new manifold: its place, its surface unless that is known, and the impulses that the record before had with
+// the old one. Whether it is kept.
+bool adopt(const Shaped& shaped, const Detection& of, bool known, const collision::Manifold& old, const Pair& before,
+           Pair& pair) {
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
     if (shaped.lead() > 0)
         bring_back(of, shaped.lead(), from_a, pair);
     else
         for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k)
             pair.manifold.points[k].position += from_a;
-    pair.rolls_a = of.pairs.pace[pair.collider_a()].rolls;
-    pair.rolls_b = of.pairs.pace[pair.collider_b()].rolls;
-    pair.round_a = of.pairs.pace[pair.collider_a()].round;
-    pair.round_b = of.pairs.pace[pair.collider_b()].round;
-    pair.patch = patch_of(of.pairs, pair);
+    if (!known) note_shapes(of.pairs, pair);
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
-    meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
+    if (!known) meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
     const float push = before.in_block() ? 0 : push_of(old, before.impulse);
     carry(old, before, pair);
     if (push > 0) note_lost(of, pair, push, old.normal, push_of(pair.manifold, pair.impulse) * pair.manifold.normal);
@@ -109,9 +116,14 @@ void keep_cache(const collision::PairCache& cache, PointsCache& of_points) {
     std::copy_n(cache.words + std::size(cache.words) - of_points.size(), of_points.size(), of_points.begin());
 }
 
+// Whether a record that had this manifold knows its surface, unless the host changed it since. Moving ones turn with
+// their bodies.
+bool is_known(const collision::Manifold& old, const Pair& pair) { return old.count > 0 && !pair.driven; }
+
 // What was found for a pair without a surface, and is in its record.
 void take_over(const Shaped& shaped, const Detection& of, const collision::Manifold& old, NearPair& near, Pair& pair) {
-    near.kept = pair.manifold.count > 0 && adopt(shaped, of, old, pair, pair);
+    const bool known = is_known(old, pair) && !near.changed;
+    near.kept = pair.manifold.count > 0 && adopt(shaped, of, known, old, pair, pair);
     near.changed = false;
     if (pair.manifold.count > 0) return;
     if (old.count > 0 && !pair.in_block()) note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
@@ -264,7 +276,8 @@ void find_parts(const Detection& of, NearPair& near) {
         pair.part = found.part;
         pair.manifold = found.manifold;
         pair.touching = before && before->part == found.part && before->touching;
-        if (!adopt(shaped, of, before ? before->manifold : nothing, before ? *before : pair, pair)) near.kept = false;
+        if (!adopt(shaped, of, false, before ? before->manifold : nothing, before ? *before : pair, pair))
+            near.kept = false;
     }
 }
 
@@ -273,7 +286,7 @@ bool refresh_part(const Shaped& shaped, const Detection& of, Pair& pair) {
     pair.manifold.count = 0;
     for (const collision::PartManifold& found : of.pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
-    return pair.manifold.count > 0 && adopt(shaped, of, old, pair, pair);
+    return pair.manifold.count > 0 && adopt(shaped, of, is_known(old, pair), old, pair, pair);
 }
 
 bool reuse(const Detection& of, const NearPair& near, Pair& pair) {

@@ -68,6 +68,7 @@ struct NearPair {
         cache = {};
         clear = 0;
         kept = false;
+        changed = true;
     }
     PairEnds ends(const Colliders& colliders) const {
         const Collider &a = colliders.record[collider_a()], &b = colliders.record[collider_b()];
