@@ -14,7 +14,7 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
-constexpr uint32_t kFewArriving = 32, kMostArriving = 320;
+constexpr uint32_t kFewArriving = 32, kMostArriving = 1024;
 constexpr uint32_t kSoon = 4;  // pairs that a loop asks the memory for ahead of itself
 
 bool has_parts(const Detection& of, const NearPair& near) {
