@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <compare>
 #include <cstddef>
+#include <cstring>
 #include <iterator>
 #include <memory>
 #include <type_traits>
@@ -83,6 +84,25 @@ public:
         reserve(size);
         for (; size_ < size; ++size_) std::construct_at(&(*this)[size_]);
         size_ = size;
+    }
+    // Moves what is from one index to another to where it begins at `to`; the two places may overlap.
+    void shift(size_t from, size_t end, size_t to) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const auto move = [&](size_t source, size_t target, size_t count) {
+            if (count > 0) std::memmove(&(*this)[target], &(*this)[source], count * sizeof(T));
+        };
+        if (to <= from) {
+            for (size_t count = 0; from < end && to < from; from += count, to += count) {
+                count = std::min({end - from, kSegment - from % kSegment, kSegment - to % kSegment});
+                move(from, to, count);
+            }
+            return;
+        }
+        const auto before = [](size_t index) { return (index - 1) % kSegment + 1; };
+        for (size_t to_end = to + (end - from), count = 0; end > from; end -= count, to_end -= count) {
+            count = std::min({end - from, before(end), before(to_end)});
+            move(end - count, to_end - count, count);
+        }
     }
     template <class Condition>
     void erase_if(Condition&& condition) {

@@ -120,19 +120,24 @@ void drop_departed(const Nodes& nodes, const Colliders& colliders, Pairs& pairs)
         return near && near->touching;
     };
     reserve_more(pairs.ended, static_cast<size_t>(std::ranges::count_if(pairs.departed, touches)));
-    auto next = pairs.departed.begin();
-    size_t kept = 0;
-    for (NearPair& near : pairs.near) {
-        while (next != pairs.departed.end() && *next < near.key) ++next;
-        if (next == pairs.departed.end() || *next != near.key) {
-            NearPair& place = pairs.near[kept++];
-            if (&place != &near) place = near;
-            continue;
-        }
+    NearPairs& list = pairs.near;
+    size_t kept = 0, from = 0;
+    const auto keep_before = [&](size_t end) {
+        list.shift(from, end, kept);
+        kept += end - from;
+        from = end;
+    };
+    for (const uint64_t key : pairs.departed) {
+        const size_t place = place_of(list, from, list.size(), key);
+        if (place == list.size() || list[place].key != key) continue;
+        keep_before(place);
+        NearPair& near = list[place];
         if (near.touching) report_end(pairs, nodes, colliders, near);
         give_slots(pairs, near);
+        ++from;
     }
-    pairs.near.resize(kept);
+    keep_before(list.size());
+    list.resize(kept);
 }
 
 // Of a body's centre of mass; kinematic bodies move at the end of the frame.

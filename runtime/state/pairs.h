@@ -279,17 +279,24 @@ void give_slots(Pairs& pairs, NearPair& near);
 // another thread writes.
 void order_slots(Pairs& pairs);
 
+// Of a part of a list that is sorted by key, where the keys begin that are not less than this one.
+inline size_t place_of(const NearPairs& list, size_t from, size_t end, uint64_t key) {
+    const auto at = [&](size_t index) { return list.begin() + static_cast<ptrdiff_t>(index); };
+    return static_cast<size_t>(std::ranges::lower_bound(at(from), at(end), key, {}, &NearPair::key) - list.begin());
+}
+
 // Merges `count` records into a list, both sorted by key, in place, from the last to the first: last_key() is the key
 // of the last that is left, take() gives it away. Room was reserved before.
 template <class LastKey, class Take>
 void merge_pairs(NearPairs& list, size_t count, LastKey&& last_key, Take&& take) {
-    size_t from = list.size();
-    list.resize(from + count);
-    for (size_t to = list.size(); to > from;) {
-        if (from > 0 && list[from - 1].key > last_key())
-            list[--to] = list[--from];
-        else
-            list[--to] = take();
+    size_t end = list.size();
+    list.resize(end + count);
+    for (size_t to = list.size(); to > end;) {
+        const size_t place = place_of(list, 0, end, last_key());
+        to -= end - place;
+        list.shift(place, end, to);
+        list[--to] = take();
+        end = place;
     }
 }
 

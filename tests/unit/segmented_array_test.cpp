@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 namespace {
 
@@ -58,6 +59,22 @@ TEST(SegmentedArray, AreSearchedAndThinnedOutLikeAnArray) {
     list.resize(12);
     EXPECT_EQ(list[9], 54);
     EXPECT_EQ(list[11], 0);
+}
+
+TEST(SegmentedArray, ShiftWhatTheyHoldAsMemmoveDoes) {
+    Memory memory{taut_hooks{}};
+    constexpr size_t kSize = 100;
+    SegmentedArray<int> list(memory);
+    list.resize(kSize);
+    for (size_t from = 0; from <= kSize; from += 7)
+        for (size_t end = from; end <= kSize; ++end)
+            for (size_t to = 0; to + (end - from) <= kSize; to += 3) {
+                int expected[kSize];
+                for (size_t i = 0; i < kSize; ++i) expected[i] = list[i] = static_cast<int>(i);
+                std::memmove(expected + to, expected + from, (end - from) * sizeof(int));
+                list.shift(from, end, to);
+                ASSERT_TRUE(std::ranges::equal(list, expected)) << from << " to " << end << ", to " << to;
+            }
 }
 
 // A host that gives so many pieces, then none.
