@@ -68,6 +68,7 @@ float held_apart(const Shape& a, const Placement& at_a, const Shape& b, const Pl
 
 float collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
               PairCache& cache, Manifold& out) {
+    const Wanted wanted(margin, out);
     out.count = 0;
     if (has_parts(a) || has_parts(b)) return 0;
     const Entry& entry = entry_of(a, b);
@@ -75,11 +76,11 @@ float collide(const Shape& a, const Placement& at_a, const Shape& b, const Place
     const float held = entry.apart({a, b, at_a, at_b, apart}, cache);
     if (held > margin) return held;
     if (!entry.swapped) {
-        const float gap = entry.kernel({a, b, at_a, at_b, relative(at_a, at_b, apart), margin, cache}, out);
+        const float gap = entry.kernel({a, b, at_a, at_b, relative(at_a, at_b, apart), wanted, cache}, out);
         if (out.count > 0) to_world(at_a.rotation, out);
         return gap;
     }
-    const float gap = entry.kernel({b, a, at_b, at_a, relative(at_b, at_a, -apart), margin, cache}, out);
+    const float gap = entry.kernel({b, a, at_b, at_a, relative(at_b, at_a, -apart), wanted, cache}, out);
     if (out.count == 0) return gap;
     to_world(at_b.rotation, out);
     out.normal = -out.normal;

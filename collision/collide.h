@@ -187,7 +187,8 @@ struct PairCache {
 // Contact points of two shapes that are closer than margin [m] (speculative points have positive separation).
 // At most four points, chosen for area and depth. The kinds may come in any order; two planes never touch. A plane
 // is best b: positions are relative to a, and a plane's own origin may be far off.
-// Of out, normal and points beyond count are written only where count > 0.
+// out is on entry what was found the last time (count 0: nothing): of more than four points those tend to stay that
+// were. Of it, normal and points beyond count are written only where count > 0.
 // Returns, where there are no points, how far apart the two are at least [m], margin or more; 0 where that is not
 // known.
 float collide(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,

@@ -21,13 +21,54 @@ struct Chosen {
 // Diagonals keep the widest support for a box on a box; the factor breaks the ties of regular polygons.
 constexpr float kDiagonals[4][2] = {{-1, -1.02f}, {1, -1.02f}, {-1, 1.02f}, {1, 1.02f}};
 
+// How far points reach along a diagonal that goes down by a slope.
+struct Diagonal {
+    float x, y, slope;
+
+    float reach(const ClipPoint& p) const { return x * p.x + y * p.y - slope * p.z; }
+};
+
+float lowest(const ClipPoint* points, const Chosen& chosen) {
+    float least = 1e30f;
+    for (int i = 0; i < chosen.count; ++i) least = std::min(least, points[chosen.index[i]].z);
+    return least;
+}
+
+int lowest_of(const ClipPoint* points, int count) {
+    const auto lower = [](const ClipPoint& one, const ClipPoint& other) { return one.z < other.z; };
+    return int(std::min_element(points, points + count, lower) - points);
+}
+
+// The four that the contact had; none unless all are there, none is clearly deeper, and they reach along each diagonal
+// as far as any, but for a quarter of the way from the one that reaches least.
+Chosen keep(const ClipPoint* points, int count, uint32_t base, const Wanted& wanted, float slope) {
+    constexpr float kNearly = 0.25f;
+    Chosen kept;
+    if (wanted.had < 4) return kept;
+    for (int i = 0; i < count; ++i)
+        if (std::ranges::find(wanted.features, base | points[i].id) != std::end(wanted.features)) kept.add(i);
+    if (kept.count < 4 || points[lowest_of(points, count)].z < lowest(points, kept) - kClearlyDeeper) return {};
+    for (const auto& [dx, dy] : kDiagonals) {
+        const Diagonal diagonal = {dx, dy, slope};
+        float least = 1e30f, most = -1e30f, own = -1e30f;
+        for (int i = 0; i < count; ++i) {
+            least = std::min(least, diagonal.reach(points[i]));
+            most = std::max(most, diagonal.reach(points[i]));
+        }
+        for (const int i : kept.index) own = std::max(own, diagonal.reach(points[i]));
+        if (own < most - kNearly * (most - least)) return {};
+    }
+    return kept;
+}
+
 Chosen choose(const ClipPoint* points, int count, float slope = 0) {
     Chosen chosen;
     for (const auto& [dx, dy] : kDiagonals) {
+        const Diagonal diagonal = {dx, dy, slope};
         int best = 0;
-        float most = dx * points[0].x + dy * points[0].y - slope * points[0].z;
+        float most = diagonal.reach(points[0]);
         for (int i = 1; i < count; ++i) {
-            const float reach = dx * points[i].x + dy * points[i].y - slope * points[i].z;
+            const float reach = diagonal.reach(points[i]);
             if (reach > most) {
                 most = reach;
                 best = i;
@@ -35,28 +76,23 @@ Chosen choose(const ClipPoint* points, int count, float slope = 0) {
         }
         chosen.add(best);
     }
-    int lowest = 0;
-    for (int i = 1; i < count; ++i) {
-        if (points[i].z < points[lowest].z) lowest = i;
-    }
-    float chosen_lowest = 1e30f;
-    for (int i = 0; i < chosen.count; ++i) chosen_lowest = std::min(chosen_lowest, points[chosen.index[i]].z);
-    if (points[lowest].z > chosen_lowest - kClearlyDeeper) return chosen;
+    const int deepest = lowest_of(points, count);
+    if (points[deepest].z > lowest(points, chosen) - kClearlyDeeper) return chosen;
     if (chosen.count < 4) {
-        chosen.add(lowest);
+        chosen.add(deepest);
         return chosen;
     }
     int nearest = 0;
     float least = 1e30f;
     for (int i = 0; i < 4; ++i) {
-        const float dx = points[chosen.index[i]].x - points[lowest].x;
-        const float dy = points[chosen.index[i]].y - points[lowest].y;
+        const float dx = points[chosen.index[i]].x - points[deepest].x;
+        const float dy = points[chosen.index[i]].y - points[deepest].y;
         if (dx * dx + dy * dy < least) {
             least = dx * dx + dy * dy;
             nearest = i;
         }
     }
-    chosen.index[nearest] = lowest;
+    chosen.index[nearest] = deepest;
     return chosen;
 }
 
@@ -125,15 +161,17 @@ void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
     }
 }
 
-void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out,
+void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, const Wanted& wanted, Manifold& out,
                 float slope) {
     ClipPoint low[kMaxClip];
     int count = 0;
     for (int i = 0; i < polygon.count; ++i) {
-        if (polygon.points[i].z <= margin) low[count++] = polygon.points[i];
+        if (polygon.points[i].z <= wanted.margin) low[count++] = polygon.points[i];
     }
     if (count == 0) return;
-    Chosen chosen = count > 4 ? choose(low, count, slope) : Chosen{count, {0, 1, 2, 3}};
+    Chosen chosen = {count, {0, 1, 2, 3}};
+    if (count > 4) chosen = keep(low, count, base, wanted, slope);
+    if (chosen.count == 0) chosen = choose(low, count, slope);
     if (chosen.count == 4) break_circle(low, chosen.index);
     for (int i = 0; i < chosen.count && out.count < 4; ++i) {
         const ClipPoint& p = low[chosen.index[i]];
@@ -146,7 +184,7 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
 // of a thin plate would that of its bottom: add_points' diagonals are sqrt 2 long.
 constexpr float kSlope = 2;
 
-float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, float margin,
+float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, const Wanted& wanted,
                   Manifold& out) {
     // Tangents from the shape's own axes turn with it, so that the same corners are chosen every frame.
     int k = 0;
@@ -164,11 +202,11 @@ float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up,
         const Vec3f& p = corners[i];
         const float z = up.dot(p) + height - radius;
         least = std::min(least, z);
-        if (z > margin) continue;
+        if (z > wanted.margin) continue;
         polygon.points[polygon.count++] = {plane.u.dot(p), plane.v.dot(p), z, vertex_feature(int(i))};
     }
     if (polygon.count == 0) return least;
-    add_points(polygon, plane, 0, margin, out, kSlope);
+    add_points(polygon, plane, 0, wanted, out, kSlope);
     out.normal = -up;
     return 0;
 }

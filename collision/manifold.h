@@ -37,15 +37,29 @@ void clip(Polygon& polygon, std::span<const Side> sides, float slack);
 // The slack for a reference face of this size [m].
 inline float flush_slack(float size) { return std::min(1e-3f, 0.01f * size); }
 
-// Appends the polygon's points lower than margin, at most four: the supports of the plane's four diagonals, and
-// the deepest where it is clearly deeper. Positions are midway between plane and point; ids name base and the two
-// lines that meet. The diagonals go down by slope, where the points are not those of one face.
-void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, float margin, Manifold& out,
+// Which points a contact gets.
+struct Wanted {
+    float margin;  // those that are closer [m]
+    // If there are more than four: those that it had, unless others bear it better by far; see add_points().
+    int had = 0;
+    uint32_t features[4];
+
+    Wanted(float closer) : margin(closer) {}
+    Wanted(float closer, const Manifold& before) : margin(closer), had(before.count) {
+        for (int i = 0; i < had; ++i) features[i] = before.points[i].feature;
+    }
+};
+
+// Appends the polygon's points that are wanted, at most four: the supports of the plane's four diagonals, and the
+// deepest where it is clearly deeper. Four that the contact had stay, while they reach nearly as far and as deep: with
+// each other choice the body would tilt another way, and back again. Positions are midway between plane and point; ids
+// name base and the two lines that meet. The diagonals go down by slope, where the points are not those of one face.
+void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t base, const Wanted& wanted, Manifold& out,
                 float slope = 0);
 
 // Corners of a shape that touch a plane, up . p = -height in the shape's frame: as add_points, of those lower than
-// margin less the radius that they are grown by, with the normal down. Returns how high the lowest is [m].
-float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, float margin,
+// the margin less the radius that they are grown by, with the normal down. Returns how high the lowest is [m].
+float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, const Wanted& wanted,
                   Manifold& out);
 
 // Keeps the four points that add_points would take of them, in no particular order.

@@ -167,14 +167,14 @@ bool is_plane(const FaceView& view, int r) {
 }
 
 // Then any of them may touch it, not those of one face alone. In the incident box's frame, normal to the face.
-void touch_plane(const FaceView& view, int r, float margin, Manifold& out) {
+void touch_plane(const FaceView& view, int r, const Wanted& wanted, Manifold& out) {
     const Vec3f up = view.axes.row(r).transpose() * (view.centre[r] < 0 ? -1.0f : 1.0f);
-    collision::touch_plane(box_corners(view.incident), 0, up, std::fabs(view.centre[r]) - view.reference[r], margin,
+    collision::touch_plane(box_corners(view.incident), 0, up, std::fabs(view.centre[r]) - view.reference[r], wanted,
                            out);
 }
 
 // Clips the incident face that looks most against the reference face.
-void face_contact(const FaceView& view, int r, bool reference_on_b, float margin, Manifold& out) {
+void face_contact(const FaceView& view, int r, bool reference_on_b, const Wanted& wanted, Manifold& out) {
     const int u = next(r);
     const int v = next(u);
     const float sign = view.centre[r] < 0 ? -1.0f : 1.0f;
@@ -199,7 +199,7 @@ void face_contact(const FaceView& view, int r, bool reference_on_b, float margin
     clip(polygon, sides, flush_slack(std::min(hu, hv)));
     const ReferencePlane plane = {Vec3f::Unit(u), Vec3f::Unit(v), sign * Vec3f::Unit(r), view.reference[r]};
     out.normal = plane.normal;
-    add_points(polygon, plane, face_base(reference_on_b, 2 * r + (sign > 0), 2 * k + (against > 0)), margin, out);
+    add_points(polygon, plane, face_base(reference_on_b, 2 * r + (sign > 0), 2 * k + (against > 0)), wanted, out);
 }
 
 void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out) {
@@ -209,9 +209,9 @@ void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out)
     const int r = axis % 3;
     const bool plane = is_plane(view, r);
     if (plane)
-        touch_plane(view, r, pair.margin, out);
+        touch_plane(view, r, pair.wanted, out);
     else
-        face_contact(view, r, on_b, pair.margin, out);
+        face_contact(view, r, on_b, pair.wanted, out);
     if (plane != on_b) move_to_a(pair.b_in_a, out);
 }
 
@@ -253,7 +253,7 @@ float box_box(const Pair& pair, Manifold& out) {
     const int kept = int(word & 0xff) - 1;
     const bool touched = word & kTouching && kept >= 0 && kept < kAxes;
     const Preference preference(boxes.size());
-    const Axes axes = find_axes(boxes, pair.margin, touched ? kept : -1, preference);
+    const Axes axes = find_axes(boxes, pair.wanted.margin, touched ? kept : -1, preference);
     if (axes.separating.axis >= 0) {
         word = uint32_t(axes.separating.axis + 1);
         return axes.separating.separation;

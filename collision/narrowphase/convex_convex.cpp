@@ -49,14 +49,15 @@ void write(const Vec3& normal, Bearer bearer, PairCache& cache) {
 struct Solids {
     Solid a, b;
     Pose b_in_a, a_in_b;
-    float margin, size;
+    const Wanted& wanted;
+    float size;
 
     explicit Solids(const Pair& pair)
         : a(pair.a),
           b(pair.b),
           b_in_a(pair.b_in_a),
           a_in_b{b_in_a.rotation.transpose(), b_in_a.rotation.transpose() * -b_in_a.position},
-          margin(pair.margin),
+          wanted(pair.wanted),
           size(std::min(inner_radius(pair.a), inner_radius(pair.b))) {}
 };
 
@@ -89,10 +90,10 @@ void clip_face(const Solids& solids, const Bearing& bearing, Manifold& out) {
     const float slack = flush_slack(solids.size);
     const uint32_t base = face_base(on_b, bearing.face, 0);
     if (on_b) {
-        face_contact(solids.b.face(bearing.face), solids.a, solids.a_in_b, base, slack, solids.margin, out);
+        face_contact(solids.b.face(bearing.face), solids.a, solids.a_in_b, base, slack, solids.wanted, out);
         move_to_a(solids.b_in_a, out);
     } else {
-        face_contact(solids.a.face(bearing.face), solids.b, solids.b_in_a, base, slack, solids.margin, out);
+        face_contact(solids.a.face(bearing.face), solids.b, solids.b_in_a, base, slack, solids.wanted, out);
     }
 }
 
@@ -132,7 +133,7 @@ void add_line(const Solids& solids, Manifold& out) {
         const Vec3f p = stretch.at(s);
         const Vec3f q = b.at(b.nearest(p));
         const float separation = out.normal.dot(q - p);
-        if (separation <= solids.margin) out.points[out.count++] = {0.5f * (p + q), separation, feature};
+        if (separation <= solids.wanted.margin) out.points[out.count++] = {0.5f * (p + q), separation, feature};
         ++feature;
     }
 }
@@ -152,8 +153,8 @@ void round_contact(const Solids& solids, const Push& push, double radius_a, Mani
 float convex_convex(const Pair& pair, Manifold& out) {
     const Solids solids(pair);
     const Kept kept = read(pair.cache);
-    const Push push = least_push(solids.a, solids.b, pair, kept.normal, double(pair.margin));
-    if (push.separation > double(pair.margin)) {
+    const Push push = least_push(solids.a, solids.b, pair, kept.normal, double(pair.wanted.margin));
+    if (push.separation > double(pair.wanted.margin)) {
         write(push.normal, kNothing, pair.cache);
         return float(push.separation);
     }
@@ -185,7 +186,7 @@ float convex_plane(const Pair& pair, Manifold& out) {
     plane.u = plane.normal.unitOrthogonal();
     plane.v = plane.normal.cross(plane.u);
     plane.offset = -height;
-    face_contact(plane, Solid(pair.a), {Mat3f::Identity(), Vec3f::Zero()}, 0, 0, pair.margin, out);
+    face_contact(plane, Solid(pair.a), {Mat3f::Identity(), Vec3f::Zero()}, 0, 0, pair.wanted, out);
     out.normal = -plane.normal;
     return 0;
 }

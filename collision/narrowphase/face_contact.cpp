@@ -240,8 +240,8 @@ void disc_on_disc(const FlatFace& face, const Disc& disc, uint32_t deepest, floa
 
 }  // namespace
 
-void face_contact(const FlatFace& face, const Solid& other, const Pose& pose, uint32_t base, float slack, float margin,
-                  Manifold& out) {
+void face_contact(const FlatFace& face, const Solid& other, const Pose& pose, uint32_t base, float slack,
+                  const Wanted& wanted, Manifold& out) {
     const Feature feature = other.feature_along(pose.rotation.transpose() * -face.normal);
     Polygon points;
     if (feature.face < 0) {
@@ -263,7 +263,7 @@ void face_contact(const FlatFace& face, const Solid& other, const Pose& pose, ui
         }
     }
     out.normal = face.normal;
-    add_points(points, {face.u, face.v, face.normal, face.offset}, base, margin, out);
+    add_points(points, {face.u, face.v, face.normal, face.offset}, base, wanted, out);
 }
 
 }  // namespace taut::collision

@@ -19,7 +19,7 @@ struct Pair {
     const Placement& at_a;
     const Placement& at_b;
     Pose b_in_a;  // takes points of b's frame to a's
-    float margin;
+    Wanted wanted;
     PairCache& cache;
 };
 

@@ -47,7 +47,7 @@ float core_plane(const Pair& pair, Manifold& out) {
 
     CoreStore store;
     const Core core = kCores[size_t(pair.a.kind)](pair.a, store);
-    return touch_plane(core.points, core.radius, up_in_a, height, pair.margin, out);
+    return touch_plane(core.points, core.radius, up_in_a, height, pair.wanted, out);
 }
 
 }  // namespace taut::collision

@@ -45,12 +45,12 @@ public:
         return true;
     }
     // Then any of them may touch it, not those of one face alone. In the other's frame, with the normal to the face.
-    void touch_plane(float margin, Manifold& out) const {
+    void touch_plane(const Wanted& wanted, Manifold& out) const {
         const float height = face_.normal.dot(pose_.position) - face_.offset;
-        collision::touch_plane(other_.vertices, 0, up_, height, margin, out);
+        collision::touch_plane(other_.vertices, 0, up_, height, wanted, out);
     }
     // The normal comes out of the reference face. incident: the face last found to lie against it, if known.
-    void clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Polygon& clipped,
+    void clip_faces(uint8_t& incident, bool known, bool reference_on_b, const Wanted& wanted, Polygon& clipped,
                     Manifold& out) const;
     // As most_apart(), by what was clipped.
     float most_apart(const Polygon& clipped) const;
@@ -115,7 +115,7 @@ float FaceView::most_apart(const Polygon& clipped) const {
     return collision::outside(reference_, deepest.x * face_.u + deepest.y * face_.v + height * face_.normal);
 }
 
-void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, float margin, Polygon& polygon,
+void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, const Wanted& wanted, Polygon& polygon,
                           Manifold& out) const {
     if (known) lay_out(incident, polygon);
     if (!known || !holds_deepest(polygon, 0.1f * slack())) {
@@ -125,7 +125,7 @@ void FaceView::clip_faces(uint8_t& incident, bool known, bool reference_on_b, fl
     clip(polygon, reference_.sides_of(face_), slack());
     out.normal = face_.normal;
     add_points(polygon, {face_.u, face_.v, face_.normal, face_.offset}, face_base(reference_on_b, number_, incident),
-               margin, out);
+               wanted, out);
 }
 
 // Of a face axis; nearest: as in Separation, if known.
@@ -147,25 +147,25 @@ void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out
 
 // kept: the axis is last frame's, with the face that lay against it; else the axis gets that face. clipped: what lies
 // over the other face, if that was asked for.
-void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, float margin, Polygon& clipped,
-                 Manifold& out) {
+void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, bool kept, const Wanted& wanted,
+                 Polygon& clipped, Manifold& out) {
     const bool on_b = axis.kind == AxisKind::face_b;
     const bool plane = view.is_plane();
     clipped.count = 0;
     if (plane)
-        view.touch_plane(margin, out);
+        view.touch_plane(wanted, out);
     else
-        view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, margin, clipped, out);
+        view.clip_faces(on_b ? axis.i : axis.j, kept, on_b, wanted, clipped, out);
     if (plane != on_b) move_to_a(pair.b_in_a, out);
 }
 
 // Points of the face next to the edges, where they cross nearly in its plane.
-void add_face_beside(const PolytopePair& pair, Axis edges, float margin, Manifold& out) {
+void add_face_beside(const PolytopePair& pair, Axis edges, const Wanted& wanted, Manifold& out) {
     FaceBeside face = face_beside(pair, edges, out.normal);
     if (face.along < kSamePlane) return;
     Polygon clipped;
     Manifold points;
-    face_points(pair, view_of(pair, face.axis), face.axis, false, margin, clipped, points);
+    face_points(pair, view_of(pair, face.axis), face.axis, false, wanted, clipped, points);
     add_beside(points, out);
 }
 
@@ -185,21 +185,21 @@ bool edges_bear(const PolytopePair& pair, const Separation& edges, const Separat
 
 // Whether last frame's axis still gives the contact, as the pair has hardly moved or no other axis separates by clearly
 // more.
-bool keep_contact(const PolytopePair& pair, Kept& kept, float margin, PairCache& cache, Manifold& out) {
+bool keep_contact(const PolytopePair& pair, Kept& kept, const Wanted& wanted, PairCache& cache, Manifold& out) {
     if (!kept.touching || !pair.valid(kept.axis)) return false;
     const bool is_still = still(kept, pair);
     const Preference preference(pair.size());
     if (kept.axis.kind == AxisKind::edges) {
         if (!is_still && !edges_decide(pair, kept.axis, preference.slop)) return false;
-        edge_point(pair, kept.axis, margin, out);
+        edge_point(pair, kept.axis, wanted.margin, out);
     } else {
         const FaceView view = view_of(pair, kept.axis);
         if (!is_still && !view.decides(preference.keep)) return false;
         Polygon clipped;
-        face_points(pair, view, kept.axis, true, margin, clipped, out);
+        face_points(pair, view, kept.axis, true, wanted, clipped, out);
     }
     if (out.count == 0) return false;
-    if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, margin, out);
+    if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, wanted, out);
     if (!is_still) write_touching(kept.axis, pair, cache);
     return true;
 }
@@ -221,9 +221,9 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const PolytopeOf storage_a(shapes.a);
     const PolytopeOf storage_b(shapes.b);
     const PolytopePair pair(storage_a.view(), storage_b.view(), shapes.b_in_a);
-    const float margin = shapes.margin;
+    const float margin = shapes.wanted.margin;
     Kept kept = read(shapes.cache);
-    if (keep_contact(pair, kept, margin, shapes.cache, out)) return 0;
+    if (keep_contact(pair, kept, shapes.wanted, shapes.cache, out)) return 0;
 
     Separation face = best_face(pair, kept, margin);
     if (face.distance > margin) {
@@ -234,7 +234,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const bool was_edge = kept.touching && kept.axis.kind == AxisKind::edges;
     const FaceView view = view_of(pair, face.axis, face.nearest);
     Polygon clipped;
-    face_points(pair, view, face.axis, false, margin, clipped, out);
+    face_points(pair, view, face.axis, false, shapes.wanted, clipped, out);
     // Where the faces lie over each other the two are at most so far apart.
     const float most = deepest(out);
     const Vec3f last = kept.touching && pair.valid(kept.axis) ? pair.normal(kept.axis) : Vec3f(Vec3f::Zero());
@@ -261,7 +261,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
         out.count = 0;
         face.axis = edges.axis;
         edge_point(pair, edges.axis, margin, out);
-        add_face_beside(pair, edges.axis, margin, out);
+        add_face_beside(pair, edges.axis, shapes.wanted, out);
     }
     write_touching(face.axis, pair, shapes.cache);
     return 0;

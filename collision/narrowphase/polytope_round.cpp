@@ -188,7 +188,7 @@ float polytope_round(const Pair& pair, Manifold& out) {
 
     // Word 0 of the cache: the face that separated most.
     Faces faces;
-    const bool near = find_faces(polytope, round.axis, round.radius + pair.margin, pair.cache.words[0], faces);
+    const bool near = find_faces(polytope, round.axis, round.radius + pair.wanted.margin, pair.cache.words[0], faces);
     pair.cache.words[0] = uint32_t(faces.best);
     if (!near) return faces.separation - round.radius;
 
@@ -198,9 +198,9 @@ float polytope_round(const Pair& pair, Manifold& out) {
     if (faces.inside || nearest.separation < 1e-4f * round.radius) {
         nearest = nearest_inside(polytope, round.axis, faces);
     }
-    if (nearest.separation - round.radius > pair.margin) return nearest.separation - round.radius;
+    if (nearest.separation - round.radius > pair.wanted.margin) return nearest.separation - round.radius;
     const bool lies =
-        round.axis.step.squaredNorm() > 0 && lie_on_face(polytope, round, faces, nearest, pair.margin, out);
+        round.axis.step.squaredNorm() > 0 && lie_on_face(polytope, round, faces, nearest, pair.wanted.margin, out);
     if (lies) return 0;
     out.normal = nearest.normal;
     add_point(round, nearest.t, nearest.separation, kAlone, out);

@@ -78,7 +78,7 @@ float round_round(const Pair& pair, Manifold& out) {
                   {pair.b_in_a * axis.from, pair.b_in_a.rotation * axis.step},
                   round_radius(pair.a),
                   round_radius(pair.b)},
-                 pair.margin, out);
+                 pair.wanted.margin, out);
 }
 
 }  // namespace taut::collision

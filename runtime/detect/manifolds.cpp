@@ -203,8 +203,10 @@ void Shaped::place_after(double time) {
 }
 
 float Shaped::find_points(collision::PairCache& cache, collision::Manifold& manifold) const {
-    manifold.count = 0;
-    if (!std::isfinite(then_)) return 0;
+    if (!std::isfinite(then_)) {
+        manifold.count = 0;
+        return 0;
+    }
     const float gap = collision::collide(a_, *at_a_, b_, *at_b_, margin_, cache, manifold);
     return can_be_kept() ? gap : 0;
 }

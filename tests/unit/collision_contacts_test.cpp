@@ -252,6 +252,65 @@ TEST(CollisionContacts, FlushStackKeepsItsIdsWhileItJitters) {
     }
 }
 
+// Of two that lie crosswise on each other, lean and rock by a millimetre.
+TEST(CollisionContacts, ContactOfManyPointsKeepsThoseThatItHad) {
+    Random random(19);
+    int changes = 0, changes_without = 0;
+    for (int run = 0; run < 300; ++run) {
+        const Shape shapes[3] = {oracle::cylinder(0.28f, 0.15f), oracle::box(0.2f, 0.15f, 0.25f), cube_hull(0.15f)};
+        const Shape &below = shapes[run % 3], &above = shapes[run / 3 % 3];
+        const Vec3 beside(random.uniform(-0.15, 0.15), 0.299, random.uniform(-0.15, 0.15));
+        const double turn = random.uniform(0, 3);
+        const Vec3 leaning = 8e-3 * random.unit();
+        PairCache cache, cache_without;
+        Manifold had;
+        std::set<uint32_t> last, last_without;
+        for (int step = 0; step < 20; ++step) {
+            const Mat3f tilt = turned(leaning + 2e-3 * random.unit());
+            const Placement at_b{beside + 5e-4 * random.unit(), tilt * turned(Vec3(0, turn, 0))};
+            Manifold without;
+            collide(below, {Vec3::Zero(), kUpright}, above, at_b, kMargin, cache, had);
+            collide(below, {Vec3::Zero(), kUpright}, above, at_b, kMargin, cache_without, without);
+            ASSERT_GT(had.count, 0);
+            EXPECT_LT(deepest(had), deepest(without) + 1.01e-3f) << "seed 19 run " << run;
+            const auto features = [](const Manifold& m) {
+                std::set<uint32_t> ids;
+                for (int i = 0; i < m.count; ++i) ids.insert(m.points[i].feature);
+                return ids;
+            };
+            const std::set<uint32_t> now = features(had), now_without = features(without);
+            changes += step > 0 && now != last;
+            changes_without += step > 0 && now_without != last_without;
+            last = now;
+            last_without = now_without;
+        }
+    }
+    std::printf("sets of points changed %d times, without memory %d times\n", changes, changes_without);
+    EXPECT_LT(2 * changes, changes_without);
+}
+
+// Where the patch moves on, the points follow it: none that they had keeps a contact narrow.
+TEST(CollisionContacts, PointsFollowAPatchThatMoves) {
+    const Shape plank = oracle::box(1, 0.1f, 0.3f), box = oracle::box(0.2f, 0.1f, 0.25f);
+    PairCache cache;
+    Manifold had;
+    for (int step = 0; step <= 400; ++step) {
+        const Vec3 at(-1.1 + 2.2 * step / 400, 0.1995, 0.1);
+        Manifold without;
+        PairCache fresh;
+        const Placement at_b{at, turned(Vec3(0, 0.5, 0))};
+        collide(plank, {Vec3::Zero(), kUpright}, box, at_b, kMargin, cache, had);
+        collide(plank, {Vec3::Zero(), kUpright}, box, at_b, kMargin, fresh, without);
+        const auto width = [](const Manifold& m) {
+            float most = 0;
+            for (int i = 0; i < m.count; ++i)
+                for (int j = 0; j < i; ++j) most = std::max(most, (m.points[i].position - m.points[j].position).norm());
+            return most;
+        };
+        EXPECT_GT(width(had), 0.75f * width(without)) << "step " << step;
+    }
+}
+
 // Asked again where they stand, two touch at the same points.
 TEST(CollisionContacts, PairThatStandsKeepsAllItsPoints) {
     Random random(17);
