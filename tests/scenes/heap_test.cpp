@@ -21,7 +21,7 @@ double mean_overlap(const RunningScene& run) {
     return overlapping > 0 ? sum / overlapping : 0;
 }
 
-// Nine of ten starts within 25 s (43 of 48); in the others a body shifts or sways for longer.
+// Nineteen of twenty starts within 25 s (92 of 96); in the others a body shifts for longer.
 TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
     int at_rest = 0;
     for (uint64_t seed = 0; seed < 8; ++seed) {
@@ -48,7 +48,7 @@ TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
         std::printf("heap, seed %d: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n",
                     static_cast<int>(seed), 1e3 * overlap, mean, fastest);
     }
-    EXPECT_GE(at_rest, 5);
+    EXPECT_GE(at_rest, 7);
 }
 
 // Their joints are solved by load: at rest nothing in the heap needs a direct solve, and the joints stay closed.

@@ -135,11 +135,11 @@ TEST(FallsAsleep, Piles) {
     for (const char* name : {"grains300_r1", "heavy_on_light_r1000"}) EXPECT_TRUE(falls_asleep(name, 0)) << name;
 }
 
-// Seven of eight do: 82 of 96 starts.
+// Nearly all do: 95 of 96 starts.
 TEST(FallsAsleep, HeapsOfMixedShapes) {
     int asleep = 0;
     for (uint64_t seed = 1; seed <= 16; ++seed) asleep += falls_asleep("shapes200", seed);
-    EXPECT_GE(asleep, 12);
+    EXPECT_GE(asleep, 15);
 }
 
 // Asleep nothing moves by a bit, nothing is told, velocities are zero, and queries find what is there.
