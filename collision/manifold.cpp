@@ -45,7 +45,7 @@ Chosen keep(const ClipPoint* points, int count, uint32_t base, const Wanted& wan
     constexpr float kNearly = 0.25f;
     Chosen kept;
     if (wanted.had < 4) return kept;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count && kept.count < 4; ++i)
         if (std::ranges::find(wanted.features, base | points[i].id) != std::end(wanted.features)) kept.add(i);
     if (kept.count < 4 || points[lowest_of(points, count)].z < lowest(points, kept) - kClearlyDeeper) return {};
     for (const auto& [dx, dy] : kDiagonals) {
