@@ -76,6 +76,23 @@ TEST(ContactReuse, AChangedMaterialTakesEffectAtRest) {
     EXPECT_NEAR(norm(position(box) - rest), 0.5 * kG * std::sin(slope), 0.05);
 }
 
+// v = v0 - mu g t, by the friction that is now.
+TEST(ContactReuse, AChangedMaterialTakesEffectInMotion) {
+    World world;
+    const taut_body ground = world.add_ground(1);
+    const taut_body box = world.add(
+        {.shape = world.box({0.5, 0.1, 0.5}), .position = {0, 0.1, 0}, .velocity = {8, 0, 0}, .friction = 0.25});
+    world.step(30);
+    const double before = velocity(box).x;
+    EXPECT_NEAR(before, 8 - 0.5 * kG * 30 * world.frame(), 0.05);
+    taut_material ice{};
+    ok(taut_body_get_material(ground, &ice));
+    ice.friction = 0;
+    ok(taut_body_set_material(ground, &ice));
+    world.step(30);
+    EXPECT_NEAR(velocity(box).x, before, 0.01);
+}
+
 TEST(ContactReuse, ASurfaceThatBeginsToRunTakesTheBoxAlong) {
     World world;
     const taut_body ground = world.add_ground(1);

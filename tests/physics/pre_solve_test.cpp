@@ -102,6 +102,25 @@ TEST(PreSolve, GivesFriction) {
     EXPECT_NEAR(velocity(box).x, 3 - 0.1 * kG * 60 * world.frame(), 0.03);
 }
 
+// An answer is of one step: the next begins with what the surfaces have.
+TEST(PreSolve, GivesFrictionForOneStep) {
+    World world;
+    world.add_ground(1);
+    const taut_body box = add_asking(
+        world, {.shape = world.box({0.5, 0.1, 0.5}), .position = {0, 0.1, 0}, .velocity = {8, 0, 0}, .friction = 0.25});
+    Host host;
+    host.answer = [](const taut_pre_solve&, taut_pre_solve_answer& answer) {
+        answer.friction = 0;
+        return 1;
+    };
+    host.serve(world);
+    world.step(10);
+    EXPECT_NEAR(velocity(box).x, 8, 0.01);
+    host.answer = [](const taut_pre_solve&, taut_pre_solve_answer&) { return 1; };
+    world.step(30);
+    EXPECT_NEAR(velocity(box).x, 8 - 0.5 * kG * 30 * world.frame(), 0.05);
+}
+
 // A loaded box is part of a block, which finds its contacts anew in each substep: the answer holds in all of them, so
 // that the box moves as on a ground of that friction.
 TEST(PreSolve, AnswersHoldForTheWholeStepInBlocks) {
