@@ -7,6 +7,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
+#include "base/exchange.h"
 #include "collision/collide.h"
 #include "collision/descent.h"
 #include "collision/probing.h"
@@ -69,15 +70,16 @@ struct Broadphase::State {
     void find(uint32_t begin, uint32_t end);
     void gather_fresh();
     void sort_by(const Array<uint64_t>& keys, int bit, Array<uint64_t>& sorted);
+    void gather_gone();
     bool find_changes();
-    void merge();
     template <class Asks>
     void walk(const Asks& asks, Probe& probe, Visitor& visitor) const;
 
     btDbvt tree;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
-    bool all_stale = false;  // as in the first step
+    bool all_stale = false;                   // as in the first step
+    static constexpr size_t kTogether = 256;  // keys
     static constexpr uint32_t kNowhere = UINT32_MAX;
     struct Found {
         uint32_t first, count;  // kNowhere: there was no room for them
@@ -156,12 +158,24 @@ void Broadphase::State::sort_by(const Array<uint64_t>& keys, int bit, Array<uint
     for (const uint64_t key : keys) sorted[first_of[uint32_t(key >> bit)]++] = key;
 }
 
+// The pairs of stale leaves before. Each key is written, and counted if it is one: which are would be mispredicted.
+void Broadphase::State::gather_gone() {
+    gone.clear();
+    for (size_t begin = 0; begin < pairs.size(); begin += kTogether) {
+        uint64_t found[kTogether];
+        size_t count = 0;
+        for (const uint64_t key : std::span(pairs).subspan(begin, std::min(kTogether, pairs.size() - begin))) {
+            found[count] = key;
+            count += leaves[uint32_t(key >> 32)].stale | leaves[uint32_t(key)].stale;
+        }
+        gone.insert(gone.end(), found, found + count);
+    }
+}
+
 // Pairs of two leaves that stayed are kept; all others are in fresh if they overlap. True: the list changes, by what
 // is left in fresh and gone.
 bool Broadphase::State::find_changes() {
-    gone.clear();
-    for (const uint64_t key : pairs)
-        if (leaves[uint32_t(key >> 32)].stale || leaves[uint32_t(key)].stale) gone.push_back(key);
+    gather_gone();
     auto kept_fresh = fresh.begin(), kept_gone = gone.begin();
     auto was = gone.begin();
     for (const uint64_t is : fresh) {
@@ -175,21 +189,6 @@ bool Broadphase::State::find_changes() {
     fresh.erase(kept_fresh, fresh.end());
     gone.erase(kept_gone, gone.end());
     return !fresh.empty() || !gone.empty();
-}
-
-// In place, from the last to the first.
-void Broadphase::State::merge() {
-    reserve_more(pairs, fresh.size());
-    auto next = gone.begin();
-    std::erase_if(pairs, [&](uint64_t key) {
-        const bool is_gone = next != gone.end() && *next == key;
-        next += is_gone;
-        return is_gone;
-    });
-    size_t from = pairs.size(), left = fresh.size();
-    pairs.resize(from + left);
-    for (size_t to = pairs.size(); left > 0;)
-        pairs[--to] = from > 0 && pairs[from - 1] > fresh[left - 1] ? pairs[--from] : fresh[--left];
 }
 
 Broadphase::Broadphase(Memory& memory) : state_(nullptr), memory_(memory) {
@@ -260,7 +259,11 @@ bool Broadphase::finish_refresh() {
     }
     s.gather_fresh();
     const bool changed = s.find_changes();
-    if (changed) s.merge();
+    if (changed) {
+        reserve_more(s.pairs, s.fresh.size());
+        const auto itself = [](uint64_t key) { return key; };
+        Exchange(s.pairs, {s.gone, s.fresh}, itself, itself).run();
+    }
     for (const uint32_t id : s.stale) s.leaves[id].stale = false;
     s.stale.clear();
     return changed;

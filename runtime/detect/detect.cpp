@@ -112,32 +112,25 @@ void find_news(const collision::Broadphase& broadphase, bool was_complete, Pairs
     std::erase_if(pairs.arrived, [&](uint64_t key) { return find_pair(pairs.resting, key) != nullptr; });
 }
 
-// Records whose keys have left the broadphase leave the list.
-void drop_departed(const Nodes& nodes, const Colliders& colliders, Pairs& pairs) {
-    if (pairs.departed.empty()) return;
-    const auto touches = [&](uint64_t key) {
-        const NearPair* near = find_pair(pairs.near, key);
-        return near && near->touching;
-    };
-    reserve_more(pairs.ended, static_cast<size_t>(std::ranges::count_if(pairs.departed, touches)));
-    NearPairs& list = pairs.near;
-    size_t kept = 0, from = 0;
-    const auto keep_before = [&](size_t end) {
-        list.shift(from, end, kept);
-        kept += end - from;
-        from = end;
-    };
-    for (const uint64_t key : pairs.departed) {
-        const size_t place = place_of(list, from, list.size(), key);
-        if (place == list.size() || list[place].key != key) continue;
-        keep_before(place);
-        NearPair& near = list[place];
+// Of the keys that have left the broadphase, those without a record are none of ours; the others' records have no
+// points any more.
+void end_departed(const Nodes& nodes, const Colliders& colliders, Pairs& pairs) {
+    pairs.picked.clear();
+    reserve_more(pairs.picked, pairs.departed.size());
+    size_t ends = 0;
+    std::erase_if(pairs.departed, [&](uint64_t key) {
+        const auto at = std::ranges::lower_bound(pairs.near, key, {}, &NearPair::key);
+        if (at == pairs.near.end() || at->key != key) return true;
+        if (at->pair != kNone || at->touching) pairs.picked.push_back(static_cast<uint32_t>(at.index));
+        ends += at->touching;
+        return false;
+    });
+    reserve_more(pairs.ended, ends);
+    for (const uint32_t index : pairs.picked) {
+        NearPair& near = pairs.near[index];
         if (near.touching) report_end(pairs, nodes, colliders, near);
         give_slots(pairs, near);
-        ++from;
     }
-    keep_before(list.size());
-    list.resize(kept);
 }
 
 // Of a body's centre of mass; kinematic bodies move at the end of the frame.
@@ -298,14 +291,9 @@ void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, co
     if (pairs.complete) return;
     find_news(broadphase, was_complete, pairs);
     pairs.near.reserve(pairs.near.size() + pairs.arrived.size());
-    drop_departed(nodes, colliders, pairs);
-    merge_pairs(
-        pairs.near, pairs.arrived.size(), [&] { return pairs.arrived.back(); },
-        [&] {
-            const NearPair near = new_pair(nodes, colliders, pairs, pairs.arrived.back());
-            pairs.arrived.pop_back();
-            return near;
-        });
+    end_departed(nodes, colliders, pairs);
+    exchange_pairs(pairs.near, {pairs.departed, pairs.arrived},
+                   [&](uint64_t key) { return new_pair(nodes, colliders, pairs, key); });
     pairs.complete = true;
     let_go(pairs.arrived);
     let_go(pairs.departed);

@@ -23,25 +23,18 @@ bool some_side(const PairEnds& pair, bool (*is)(const Nodes&, uint32_t), const N
 bool sleeps(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.sleeps(node); }
 bool rests(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.rest[node] != Rest::awake; }
 
-// The pairs that meet a condition from one sorted list to another.
+// The pairs that meet a condition from one sorted list to another; keys is scratch.
 template <class Condition>
-void transfer(NearPairs& from, NearPairs& to, Condition&& condition) {
+void transfer(NearPairs& from, NearPairs& to, Array<uint64_t>& keys, Condition&& condition) {
     const auto count = static_cast<size_t>(std::count_if(from.begin(), from.end(), condition));
     if (count == 0) return;
-    to.reserve(to.size() + count);
-    size_t left = from.size();  // of which the last that meets the condition is the next to go
-    const auto last = [&]() -> const NearPair& {
-        while (!condition(from[left - 1])) --left;
-        return from[left - 1];
-    };
-    merge_pairs(
-        to, count, [&] { return last().key; },
-        [&] {
-            const NearPair near = last();
-            --left;
-            return near;
-        });
+    keys.clear();
+    reserve_more(keys, count);
+    for (const NearPair& near : from)
+        if (condition(near)) keys.push_back(near.key);
+    exchange_pairs(to, {{}, keys}, [&](uint64_t key) { return *find_pair(from, key); });
     from.erase_if(condition);
+    let_go(keys);
 }
 
 // How fast a point of a node, given from the origin of node a, comes towards the other side [m/s].
@@ -79,7 +72,7 @@ bool touches_closely(const Pair& pair) {
 void recall_pairs(World& world) {
     if (!world.sleep.recall) return;
     Pairs& pairs = world.pairs;
-    transfer(pairs.resting, pairs.near,
+    transfer(pairs.resting, pairs.near, pairs.departed,
              [&](const NearPair& near) { return some_side(near.ends(world.colliders), moves, world.nodes); });
     world.sleep.recall = false;
 }
@@ -87,7 +80,7 @@ void recall_pairs(World& world) {
 void retire_pairs(World& world) {
     if (world.sleep.bodies == 0) return;
     Pairs& pairs = world.pairs;
-    transfer(pairs.near, pairs.resting, [&](const NearPair& near) {
+    transfer(pairs.near, pairs.resting, pairs.departed, [&](const NearPair& near) {
         const PairEnds ends = near.ends(world.colliders);
         return some_side(ends, rests, world.nodes) && !some_side(ends, moves, world.nodes);
     });

@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 
+#include "base/exchange.h"
 #include "base/segmented_array.h"
 #include "collision/collide.h"
 #include "state/colliders.h"
@@ -146,6 +147,7 @@ struct Arrival {
     uint64_t key = 0;
     collision::Manifold manifold;
     PointsCache cache{};
+    float then = 0;  // as Pair's
 };
 
 // The smaller index first; of colliders or of nodes.
@@ -279,25 +281,12 @@ void give_slots(Pairs& pairs, NearPair& near);
 // another thread writes.
 void order_slots(Pairs& pairs);
 
-// Of a part of a list that is sorted by key, where the keys begin that are not less than this one.
-inline size_t place_of(const NearPairs& list, size_t from, size_t end, uint64_t key) {
-    const auto at = [&](size_t index) { return list.begin() + static_cast<ptrdiff_t>(index); };
-    return static_cast<size_t>(std::ranges::lower_bound(at(from), at(end), key, {}, &NearPair::key) - list.begin());
-}
-
-// Merges `count` records into a list, both sorted by key, in place, from the last to the first: last_key() is the key
-// of the last that is left, take() gives it away. Room was reserved before.
-template <class LastKey, class Take>
-void merge_pairs(NearPairs& list, size_t count, LastKey&& last_key, Take&& take) {
-    size_t end = list.size();
-    list.resize(end + count);
-    for (size_t to = list.size(); to > end;) {
-        const size_t place = place_of(list, 0, end, last_key());
-        to -= end - place;
-        list.shift(place, end, to);
-        list[--to] = take();
-        end = place;
-    }
+// Changes a list that is sorted by key; make(key) gives a new record.
+template <class Make>
+void exchange_pairs(NearPairs& list, const Changes& changes, Make&& make) {
+    Exchange(
+        list, changes, [](const NearPair& near) { return near.key; }, make)
+        .run();
 }
 
 // Notes that a touching pair ended, if anybody asks.
