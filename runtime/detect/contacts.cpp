@@ -24,10 +24,24 @@ bool has_parts(const Detection& of, const NearPair& near) {
     return has(near.collider_a()) || has(near.collider_b());
 }
 
-// Finds what a pair needs on its own, or that it is not to be asked.
+// Of a run of pairs, those that are asked. All are written, and counted if so: which are would be mispredicted.
+struct Asked {
+    static constexpr uint32_t kTogether = 64;
+    uint32_t index[kTogether], count = 0;
+
+    Asked(Pairs& pairs, uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            NearPair& near = pairs.near[i];
+            near.arrives = near.fast = near.reused = false;
+            near.changes = near.pair != kNone;
+            index[count] = i;
+            count += !(near.filtered | stay_clear(pairs, near));
+        }
+    }
+};
+
+// Finds what a pair needs on its own.
 void look_at(const Detection& of, Arrivals& arrivals, Findings& findings, NearPair& near) {
-    near.arrives = near.fast = near.reused = false;
-    if (near.filtered || stay_clear(of.pairs, near)) return;
     near.fast = may_be_fast(of.pairs, near) && is_fast(of.nodes, of.pairs, near.ends(of.colliders), of.time);
     near.reused = !near.fast && reuse(of, near);
     if (near.reused) return;
@@ -54,13 +68,17 @@ void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
     std::atomic<bool> any_fast = false;
     team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         Findings findings(of);
-        for (uint32_t i = begin; i < end; ++i) {
-            NearPair& near = pairs.near[i];
-            if (const uint32_t soon = i + kSoon < end ? pairs.near[i + kSoon].pair : kNone; soon != kNone)
-                prefetch(pairs.list[soon]);
-            look_at(of, arrivals, findings, near);
-            near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
-            if (near.fast) any_fast.store(true, std::memory_order_relaxed);
+        for (uint32_t next = begin; next < end; next += Asked::kTogether) {
+            const Asked asked(pairs, next, std::min(next + Asked::kTogether, end));
+            for (uint32_t k = 0; k < asked.count; ++k) {
+                NearPair& near = pairs.near[asked.index[k]];
+                if (k + kSoon < asked.count)
+                    if (const uint32_t soon = pairs.near[asked.index[k + kSoon]].pair; soon != kNone)
+                        prefetch(pairs.list[soon]);
+                look_at(of, arrivals, findings, near);
+                near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
+                if (near.fast) any_fast.store(true, std::memory_order_relaxed);
+            }
         }
         findings.take_over();
     });
@@ -94,10 +112,10 @@ void admit_arriving(Team& team, const Detection& of, Arrivals& arrivals) {
         if (!near.arrives) continue;
         near.pair = take_slot(pairs, near.ends(of.colliders));
         if (next == found.end() || next->key != near.key) continue;
-        if (next->manifold.count > 0) {
-            pairs.list[near.pair].manifold = next->manifold;
-            pairs.list[near.pair].cache = next->cache;
-        }
+        Pair& pair = pairs.list[near.pair];
+        pair.manifold = next->manifold;
+        pair.cache = next->cache;
+        pair.then = next->then;
         ++next;
     }
     team.for_ranges(static_cast<uint32_t>(pairs.picked.size()), kArrivalGrain, [&](uint32_t begin, uint32_t end) {

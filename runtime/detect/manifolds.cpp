@@ -165,31 +165,40 @@ const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, c
 
 }  // namespace
 
-Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead)
+Shaped::Shaped(const Detection& of, const PairEnds& pair)
     : a_(of.shapes.record[of.colliders.record[pair.collider_a()].shape].shape),
       b_(of.shapes.record[of.colliders.record[pair.collider_b()].shape].shape),
       at_a_(&of.pairs.placement[pair.collider_a()]),
       at_b_(&of.pairs.placement[pair.collider_b()]),
       margin_(margin_of(of.nodes, pair, of.time)),
-      spans_(pair.spans()),
-      lead_(lead) {
+      spans_(pair.spans()) {}
+
+Shaped::Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead) : Shaped(of, pair) {
+    lead_ = lead;
     if (lead > 0) {
         encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
         place_after(lead);
     }
     if (!fast) return;
     if (stay_apart(of.nodes, of.pairs, pair, of.time)) {
-        then_ = std::numeric_limits<double>::infinity();
+        then_ = std::numeric_limits<float>::infinity();
         return;
     }
     encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
     look_ahead(of, pair);
 }
 
+Shaped::Shaped(const Detection& of, const PairEnds& pair, Met met) : Shaped(of, pair) {
+    then_ = met.then;
+    if (then_ == 0) return;
+    encounter_.emplace(of.nodes, of.colliders, of.shapes, of.pairs, pair);
+    place_after(then_);
+}
+
 // What comes down in the rest of the frame gets its point too: one corner alone would turn the body over. The far end
 // of a side that spans two nodes goes its own way when the near one is stopped.
 void Shaped::look_ahead(const Detection& of, const PairEnds& pair) {
-    then_ = encounter_->meeting(of.time);
+    then_ = static_cast<float>(encounter_->meeting(of.time));
     if (then_ == 0 || !std::isfinite(then_)) return;
     place_after(then_);
     if (!spans_) margin_ = margin_of(of.nodes, pair, of.time - then_);
@@ -240,9 +249,8 @@ bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near) {
         Arrival* const arrival = arrivals.take();
         if (!arrival) return true;
         arrival->key = near.key;
-        arrival->manifold.count = 0;
-        if (shaped.then() > 0) return true;
         arrival->manifold = manifold;
+        arrival->then = shaped.then();
         keep_cache(cache, arrival->cache);
     }
     keep_cache(cache, near);
@@ -252,7 +260,7 @@ bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near) {
 
 void admit(const Detection& of, NearPair& near, Pair& pair) {
     if (pair.manifold.count == 0) return find_points(of, near.fast, near, pair);
-    take_over(Shaped(of, pair, false), of, {}, near, pair);
+    take_over(Shaped(of, pair, Shaped::Met{pair.then}), of, {}, near, pair);
 }
 
 void find_parts(const Detection& of, NearPair& near) {

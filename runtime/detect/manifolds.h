@@ -34,6 +34,11 @@ struct Detection {
 class Shaped {
 public:
     Shaped(const Detection& of, const PairEnds& pair, bool fast, double lead = 0);
+    // With points that were found before, where they meet at this moment [s]; 0: now.
+    struct Met {
+        float then;
+    };
+    Shaped(const Detection& of, const PairEnds& pair, Met met);
     Shaped(const Shaped&) = delete;
     Shaped& operator=(const Shaped&) = delete;
 
@@ -44,7 +49,7 @@ public:
     float find_points(collision::PairCache& cache, collision::Manifold& manifold) const;
     void find_parts(collision::Parts& parts) const;
 
-    float then() const { return static_cast<float>(then_); }
+    float then() const { return then_; }
     double lead() const { return lead_; }
     // Whether what is found is of the present, between two bodies: it can be reused.
     bool can_be_kept() const { return then_ == 0 && lead_ == 0 && !spans_; }
@@ -53,6 +58,7 @@ public:
     }
 
 private:
+    Shaped(const Detection& of, const PairEnds& pair);
     void look_ahead(const Detection& of, const PairEnds& pair);
     void place_after(double time);
 
@@ -60,8 +66,8 @@ private:
     const collision::Placement *at_a_, *at_b_;
     float margin_;
     bool spans_;
-    double lead_;                         // [s]
-    double then_ = 0;                     // 0: as they stand; infinite: they do not meet
+    double lead_ = 0;                     // [s]
+    float then_ = 0;                      // [s]; 0: as they stand; infinite: they do not meet
     std::optional<Encounter> encounter_;  // of fast ones, and with a lead
     collision::Placement met_[2];         // where they meet, or will be
 };
@@ -132,8 +138,8 @@ private:
     size_t count_ = 0;
 };
 
-// Whether a pair that has no record gets points: they are among the arrivals. If there is no place left, or if they are
-// of a later moment, the cache stays as it was, so that whoever finds the points again starts from the same.
+// Whether a pair that has no record gets points: they are among the arrivals. If there is no place left, the cache
+// stays as it was, so that whoever finds the points again starts from the same.
 bool gets_points(const Detection& of, Arrivals& arrivals, NearPair& near);
 // A record with points that arrived, or without: then they are found again.
 void admit(const Detection& of, NearPair& near, Pair& pair);

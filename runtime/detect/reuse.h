@@ -32,7 +32,7 @@ inline bool may_be_fast(const Pairs& pairs, const NearPair& near) {
 // Whether two colliders that were found further apart than the contact margin still are, wherever they go in a frame.
 inline bool stay_clear(const Pairs& pairs, const NearPair& near) {
     const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
-    return a.way + b.way + static_cast<double>(a.ahead + b.ahead + kContactMargin) < near.clear &&
+    return (a.way + b.way + static_cast<double>(a.ahead + b.ahead + kContactMargin) < near.clear) &
            !may_be_fast(pairs, near);
 }
 
