@@ -100,10 +100,25 @@ bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const M
     return t <= until;
 }
 
+// From one centre to the other where they are nearest.
+Vec3 nearest_way(const Motion& a, const Motion& b, double limit) {
+    return b.centre - a.centre + nearest_moment(a, b, 0, limit) * (b.velocity - a.velocity);
+}
+
 // Whether balls about the centres, which hold the shapes however they turn, come as near as reach by the limit.
-bool balls_meet(const Motion& a, const Motion& b, double radii, double reach, double limit) {
-    const double t = nearest_moment(a, b, 0, limit), touch = a.reach + b.reach + radii + reach;
-    return (b.centre - a.centre + t * (b.velocity - a.velocity)).squaredNorm() <= touch * touch;
+bool balls_meet(const Vec3& nearest, const Motion& a, const Motion& b, double radii, double reach) {
+    const double touch = a.reach + b.reach + radii + reach;
+    return nearest.squaredNorm() <= touch * touch;
+}
+
+// Whether a plane across the way between the centres where they are nearest keeps the shapes apart by reach all the
+// time to the limit. Of those that do not meet most pass so: along it the centres hardly come nearer.
+bool pass_by(const Vec3& nearest, const Couple& couple, const Approach& approach, double reach, double limit) {
+    const double length = nearest.norm();
+    if (!(length > 0)) return false;
+    const Vec3 normal = nearest / length;
+    const double apart = couple.proven(Vec3::Zero(), couple.to_a(normal)) - couple.radii();
+    return apart - std::max(approach.along(normal), 0.0) * limit > reach;
 }
 
 }  // namespace
@@ -147,8 +162,10 @@ double spin_radius(const Shape& shape, double lever) {
 
 double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                       double limit) {
-    if (!balls_meet(motion_a, motion_b, core_radius(a) + core_radius(b), reach, limit)) return limit;
+    const Vec3 nearest = nearest_way(motion_a, motion_b, limit);
+    if (!balls_meet(nearest, motion_a, motion_b, core_radius(a) + core_radius(b), reach)) return limit;
     const Approach approach(motion_a, motion_b);
+    if (pass_by(nearest, {a, motion_a.at, b, motion_b.at}, approach, reach, limit)) return limit;
     double t = 0;
     std::optional<Vec3> normal;  // of the step before
     for (int step = 0; step < kMaxSteps; ++step) {
