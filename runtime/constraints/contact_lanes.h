@@ -175,6 +175,7 @@ struct SweepTerms {
     float push;           // [m/s], largest push velocity
     float mass_scale;     // of the effective mass
     float impulse_scale;  // of the impulse already there
+    float hit;            // [m/s], approaches that are faster are stopped without softness
 };
 
 // Of bodies a and b of a group's lanes, 1 or 0.

@@ -277,7 +277,7 @@ struct ContactSweep {
         }
     }
 
-    // terms(gap) -> PointTerms.
+    // terms(point) -> PointTerms.
     template <class Terms>
     [[gnu::always_inline]] static void sweep_group(LaneView contacts, const LaneGroup& g, SweepVelocity* velocities,
                                                    const SweepMass* masses, Terms&& terms) {
@@ -287,7 +287,7 @@ struct ContactSweep {
         b.gather(g.b, velocities, masses);
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
-            point_rows(p, drive_of(contacts, g, k), f, a, b, terms(F::load(p.gap)));
+            point_rows(p, drive_of(contacts, g, k), f, a, b, terms(p));
         }
         if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
         a.scatter(g.a, velocities, masses);
@@ -306,20 +306,22 @@ struct ContactSweep {
         }
     }
 
-    // Open: reach the surface within the substep, no sooner; overlapping: soft push.
+    // Open: reach the surface within the substep, no sooner; overlapping: soft push. What hits is stopped at once: a
+    // soft row leaves it impulse_scale of its speed, and a bullet as much of its way through the wall.
     static void sweep_biased(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
                              const SweepMass* masses, const SweepShift* shifts, const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
-        const F least = F::all(-terms.push), soft_mass = F::all(terms.mass_scale),
-                soft_impulse = F::all(terms.impulse_scale);
+        const F least = F::all(-terms.push), slow = F::all(-terms.hit);
+        const F soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
         for (uint32_t i = begin; i < end; ++i) {
             prefetch_next(contacts, i, end, velocities, masses, shifts);
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(g, Frame(g), shifts);
-            sweep_group(contacts, g, velocities, masses, [&](const F& gap) {
+            sweep_group(contacts, g, velocities, masses, [&](const LanePoint& p) {
+                const F gap = F::load(p.gap), rigid = F::max(gap, slow - F::load(p.approach));
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
-                                  F::if_greater(gap, zero, one, soft_mass),
-                                  F::if_greater(gap, zero, zero, soft_impulse)};
+                                  F::if_greater(rigid, zero, one, soft_mass),
+                                  F::if_greater(rigid, zero, zero, soft_impulse)};
             });
         }
     }
@@ -329,7 +331,8 @@ struct ContactSweep {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h);
         for (uint32_t i = begin; i < end; ++i) {
             prefetch_next(contacts, i, end, velocities, masses);
-            sweep_group(contacts, contacts.group[i], velocities, masses, [&](const F& gap) {
+            sweep_group(contacts, contacts.group[i], velocities, masses, [&](const LanePoint& p) {
+                const F gap = F::load(p.gap);
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, zero), one, zero};
             });
         }

@@ -118,7 +118,7 @@ private:
         if (block.elastic(0)) softness = compliance_of(block, sys_.h);
         if (block.type->bound != Bound::free) {
             split = uncoupled(split);
-            const double of_normal = block.type->bound == Bound::cone ? softness(0, 0) : 0.0;
+            const double of_normal = block.type->bound == Bound::cone && !block.hits ? softness(0, 0) : 0.0;
             softness.setZero();
             softness(0, 0) = of_normal;
         }

@@ -55,7 +55,7 @@ public:
         RowVector p = impulse();
         const bool open = gap > 0;
         const double bias = open ? gap * soft.inv_h : biased ? std::max<double>(soft.bias_rate * gap, -soft.push) : 0.0;
-        const bool softened = biased && !open;
+        const bool softened = biased && !open && !block_.hits;
         const double step = (softened ? soft.mass_scale : 1.0) / s(0, 0) * (velocity()[0] + bias) +
                             (softened ? soft.impulse_scale : 0.0) * p[0];
         p[0] = std::max(0.0, p[0] - step);

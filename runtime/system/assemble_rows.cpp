@@ -128,10 +128,11 @@ Vec3 velocity_at(const System& system, uint32_t node, const Vec3& anchor) {
     return u.v + u.w.cross(system.pose[node].R * anchor);
 }
 
-// Restitution times the speed of approach before the frame's forces, where that is fast enough to bounce.
-double bounce_speed(const Vec3& apart, const Vec3& normal, double restitution) {
+// How a point was approached before the frame's forces; apart: velocity of b's point against a's.
+void note_approach(const Vec3& apart, const Vec3& normal, double restitution, RowBlock& block) {
     const double approach = -apart.dot(normal);
-    return approach > kBounceSpeed ? restitution * approach : 0.0;
+    block.hits = approach > kBounceSpeed;
+    block.bounce = block.hits ? restitution * approach : 0.0;
 }
 
 // What a block of rows carries over.
@@ -149,7 +150,7 @@ RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
     block.node[1] = pair.b + 1;
     const Vec3 apart =
         velocity_at(system, block.node[1], data.anchor_b) - velocity_at(system, block.node[0], data.anchor_a);
-    block.bounce = bounce_speed(apart, data.basis.row(0), pair.restitution);
+    note_approach(apart, data.basis.row(0), pair.restitution, block);
     return block;
 }
 
@@ -162,7 +163,7 @@ RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& dat
         block.node[n] = nodes[n] + 1;  // kNone becomes the world, 0
         apart += data.weight[n] * velocity_at(system, block.node[n], data.anchor[n]);
     }
-    block.bounce = bounce_speed(apart, data.basis.row(0), pair.restitution);
+    note_approach(apart, data.basis.row(0), pair.restitution, block);
     return block;
 }
 

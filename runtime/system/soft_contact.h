@@ -9,7 +9,7 @@
 
 namespace taut {
 
-constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce [m/s]
+constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce, and are stopped softly [m/s]
 
 // cycles: f h.
 inline SweepTerms soft_terms(double h, double cycles) {
@@ -22,6 +22,7 @@ inline SweepTerms soft_terms(double h, double cycles) {
     t.push = static_cast<float>(kPush);
     t.mass_scale = static_cast<float>(a2 / (1 + a2));
     t.impulse_scale = static_cast<float>(1 / (1 + a2));
+    t.hit = kBounceSpeed;
     return t;
 }
 inline SweepTerms contact_terms(double h) { return soft_terms(h, 0.25); }

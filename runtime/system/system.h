@@ -51,6 +51,7 @@ struct RowBlock {
     uint32_t loaded, loads;          // of a load: first row of its contact points, each of three; how many there are
     float* spin_slip;                // of a load: what spinning carries on; rolling is in contact
     double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
+    bool hits;                       // of a cone: approached faster than kBounceSpeed before the frame's forces
     bool fresh;                      // lambda of the last substep means nothing yet
     bool in_lanes;                   // a swept joint: bias, targets and impulses are in System::joints
 

@@ -132,6 +132,47 @@ TEST(Continuous, AOneWayPlatformLetsABulletThroughFromBehindOnly) {
     }
 }
 
+// How deep a ball gets into a plate that it hits at one of many moments of a frame [m], at most.
+double deepest_hit(double speed, bool one_way, bool jointed) {
+    constexpr int kMoments = 100;
+    double deepest = 0;
+    for (int k = 0; k < kMoments; ++k) {
+        World world(weightless);
+        const taut_body plate = world.add({.kind = jointed ? TAUT_BODY_DYNAMIC : TAUT_BODY_STATIC,
+                                           .shape = world.box({0.5, 0.05, 0.5}),
+                                           .mass = 1000});
+        if (jointed) {
+            taut_fixed_joint_def def;
+            taut_fixed_joint_def_init(&def);
+            def.body_b = plate;
+            taut_joint joint{};
+            ok(taut_world_add_fixed_joint(world.handle, &def, &joint));
+        }
+        taut_collider collider{};
+        uint32_t count = 0;
+        ok(taut_body_get_colliders(plate, &collider, 1, &count));
+        if (one_way) ok(taut_collider_set_one_way(collider, {0, 1, 0}));
+        const taut_body ball = world.add({.shape = world.sphere(0.02),
+                                          .position = {0, 2 + k * speed * world.frame() / kMoments, 0},
+                                          .velocity = {0, -speed, 0},
+                                          .mass = 0.1});
+        for (double time = 0; time < 3 / speed + 0.2; time += world.frame()) {
+            world.step(1);
+            deepest = std::max(deepest, 0.07 - position(ball).y);
+        }
+    }
+    return deepest;
+}
+
+// A soft contact would leave a fast one some of its speed for a substep: at 1000 m/s 120 mm of way.
+TEST(Continuous, WhatHitsStopsAtTheSurface) {
+    for (double speed : {20.0, 100.0, 300.0, 1000.0}) {
+        EXPECT_LT(deepest_hit(speed, false, false), 3e-4) << speed << " m/s";
+        EXPECT_LT(deepest_hit(speed, true, false), 3e-4) << speed << " m/s, one-way";
+        EXPECT_LT(deepest_hit(speed, false, true), 5e-4) << speed << " m/s, jointed";
+    }
+}
+
 // A rod about a pivot sweeps through more than a right angle in a step; the post stands in its way.
 TEST(Continuous, ASpinningRodStopsAtAPost) {
     for (double spin : {20.0, 60.0, 150.0}) {

@@ -299,6 +299,7 @@ TEST_P(FusedSweep, HasTheImpulsesOfTheGenericRows) {
 // Between detections the anchors, each on its own surface, turn with their bodies: gap0 + n . (shift of b - shift of a)
 // is C at the new poses.
 TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
+    const std::vector<System::Found> found_at(lanes.w.system.found.begin(), lanes.w.system.found.end());
     for (int substep = 0; substep < 3; ++substep) {
         for (Rig* rig : {&lanes, &rows}) {
             if (substep > 0) rig->predict();
@@ -312,11 +313,18 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
     rig.predict();
     Substep s = rig.substep();
     sweep_biased(s);
+    // Those that turned so far that their levers followed have none of the frame's beginning any more.
+    const auto turned = [&](uint32_t node) {
+        return rig.w.system.found[node + 1].q.coeffs() != found_at[node + 1].q.coeffs();
+    };
+    int compared = 0, skipped = 0;
     for (const LaneGroup& g : rig.w.system.contacts.group)
         for (int lane = 0; lane < kLanes; ++lane) {
             if (g.pair[lane] == kNone) continue;
             const Pair& pair = rig.w.pairs.list[g.pair[lane]];
-            for (int k = 0; k < pair.manifold.count; ++k) {
+            const bool skips = turned(pair.a) || turned(pair.b);
+            ++(skips ? skipped : compared);
+            for (int k = 0; k < pair.manifold.count && !skips; ++k) {
                 const collision::ContactPoint& point = pair.manifold.points[k];
                 double moved[2];
                 for (int end = 0; end < 2; ++end) {
@@ -333,6 +341,7 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
                 EXPECT_NEAR(g.point[k].gap[lane], gap, 1e-6);
             }
         }
+    EXPECT_GT(compared, 2 * skipped);
 }
 
 }  // namespace
