@@ -102,6 +102,12 @@ void carry_turning(const collision::Manifold& old, Impulse turning, float spin_s
     pair.spin_slip = spin_slip;
 }
 
+// Whether points have something to carry: without a push there is no friction; those in blocks may know their slip.
+bool bore(const collision::Manifold& old, const Pair& before) {
+    return std::any_of(before.impulse, before.impulse + old.count,
+                       [](const Impulse& impulse) { return impulse.normal > 0 || impulse.slip >= 0; });
+}
+
 }  // namespace
 
 void forget_impulses(Pair& pair) {
@@ -112,10 +118,15 @@ void forget_impulses(Pair& pair) {
 
 void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
     if (old.count == 0) return forget_impulses(pair);
-    Impulse carried[4];
-    std::copy(before.impulse, before.impulse + 4, carried);
-    const bool is_round = pair.patch > 0;  // flat faces keep most of their points, and the rest are not worth the time
-    carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
+    if (bore(old, before)) {
+        Impulse carried[4];
+        std::copy(before.impulse, before.impulse + 4, carried);
+        // Flat faces keep most of their points, and the rest are not worth the time.
+        const bool is_round = pair.patch > 0;
+        carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
+    } else {
+        std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+    }
     if (pair.twists()) carry_turning(old, before.turning, before.spin_slip, pair);
 }
 

