@@ -25,19 +25,32 @@ bool has_parts(const Detection& of, const NearPair& near) {
 }
 
 // Of a run of pairs, those that are asked. All are written, and counted if so: which are would be mispredicted.
-struct Asked {
+class Asked {
+public:
     static constexpr uint32_t kTogether = 64;
-    uint32_t index[kTogether], count = 0;
 
-    Asked(Pairs& pairs, uint32_t begin, uint32_t end) {
+    Asked(Pairs& pairs, uint32_t begin, uint32_t end) : pairs_(pairs) {
         for (uint32_t i = begin; i < end; ++i) {
             NearPair& near = pairs.near[i];
             near.arrives = near.fast = near.reused = false;
-            near.changes = near.pair != kNone;
-            index[count] = i;
-            count += !(near.filtered | stay_clear(pairs, near));
+            near.changes = near.pair != kNone;  // a record may have lost its points since it was asked
+            index_[count_] = i;
+            count_ += !(near.filtered | stay_clear(pairs, near));
         }
     }
+    uint32_t count() const { return count_; }
+    // Asks the memory for the record of one that comes soon.
+    NearPair& take(uint32_t k) const {
+        if (const uint32_t soon = k + kSoon < count_ ? at(k + kSoon).pair : kNone; soon != kNone)
+            prefetch(pairs_.list[soon]);
+        return at(k);
+    }
+
+private:
+    NearPair& at(uint32_t k) const { return pairs_.near[index_[k]]; }
+
+    Pairs& pairs_;
+    uint32_t index_[kTogether], count_ = 0;
 };
 
 // Finds what a pair needs on its own.
@@ -70,11 +83,8 @@ void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
         Findings findings(of);
         for (uint32_t next = begin; next < end; next += Asked::kTogether) {
             const Asked asked(pairs, next, std::min(next + Asked::kTogether, end));
-            for (uint32_t k = 0; k < asked.count; ++k) {
-                NearPair& near = pairs.near[asked.index[k]];
-                if (k + kSoon < asked.count)
-                    if (const uint32_t soon = pairs.near[asked.index[k + kSoon]].pair; soon != kNone)
-                        prefetch(pairs.list[soon]);
+            for (uint32_t k = 0; k < asked.count(); ++k) {
+                NearPair& near = asked.take(k);
                 look_at(of, arrivals, findings, near);
                 near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
                 if (near.fast) any_fast.store(true, std::memory_order_relaxed);
