@@ -166,7 +166,7 @@ void Broadphase::State::gather_gone() {
         size_t count = 0;
         for (const uint64_t key : std::span(pairs).subspan(begin, std::min(kTogether, pairs.size() - begin))) {
             found[count] = key;
-            count += leaves[uint32_t(key >> 32)].stale | leaves[uint32_t(key)].stale;
+            count += size_t(leaves[uint32_t(key >> 32)].stale) | size_t(leaves[uint32_t(key)].stale);
         }
         gone.insert(gone.end(), found, found + count);
     }

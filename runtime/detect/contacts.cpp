@@ -35,7 +35,8 @@ public:
             near.arrives = near.fast = near.reused = false;
             near.changes = near.pair != kNone;  // a record may have lost its points since it was asked
             index_[count_] = i;
-            count_ += !(near.filtered | stay_clear(pairs, near));
+            const bool filtered = near.filtered, stays_clear = stay_clear(pairs, near);
+            count_ += !(filtered | stays_clear);
         }
     }
     uint32_t count() const { return count_; }

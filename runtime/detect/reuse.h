@@ -32,8 +32,9 @@ inline bool may_be_fast(const Pairs& pairs, const NearPair& near) {
 // Whether two colliders that were found further apart than the contact margin still are, wherever they go in a frame.
 inline bool stay_clear(const Pairs& pairs, const NearPair& near) {
     const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
-    return (a.way + b.way + static_cast<double>(a.ahead + b.ahead + kContactMargin) < near.clear) &
-           !may_be_fast(pairs, near);
+    const double way = a.way + b.way + static_cast<double>(a.ahead + b.ahead + kContactMargin);
+    const bool is_clear = way < near.clear, may_be_fast = taut::may_be_fast(pairs, near);
+    return is_clear & !may_be_fast;  // which of the two holds would be mispredicted
 }
 
 // Notes that they are at least so far apart now [m]; 0: not known, or they have points.
