@@ -9,6 +9,9 @@
  *    that fails changes nothing. taut_last_error() then names function, field and value.
  *  - Every def starts with struct_size, which its _init function writes together with the defaults.
  *  - No exception, abort or exit crosses this interface.
+ *  - Calls round to nearest, keep denormals and do not trap, whatever floating-point environment their thread is in, so
+ *    that results do not depend on it. Host functions that a call calls are in the same one; on return the thread has
+ *    its own back, exception flags included.
  */
 #ifndef TAUT_BASE_H
 #define TAUT_BASE_H

@@ -8,6 +8,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/float_environment.h"
 #include "base/result.h"
 #include "world.h"
 
@@ -183,9 +184,10 @@ constexpr const char* name_of(taut_cable) { return "cable"; }
 
 // ---------------------------------------------------------------- act
 
-// Nothing thrown inside crosses the interface.
+// Nothing thrown inside crosses the interface, nor does the arithmetic of the host's thread.
 template <class Act>
 taut_result contain(const char* call, Act&& act) noexcept {
+    const FloatEnvironment standard;
     try {
         return act();
     } catch (const std::bad_alloc&) {

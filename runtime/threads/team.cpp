@@ -10,6 +10,8 @@
 #include <immintrin.h>
 #endif
 
+#include "base/float_environment.h"
+
 namespace taut {
 namespace {
 
@@ -188,6 +190,7 @@ void Team::rest() {
 
 // Works on every job until this call for help is over.
 void Team::help(uint32_t call, uint32_t worker) {
+    const FloatEnvironment standard;
     uint64_t last = kNone;
     for (Spin spin; call_.load(std::memory_order_acquire) == call; spin.wait()) {
         const uint64_t number = job_.load(std::memory_order_acquire);
