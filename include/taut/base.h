@@ -11,7 +11,7 @@
  *  - No exception, abort or exit crosses this interface.
  *  - Calls round to nearest, keep denormals and do not trap, whatever floating-point environment their thread is in, so
  *    that results do not depend on it. Host functions that a call calls are in the same one; on return the thread has
- *    its own back, exception flags included.
+ *    its own back, but for exception flags, which may be raised.
  */
 #ifndef TAUT_BASE_H
 #define TAUT_BASE_H

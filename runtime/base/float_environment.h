@@ -1,6 +1,6 @@
-// The arithmetic that results are made with, whatever the host's threads have: rounding to nearest, denormals kept, and
-// no traps. A game linked with -ffast-math flushes denormals in its first thread and in those that this one starts, not
-// in all; one that looks for its own errors traps on not-a-number, which appears inside without harm.
+// The arithmetic that results are made with, whatever the host's threads have: rounded to nearest, with denormals and
+// without traps. A game linked with -ffast-math flushes denormals in its first thread and in those that this one
+// starts, not in all; one that looks for its own errors traps on not-a-number, which appears inside without harm.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace taut {
 
-// Has them while it lives; then what the thread had before, its exception flags included.
+// The thread has it while this lives, then what it had before; flags of exceptions may be raised meanwhile.
 class FloatEnvironment {
 public:
     FloatEnvironment() : before_(get()) {
