@@ -229,7 +229,7 @@ void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement
 }
 
 bool Broadphase::holds(uint32_t id, const Box& tight) const {
-    return state_->leaves[id].node->volume.Contain(tight_volume(tight));
+    return contains(state_->leaves[id].node->volume, tight_volume(tight));
 }
 
 void Broadphase::set_moves(uint32_t id, bool moves) {

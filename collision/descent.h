@@ -5,15 +5,35 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 namespace taut::collision {
 
-// Without branches: of the boxes that a descent asks, every other one is met.
+// Whether no coordinate of p or of q is above that of its bound. Without branches: of the boxes that a descent asks,
+// every other one is met.
+#if defined(__SSE2__)
+inline bool are_within(const btVector3& p, const btVector3& p_most, const btVector3& q, const btVector3& q_most) {
+    const auto within = [](const btVector3& one, const btVector3& most) {
+        return _mm_cmple_ps(_mm_load_ps(one.m_floats), _mm_load_ps(most.m_floats));
+    };
+    constexpr int kAll = 0b111;  // the fourth number means nothing
+    return (_mm_movemask_ps(_mm_and_ps(within(p, p_most), within(q, q_most))) & kAll) == kAll;
+}
+#else
+inline bool are_within(const btVector3& p, const btVector3& p_most, const btVector3& q, const btVector3& q_most) {
+    int all = 1;
+    for (int i = 0; i < 3; ++i) all &= int(p[i] <= p_most[i]) & int(q[i] <= q_most[i]);
+    return all != 0;
+}
+#endif
+
 inline bool meet(const btDbvtVolume& a, const btDbvtVolume& b) {
-    const btVector3 &a_lo = a.Mins(), &a_hi = a.Maxs(), &b_lo = b.Mins(), &b_hi = b.Maxs();
-    const int x = int(a_lo.x() <= b_hi.x()) & int(b_lo.x() <= a_hi.x());
-    const int y = int(a_lo.y() <= b_hi.y()) & int(b_lo.y() <= a_hi.y());
-    const int z = int(a_lo.z() <= b_hi.z()) & int(b_lo.z() <= a_hi.z());
-    return (x & y & z) != 0;
+    return are_within(a.Mins(), b.Maxs(), b.Mins(), a.Maxs());
+}
+inline bool contains(const btDbvtVolume& whole, const btDbvtVolume& part) {
+    return are_within(whole.Mins(), part.Mins(), part.Maxs(), whole.Maxs());
 }
 
 // Goes through what is below some nodes. Breadth first, so that processors work on several nodes at once; where more

@@ -159,10 +159,19 @@ void face_points(const PolytopePair& pair, const FaceView& view, Axis& axis, boo
     if (plane != on_b) move_to_a(pair.b_in_a, out);
 }
 
-// Points of the face next to the edges, where they cross nearly in its plane.
-void add_face_beside(const PolytopePair& pair, Axis edges, const Wanted& wanted, Manifold& out) {
+// The points of a face axis, which names the face alone.
+struct FacePoints {
+    Axis axis;
+    Manifold points;
+};
+
+// Points of the face next to the edges, where they cross nearly in its plane. known: those of a face that were found
+// already.
+void add_face_beside(const PolytopePair& pair, Axis edges, const FacePoints& known, const Wanted& wanted,
+                     Manifold& out) {
     FaceBeside face = face_beside(pair, edges, out.normal);
     if (face.along < kSamePlane) return;
+    if (face.axis == known.axis) return add_beside(known.points, out);
     Polygon clipped;
     Manifold points;
     face_points(pair, view_of(pair, face.axis), face.axis, false, wanted, clipped, points);
@@ -199,7 +208,7 @@ bool keep_contact(const PolytopePair& pair, Kept& kept, const Wanted& wanted, Pa
         face_points(pair, view, kept.axis, true, wanted, clipped, out);
     }
     if (out.count == 0) return false;
-    if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, wanted, out);
+    if (kept.axis.kind == AxisKind::edges) add_face_beside(pair, kept.axis, {}, wanted, out);
     if (!is_still) write_touching(kept.axis, pair, cache);
     return true;
 }
@@ -226,6 +235,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     if (keep_contact(pair, kept, shapes.wanted, shapes.cache, out)) return 0;
 
     Separation face = best_face(pair, kept, margin);
+    const Axis face_alone = face.axis;
     if (face.distance > margin) {
         write_apart(face.axis, shapes.cache);
         return face.distance;
@@ -258,10 +268,11 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     if (preference.edge_wins(edges.distance, face.distance, was_edge) ||
         preference.face_misses(deepest(out), edges.distance, face.distance) ||
         edges_bear(pair, edges, face, last, preference)) {
+        const FacePoints of_face = {face_alone, out};
         out.count = 0;
         face.axis = edges.axis;
         edge_point(pair, edges.axis, margin, out);
-        add_face_beside(pair, edges.axis, shapes.wanted, out);
+        add_face_beside(pair, edges.axis, of_face, shapes.wanted, out);
     }
     write_touching(face.axis, pair, shapes.cache);
     return 0;
