@@ -16,7 +16,7 @@ namespace taut::collision {
 #if defined(__SSE2__)
 inline bool are_within(const btVector3& p, const btVector3& p_most, const btVector3& q, const btVector3& q_most) {
     const auto within = [](const btVector3& one, const btVector3& most) {
-        return _mm_cmple_ps(_mm_load_ps(one.m_floats), _mm_load_ps(most.m_floats));
+        return _mm_cmple_ps(_mm_loadu_ps(one.m_floats), _mm_loadu_ps(most.m_floats));
     };
     constexpr int kAll = 0b111;  // the fourth number means nothing
     return (_mm_movemask_ps(_mm_and_ps(within(p, p_most), within(q, q_most))) & kAll) == kAll;
