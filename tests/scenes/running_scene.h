@@ -1,9 +1,13 @@
 // A scene of the catalogue in a world, and what the tests read off it.
 #pragma once
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,21 +23,27 @@ inline void PrintTo(const Family& family, std::ostream* out) { *out << family.ex
 
 namespace lab {
 
-// Two pieces for mesh_drop: a tetrahedron and a wedge. Returns the file's path.
-inline std::string small_mesh() {
-    std::string path =
-        testing::TempDir() + "taut_pieces_" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) + ".obj";
-    std::ofstream(path) << "g tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-                           "g wedge\nv 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 0 1 1\n"
-                           "f 5 7 6\nf 8 9 10\nf 5 6 9 8\nf 6 7 10 9\nf 7 5 8 10\n";
-    return path;
-}
+// Two pieces for mesh_drop, a tetrahedron and a wedge, in a file of this process while it is asked for.
+class SmallMesh {
+public:
+    SmallMesh() {
+        std::ofstream(path) << "g tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+                               "g wedge\nv 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 0 1 1\n"
+                               "f 5 7 6\nf 8 9 10\nf 5 6 9 8\nf 6 7 10 9\nf 7 5 8 10\n";
+    }
+    ~SmallMesh() { std::remove(path.c_str()); }
+    SmallMesh(const SmallMesh&) = delete;
+    SmallMesh& operator=(const SmallMesh&) = delete;
+
+    const std::string path = testing::TempDir() + "taut_pieces_" + std::to_string(getpid()) + ".obj";
+};
 
 // Each family's example, with what it needs.
 inline scenes::Scene example_of(const scenes::Family& family, uint64_t seed = 0) {
+    std::optional<SmallMesh> mesh;
     scenes::Options options;
     options.seed = seed;
-    if (family.needs_mesh) options.mesh = small_mesh();
+    if (family.needs_mesh) options.mesh = mesh.emplace().path;
     return scenes::make_scene(family.example, options);
 }
 
