@@ -10,8 +10,8 @@
 
 namespace taut {
 
-// By node + 1; eight gather as an 8x8 transpose. A cache line each: threads that write to neighbours do not meet.
-struct alignas(64) SweepVelocity {
+// Eight gather as an 8x8 transpose.
+struct alignas(32) SweepVelocity {  // [m/s, rad/s]; no component is -0: what bears nothing changes no bit
     float v[3] = {0, 0, 0}, pad0 = 0;
     float w[3] = {0, 0, 0}, pad1 = 0;
 };
@@ -19,6 +19,11 @@ struct alignas(32) SweepMass {
     float inv_mass = 0;
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
     float pad = 0;
+};
+// By node + 1. A cache line each: who gathers fetches one, and threads that write to neighbours do not meet.
+struct alignas(64) SweepNode {
+    SweepVelocity velocity;
+    SweepMass mass;
 };
 struct alignas(32) SweepShift {        // since the contacts were found
     float dx[3] = {0, 0, 0}, pad = 0;  // translation [m]
@@ -189,21 +194,18 @@ struct alignas(64) LaneTurns {
 struct ContactKernels {
     const char* name;
     // Effective masses and approach speeds from the geometry that assembly filled in.
-    void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
+    void (*prepare)(LaneView, uint32_t begin, uint32_t end, const SweepNode*);
     // Of one group within the frame: levers turn with the bodies that did, and the gaps since detection go on from the
     // new ones; then the same, but only in the lanes of such bodies, so that nothing depends on who else is in the
     // group. An impulse that fits them no more goes. Of shifts, the rotation.
-    void (*turn)(LaneView, uint32_t group, const LaneTurns&, const SweepShift* shifts, const SweepVelocity*,
-                 const SweepMass*);
-    void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
+    void (*turn)(LaneView, uint32_t group, const LaneTurns&, const SweepShift* shifts, const SweepNode*);
+    void (*warm_start)(LaneView, uint32_t begin, uint32_t end, SweepNode*);
     // Soft normal rows and friction on the cone. shifts: gaps follow from them; null: they are as measured before.
-    void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepShift*,
-                         const SweepTerms&);
+    void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepNode*, const SweepShift*, const SweepTerms&);
     // Same rows without bias or softness: removes the push from the velocity that is kept.
-    void (*sweep_relaxed)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepTerms&);
+    void (*sweep_relaxed)(LaneView, uint32_t begin, uint32_t end, SweepNode*, const SweepTerms&);
     // Points that closed faster than threshold [m/s] leave with restitution times that speed.
-    void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, float threshold,
-                      bool last);
+    void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepNode*, float threshold, bool last);
 };
 
 extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2;

@@ -52,25 +52,31 @@ struct ContactSweep {
         F bias, mass_scale, impulse_scale;
     };
 
-    // The new normal impulse of a point that closes at vn; returns what it changes.
-    static F normal_row(LanePoint& p, const F& vn, const PointTerms& terms) {
+    // The new normal impulse of a point that has one and closes at vn.
+    static F normal_row(const LanePoint& p, const F& old, const F& vn, const PointTerms& terms) {
         const F zero = F::all(0);
-        const F old = F::load(p.impulse[0]);
         const F step = zero - terms.mass_scale * F::load(p.normal_mass) * (vn + terms.bias) - terms.impulse_scale * old;
-        const F next = F::max(old + step, zero);
+        return F::max(old + step, zero);
+    }
+    static void keep_normal(LanePoint& p, const F& next) {
         next.store(p.impulse[0]);
         F::max(next, F::load(p.peak)).store(p.peak);
-        return next - old;
     }
 
-    // Changes an impulse in the plane of two rows by one step against their speeds, and keeps it within a circle.
+    // Changes an impulse in the plane of two rows by one step against their speeds, and keeps it within a circle. Where
+    // nobody comes to the rim, but who has no circle, there is nothing to shorten.
     [[gnu::always_inline]] static void circle(F& p1, F& p2, const F& v1, const F& v2, const float (&mass)[3][kLanes],
                                               const float (&isotropic_mass)[kLanes], const F& limit) {
         const F old1 = p1, old2 = p2;
         const F m11 = F::load(mass[0]), m22 = F::load(mass[1]), m12 = F::load(mass[2]);
         const F iso = F::load(isotropic_mass);
         F q1 = old1 - (m11 * v1 + m12 * v2), q2 = old2 - (m12 * v1 + m22 * v2);
-        const F inside = q1 * q1 + q2 * q2, squared = limit * limit;
+        const F inside = q1 * q1 + q2 * q2, squared = limit * limit, zero = F::all(0);
+        if (F::greater(F::if_greater(limit, zero, inside, zero), squared) == 0) {
+            p1 = F::if_greater(limit, zero, q1, zero);
+            p2 = F::if_greater(limit, zero, q2, zero);
+            return;
+        }
         q1 = F::if_greater(inside, squared, old1 - iso * v1, q1);
         q2 = F::if_greater(inside, squared, old2 - iso * v2, q2);
         const F length2 = q1 * q1 + q2 * q2;
@@ -82,23 +88,28 @@ struct ContactSweep {
 
     // Normal row, then the tangents. Slip is what it was before the normal row and what its impulse adds to it, so that
     // both reach the bodies at once: the same as one after the other, with a shorter way from one point to the next.
-    [[gnu::always_inline]] static void point_rows(LanePoint& p, const LaneDrive* drive, const Frame& f, Side& a,
+    // Where no lane bears anything, or comes to, nothing changes; then false.
+    [[gnu::always_inline]] static bool point_rows(LanePoint& p, const LaneDrive* drive, const Frame& f, Side& a,
                                                   Side& b, const PointTerms& terms) {
         const V ra = load(p.ra), rb = load(p.rb), v = b.at(rb) - a.at(ra);
-        const F normal = normal_row(p, dot(v, f.n), terms);
+        const F old = F::load(p.impulse[0]), old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
+        const F next = normal_row(p, old, dot(v, f.n), terms);
+        if (!F::any(next, old, old1, old2)) return false;
+        keep_normal(p, next);
+        const F normal = next - old;
         F v1 = dot(v, f.t1) + F::load(p.coupling[0]) * normal, v2 = dot(v, f.t2) + F::load(p.coupling[1]) * normal;
         if (drive) {
             v1 = v1 - F::load(drive->speed[0]);
             v2 = v2 - F::load(drive->speed[1]);
         }
-        const F old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
         F q1 = old1, q2 = old2;
-        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, f.friction * F::load(p.impulse[0]));
+        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, f.friction * next);
         q1.store(p.impulse[1]);
         q2.store(p.impulse[2]);
         const V push = normal * f.n + (q1 - old1) * f.t1 + (q2 - old2) * f.t2;
         b.add(push, rb);
         a.subtract(push, ra);
+        return true;
     }
 
     // Of the points of a group.
@@ -154,25 +165,24 @@ struct ContactSweep {
     }
 
     // Of the group after one, of the same colour: no other thread works on its nodes.
-    static void prefetch_next(LaneView contacts, uint32_t i, uint32_t end, const SweepVelocity* velocities,
-                              const SweepMass* masses, const SweepShift* shifts = nullptr) {
+    static void prefetch_next(LaneView contacts, uint32_t i, uint32_t end, const SweepNode* nodes,
+                              const SweepShift* shifts = nullptr) {
         if (!contacts.shared || i + 1 == end) return;
-        Side::prefetch(contacts.group[i + 1].a, velocities, masses, shifts);
-        Side::prefetch(contacts.group[i + 1].b, velocities, masses, shifts);
+        Side::prefetch(contacts.group[i + 1].a, nodes, shifts);
+        Side::prefetch(contacts.group[i + 1].b, nodes, shifts);
     }
 
     // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue. put(value, array) writes a value of
     // all lanes, before(point, new mass) comes ahead of a point's. What was hit already keeps the approach speed that
     // it had.
     template <class Before, class Put>
-    [[gnu::always_inline]] static void prepare_group(LaneView contacts, const LaneGroup& g,
-                                                     const SweepVelocity* velocities, const SweepMass* masses,
+    [[gnu::always_inline]] static void prepare_group(LaneView contacts, const LaneGroup& g, const SweepNode* nodes,
                                                      const Before& before, const Put& put) {
         const F half = F::all(0.5f), zero = F::all(0), one = F::all(1), tiny = F::all(1e-30f);
         const Frame f(g);
         Side a, b;
-        a.gather(g.a, velocities, masses);
-        b.gather(g.b, velocities, masses);
+        a.gather(g.a, nodes);
+        b.gather(g.b, nodes);
         const F inv_mass = a.inv_mass + b.inv_mass;
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
@@ -202,11 +212,10 @@ struct ContactSweep {
         if (g.rolling != kNoLanes) prepare_rolling(contacts.rolling[g.rolling], f, a, b, put);
     }
 
-    static void prepare(LaneView contacts, uint32_t begin, uint32_t end, const SweepVelocity* velocities,
-                        const SweepMass* masses) {
+    static void prepare(LaneView contacts, uint32_t begin, uint32_t end, const SweepNode* nodes) {
         for (uint32_t i = begin; i < end; ++i)
             prepare_group(
-                contacts, contacts.group[i], velocities, masses, [](LanePoint&, const F&) {},
+                contacts, contacts.group[i], nodes, [](LanePoint&, const F&) {},
                 [](const F& value, float* to) { value.store(to); });
     }
 
@@ -240,7 +249,7 @@ struct ContactSweep {
     }
 
     static void turn(LaneView contacts, uint32_t group, const LaneTurns& turns, const SweepShift* shifts,
-                     const SweepVelocity* velocities, const SweepMass* masses) {
+                     const SweepNode* nodes) {
         turn_group(contacts.group[group], turns, shifts);
         const F zero = F::all(0), part = F::all(kOtherMass);
         const F chosen = F::max(F::load(turns.turned[0]), F::load(turns.turned[1]));
@@ -252,46 +261,58 @@ struct ContactSweep {
                 put(F::if_greater(change, part * was, zero, kept), impulse);
             }
         };
-        prepare_group(contacts, contacts.group[group], velocities, masses, drop_impulse, put);
+        prepare_group(contacts, contacts.group[group], nodes, drop_impulse, put);
     }
 
-    static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                           const SweepMass* masses) {
+    // Whether a lane has an impulse.
+    static bool bears(const LaneGroup& g) {
+        bool any = g.rolling != kNoLanes;
+        for (uint32_t k = 0; k < g.points && !any; ++k) {
+            const LanePoint& p = g.point[k];
+            any = F::any(F::load(p.impulse[0]), F::load(p.impulse[1]), F::load(p.impulse[2]));
+        }
+        return any;
+    }
+
+    static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes) {
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, velocities, masses);
+            prefetch_next(contacts, i, end, nodes);
             const LaneGroup& g = contacts.group[i];
+            if (!bears(g)) continue;
             const Frame f(g);
             Side a, b;
-            a.gather(g.a, velocities, masses);
-            b.gather(g.b, velocities, masses);
+            a.gather(g.a, nodes);
+            b.gather(g.b, nodes);
             for (uint32_t k = 0; k < g.points; ++k) {
-                LanePoint& p = g.point[k];
+                const LanePoint& p = g.point[k];
                 const V push =
                     F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * f.t2;
                 b.add(push, load(p.rb));
                 a.subtract(push, load(p.ra));
             }
             if (g.rolling != kNoLanes) warm_start_rolling(contacts.rolling[g.rolling], f, a, b);
-            a.scatter(g.a, velocities, masses);
-            b.scatter(g.b, velocities, masses);
+            a.scatter(g.a, nodes);
+            b.scatter(g.b, nodes);
         }
     }
 
     // terms(point) -> PointTerms.
     template <class Terms>
-    [[gnu::always_inline]] static void sweep_group(LaneView contacts, const LaneGroup& g, SweepVelocity* velocities,
-                                                   const SweepMass* masses, Terms&& terms) {
+    [[gnu::always_inline]] static void sweep_group(LaneView contacts, const LaneGroup& g, SweepNode* nodes,
+                                                   Terms&& terms) {
         const Frame f(g);
         Side a, b;
-        a.gather(g.a, velocities, masses);
-        b.gather(g.b, velocities, masses);
+        a.gather(g.a, nodes);
+        b.gather(g.b, nodes);
+        bool changed = g.rolling != kNoLanes;
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
-            point_rows(p, drive_of(contacts, g, k), f, a, b, terms(p));
+            changed |= point_rows(p, drive_of(contacts, g, k), f, a, b, terms(p));
         }
+        if (!changed) return;
         if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
-        a.scatter(g.a, velocities, masses);
-        b.scatter(g.b, velocities, masses);
+        a.scatter(g.a, nodes);
+        b.scatter(g.b, nodes);
     }
 
     // Gaps of a group's points at the start of the substep.
@@ -308,16 +329,16 @@ struct ContactSweep {
 
     // Open: reach the surface within the substep, no sooner; overlapping: soft push. What hits is stopped at once: a
     // soft row leaves it impulse_scale of its speed, and a bullet as much of its way through the wall.
-    static void sweep_biased(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                             const SweepMass* masses, const SweepShift* shifts, const SweepTerms& terms) {
+    static void sweep_biased(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes,
+                             const SweepShift* shifts, const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
         const F least = F::all(-terms.push), slow = F::all(-terms.hit);
         const F soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, velocities, masses, shifts);
+            prefetch_next(contacts, i, end, nodes, shifts);
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(g, Frame(g), shifts);
-            sweep_group(contacts, g, velocities, masses, [&](const LanePoint& p) {
+            sweep_group(contacts, g, nodes, [&](const LanePoint& p) {
                 const F gap = F::load(p.gap), rigid = F::max(gap, slow - F::load(p.approach));
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
                                   F::if_greater(rigid, zero, one, soft_mass),
@@ -326,12 +347,12 @@ struct ContactSweep {
         }
     }
 
-    static void sweep_relaxed(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                              const SweepMass* masses, const SweepTerms& terms) {
+    static void sweep_relaxed(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes,
+                              const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, velocities, masses);
-            sweep_group(contacts, contacts.group[i], velocities, masses, [&](const LanePoint& p) {
+            prefetch_next(contacts, i, end, nodes);
+            sweep_group(contacts, contacts.group[i], nodes, [&](const LanePoint& p) {
                 const F gap = F::load(p.gap);
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, zero), one, zero};
             });
@@ -339,16 +360,16 @@ struct ContactSweep {
     }
 
     // Once the frame is over; what turns has left the pose in which it was hit by then, and bounces at once.
-    static void restitute(LaneView contacts, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                          const SweepMass* masses, float threshold, bool last) {
+    static void restitute(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes, float threshold,
+                          bool last) {
         const F zero = F::all(0), one = F::all(1), slow = F::all(-threshold);
         for (uint32_t i = begin; i < end; ++i) {
             const LaneGroup& g = contacts.group[i];
             if (!last && !g.any_turns) continue;
             const Frame f(g);
             Side a, b;
-            a.gather(g.a, velocities, masses);
-            b.gather(g.b, velocities, masses);
+            a.gather(g.a, nodes);
+            b.gather(g.b, nodes);
             const F due = last ? one : F::load(g.turns);
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint& p = g.point[k];
@@ -357,13 +378,16 @@ struct ContactSweep {
                 const F wanted = F::if_greater(slow, approach, F::load(p.restitution) * approach, zero);
                 const F active = F::if_greater(F::load(p.peak), zero, F::if_greater(zero, wanted, due, zero), zero);
                 const V ra = load(p.ra), rb = load(p.rb);
-                const V push = normal_row(p, dot(b.at(rb) - a.at(ra), f.n), {wanted, active, zero}) * f.n;
+                const F old = F::load(p.impulse[0]);
+                const F next = normal_row(p, old, dot(b.at(rb) - a.at(ra), f.n), {wanted, active, zero});
+                keep_normal(p, next);
+                const V push = (next - old) * f.n;
                 b.add(push, rb);
                 a.subtract(push, ra);
                 F::if_greater(active, zero, zero, approach).store(p.approach);  // once
             }
-            a.scatter(g.a, velocities, masses);
-            b.scatter(g.b, velocities, masses);
+            a.scatter(g.a, nodes);
+            b.scatter(g.b, nodes);
         }
     }
 

@@ -134,13 +134,13 @@ struct JointKernels {
     const char* name;
     // From coordinates, Jacobian and compliance: biases, targets, factors and masses. frame_left: share of the frame
     // after this substep.
-    void (*prepare)(JointView, uint32_t begin, uint32_t end, const SweepMass*, float frame_left);
-    void (*warm_start)(JointView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
-    void (*sweep_biased)(JointView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*, const SweepTerms&);
+    void (*prepare)(JointView, uint32_t begin, uint32_t end, const SweepNode*, float frame_left);
+    void (*warm_start)(JointView, uint32_t begin, uint32_t end, SweepNode*);
+    void (*sweep_biased)(JointView, uint32_t begin, uint32_t end, SweepNode*, const SweepTerms&);
     // Same rows without the bias and softness of rigid ones and the push of stops.
-    void (*sweep_relaxed)(JointView, uint32_t begin, uint32_t end, SweepVelocity*, const SweepMass*);
+    void (*sweep_relaxed)(JointView, uint32_t begin, uint32_t end, SweepNode*);
     // Largest |J v + c p - bias| of the locked rows [m/s or rad/s].
-    float (*residual)(JointView, uint32_t begin, uint32_t end, const SweepVelocity*, const SweepMass*);
+    float (*residual)(JointView, uint32_t begin, uint32_t end, const SweepNode*);
 };
 
 extern const JointKernels kJointKernelsScalar, kJointKernelsSse2, kJointKernelsAvx2;

@@ -23,14 +23,14 @@ struct JointSweep {
 
         Joints(const JointView& view, const JointGroup& group)
             : g(group), jacobian(view.jacobian + group.first_jacobian) {}
-        void gather(const SweepMass* masses) {
-            for (uint32_t n = 0; n < g.nodes; ++n) side[n].gather(g.node[n], masses);
+        void gather_masses(const SweepNode* nodes) {
+            for (uint32_t n = 0; n < g.nodes; ++n) side[n].gather_masses(g.node[n], nodes);
         }
-        void gather(const SweepVelocity* velocities, const SweepMass* masses) {
-            for (uint32_t n = 0; n < g.nodes; ++n) side[n].gather(g.node[n], velocities, masses);
+        void gather(const SweepNode* nodes) {
+            for (uint32_t n = 0; n < g.nodes; ++n) side[n].gather(g.node[n], nodes);
         }
-        void scatter(SweepVelocity* velocities, const SweepMass* masses) const {
-            for (uint32_t n = 0; n < g.nodes; ++n) side[n].scatter(g.node[n], velocities, masses);
+        void scatter(SweepNode* nodes) const {
+            for (uint32_t n = 0; n < g.nodes; ++n) side[n].scatter(g.node[n], nodes);
         }
         V linear(uint32_t n, uint32_t r) const { return part(n, r, 0); }
         V angular(uint32_t n, uint32_t r) const { return part(n, r, 3); }
@@ -153,11 +153,11 @@ struct JointSweep {
         (F::load(row.impulse) + F::load(axis.sign) * (kept - carried)).store(row.impulse);
     }
 
-    static void prepare(JointView view, uint32_t begin, uint32_t end, const SweepMass* masses, float frame_left) {
+    static void prepare(JointView view, uint32_t begin, uint32_t end, const SweepNode* nodes, float frame_left) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
-            joints.gather(masses);
+            joints.gather_masses(nodes);
             F s[21];
             joints.couplings(s);
             for (uint32_t r = 0; r < g.rows; ++r) s[triangle(r, r)].store(view.row[g.first_row + r].own);
@@ -176,16 +176,15 @@ struct JointSweep {
         }
     }
 
-    static void warm_start(JointView view, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                           const SweepMass* masses) {
+    static void warm_start(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
-            joints.gather(velocities, masses);
+            joints.gather(nodes);
             F impulse[kMaxRows];
             for (uint32_t r = 0; r < g.rows; ++r) impulse[r] = F::load(view.row[g.first_row + r].impulse);
             joints.apply(impulse, g.rows);
-            joints.scatter(velocities, masses);
+            joints.scatter(nodes);
         }
     }
 
@@ -266,36 +265,33 @@ struct JointSweep {
         }
     }
 
-    static void sweep(const JointView& view, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                      const SweepMass* masses, const F& stiffening, const F& softness, bool biased) {
+    static void sweep(const JointView& view, uint32_t begin, uint32_t end, SweepNode* nodes, const F& stiffening,
+                      const F& softness, bool biased) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
-            joints.gather(velocities, masses);
+            joints.gather(nodes);
             locked_rows(view, joints, stiffening, softness, biased);
             axis_rows(view, joints, biased);
-            joints.scatter(velocities, masses);
+            joints.scatter(nodes);
         }
     }
 
-    static void sweep_biased(JointView view, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                             const SweepMass* masses, const SweepTerms& terms) {
-        sweep(view, begin, end, velocities, masses, F::all(1 - terms.mass_scale), F::all(terms.impulse_scale), true);
+    static void sweep_biased(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes, const SweepTerms& terms) {
+        sweep(view, begin, end, nodes, F::all(1 - terms.mass_scale), F::all(terms.impulse_scale), true);
     }
 
-    static void sweep_relaxed(JointView view, uint32_t begin, uint32_t end, SweepVelocity* velocities,
-                              const SweepMass* masses) {
-        sweep(view, begin, end, velocities, masses, F::all(0), F::all(0), false);
+    static void sweep_relaxed(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes) {
+        sweep(view, begin, end, nodes, F::all(0), F::all(0), false);
     }
 
-    static float residual(JointView view, uint32_t begin, uint32_t end, const SweepVelocity* velocities,
-                          const SweepMass* masses) {
+    static float residual(JointView view, uint32_t begin, uint32_t end, const SweepNode* nodes) {
         const F zero = F::all(0);
         F largest = zero;
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
-            joints.gather(velocities, masses);
+            joints.gather(nodes);
             F p[kMaxRows];
             for (uint32_t r = 0; r < g.held; ++r) p[r] = F::load(view.row[g.first_row + r].impulse);
             for (uint32_t r = 0; r < g.held; ++r) {

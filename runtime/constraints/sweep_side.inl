@@ -34,32 +34,33 @@ struct SweepSide {
     F velocity[8];  // v xyz, pad, w xyz, pad
     F inv_mass, xx, yy, zz, xy, xz, yz;
 
-    void gather(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepMass* masses) {
-        gather(node, masses);
+    void gather(const uint32_t node[kLanes], const SweepNode* nodes) {
+        gather_masses(node, nodes);
         const float* row[kLanes];
-        for (int i = 0; i < kLanes; ++i) row[i] = velocities[node[i]].v;
+        for (int i = 0; i < kLanes; ++i) row[i] = nodes[node[i]].velocity.v;
         F::transpose(row, velocity);
     }
-    void gather(const uint32_t node[kLanes], const SweepMass* masses) {
+    void gather_masses(const uint32_t node[kLanes], const SweepNode* nodes) {
         const float* row[kLanes];
         F mass[8];
-        for (int i = 0; i < kLanes; ++i) row[i] = &masses[node[i]].inv_mass;
+        for (int i = 0; i < kLanes; ++i) row[i] = &nodes[node[i]].mass.inv_mass;
         F::transpose(row, mass);
         inv_mass = mass[0];
         xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
     }
     // Asks for what gather() will read and scatter() write soon: another core may have changed it last.
-    static void prefetch(const uint32_t node[kLanes], const SweepVelocity* velocities, const SweepMass* masses,
-                         const SweepShift* shifts) {
+    static void prefetch(const uint32_t node[kLanes], const SweepNode* nodes, const SweepShift* shifts) {
         for (int i = 0; i < kLanes; ++i)
-            if (masses[node[i]].inv_mass > 0) prefetch_to_write(&velocities[node[i]]);
+            if (nodes[node[i]].mass.inv_mass > 0) prefetch_to_write(&nodes[node[i]]);
         for (int i = 0; shifts && i < kLanes; ++i) __builtin_prefetch(&shifts[node[i]]);
     }
     // What no impulse moves is not written: groups on other threads read it.
-    void scatter(const uint32_t node[kLanes], SweepVelocity* velocities, const SweepMass* masses) const {
+    void scatter(const uint32_t node[kLanes], SweepNode* nodes) const {
         alignas(32) float nowhere[8];
         float* row[kLanes];
-        for (int i = 0; i < kLanes; ++i) row[i] = masses[node[i]].inv_mass > 0 ? velocities[node[i]].v : nowhere;
+        for (int i = 0; i < kLanes; ++i) row[i] = nodes[node[i]].velocity.v;
+        const unsigned still = ~F::greater(inv_mass, F::all(0)) & kAllLanes;
+        for (unsigned left = still; left != 0; left &= left - 1) row[__builtin_ctz(left)] = nowhere;
         F::transpose_back(velocity, row);
     }
     V turn(const V& l) const {  // I^-1 l

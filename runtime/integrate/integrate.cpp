@@ -19,13 +19,6 @@ void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
     for (int i = 0; i < 6; ++i) out.inv_inertia[i] = static_cast<float>(values[i]);
 }
 
-void set_sweep_velocity(SweepVelocity& out, const Vec3& v, const Vec3& w) {
-    for (int i = 0; i < 3; ++i) {
-        out.v[i] = static_cast<float>(v[i]);
-        out.w[i] = static_cast<float>(w[i]);
-    }
-}
-
 void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
     for (int i = 0; i < 3; ++i) shift.dx[i] = static_cast<float>(dx[i]);
     for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
@@ -94,9 +87,9 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node) {
     system.found[node + 1] = {m.x, m.q};
     set_sweep_pose(system, node, Vec3::Zero(), m.q);
     system.exact[node + 1] = {m.v, m.w};
-    set_inverse_mass(system.inverse_mass[node + 1], nodes.mass[node], system.pose[node + 1].R);
-    if (nodes.sleeps(node)) system.inverse_mass[node + 1] = {};  // what comes near stops at it until it wakes
-    set_sweep_velocity(system.velocity[node + 1], m.v, m.w);
+    set_inverse_mass(system.sweep[node + 1].mass, nodes.mass[node], system.pose[node + 1].R);
+    if (nodes.sleeps(node)) system.sweep[node + 1].mass = {};  // what comes near stops at it until it wakes
+    set_sweep_velocity(system.sweep[node + 1].velocity, {m.v, m.w});
 }
 
 // Velocities at which nodes would go on through a substep without contacts and joints.
@@ -136,7 +129,7 @@ private:
         system.exact[node + 1] = {m.v + system.h * (mass.gravity_scale * gravity + mass.inv_mass * force), m.w};
         if (nodes.info[node].kind != NodeKind::fixed) return;  // else quarantined in this frame
         system.exact[node + 1] = {};
-        system.inverse_mass[node + 1] = {};
+        system.sweep[node + 1].mass = {};
         if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
     }
     void turn_axes(uint32_t node) const {
@@ -146,7 +139,7 @@ private:
         R = q.toRotationMatrix();
         note_turn(system, node, q, kTurn);
         if (!mass.isotropic && (system.turned[node + 1] || system.in_block[node + 1]))
-            set_inverse_mass(system.inverse_mass[node + 1], mass, R);
+            set_inverse_mass(system.sweep[node + 1].mass, mass, R);
         if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
     }
     void finish(uint32_t node) const {
@@ -158,7 +151,7 @@ private:
         }
         const NodeMotion& m = nodes.motion[node];
         if (system.in_block[node + 1]) system.start[node + 1] = {m.v, m.w};
-        set_sweep_velocity(system.velocity[node + 1], u.v, u.w);
+        set_sweep_velocity(system.sweep[node + 1].velocity, u);
     }
 };
 

@@ -59,6 +59,19 @@ struct ScalarLanes {
         for (int i = 0; i < kLanes; ++i) r.f[i] = a.f[i] > b.f[i] ? yes.f[i] : no.f[i];
         return r;
     }
+    // a > b, a bit a lane
+    static unsigned greater(const ScalarLanes& a, const ScalarLanes& b) {
+        unsigned bits = 0;
+        for (int i = 0; i < kLanes; ++i) bits |= static_cast<unsigned>(a.f[i] > b.f[i]) << i;
+        return bits;
+    }
+    // Whether any lane of any of them is not 0.
+    template <class... Lanes>
+    static bool any(const Lanes&... lanes) {
+        bool found = false;
+        for (int i = 0; i < kLanes; ++i) found = found || ((lanes.f[i] != 0) || ...);
+        return found;
+    }
     // Rows of eight floats, one for each lane, become columns: out[c] holds component c of all lanes.
     static void transpose(const float* const row[kLanes], ScalarLanes out[8]) {
         for (int c = 0; c < 8; ++c)
@@ -90,6 +103,11 @@ struct Twice {
     static Twice sqrt(Twice a) { return {R::sqrt(a.lo), R::sqrt(a.hi)}; }
     static Twice if_greater(Twice a, Twice b, Twice yes, Twice no) {
         return {R::if_greater(a.lo, b.lo, yes.lo, no.lo), R::if_greater(a.hi, b.hi, yes.hi, no.hi)};
+    }
+    static unsigned greater(Twice a, Twice b) { return R::greater(a.lo, b.lo) | R::greater(a.hi, b.hi) << R::kWidth; }
+    template <class... Lanes>
+    static bool any(Lanes... lanes) {
+        return R::any(lanes.lo..., lanes.hi...);
     }
     static void transpose(const float* const row[kWidth], Twice out[8]) {
         R lo_[8], hi_[8];
@@ -124,6 +142,15 @@ struct Sse2Register {
     static Sse2Register if_greater(Sse2Register a, Sse2Register b, Sse2Register yes, Sse2Register no) {
         const __m128 mask = _mm_cmpgt_ps(a.f, b.f);
         return {_mm_or_ps(_mm_and_ps(mask, yes.f), _mm_andnot_ps(mask, no.f))};
+    }
+    static unsigned greater(Sse2Register a, Sse2Register b) {
+        return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(a.f, b.f)));
+    }
+    // All bits together are 0 or -0 only where each is.
+    template <class... More>
+    static bool any(Sse2Register a, More... more) {
+        ((a.f = _mm_or_ps(a.f, more.f)), ...);
+        return _mm_movemask_ps(_mm_cmpneq_ps(a.f, _mm_setzero_ps())) != 0;
     }
     static void transpose(const float* const row[4], Sse2Register out[8]) {
         for (int half = 0; half < 2; ++half) {
@@ -173,43 +200,47 @@ struct Avx2Register {
     static Avx2Register if_greater(Avx2Register a, Avx2Register b, Avx2Register yes, Avx2Register no) {
         return {_mm256_blendv_ps(no.f, yes.f, _mm256_cmp_ps(a.f, b.f, _CMP_GT_OQ))};
     }
+    static unsigned greater(Avx2Register a, Avx2Register b) {
+        return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.f, b.f, _CMP_GT_OQ)));
+    }
+    template <class... More>
+    static bool any(Avx2Register a, More... more) {
+        ((a.f = _mm256_or_ps(a.f, more.f)), ...);
+        return _mm256_movemask_ps(_mm256_cmp_ps(a.f, _mm256_setzero_ps(), _CMP_NEQ_UQ)) != 0;
+    }
+    // By half rows: what crosses the halves of a register is slow on many processors, and loads and stores need not.
     static void transpose(const float* const row[8], Avx2Register out[8]) {
-        __m256 r[8];
-#pragma GCC unroll 8
-        for (int i = 0; i < 8; ++i) r[i] = _mm256_load_ps(row[i]);
-        transpose8(r);
-#pragma GCC unroll 8
-        for (int i = 0; i < 8; ++i) out[i].f = r[i];
+#pragma GCC unroll 2
+        for (int half = 0; half < 2; ++half) {
+            __m256 r[4];
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) r[i] = _mm256_loadu2_m128(row[i + 4] + 4 * half, row[i] + 4 * half);
+            transpose4(r);
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) out[4 * half + i].f = r[i];
+        }
     }
     static void transpose_back(const Avx2Register in[8], float* const row[8]) {
-        __m256 r[8];
-#pragma GCC unroll 8
-        for (int i = 0; i < 8; ++i) r[i] = in[i].f;
-        transpose8(r);
-#pragma GCC unroll 8
-        for (int i = 0; i < 8; ++i) _mm256_store_ps(row[i], r[i]);
+#pragma GCC unroll 2
+        for (int half = 0; half < 2; ++half) {
+            __m256 r[4];
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) r[i] = in[4 * half + i].f;
+            transpose4(r);
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) _mm256_storeu2_m128(row[i + 4] + 4 * half, row[i] + 4 * half, r[i]);
+        }
     }
 
 private:
-    static void transpose8(__m256 r[8]) {
-        __m256 s[8], t[8];
-#pragma GCC unroll 8
-        for (int i = 0; i < 8; i += 2) {
-            s[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
-            s[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
-        }
-#pragma GCC unroll 8
-        for (int i = 0; i < 8; i += 4) {
-            t[i] = _mm256_shuffle_ps(s[i], s[i + 2], 0x44);
-            t[i + 1] = _mm256_shuffle_ps(s[i], s[i + 2], 0xee);
-            t[i + 2] = _mm256_shuffle_ps(s[i + 1], s[i + 3], 0x44);
-            t[i + 3] = _mm256_shuffle_ps(s[i + 1], s[i + 3], 0xee);
-        }
-#pragma GCC unroll 8
-        for (int i = 0; i < 4; ++i) {
-            r[i] = _mm256_permute2f128_ps(t[i], t[i + 4], 0x20);
-            r[i + 4] = _mm256_permute2f128_ps(t[i], t[i + 4], 0x31);
-        }
+    // Four by four, in either half.
+    static void transpose4(__m256 (&r)[4]) {
+        const __m256 a = _mm256_unpacklo_ps(r[0], r[1]), b = _mm256_unpackhi_ps(r[0], r[1]);
+        const __m256 c = _mm256_unpacklo_ps(r[2], r[3]), d = _mm256_unpackhi_ps(r[2], r[3]);
+        r[0] = _mm256_shuffle_ps(a, c, 0x44);
+        r[1] = _mm256_shuffle_ps(a, c, 0xee);
+        r[2] = _mm256_shuffle_ps(b, d, 0x44);
+        r[3] = _mm256_shuffle_ps(b, d, 0xee);
     }
 };
 using Avx2Lanes = Twice<Avx2Register>;

@@ -5,7 +5,8 @@
 
 namespace taut {
 
-constexpr int kLanes = 16;  // floats that a kernel works on side by side
+constexpr int kLanes = 16;                          // floats that a kernel works on side by side
+constexpr uint32_t kAllLanes = (1u << kLanes) - 1;  // a bit for each
 
 enum class Width : uint8_t { scalar, sse2, avx2 };
 

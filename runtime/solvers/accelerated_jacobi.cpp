@@ -100,7 +100,7 @@ private:
         double split = 0;
         for (int n = 0; n < block.type->nodes; ++n)
             split += count_[block.node[n]] *
-                     inverse_mass_along(sys_.inverse_mass[block.node[n]], row_of(sys_, block, n, axis.row));
+                     inverse_mass_along(sys_.sweep[block.node[n]].mass, row_of(sys_, block, n, axis.row));
         axis.inverse = split > 0 ? 1 / (split + axis.axis.compliance) : 0;
     }
 
@@ -246,7 +246,7 @@ private:
     void push(const RowBlock& block, const RowVector& impulse) {
         for (int n = 0; n < block.type->nodes; ++n) {
             const uint32_t node = block.node[n];
-            const NodeVector dv = response(sys_.inverse_mass[node], jacobian_of(sys_, block, n).transpose() * impulse);
+            const NodeVector dv = response(sys_.sweep[node].mass, jacobian_of(sys_, block, n).transpose() * impulse);
             sys_.exact[node].v += dv.head<3>();
             sys_.exact[node].w += dv.tail<3>();
         }

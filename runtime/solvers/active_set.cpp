@@ -59,7 +59,7 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
         const double* j = r.jacobian + static_cast<size_t>(n) * r.stride;
         r.place[n] = sys_.place[node];
         if (j[0] != 0 || j[1] != 0 || j[2] != 0) r.begin = 0;
-        r.k += inverse_mass_along(sys_.inverse_mass[node], j);
+        r.k += inverse_mass_along(sys_.sweep[node].mass, j);
         if (r.place[n] != kNone) continue;
         const Velocity& u = sys_.exact[node];
         r.known += sign * (Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w));

@@ -21,7 +21,7 @@ constexpr uint8_t kWhipsFrames = 60;      // a block that turned too far is apar
 // The velocity that the sweeps left on a node of a block, relative to the one they were given: contact impulses.
 void add_contact_changes(Substep& s, const Block& block) {
     for (uint32_t node : block.nodes) {
-        const SweepVelocity& u = s.system.velocity[node + 1];
+        const SweepVelocity& u = s.system.sweep[node + 1].velocity;
         const Velocity& given = s.system.exact[node + 1];
         Velocity& free = s.system.free[node + 1];
         for (int k = 0; k < 3; ++k) {
@@ -39,14 +39,7 @@ void take_from_sweeps(Substep& s, const Block& block) {
 }
 
 void give_to_sweeps(Substep& s, const Block& block) {
-    for (uint32_t node : block.nodes) {
-        SweepVelocity& u = s.system.velocity[node + 1];
-        const Velocity& exact = s.system.exact[node + 1];
-        for (int k = 0; k < 3; ++k) {
-            u.v[k] = static_cast<float>(exact.v[k]);
-            u.w[k] = static_cast<float>(exact.w[k]);
-        }
-    }
+    for (uint32_t node : block.nodes) set_sweep_velocity(s.system.sweep[node + 1].velocity, s.system.exact[node + 1]);
 }
 
 void move_freely(Substep& s, const Block& block) {

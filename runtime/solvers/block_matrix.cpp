@@ -185,7 +185,7 @@ double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
     double k = 0;
     const double* j = &sys_.rows.jacobian[block.jacobian] + r * kDof;
     for (int n = 0; n < block.type->nodes; ++n, j += block.type->rows * kDof)
-        if (local(block.node[n]) != kNone) k += inverse_mass_along(sys_.inverse_mass[block.node[n]], j);
+        if (local(block.node[n]) != kNone) k += inverse_mass_along(sys_.sweep[block.node[n]].mass, j);
     return kLoopCompliance * k;
 }
 

@@ -14,7 +14,7 @@ void publish(Substep& s, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
         const uint32_t node = s.group.nodes[i];
         if (s.system.in_block[node + 1]) continue;
-        const SweepVelocity& u = s.system.velocity[node + 1];
+        const SweepVelocity& u = s.system.sweep[node + 1].velocity;
         Velocity& exact = s.system.exact[node + 1];
         for (int k = 0; k < 3; ++k) {
             exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
@@ -32,16 +32,15 @@ public:
         : s_(substep),
           joints_(s_.system.joints.view()),
           contacts_(s_.system.contacts.view()),
-          velocity_(s_.system.velocity.data()),
-          mass_(s_.system.inverse_mass.data()),
+          nodes_(s_.system.sweep.data()),
           joint_(*s_.settings.joint_kernels),
           contact_(*s_.settings.kernels),
           soft_(contact_terms(s_.system.h)) {}
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
-        if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, velocity_, mass_);
-        if (is_biased(pass)) joint_.sweep_biased(joints_, begin, end, velocity_, mass_, joint_terms(s_.system.h));
-        if (pass == Pass::relaxed) joint_.sweep_relaxed(joints_, begin, end, velocity_, mass_);
+        if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, nodes_);
+        if (is_biased(pass)) joint_.sweep_biased(joints_, begin, end, nodes_, joint_terms(s_.system.h));
+        if (pass == Pass::relaxed) joint_.sweep_relaxed(joints_, begin, end, nodes_);
     }
     void rows(Pass pass) const {
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
@@ -54,10 +53,10 @@ public:
         LaneView contacts = contacts_;
         contacts.shared = shared;
         const SweepShift* const shifts = pass == Pass::first_biased ? s_.system.shift.data() : nullptr;
-        if (pass == Pass::warm_start) contact_.warm_start(contacts, begin, end, velocity_, mass_);
-        if (is_biased(pass)) contact_.sweep_biased(contacts, begin, end, velocity_, mass_, shifts, soft_);
-        if (pass == Pass::relaxed) contact_.sweep_relaxed(contacts, begin, end, velocity_, mass_, soft_);
-        if (pass == Pass::restitute) contact_.restitute(contacts, begin, end, velocity_, mass_, kBounceSpeed, s_.last);
+        if (pass == Pass::warm_start) contact_.warm_start(contacts, begin, end, nodes_);
+        if (is_biased(pass)) contact_.sweep_biased(contacts, begin, end, nodes_, shifts, soft_);
+        if (pass == Pass::relaxed) contact_.sweep_relaxed(contacts, begin, end, nodes_, soft_);
+        if (pass == Pass::restitute) contact_.restitute(contacts, begin, end, nodes_, kBounceSpeed, s_.last);
     }
 
 private:
@@ -66,8 +65,7 @@ private:
     Substep& s_;
     JointView joints_;
     LaneView contacts_;
-    SweepVelocity* velocity_;
-    const SweepMass* mass_;
+    SweepNode* nodes_;
     const JointKernels& joint_;
     const ContactKernels& contact_;
     SweepTerms soft_;

@@ -24,8 +24,8 @@ public:
     void apply(const RowVector& impulse) {
         for (int i = 0; i < block_.type->nodes; ++i) {
             const uint32_t node = block_.node[i];
-            const NodeVector dv = response(system_.inverse_mass[node], jacobian(i).transpose() * impulse);
-            SweepVelocity& u = system_.velocity[node];
+            const NodeVector dv = response(system_.sweep[node].mass, jacobian(i).transpose() * impulse);
+            SweepVelocity& u = system_.sweep[node].velocity;
             for (int k = 0; k < 3; ++k) {
                 u.v[k] += static_cast<float>(dv[k]);
                 u.w[k] += static_cast<float>(dv[3 + k]);
@@ -34,7 +34,8 @@ public:
     }
     RowVector velocity() const {  // J v
         RowVector v = RowVector::Zero(rows_);
-        for (int i = 0; i < block_.type->nodes; ++i) v += jacobian(i) * velocity_of(system_.velocity[block_.node[i]]);
+        for (int i = 0; i < block_.type->nodes; ++i)
+            v += jacobian(i) * velocity_of(system_.sweep[block_.node[i]].velocity);
         return v;
     }
     RowMatrix effective() const {  // J W J^T

@@ -53,7 +53,7 @@ void evaluate_joint_lanes(Team& team, System& system, const JointKernels& kernel
     JointLanes& lanes = system.joints;
     team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) evaluate_group(system, lanes.group[i]);
-        kernels.prepare(lanes.view(), begin, end, system.inverse_mass.data(), static_cast<float>(system.frame_left));
+        kernels.prepare(lanes.view(), begin, end, system.sweep.data(), static_cast<float>(system.frame_left));
     });
 }
 

@@ -152,10 +152,8 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     ContactLanes& lanes = system.contacts;
     lanes.drive.clear();
     lanes.rolling.clear();
-    share_out(team, lanes, pairs, group, system.inverse_mass);
-    const auto prepare = [&](uint32_t g) {
-        kernels.prepare(lanes.view(), g, g + 1, system.velocity.data(), system.inverse_mass.data());
-    };
+    share_out(team, lanes, pairs, group, system.sweep);
+    const auto prepare = [&](uint32_t g) { kernels.prepare(lanes.view(), g, g + 1, system.sweep.data()); };
     std::atomic<bool> bounces{false}, special{false};
     for_lane_parts(team, lanes, [&](uint32_t part) {
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
@@ -207,8 +205,7 @@ void turn_lanes(Team& team, System& system, const Group& group, const ContactKer
         LaneTurns turns;
         for (uint32_t g = begin; g < end; ++g)
             if (note_turns(lanes.group[g], system, turns))
-                kernels.turn(lanes.view(), g, turns, system.shift.data(), system.velocity.data(),
-                             system.inverse_mass.data());
+                kernels.turn(lanes.view(), g, turns, system.shift.data(), system.sweep.data());
     });
     for (const uint32_t node : group.nodes) {
         if (!system.turned[node + 1]) continue;
@@ -224,11 +221,12 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
         Pair& pair = pairs.list[g.pair[lane]];
         for (int k = 0; k < pair.manifold.count; ++k) {
             const LanePoint& p = g.point[k];
-            pair.impulse[k] = {p.impulse[0][lane], p.impulse[1][lane], p.impulse[2][lane]};
+            // Of what bears nothing, 0 and not -0, whoever else is in its lanes.
+            pair.impulse[k] = {p.impulse[0][lane] + 0.0f, p.impulse[1][lane] + 0.0f, p.impulse[2][lane] + 0.0f};
         }
         if (!pair.twists()) return;
         const float(&turning)[3][kLanes] = lanes.rolling[g.rolling].impulse;
-        pair.turning = {turning[0][lane], turning[1][lane], turning[2][lane]};
+        pair.turning = {turning[0][lane] + 0.0f, turning[1][lane] + 0.0f, turning[2][lane] + 0.0f};
         pair.spin_slip = -1;
     };
     for_lane_parts(team, lanes, [&](uint32_t part) {

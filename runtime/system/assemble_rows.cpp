@@ -331,8 +331,7 @@ void store_contact_rows(const System& system) {
 
 double row_residual(System& system, const JointKernels& kernels) {
     const auto groups = static_cast<uint32_t>(system.joints.group.size());
-    double largest =
-        kernels.residual(system.joints.view(), 0, groups, system.velocity.data(), system.inverse_mass.data());
+    double largest = kernels.residual(system.joints.view(), 0, groups, system.sweep.data());
     for (const RowBlock& block : system.rows.block) {
         if (block.type->bound != Bound::free || block.in_lanes) continue;
         RowVector r = error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);

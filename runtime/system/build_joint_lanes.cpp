@@ -220,9 +220,9 @@ void fill_axes(System& system, const JointGroup& g, int lane, const RowBlock& bl
 }
 
 bool stays(const System& system, uint32_t node) {
-    const SweepVelocity& u = system.velocity[node];
+    const SweepVelocity& u = system.sweep[node].velocity;
     const auto still = [](float x) { return x == 0; };
-    return system.inverse_mass[node].inv_mass == 0 && std::all_of(u.v, u.v + 3, still) &&
+    return system.sweep[node].mass.inv_mass == 0 && std::all_of(u.v, u.v + 3, still) &&
            std::all_of(u.w, u.w + 3, still);
 }
 

@@ -57,8 +57,8 @@ void choose_pairs(LaneGroup& g, const Pairs& pairs, const Group& group, uint32_t
 // Which parts have lane groups at which nodes.
 class Meetings {
 public:
-    Meetings(ContactLanes& lanes, const Array<SweepMass>& inverse_mass)
-        : lanes_(lanes), met_(lanes.met), inverse_mass_(inverse_mass), nodes_(inverse_mass.size()) {
+    Meetings(ContactLanes& lanes, const Array<SweepNode>& nodes)
+        : lanes_(lanes), met_(lanes.met), sweep_(nodes), nodes_(nodes.size()) {
         met_.resize(nodes_ * lanes.parts);
     }
     void note(uint32_t part) {
@@ -83,7 +83,7 @@ private:
     bool is_border(const LaneGroup& g, uint32_t part) const {
         for (const auto& side : {g.a, g.b})
             for (uint32_t lane = 0; lane < kLanes; ++lane)
-                if (others_meet(side[lane], part) && inverse_mass_[side[lane]].inv_mass > 0) return true;
+                if (others_meet(side[lane], part) && sweep_[side[lane]].mass.inv_mass > 0) return true;
         return false;
     }
     bool others_meet(uint32_t node, uint32_t part) const {
@@ -100,7 +100,7 @@ private:
 
     ContactLanes& lanes_;
     Array<uint8_t>& met_;
-    const Array<SweepMass>& inverse_mass_;
+    const Array<SweepNode>& sweep_;
     size_t nodes_;
 };
 
@@ -115,8 +115,7 @@ void place_points(ContactLanes& lanes) {
 
 }  // namespace
 
-void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group,
-               const Array<SweepMass>& inverse_mass) {
+void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group, const Array<SweepNode>& nodes) {
     lanes.group.clear();
     lanes.point.clear();
     lanes.part.clear();
@@ -124,7 +123,7 @@ void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group&
     reserve_groups(lanes, group);
     lanes.first_pair.clear();
     for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c);
-    Meetings meetings(lanes, inverse_mass);
+    Meetings meetings(lanes, nodes);
     const auto choose = [&](uint32_t part) {
         for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts)
             for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)

@@ -8,10 +8,8 @@
 
 namespace taut {
 
-// Lane groups of all colours with their pairs and nodes, a part of each colour for each thread. inverse_mass: by node
-// + 1.
-void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group,
-               const Array<SweepMass>& inverse_mass);
+// Lane groups of all colours with their pairs and nodes, a part of each colour for each thread. nodes: by node + 1.
+void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group, const Array<SweepNode>& nodes);
 
 constexpr uint32_t kFewGroups = 16;  // that are done before anybody could help
 

@@ -74,7 +74,7 @@ inline RowMatrix effective_mass(const System& system, const RowBlock& block, int
     const auto j = jacobian_of(system, block, node);
     RowMatrix s(block.type->rows, block.type->rows);
     for (int r = 0; r < block.type->rows; ++r)
-        s.col(r) = j * response(system.inverse_mass[block.node[node]], j.row(r).transpose());
+        s.col(r) = j * response(system.sweep[block.node[node]].mass, j.row(r).transpose());
     return s;
 }
 

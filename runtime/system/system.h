@@ -90,6 +90,14 @@ struct Rows {
     Array<RollingData> rolling_data;   // of contacts with rolling or spinning friction, after their points
 };
 
+// For sweeps, which want no -0.
+inline void set_sweep_velocity(SweepVelocity& out, const Velocity& u) {
+    for (int i = 0; i < 3; ++i) {
+        out.v[i] = static_cast<float>(u.v[i]) + 0.0f;
+        out.w[i] = static_cast<float>(u.w[i]) + 0.0f;
+    }
+}
+
 struct System {
     struct Found {  // place at which contacts were found, rotation that their levers belong to
         Vec3 x = Vec3::Zero();
@@ -109,8 +117,7 @@ struct System {
           kinematic(memory),
           in_block(memory),
           place(memory),
-          velocity(memory),
-          inverse_mass(memory),
+          sweep(memory),
           shift(memory),
           sweep_pose(memory),
           rows(memory),
@@ -122,29 +129,28 @@ struct System {
         const size_t size = nodes + 1;
         grow_to(pose, size), grow_to(exact, size), grow_to(found, size), grow_to(turned, size);
         grow_to(in_block, size), grow_to(place, size);
-        grow_to(velocity, size), grow_to(inverse_mass, size), grow_to(shift, size);
+        grow_to(sweep, size), grow_to(shift, size);
     }
 
     double h = 0;           // substep [s]
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
 
     // by node + 1; of those for nodes in blocks all or, where no block ever was, none
-    Array<Pose> pose;               // at the start of the substep; predict()
-    Array<Velocity> exact;          // predict(): v* = v + h a; solvers: v+
-    Array<Velocity> free;           // v* with contact impulses, of nodes in blocks; block_ldlt
-    Array<Velocity> kept;           // v+ without the push of overlaps, of nodes in blocks with bounded rows
-    Array<Velocity> correction;     // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
-    Array<Velocity> start;          // v before forces, for energy balances, of nodes in blocks; predict()
-    Array<Mat3> inertia;            // world axes [kg m^2], of nodes in blocks only; predict()
-    Array<Found> found;             // begin_frame(), predict()
-    Array<uint8_t> turned;          // 1: so far that levers turn in this substep; predict(), turn_kinematic()
-    Array<uint32_t> kinematic;      // nodes; begin_frame()
-    Array<uint8_t> in_block;        // 1: a direct solve owns its exact velocity; build_rows()
-    Array<uint32_t> place;          // in the nodes of its block, or kNone; build_rows()
-    Array<SweepVelocity> velocity;  // float copy for sweeps
-    Array<SweepMass> inverse_mass;  // of sweeps, world axes
-    Array<SweepShift> shift;        // motion since contacts were found; commit()
-    Array<SweepPose> sweep_pose;    // pose in floats, where there are joints; begin_frame(), predict()
+    Array<Pose> pose;             // at the start of the substep; predict()
+    Array<Velocity> exact;        // predict(): v* = v + h a; solvers: v+
+    Array<Velocity> free;         // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> kept;         // v+ without the push of overlaps, of nodes in blocks with bounded rows
+    Array<Velocity> correction;   // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
+    Array<Velocity> start;        // v before forces, for energy balances, of nodes in blocks; predict()
+    Array<Mat3> inertia;          // world axes [kg m^2], of nodes in blocks only; predict()
+    Array<Found> found;           // begin_frame(), predict()
+    Array<uint8_t> turned;        // 1: so far that levers turn in this substep; predict(), turn_kinematic()
+    Array<uint32_t> kinematic;    // nodes; begin_frame()
+    Array<uint8_t> in_block;      // 1: a direct solve owns its exact velocity; build_rows()
+    Array<uint32_t> place;        // in the nodes of its block, or kNone; build_rows()
+    Array<SweepNode> sweep;       // velocities in floats and inverse masses, world axes
+    Array<SweepShift> shift;      // motion since contacts were found; commit()
+    Array<SweepPose> sweep_pose;  // pose in floats, where there are joints; begin_frame(), predict()
 
     Rows rows;              // of the group being solved
     JointLanes joints;      // swept ones of the group being solved

@@ -143,7 +143,7 @@ void add_system(const World& world, const StageEnd& end, Sums& sums) {
         add_motion(world, node, sums);
         hash.add(system.exact[node + 1].v);
         hash.add(system.exact[node + 1].w);
-        const SweepVelocity& u = system.velocity[node + 1];
+        const SweepVelocity& u = system.sweep[node + 1].velocity;
         const SweepShift& shift = system.shift[node + 1];
         for (int i = 0; i < 3; ++i)
             for (float x : {u.v[i], u.w[i], shift.dx[i], shift.dq[i]}) hash.add(x);

@@ -33,8 +33,7 @@ struct Mechanism {
     explicit Mechanism(uint64_t seed) : team(taut_hooks{}, 1) {
         Random random(seed);
         system.h = kStep;
-        system.velocity.resize(1 + kMaxNodes * kJoints);
-        system.inverse_mass.resize(1 + kMaxNodes * kJoints);
+        system.sweep.resize(1 + kMaxNodes * kJoints);
         system.pose.resize(1 + kMaxNodes * kJoints);
         system.sweep_pose.resize(1 + kMaxNodes * kJoints);
         system.found.resize(1 + kMaxNodes * kJoints);
@@ -91,13 +90,13 @@ struct Mechanism {
     void place(uint32_t node, Random& random) {
         const Vec3 v = random.vector(), w = random.vector();
         for (int k = 0; k < 3; ++k) {
-            system.velocity[node].v[k] = static_cast<float>(v[k]);
-            system.velocity[node].w[k] = static_cast<float>(w[k]);
+            system.sweep[node].velocity.v[k] = static_cast<float>(v[k]);
+            system.sweep[node].velocity.w[k] = static_cast<float>(w[k]);
         }
         const double inv_mass = std::pow(10.0, 2 * random.unit() - 1);
-        system.inverse_mass[node].inv_mass = static_cast<float>(inv_mass);
+        system.sweep[node].mass.inv_mass = static_cast<float>(inv_mass);
         for (int k = 0; k < 6; ++k)
-            system.inverse_mass[node].inv_inertia[k] =
+            system.sweep[node].mass.inv_inertia[k] =
                 static_cast<float>(inv_mass * (k < 3 ? 2 + random.unit() : 0.5 * random.unit()));
     }
     void add_axes(Part& part, RowBlock& block, Random& random) const {
@@ -126,12 +125,9 @@ struct Mechanism {
         evaluate_joint_lanes(team, system, kernels);
         const JointView view = system.joints.view();
         const auto groups = static_cast<uint32_t>(system.joints.group.size());
-        kernels.warm_start(view, 0, groups, system.velocity.data(), system.inverse_mass.data());
-        for (int i = 0; i < biased; ++i)
-            kernels.sweep_biased(view, 0, groups, system.velocity.data(), system.inverse_mass.data(),
-                                 joint_terms(kStep));
-        for (int i = 0; i < relaxed; ++i)
-            kernels.sweep_relaxed(view, 0, groups, system.velocity.data(), system.inverse_mass.data());
+        kernels.warm_start(view, 0, groups, system.sweep.data());
+        for (int i = 0; i < biased; ++i) kernels.sweep_biased(view, 0, groups, system.sweep.data(), joint_terms(kStep));
+        for (int i = 0; i < relaxed; ++i) kernels.sweep_relaxed(view, 0, groups, system.sweep.data());
         store_joint_lanes(team, system);
     }
 
@@ -154,9 +150,9 @@ void expect_same_bits(const JointKernels& kernels) {
         scalar.run(kJointKernelsScalar, 3, 2);
         other.run(kernels, 3, 2);
         float sum = 0;
-        for (const SweepVelocity& u : scalar.system.velocity) sum += u.v[0] + u.w[2];
+        for (const SweepNode& n : scalar.system.sweep) sum += n.velocity.v[0] + n.velocity.w[2];
         ASSERT_TRUE(std::isfinite(sum));
-        ASSERT_TRUE(same_bits(scalar.system.velocity, other.system.velocity));
+        ASSERT_TRUE(same_bits(scalar.system.sweep, other.system.sweep));
         for (uint32_t j = 0; j < kJoints; ++j) ASSERT_EQ(scalar.parts[j].force, other.parts[j].force);
     }
 }
@@ -174,7 +170,7 @@ Matrix inverse_masses(const System& system, const RowBlock& block) {
     const int size = kDof * block.type->nodes;
     Matrix w = Matrix::Zero(size, size);
     for (int n = 0; n < block.type->nodes; ++n) {
-        const SweepMass& m = system.inverse_mass[block.node[n]];
+        const SweepMass& m = system.sweep[block.node[n]].mass;
         const float* i = m.inv_inertia;
         w.block<3, 3>(kDof * n, kDof * n) = m.inv_mass * Mat3::Identity();
         w.block<3, 3>(kDof * n + 3, kDof * n + 3) << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
@@ -185,7 +181,7 @@ Matrix inverse_masses(const System& system, const RowBlock& block) {
 Vector velocities_of(const System& system, const RowBlock& block) {
     Vector u(kDof * block.type->nodes);
     for (int n = 0; n < block.type->nodes; ++n) {
-        const SweepVelocity& from = system.velocity[block.node[n]];
+        const SweepVelocity& from = system.sweep[block.node[n]].velocity;
         for (int k = 0; k < 3; ++k) {
             u[kDof * n + k] = from.v[k];
             u[kDof * n + 3 + k] = from.w[k];
@@ -328,10 +324,10 @@ TEST(JointKernels, SolveTheEquationsOfEachJoint) {
 // Joints between what does not move, and rows that say what others said already, change nothing and stay finite.
 TEST(JointKernels, WhatCannotMoveIsLeftOut) {
     Mechanism m(7);
-    for (SweepMass& mass : m.system.inverse_mass) mass = {};
-    const auto before = m.system.velocity;
+    for (SweepNode& n : m.system.sweep) n.mass = {};
+    const auto before = m.system.sweep;
     m.run(kJointKernelsSse2, 2, 2);
-    EXPECT_TRUE(same_bits(before, m.system.velocity));
+    EXPECT_TRUE(same_bits(before, m.system.sweep));
     for (const auto& part : m.parts)
         for (double force : part.force) EXPECT_TRUE(std::isfinite(force));
 }
