@@ -180,9 +180,10 @@ void add_points(const Polygon& polygon, const ReferencePlane& plane, uint32_t ba
     }
 }
 
-// Of all corners within the margin none takes the place of one that it lies above by more than 35 degrees, as the top
-// of a thin plate would that of its bottom: add_points' diagonals are sqrt 2 long.
-constexpr float kSlope = 2;
+// Of all corners within the margin none takes the place of one that it lies above by more than 55 degrees, as the top
+// of a thin plate would that of its bottom: add_points' diagonals are sqrt 2 long. Steeper ones leave corners out that
+// a plate comes down on as it turns.
+constexpr float kSlope = 1;
 
 float touch_plane(std::span<const Vec3f> corners, float radius, const Vec3f& up, float height, const Wanted& wanted,
                   Manifold& out) {

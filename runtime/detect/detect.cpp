@@ -145,9 +145,12 @@ CentrePose pose_of(const Nodes& nodes, uint32_t node, double elapsed) {
 }
 
 // How far a collider may get in the frame, linear way and turning.
-void look_ahead(const Nodes& nodes, const Collider& collider, const Pace& pace, double time_step, Travel& travel) {
+void look_ahead(const Nodes& nodes, const Collider& collider, const Pace& pace, const Stance& stance, double time_step,
+                Travel& travel) {
     travel.ahead = static_cast<float>(time_step * nodes.motion[collider.node].v.norm() + pace.turning);
     travel.thickness = static_cast<float>(pace.thickness);
+    const bool yields = moves_by_forces(nodes.info[collider.node].kind);
+    travel.swing = yields ? swing_of(stance, static_cast<float>(time_step)) : 0;
 }
 
 collision::Box grown(collision::Box box) {
@@ -244,8 +247,8 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
             pairs.reach[c].left = false;
             if (collider.node == kNone) continue;
             pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape], time_step);
-            look_ahead(nodes, collider, pairs.pace[c], time_step, pairs.travel[c]);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
+            look_ahead(nodes, collider, pairs.pace[c], pairs.stance[c], time_step, pairs.travel[c]);
             if (!moves(nodes, collider) || box_holds(pairs.reach[c], pairs.travel[c])) continue;
             make_box(nodes, collider, c, shapes, pairs, time_step);
             pairs.reach[c].left = !broadphase.holds(c, pairs.reach[c].box);
@@ -277,7 +280,9 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
 NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {
     NearPair near;
     near.key = key;
-    near.filtered = !may_collide(nodes, colliders, pairs, near.ends(colliders));
+    const PairEnds ends = near.ends(colliders);
+    near.filtered = !may_collide(nodes, colliders, pairs, ends);
+    near.against_fixed = is_against_fixed(nodes, ends);
     return near;
 }
 

@@ -1,6 +1,7 @@
 // How colliders stand and move, as contacts are looked for.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "base/math.h"
@@ -28,11 +29,17 @@ struct Stance {
     bool placed = false;                                   // else all of this is yet to come
 };
 
+// How far a shape's points may swing about its origin in a time [s] as it turns [m].
+inline float swing_of(const Stance& stance, float time) {
+    return std::min(time * stance.spin.norm(), 2.0f) * stance.reach;
+}
+
 // What a collider's points covered so far, and may cover.
 struct Travel {
     double way = 0;       // of its furthest point, at least as long as from each place to the next [m]
     float ahead = 0;      // the same of the next frame, by its velocities [m]
     float thickness = 0;  // as in Pace [m]
+    float swing = 0;      // of its furthest point about its origin in the next frame, if forces move it [m]
 };
 
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.

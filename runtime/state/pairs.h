@@ -47,20 +47,21 @@ static_assert(sizeof(NearCache) + sizeof(PointsCache) == sizeof(collision::PairC
 struct NearPair {
     uint64_t key = 0;  // of the two colliders, see pair_key
     NearCache cache{};
-    double clear = 0;             // the ways of its colliders until they may touch [m]; detect/reuse.h
-    uint32_t pair = kNone;        // the first of its records in Pairs::list, while it has points
-    uint8_t asks = 0;             // bits of contact events, as its pair's
-    bool filtered : 1 = false;    // never collides (filter, joint); kept to remember the answer
-    bool on_surface : 1 = false;  // a shape has parts
-    bool fast : 1 = false;        // looked for along its way in this frame; detect/impact.h
-    bool arrives : 1 = false;     // got its first points in this frame; find_contacts()
-    bool changes : 1 = false;     // its records come or go in this frame; find_contacts()
-    bool touching : 1 = false;    // had a point at the end of the last step, on any part
-    bool touched : 1 = false;     // the same of the step before
-    bool hit : 1 = false;         // gave a hit event in the last step
-    bool kept : 1 = false;        // all its records hold their manifolds as found; detect/reuse.h
-    bool reused : 1 = false;      // and these go on in this frame
-    bool changed : 1 = false;     // the host may have changed a collider since the pair was looked at
+    double clear = 0;                // the ways of its colliders until they may touch [m]; detect/reuse.h
+    uint32_t pair = kNone;           // the first of its records in Pairs::list, while it has points
+    uint8_t asks = 0;                // bits of contact events, as its pair's
+    bool filtered : 1 = false;       // never collides (filter, joint); kept to remember the answer
+    bool on_surface : 1 = false;     // a shape has parts
+    bool against_fixed : 1 = false;  // a side does not yield: is_against_fixed()
+    bool fast : 1 = false;           // looked for along its way in this frame; detect/impact.h
+    bool arrives : 1 = false;        // got its first points in this frame; find_contacts()
+    bool changes : 1 = false;        // its records come or go in this frame; find_contacts()
+    bool touching : 1 = false;       // had a point at the end of the last step, on any part
+    bool touched : 1 = false;        // the same of the step before
+    bool hit : 1 = false;            // gave a hit event in the last step
+    bool kept : 1 = false;           // all its records hold their manifolds as found; detect/reuse.h
+    bool reused : 1 = false;         // and these go on in this frame
+    bool changed : 1 = false;        // the host may have changed a collider since the pair was looked at
 
     uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
@@ -161,6 +162,11 @@ void for_sides(const PairEnds& pair, Act&& act) {
     for (uint32_t a : {pair.a, pair.a2})
         for (uint32_t b : {pair.b, pair.b2})
             if (a != kNone && b != kNone) act(a, b);
+}
+
+// Whether a side does not yield: what swings into it gets no further out of the way.
+inline bool is_against_fixed(const Nodes& nodes, const PairEnds& pair) {
+    return !moves_by_forces(nodes.info[pair.a].kind) || !moves_by_forces(nodes.info[pair.b].kind);
 }
 
 // Tangents of a contact normal: the same for the same normal, continuous but for the switch of the helper axis.

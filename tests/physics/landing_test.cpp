@@ -154,4 +154,54 @@ INSTANTIATE_TEST_SUITE_P(Each, StonesOnBox,
                          testing::Values(Landing{1, 5}, Landing{4, 5}, Landing{10, 5}, Landing{1, 15}, Landing{4, 15},
                                          Landing{10, 15}));
 
+struct Tumbling {
+    const char* name;
+    Vec half;
+    Landing landing;
+    double most, mostly;  // deepest of all starts and of nine in ten [m]
+};
+
+void PrintTo(const Tumbling& tumbling, std::ostream* out) { *out << tumbling.name; }
+
+struct TumblesOnBox : testing::TestWithParam<Tumbling> {};
+
+// What one corner stops turns about it, and what turns already swings corners down that are further away than the way
+// of its centre: these have their points too.
+TEST_P(TumblesOnBox, SwingsHardlyIn) {
+    const Tumbling& thing = GetParam();
+    std::mt19937 random(21);
+    std::vector<double> depths;
+    for (int start = 0; start < 200; ++start) {
+        World world;
+        world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({10, 0.5, 10}), .position = {0, -0.5, 0}});
+        const double height = norm(thing.half) + 0.02 + between(random, 0, thing.landing.speed / 60);
+        const taut_body body = world.add({.shape = world.box(thing.half),
+                                          .position = {0, height, 0},
+                                          .rotation = Quat::turn(direction(random), between(random, 0, 2 * kPi)),
+                                          .velocity = {0, -thing.landing.speed, 0},
+                                          .spin = thing.landing.spin * direction(random)});
+        double deepest = 0;
+        for (int frame = 0; frame < 40; ++frame) {
+            world.step();
+            deepest = std::max(deepest, depth_of(body, box_corners(thing.half)));
+        }
+        depths.push_back(deepest);
+    }
+    std::ranges::sort(depths);
+    std::printf("%s: nine in ten %.1f mm, all %.1f mm\n", thing.name, 1e3 * depths[180], 1e3 * depths.back());
+    EXPECT_LT(depths[180], thing.mostly);
+    EXPECT_LT(depths.back(), thing.most);
+}
+
+const Vec kCube = {0.05, 0.05, 0.05}, kPlate = {0.1, 0.02, 0.1};
+const Tumbling kTumbling[] = {
+    {"cube_2_still", kCube, {2, 0}, 0.008, 0.004},   {"cube_5_still", kCube, {5, 0}, 0.016, 0.008},
+    {"cube_2_30", kCube, {2, 30}, 0.008, 0.004},     {"cube_5_30", kCube, {5, 30}, 0.02, 0.008},
+    {"plate_2_still", kPlate, {2, 0}, 0.012, 0.005}, {"plate_5_still", kPlate, {5, 0}, 0.03, 0.012},
+    {"plate_2_30", kPlate, {2, 30}, 0.012, 0.005},   {"plate_5_30", kPlate, {5, 30}, 0.025, 0.01},
+    {"plate_2_50", kPlate, {2, 50}, 0.012, 0.006},
+};
+INSTANTIATE_TEST_SUITE_P(Each, TumblesOnBox, testing::ValuesIn(kTumbling),
+                         [](const auto& thing) { return thing.param.name; });
+
 }  // namespace
