@@ -27,7 +27,8 @@ double closing_way(const Detection& of, const PairEnds& pair, double time) {
     const double way = time * fastest_nodes(of.nodes, pair);
     if (pair.spans() || !is_against_fixed(of.nodes, pair)) return way;
     const auto swing = [&](uint32_t node, uint32_t collider) {
-        return moves_by_forces(of.nodes.info[node].kind) ? swing_of(of.pairs.stance[collider], float(time)) : 0;
+        return moves_by_forces(of.nodes.info[node].kind) ? swing_of(of.pairs.stance[collider], static_cast<float>(time))
+                                                         : 0;
     };
     return way +
            static_cast<double>(beyond_margin(swing(pair.a, pair.collider_a()) + swing(pair.b, pair.collider_b())));
@@ -142,7 +143,7 @@ bool held_apart(const Detection& of, const PairEnds& pair, const collision::Pair
     const uint32_t a = pair.collider_a(), b = pair.collider_b();
     const collision::Placement &at_a = of.pairs.placement[a], &at_b = of.pairs.placement[b];
     const float gap = collision::held_apart(shape(a), at_a, shape(b), at_b, cache);
-    if (!(gap > kContactMargin) || !(gap > margin_of(of, pair, of.time))) return false;
+    if (!(gap > margin_of(of, pair, of.time))) return false;
     note_clear(of.pairs, pair.spans() ? 0 : gap, near);
     return true;
 }
