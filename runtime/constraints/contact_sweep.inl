@@ -51,12 +51,18 @@ struct ContactSweep {
     struct PointTerms {  // of a normal row
         F bias, mass_scale, impulse_scale;
     };
+    struct HitTerms : PointTerms {
+        F hit;  // 1: is hit, and the row also answers for what friction does to it
+    };
 
-    // The new normal impulse of a point that has one and closes at vn.
-    static F normal_row(const LanePoint& p, const F& old, const F& vn, const PointTerms& terms) {
-        const F zero = F::all(0);
-        const F step = zero - terms.mass_scale * F::load(p.normal_mass) * (vn + terms.bias) - terms.impulse_scale * old;
-        return F::max(old + step, zero);
+    // The impulse that the normal row of a point asks for, which closes at vn and has old; below 0 it would pull.
+    static F normal_row(const F& mass, const F& old, const F& vn, const PointTerms& terms) {
+        return old - terms.mass_scale * mass * (vn + terms.bias) - terms.impulse_scale * old;
+    }
+    // What is left of it where friction gives the row a speed more.
+    static F after_friction(const F&, const F& asked, const F&, const PointTerms&) { return F::max(asked, F::all(0)); }
+    static F after_friction(const F& mass, const F& asked, const F& speed, const HitTerms& terms) {
+        return F::max(asked - terms.hit * mass * speed, F::all(0));
     }
     static void keep_normal(LanePoint& p, const F& next) {
         next.store(p.impulse[0]);
@@ -88,25 +94,30 @@ struct ContactSweep {
 
     // Normal row, then the tangents. Slip is what it was before the normal row and what its impulse adds to it, so that
     // both reach the bodies at once: the same as one after the other, with a shorter way from one point to the next.
+    // What is hit answers to friction at once: it turns a corner that hits, which would go in at the speed that this
+    // gives it. What rests does so in the next sweep, and friction, the last word here, lets nothing creep.
     // Where no lane bears anything, or comes to, nothing changes; then false.
+    template <class Terms>
     [[gnu::always_inline]] static bool point_rows(LanePoint& p, const LaneDrive* drive, const Frame& f, Side& a,
-                                                  Side& b, const PointTerms& terms) {
+                                                  Side& b, const Terms& terms) {
         const V ra = load(p.ra), rb = load(p.rb), v = b.at(rb) - a.at(ra);
         const F old = F::load(p.impulse[0]), old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
-        const F next = normal_row(p, old, dot(v, f.n), terms);
-        if (!F::any(next, old, old1, old2)) return false;
-        keep_normal(p, next);
-        const F normal = next - old;
-        F v1 = dot(v, f.t1) + F::load(p.coupling[0]) * normal, v2 = dot(v, f.t2) + F::load(p.coupling[1]) * normal;
+        const F mass = F::load(p.normal_mass), asked = normal_row(mass, old, dot(v, f.n), terms);
+        const F first = F::max(asked, F::all(0));
+        if (!F::any(first, old, old1, old2)) return false;
+        const F normal = first - old, c1 = F::load(p.coupling[0]), c2 = F::load(p.coupling[1]);
+        F v1 = dot(v, f.t1) + c1 * normal, v2 = dot(v, f.t2) + c2 * normal;
         if (drive) {
             v1 = v1 - F::load(drive->speed[0]);
             v2 = v2 - F::load(drive->speed[1]);
         }
         F q1 = old1, q2 = old2;
-        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, f.friction * next);
+        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, f.friction * first);
         q1.store(p.impulse[1]);
         q2.store(p.impulse[2]);
-        const V push = normal * f.n + (q1 - old1) * f.t1 + (q2 - old2) * f.t2;
+        const F d1 = q1 - old1, d2 = q2 - old2, next = after_friction(mass, asked, c1 * d1 + c2 * d2, terms);
+        keep_normal(p, next);
+        const V push = (next - old) * f.n + d1 * f.t1 + d2 * f.t2;
         b.add(push, rb);
         a.subtract(push, ra);
         return true;
@@ -339,10 +350,11 @@ struct ContactSweep {
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(g, Frame(g), shifts);
             sweep_group(contacts, g, nodes, [&](const LanePoint& p) {
-                const F gap = F::load(p.gap), rigid = F::max(gap, slow - F::load(p.approach));
-                return PointTerms{F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
-                                  F::if_greater(rigid, zero, one, soft_mass),
-                                  F::if_greater(rigid, zero, zero, soft_impulse)};
+                const F gap = F::load(p.gap), hit = slow - F::load(p.approach), rigid = F::max(gap, hit);
+                return HitTerms{
+                    {F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
+                     F::if_greater(rigid, zero, one, soft_mass), F::if_greater(rigid, zero, zero, soft_impulse)},
+                    F::if_greater(hit, zero, one, zero)};
             });
         }
     }
@@ -379,7 +391,9 @@ struct ContactSweep {
                 const F active = F::if_greater(F::load(p.peak), zero, F::if_greater(zero, wanted, due, zero), zero);
                 const V ra = load(p.ra), rb = load(p.rb);
                 const F old = F::load(p.impulse[0]);
-                const F next = normal_row(p, old, dot(b.at(rb) - a.at(ra), f.n), {wanted, active, zero});
+                const F asked =
+                    normal_row(F::load(p.normal_mass), old, dot(b.at(rb) - a.at(ra), f.n), {wanted, active, zero});
+                const F next = F::max(asked, zero);
                 keep_normal(p, next);
                 const V push = (next - old) * f.n;
                 b.add(push, rb);

@@ -49,7 +49,8 @@ public:
         Eigen::Map<RowVector>(&system_.rows.impulse[block_.row], rows_) = next;
     }
 
-    // Normal row first, then the tangents on the cone; as in the fused sweep (constraints/contact_sweep.inl).
+    // Normal row first, then the tangents on the cone; what is hit answers for what these do to its normal row. As in
+    // the fused sweep (constraints/contact_sweep.inl).
     void solve_cone(const SweepTerms& soft, bool biased) {
         const double gap = system_.rows.error[block_.row];
         const RowMatrix s = effective();
@@ -59,10 +60,16 @@ public:
         const bool softened = biased && !open && !block_.hits;
         const double step = (softened ? soft.mass_scale : 1.0) / s(0, 0) * (velocity()[0] + bias) +
                             (softened ? soft.impulse_scale : 0.0) * p[0];
-        p[0] = std::max(0.0, p[0] - step);
+        const double asked = p[0] - step;
+        const Eigen::Vector2d before = p.tail<2>();
+        p[0] = std::max(0.0, asked);
         move_to(p);
 
         solve_circle(s, block_.friction * p[0]);
+        if (!(biased && block_.hits)) return;
+        p = impulse();
+        p[0] = std::max(0.0, asked - s.row(0).tail<2>().dot(p.tail<2>() - before) / s(0, 0));
+        move_to(p);
     }
 
     // What was hit leaves at the speed that its restitution asks for; as in the fused sweep.
