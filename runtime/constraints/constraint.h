@@ -14,13 +14,10 @@
 #include <span>
 
 #include "base/math.h"
+#include "constraints/sizes.h"
 #include "simd/width.h"
 
 namespace taut {
-
-constexpr int kMaxRows = 6;
-constexpr int kMaxNodes = 4;
-constexpr int kDof = 6;  // columns of J a node; a particle leaves the last three zero
 
 // Where a node is: centre of mass and rotation. A particle and the world have R = I; the world has x = 0.
 struct Pose {

@@ -190,7 +190,7 @@ struct alignas(64) LaneTurns {
 };
 
 // The fused sweep of contacts: evaluate and solve in one pass over lanes [begin, end) of groups.
-// Three builds of one source give the same bits: scalar, SSE2, AVX2.
+// Four builds of one source give the same bits: scalar, SSE2, AVX2, AVX-512.
 struct ContactKernels {
     const char* name;
     // Effective masses and approach speeds from the geometry that assembly filled in.
@@ -208,7 +208,7 @@ struct ContactKernels {
     void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepNode*, float threshold, bool last);
 };
 
-extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2;
+extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2, kContactKernelsAvx512;
 // The widest that this machine runs.
 const ContactKernels& contact_kernels();
 

@@ -5,7 +5,8 @@
 namespace taut {
 
 const ContactKernels& contact_kernels() {
-    static const ContactKernels* const kBuilds[] = {&kContactKernelsScalar, &kContactKernelsSse2, &kContactKernelsAvx2};
+    static const ContactKernels* const kBuilds[] = {&kContactKernelsScalar, &kContactKernelsSse2, &kContactKernelsAvx2,
+                                                    &kContactKernelsAvx512};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

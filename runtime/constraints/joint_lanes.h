@@ -2,10 +2,12 @@
 // lock are solved as one block a joint, stops, drives and friction after them one by one.
 #pragma once
 
-#include "constraints/constraint.h"
 #include "constraints/contact_lanes.h"
+#include "constraints/sizes.h"
 
 namespace taut {
+
+struct ConstraintType;
 
 struct alignas(64) LaneScalar {
     float value[kLanes];
@@ -129,7 +131,8 @@ struct JointLanes {
 // Of a lower triangle kept row by row.
 constexpr uint32_t triangle(uint32_t row, uint32_t column) { return row * (row + 1) / 2 + column; }
 
-// The sweep over lanes [begin, end) of groups. Three builds of one source give the same bits: scalar, SSE2, AVX2.
+// The sweep over lanes [begin, end) of groups. Builds of one source give the same bits: scalar, SSE2, AVX2,
+// AVX-512.
 struct JointKernels {
     const char* name;
     // From coordinates, Jacobian and compliance: biases, targets, factors and masses. frame_left: share of the frame
@@ -143,7 +146,7 @@ struct JointKernels {
     float (*residual)(JointView, uint32_t begin, uint32_t end, const SweepNode*);
 };
 
-extern const JointKernels kJointKernelsScalar, kJointKernelsSse2, kJointKernelsAvx2;
+extern const JointKernels kJointKernelsScalar, kJointKernelsSse2, kJointKernelsAvx2, kJointKernelsAvx512;
 // The widest that this machine runs.
 const JointKernels& joint_kernels();
 

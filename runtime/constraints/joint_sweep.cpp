@@ -5,7 +5,8 @@
 namespace taut {
 
 const JointKernels& joint_kernels() {
-    static const JointKernels* const kBuilds[] = {&kJointKernelsScalar, &kJointKernelsSse2, &kJointKernelsAvx2};
+    static const JointKernels* const kBuilds[] = {&kJointKernelsScalar, &kJointKernelsSse2, &kJointKernelsAvx2,
+                                                  &kJointKernelsAvx512};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

@@ -4,6 +4,6 @@
 
 namespace taut {
 
-const PanelKernels& panel_kernels() { return kernel_width() == Width::avx2 ? kPanelKernelsAvx2 : kPanelKernelsBase; }
+const PanelKernels& panel_kernels() { return kernel_width() >= Width::avx2 ? kPanelKernelsAvx2 : kPanelKernelsBase; }
 
 }  // namespace taut

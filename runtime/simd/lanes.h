@@ -1,6 +1,7 @@
-// kLanes floats side by side, in three builds with the same bits: scalar, SSE2 and AVX2. Only IEEE operations
+// kLanes floats side by side, in four builds with the same bits: scalar, SSE2, AVX2 and AVX-512. Only IEEE operations
 // (add, sub, mul, div, sqrt, compare), no fused multiply-add, so each lane computes what the scalar does.
-// Two registers of the widest build: what they compute does not wait for each other.
+// One register of the widest build, which has 32 of them; two of the next: what they compute does not wait for each
+// other.
 // Used by kernels that are templates over the type: no function here is shared between builds.
 #pragma once
 
@@ -244,6 +245,78 @@ private:
     }
 };
 using Avx2Lanes = Twice<Avx2Register>;
+#endif
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+struct Avx512Register {
+    static constexpr int kWidth = 16;
+    __m512 f;
+
+    // Not every array of lanes begins at a multiple of 64 bytes.
+    static Avx512Register load(const float* p) { return {_mm512_loadu_ps(p)}; }
+    static Avx512Register all(float x) { return {_mm512_set1_ps(x)}; }
+    void store(float* p) const { _mm512_storeu_ps(p, f); }
+    friend Avx512Register operator+(Avx512Register a, Avx512Register b) { return {_mm512_add_ps(a.f, b.f)}; }
+    friend Avx512Register operator-(Avx512Register a, Avx512Register b) { return {_mm512_sub_ps(a.f, b.f)}; }
+    friend Avx512Register operator*(Avx512Register a, Avx512Register b) { return {_mm512_mul_ps(a.f, b.f)}; }
+    friend Avx512Register operator/(Avx512Register a, Avx512Register b) { return {_mm512_div_ps(a.f, b.f)}; }
+    static Avx512Register max(Avx512Register a, Avx512Register b) { return {_mm512_max_ps(a.f, b.f)}; }
+    static Avx512Register sqrt(Avx512Register a) { return {_mm512_sqrt_ps(a.f)}; }
+    static Avx512Register if_greater(Avx512Register a, Avx512Register b, Avx512Register yes, Avx512Register no) {
+        return {_mm512_mask_blend_ps(_mm512_cmp_ps_mask(a.f, b.f, _CMP_GT_OQ), no.f, yes.f)};
+    }
+    static unsigned greater(Avx512Register a, Avx512Register b) { return _mm512_cmp_ps_mask(a.f, b.f, _CMP_GT_OQ); }
+    template <class... More>
+    static bool any(Avx512Register a, More... more) {
+        ((a.f = _mm512_or_ps(a.f, more.f)), ...);
+        return _mm512_cmp_ps_mask(a.f, _mm512_setzero_ps(), _CMP_NEQ_UQ) != 0;
+    }
+    // By half rows, four of which fill a register.
+    static void transpose(const float* const row[16], Avx512Register out[8]) {
+#pragma GCC unroll 2
+        for (int half = 0; half < 2; ++half) {
+            __m512 r[4];
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) {
+                __m512 rows = _mm512_castps128_ps512(_mm_load_ps(row[i] + 4 * half));
+                rows = _mm512_insertf32x4(rows, _mm_load_ps(row[i + 4] + 4 * half), 1);
+                rows = _mm512_insertf32x4(rows, _mm_load_ps(row[i + 8] + 4 * half), 2);
+                r[i] = _mm512_insertf32x4(rows, _mm_load_ps(row[i + 12] + 4 * half), 3);
+            }
+            transpose4(r);
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) out[4 * half + i].f = r[i];
+        }
+    }
+    static void transpose_back(const Avx512Register in[8], float* const row[16]) {
+#pragma GCC unroll 2
+        for (int half = 0; half < 2; ++half) {
+            __m512 r[4];
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) r[i] = in[4 * half + i].f;
+            transpose4(r);
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) {
+                _mm_store_ps(row[i] + 4 * half, _mm512_castps512_ps128(r[i]));
+                _mm_store_ps(row[i + 4] + 4 * half, _mm512_extractf32x4_ps(r[i], 1));
+                _mm_store_ps(row[i + 8] + 4 * half, _mm512_extractf32x4_ps(r[i], 2));
+                _mm_store_ps(row[i + 12] + 4 * half, _mm512_extractf32x4_ps(r[i], 3));
+            }
+        }
+    }
+
+private:
+    // Four by four, in each quarter.
+    static void transpose4(__m512 (&r)[4]) {
+        const __m512 a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);
+        const __m512 c = _mm512_unpacklo_ps(r[2], r[3]), d = _mm512_unpackhi_ps(r[2], r[3]);
+        r[0] = _mm512_shuffle_ps(a, c, 0x44);
+        r[1] = _mm512_shuffle_ps(a, c, 0xee);
+        r[2] = _mm512_shuffle_ps(b, d, 0x44);
+        r[3] = _mm512_shuffle_ps(b, d, 0xee);
+    }
+};
+using Avx512Lanes = Avx512Register;
 #endif
 
 }  // namespace taut

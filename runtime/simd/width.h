@@ -8,7 +8,7 @@ namespace taut {
 constexpr int kLanes = 16;                          // floats that a kernel works on side by side
 constexpr uint32_t kAllLanes = (1u << kLanes) - 1;  // a bit for each
 
-enum class Width : uint8_t { scalar, sse2, avx2 };
+enum class Width : uint8_t { scalar, sse2, avx2, avx512 };
 
 Width widest();        // that this processor runs
 Width kernel_width();  // that kernels use: the widest, unless a test asked for less

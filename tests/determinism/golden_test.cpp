@@ -50,7 +50,7 @@ protected:
 };
 
 TEST_P(GoldenMatrix, HoldsWithAnyWorkersAndLanes) {
-    for (const Width width : {Width::scalar, Width::sse2, Width::avx2}) {
+    for (const Width width : {Width::scalar, Width::sse2, Width::avx2, Width::avx512}) {
         if (width > taut::widest()) continue;
         taut::set_kernel_width(width);
         for (const uint32_t threads : {1u, 2u, 3u, 5u, 8u})

@@ -180,8 +180,15 @@ TEST(ContactKernels, Avx2HasTheBitsOfTheScalarBuild) {
     expect_same_bits(kContactKernelsAvx2);
 }
 
+TEST(ContactKernels, Avx512HasTheBitsOfTheScalarBuild) {
+    if (!__builtin_cpu_supports("avx512dq")) GTEST_SKIP() << "this processor has no AVX-512";
+    expect_same_bits(kContactKernelsAvx512);
+}
+
 TEST(ContactKernels, TheWidestOfTheMachineIsChosen) {
-    EXPECT_STREQ(contact_kernels().name, __builtin_cpu_supports("avx2") ? "avx2" : "sse2");
+    const char* const names[] = {"scalar", "sse2", "avx2", "avx512"};
+    EXPECT_STREQ(contact_kernels().name, names[static_cast<size_t>(widest())]);
+    EXPECT_GE(widest(), __builtin_cpu_supports("avx2") ? Width::avx2 : Width::sse2);
 }
 
 // Lanes and places without a contact stay as they are, and so does the world.

@@ -164,6 +164,11 @@ TEST(JointKernels, Avx2HasTheBitsOfTheScalarBuild) {
     expect_same_bits(kJointKernelsAvx2);
 }
 
+TEST(JointKernels, Avx512HasTheBitsOfTheScalarBuild) {
+    if (!__builtin_cpu_supports("avx512dq")) GTEST_SKIP() << "this processor has no AVX-512";
+    expect_same_bits(kJointKernelsAvx512);
+}
+
 // ---------------------------------------------------------------- equations
 
 Matrix inverse_masses(const System& system, const RowBlock& block) {

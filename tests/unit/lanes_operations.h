@@ -41,5 +41,6 @@ struct LanesBuild {
 };
 // Null where the compiler cannot build it here.
 LanesBuild avx2_build();
+LanesBuild avx512_build();
 
 }  // namespace taut::test

@@ -123,5 +123,12 @@ TEST(Avx2Lanes, HaveTheBitsOfTheScalarOnes) {
     expect_same_build(build);
 }
 
+TEST(Avx512Lanes, HaveTheBitsOfTheScalarOnes) {
+    const LanesBuild build = avx512_build();
+    if (!build.operations) GTEST_SKIP() << "lanes_avx512.cpp was not compiled with -mavx512dq";
+    if (!__builtin_cpu_supports("avx512dq")) GTEST_SKIP() << "this processor has no AVX-512";
+    expect_same_build(build);
+}
+
 }  // namespace
 }  // namespace taut::test
