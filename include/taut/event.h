@@ -16,7 +16,10 @@
 extern "C" {
 #endif
 
-/** Two colliders began or stopped touching in the last step, or touch as they did before it. */
+/**
+ * Two colliders began or stopped touching in the last step, or touch as they did before it. Who overlapped as the step
+ * began touches in it, and who was pushed within it, be it off again by its end.
+ */
 typedef struct taut_contact_event {
     taut_body body_a;
     taut_body body_b;

@@ -33,7 +33,7 @@ typedef struct taut_pre_solve {
     taut_collider collider_b;
     taut_pre_solve_point points[4];
     uint32_t point_count; /**< 1 to 4 of points; the others are zero */
-    uint32_t touching;    /**< 1 if the colliders touched at the end of the last step, else 0 */
+    uint32_t touching;    /**< 1 if the colliders touched in the last step, else 0 */
     taut_vec3 normal;     /**< unit, from a to b */
     uint32_t reserved;    /**< zero */
 } taut_pre_solve;

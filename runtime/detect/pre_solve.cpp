@@ -14,7 +14,7 @@ constexpr float kLeastCosine = 0.5f;     // between a contact's normal and a one
 constexpr float kDeepestEntry = 0.005f;  // overlap at which a one-way collider still takes up a contact [m]
 constexpr float kMostFriction = 100;
 
-// Whether one-way colliders of a pair let the contact be. touching: the pair did at the end of the last step.
+// Whether one-way colliders of a pair let the contact be. touching: the pair did in the last step.
 bool from_open_side(const Colliders& colliders, const Pairs& pairs, const Pair& pair, bool touching) {
     const auto faces = [&](uint32_t collider, const Vec3f& outward) {
         const Vec3f& direction = colliders.traits[collider].one_way;

@@ -8,10 +8,11 @@
 namespace taut {
 namespace {
 
+// What hits and is off again within the step did.
 bool touches(const Pair& pair) {
     for (int k = 0; k < pair.manifold.count; ++k)
-        if (pair.manifold.points[k].separation <= 0 || pair.impulse[k].normal > 0) return true;
-    return false;
+        if (pair.manifold.points[k].separation <= 0) return true;
+    return pair.pushed;
 }
 
 // Active pairs with one key: a pair, or the parts of one with a surface.

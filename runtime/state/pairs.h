@@ -56,7 +56,7 @@ struct NearPair {
     bool fast : 1 = false;           // looked for along its way in this frame; detect/impact.h
     bool arrives : 1 = false;        // got its first points in this frame; find_contacts()
     bool changes : 1 = false;        // its records come or go in this frame; find_contacts()
-    bool touching : 1 = false;       // had a point at the end of the last step, on any part
+    bool touching : 1 = false;       // overlapped or was pushed in the last step, by any part
     bool touched : 1 = false;        // the same of the step before
     bool hit : 1 = false;            // gave a hit event in the last step
     bool kept : 1 = false;           // all its records hold their manifolds as found; detect/reuse.h
@@ -118,7 +118,8 @@ struct Pair : PairEnds {
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
     bool driven = false;                    // else these two mean nothing
     bool rolls_a = false, rolls_b = false;  // contact levers stay while the shape turns: collision::rolls()
-    bool touching = false;                  // had a point at the end of the last step
+    bool touching = false;                  // overlapped or was pushed in the last step
+    bool pushed = false;                    // some point was in this step, in any of its substeps
     bool answered = false;                  // the host gave this step's friction and restitution
     uint8_t asks = 0;                       // bits of contact events, kAsks: of the world and the two colliders
 

@@ -219,8 +219,10 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
     const ContactLanes& lanes = system.contacts;
     const auto store = [&](const LaneGroup& g, int lane) {
         Pair& pair = pairs.list[g.pair[lane]];
+        pair.pushed = false;
         for (int k = 0; k < pair.manifold.count; ++k) {
             const LanePoint& p = g.point[k];
+            pair.pushed = pair.pushed || p.peak[lane] > 0;
             // Of what bears nothing, 0 and not -0, whoever else is in its lanes.
             pair.impulse[k] = {p.impulse[0][lane] + 0.0f, p.impulse[1][lane] + 0.0f, p.impulse[2][lane] + 0.0f};
         }

@@ -205,6 +205,7 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
                     : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pair, k)));
             block.friction = pair.friction;
             set_drive(pair, k, block);
+            block.pushed = &pair.pushed;
             carry(system, block, pair.impulse[k]);
         }
         if (pair.turns() && pair.manifold.count > 0) add_rolling(system, pair, points);
@@ -227,6 +228,11 @@ void make_room_for_blocks(System& system) {
     const size_t count = system.pose.size();
     for (Array<Velocity>* each : {&system.free, &system.kept, &system.correction, &system.start}) each->resize(count);
     system.inertia.resize(count);
+}
+
+// Of pairs that come as rows, at the beginning of a frame.
+void forget_pushes(std::span<const uint32_t> active_pairs, Pairs& pairs) {
+    for (uint32_t p : active_pairs) pairs.list[pairs.active[p].pair].pushed = false;
 }
 
 }  // namespace
@@ -256,6 +262,8 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     reserve_room(rows.data, kPoints * whole);
     reserve_room(rows.span_data, kPoints * (group.span_pairs.size() + group.direct_pairs.size()));
     reserve_room(rows.rolling_data, whole);
+    for (const Array<uint32_t>* as_rows : {&group.pairs, &group.span_pairs, &group.direct_pairs})
+        if (contacts_as_rows || as_rows != &group.pairs) forget_pushes(*as_rows, pairs);
     if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
     add_contacts(system, group.span_pairs, pairs, nodes);
     rows.lasting = static_cast<uint32_t>(rows.block.size());
@@ -324,6 +332,7 @@ void store_contact_rows(const System& system) {
         if (!block.contact) continue;
         const double* mu = &system.rows.impulse[block.row];
         block.contact->normal = static_cast<float>(mu[0]);
+        if (block.pushed && mu[0] > 0) *block.pushed = true;
         block.contact->tangent1 = static_cast<float>(mu[1]);
         block.contact->tangent2 = static_cast<float>(mu[2]);
     }

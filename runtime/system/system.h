@@ -45,6 +45,7 @@ struct RowBlock {
     const Axis* axis;                // of each row, or null: all are locked
     AxisMemory* memory;              // of each row, with axis
     Impulse* contact;                // what a contact point carries on; null for joints
+    bool* pushed;                    // of a contact point: its pair's
     double friction;                 // of a cone
     double drive[2];                 // of a cone: J v that friction drives the tangents to [m/s]
     double arm[2];                   // of a load: spinning, rolling [m]

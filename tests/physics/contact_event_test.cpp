@@ -1,9 +1,11 @@
 // Contact events against mechanics: speeds of falls, impulses of weights, and the pairing of what begins and ends.
 #include <bit>
+#include <random>
 #include <set>
 
 #include "physics/contact_lab.h"
 #include "physics/surface_lab.h"
+#include "physics/tunnel_lab.h"
 
 namespace {
 
@@ -79,6 +81,38 @@ TEST_P(WithEachSolver, WhatRestsIsPushedByItsWeight) {
     // In the order of the colliders: ground and lowest, lowest and middle, middle and top.
     for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(pushed[k] / (5 * (3 - k) * kG * kSteps * world.frame()), 1, 0.005) << "interface " << k;
+}
+
+// What hits with a corner and is off again before the step ends has touched: m (dv + g dt) is the sum of all impulses.
+TEST_P(WithEachSolver, EveryPushIsTold) {
+    std::mt19937 random(11);
+    int blows = 0, hits = 0;
+    for (int start = 0; start < 60; ++start) {
+        World world(asking_for(TAUT_CONTACT_EVENTS_ALL, GetParam()));
+        world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({10, 0.5, 10}), .position = {0, -0.5, 0}});
+        const double speed = between(random, 1, 10), mass = 3;
+        const taut_body cube = world.add({.shape = world.box({0.05, 0.05, 0.05}),
+                                          .position = {0, between(random, 0.1, 0.3), 0},
+                                          .rotation = Quat::turn(direction(random), between(random, 0, 6)),
+                                          .velocity = {0, -speed, 0},
+                                          .spin = between(random, 0, 20) * direction(random),
+                                          .mass = mass});
+        bool touching = false;
+        for (int step = 0; step < 60; ++step) {
+            const double before = velocity(cube).y;
+            world.step();
+            const double push = mass * (velocity(cube).y - before + kG * world.frame());
+            const taut_events e = events_of(world);
+            double told = 0;
+            for (uint32_t k = 0; k < e.point_count; ++k)
+                told += static_cast<double>(e.points[k].normal_impulse) * std::abs(e.points[k].normal.y);
+            EXPECT_NEAR(told, push, 1e-3 * mass * speed) << "start " << start << ", step " << step;
+            if (!touching && push > 0.5 * mass) ++blows, hits += e.hit_count == 1;
+            touching = e.begin_count + e.persist_count > 0;
+        }
+    }
+    EXPECT_GT(blows, 60);
+    EXPECT_GT(hits, 0.9 * blows) << "of " << blows;
 }
 
 INSTANTIATE_TEST_SUITE_P(Contacts, WithEachSolver,
