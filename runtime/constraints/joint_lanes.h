@@ -131,8 +131,8 @@ struct JointLanes {
 // Of a lower triangle kept row by row.
 constexpr uint32_t triangle(uint32_t row, uint32_t column) { return row * (row + 1) / 2 + column; }
 
-// The sweep over lanes [begin, end) of groups. Builds of one source give the same bits: scalar, SSE2, AVX2,
-// AVX-512.
+// The sweep over lanes [begin, end) of groups. Four builds of one source give the same bits: scalar, SSE2,
+// AVX2, AVX-512.
 struct JointKernels {
     const char* name;
     // From coordinates, Jacobian and compliance: biases, targets, factors and masses. frame_left: share of the frame

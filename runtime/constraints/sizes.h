@@ -1,5 +1,5 @@
-// How large a constraint may be; for code that is built for several processors, which shares no other header with the
-// rest: an inline function of a library, Eigen's say, must not come from the build for one of them.
+// How large a constraint may be. Apart from constraint.h for what is built for one processor alone: an inline function of
+// Eigen, which that takes in, must not come from such a build.
 #pragma once
 
 namespace taut {
