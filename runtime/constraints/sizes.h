@@ -1,5 +1,5 @@
-// How large a constraint may be. Apart from constraint.h for what is built for one processor alone: an inline function of
-// Eigen, which that takes in, must not come from such a build.
+// How large a constraint may be. Apart from constraint.h for what is built for one processor alone: an inline function
+// of Eigen, which that takes in, must not come from such a build.
 #pragma once
 
 namespace taut {
