@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <span>
 
 #include "check/quarantine.h"
 #include "integrate/gyroscopic.h"
+#include "integrate/motion_kernels.h"
 
 namespace taut {
 namespace {
@@ -31,17 +33,6 @@ void set_sweep_pose(System& system, uint32_t node, const Vec3& dx, const Quat& q
     for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
 }
 
-// Of a product of unit quaternions, where |q|^2 - 1 = e is some rounding: one Newton step leaves 3/8 e^2.
-Quat unit_again(const Quat& q) { return Quat(q.coeffs() * (1.5 - 0.5 * q.squaredNorm())); }
-
-void displace(System& system, Nodes& nodes, uint32_t node, const Vec3& dx, const Vec3& dtheta) {
-    NodeMotion& m = nodes.motion[node];
-    m.x += dx;
-    if (nodes.info[node].kind == NodeKind::dynamic) m.q = unit_again(rotation_from_vector(dtheta) * m.q);
-    const System::Found& found = system.found[node + 1];
-    set_shift(system.shift[node + 1], m.x - found.x, m.q * found.q.conjugate());
-}
-
 // Contacts, found once a frame, turn their levers and masses with bodies that turned by more than this since they last
 // did [rad]. With levers of the frame's beginning and masses of now thin bodies gain energy without bound.
 constexpr double kTurn = 0.05;
@@ -58,20 +49,61 @@ void note_turn(System& system, uint32_t node, const Quat& q, double least) {
 // Of a kinematic body at its own velocity.
 Quat rotation_after(const NodeMotion& m, double time) { return (rotation_from_vector(time * m.w) * m.q).normalized(); }
 
-// The spin of a body that turned in this substep, found for the pose that it turned from: it is that spin as seen from
-// the body. Kept in the world, what contacts changed of it since the body was moved would turn about axes of another
-// inertia (measured: thin rods and cylinders that bounce gained up to 5000 times their energy).
-Vec3 spin_after(const Pose& from, const Velocity& u, const NodeMotion& now) {
-    return now.q * (from.R.transpose() * u.w);
-}
-
 constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
 
+static_assert(offsetof(NodeMotion, q) == offsetof(MotionRow, q) && offsetof(NodeMotion, v) == offsetof(MotionRow, v) &&
+              offsetof(NodeMotion, slow_w) == offsetof(MotionRow, slow_w) && sizeof(NodeMotion) == sizeof(MotionRow));
+static_assert(offsetof(NodeMass, inertia) == offsetof(MassRow, inertia) &&
+              offsetof(NodeMass, gravity_scale) == offsetof(MassRow, gravity_scale));
+static_assert(sizeof(Velocity) == sizeof(PairRow) && sizeof(NodeLoad) == sizeof(PairRow));
+static_assert(sizeof(Pose) == sizeof(PoseRow));
+static_assert(offsetof(System::Found, q) == offsetof(FoundRow, q) && sizeof(System::Found) == sizeof(FoundRow));
+static_assert(sizeof(SweepShift) == sizeof(FloatRow) && sizeof(SweepPose) == sizeof(FloatRow));
+static_assert(sizeof(SweepNode) == sizeof(SweepRow) && offsetof(SweepNode, velocity) == 0);
+
+// From the first node on; of arrays by node + 1 that is the second.
+template <class Row, class T>
+Row* rows_of(T* first) {
+    return reinterpret_cast<Row*>(first);
+}
+NodeRows rows_of(System& system, Nodes& nodes, Array<Velocity>& velocity) {
+    return {rows_of<MotionRow>(nodes.motion.data()),
+            rows_of<PoseRow>(system.pose.data() + 1),
+            rows_of<PairRow>(velocity.data() + 1),
+            rows_of<const FoundRow>(system.found.data() + 1),
+            rows_of<FloatRow>(system.shift.data() + 1),
+            rows_of<SweepRow>(system.sweep.data() + 1),
+            system.sweep_pose.empty() ? nullptr : rows_of<FloatRow>(system.sweep_pose.data() + 1),
+            nodes.load.empty() ? nullptr : rows_of<const PairRow>(nodes.load.data())};
+}
+
 template <class Act>
-void for_nodes(Team& team, const Array<uint32_t>& list, Act&& act) {
-    team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i) act(list[i]);
-    });
+void for_batches(std::span<const uint32_t> list, Act&& act) {
+    const auto count = static_cast<uint32_t>(list.size());
+    for (uint32_t i = 0; i < count; i += kBodies) {
+        Batch batch;
+        for (uint32_t k = 0; k < kBodies; ++k) batch.node[k] = list[std::min(i + k, count - 1)];
+        batch.count = std::min<uint32_t>(kBodies, count - i);
+        act(batch);
+    }
+}
+template <class Act>
+void for_batches(Team& team, std::span<const uint32_t> list, Act&& act) {
+    team.for_ranges(static_cast<uint32_t>(list.size()), kGrain,
+                    [&](uint32_t begin, uint32_t end) { for_batches(list.subspan(begin, end - begin), act); });
+}
+
+// Those of a batch of which it holds.
+template <class Holds>
+Bodies which(const Batch& batch, Holds&& holds) {
+    Bodies bits = 0;
+    for (uint32_t i = 0; i < kBodies; ++i) bits |= static_cast<Bodies>(holds(batch.node[i])) << i;
+    return bits;
+}
+
+void rotate(const double theta[3], double q[4]) {
+    const Quat turn = rotation_from_vector(Vec3(theta[0], theta[1], theta[2]));
+    for (int i = 0; i < 4; ++i) q[i] = turn.coeffs()[i];
 }
 
 // What the last frame left, by index.
@@ -92,68 +124,37 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node) {
     set_sweep_velocity(system.sweep[node + 1].velocity, {m.v, m.w});
 }
 
-// Velocities at which nodes would go on through a substep without contacts and joints.
-struct Prediction {
-    System& system;
-    Nodes& nodes;
-    const Vec3& gravity;
+// A dynamic node with a spin of its own: not one whose inertia is the same about all axes.
+bool turns_freely(const Nodes& nodes, uint32_t node) {
+    return nodes.info[node].kind == NodeKind::dynamic && !nodes.mass[node].isotropic;
+}
 
-    // Of at most kSpins nodes.
-    void of(std::span<const uint32_t> together) const {
-        FreeSpin spins[kSpins];
-        uint32_t spinning[kSpins];
-        size_t count = 0;
-        for (const uint32_t node : together) {
-            start(node);
-            if (nodes.info[node].kind != NodeKind::dynamic) continue;
-            turn_axes(node);
-            const NodeMass& mass = nodes.mass[node];
-            if (mass.isotropic) continue;
-            spinning[count] = node;
-            spins[count++] = {system.pose[node + 1].R.transpose() * nodes.motion[node].w, &mass,
-                              system.in_block[node + 1] != 0};
-        }
-        if (count > 0) gyroscopic({spins, count}, system.h);
-        for (size_t i = 0; i < count; ++i)
-            system.exact[spinning[i] + 1].w = system.pose[spinning[i] + 1].R * spins[i].w;
-        for (const uint32_t node : together) finish(node);
-    }
+// Quarantined in this frame.
+void stop(System& system, uint32_t node) {
+    system.exact[node + 1] = {};
+    system.sweep[node + 1] = {};
+    if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
+}
 
-private:
-    void start(uint32_t node) const {
-        const NodeMotion& m = nodes.motion[node];
-        const NodeMass& mass = nodes.mass[node];
-        system.pose[node + 1].x = m.x;
-        set_sweep_pose(system, node, m.x - system.found[node + 1].x, m.q);
-        const Vec3& force = nodes.load_of(node).force;
-        system.exact[node + 1] = {m.v + system.h * (mass.gravity_scale * gravity + mass.inv_mass * force), m.w};
-        if (nodes.info[node].kind != NodeKind::fixed) return;  // else quarantined in this frame
-        system.exact[node + 1] = {};
-        system.sweep[node + 1].mass = {};
-        if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
-    }
-    void turn_axes(uint32_t node) const {
-        const Quat& q = nodes.motion[node].q;
-        const NodeMass& mass = nodes.mass[node];
-        Mat3& R = system.pose[node + 1].R;
-        R = q.toRotationMatrix();
-        note_turn(system, node, q, kTurn);
-        if (!mass.isotropic && (system.turned[node + 1] || system.in_block[node + 1]))
-            set_inverse_mass(system.sweep[node + 1].mass, mass, R);
-        if (system.in_block[node + 1]) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
-    }
-    void finish(uint32_t node) const {
-        Velocity& u = system.exact[node + 1];
-        const Vec3& torque = nodes.load_of(node).torque;
-        if (torque != Vec3::Zero() && nodes.info[node].kind == NodeKind::dynamic) {
-            const Mat3& R = system.pose[node + 1].R;
-            u.w += system.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
-        }
-        const NodeMotion& m = nodes.motion[node];
-        if (system.in_block[node + 1]) system.start[node + 1] = {m.v, m.w};
-        set_sweep_velocity(system.sweep[node + 1].velocity, u);
-    }
-};
+// What a node's turn in the substep before changes.
+void turn_axes(System& system, const Nodes& nodes, uint32_t node, bool turned) {
+    const NodeMass& mass = nodes.mass[node];
+    const Mat3& R = system.pose[node + 1].R;
+    const bool in_block = system.in_block[node + 1];
+    system.turned[node + 1] = turned;
+    if (turned) system.found[node + 1].q = nodes.motion[node].q;
+    if (!mass.isotropic && (turned || in_block)) set_inverse_mass(system.sweep[node + 1].mass, mass, R);
+    if (in_block) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
+}
+
+void add_torque(System& system, const Nodes& nodes, uint32_t node) {
+    const Vec3& torque = nodes.load_of(node).torque;
+    if (torque == Vec3::Zero() || nodes.info[node].kind != NodeKind::dynamic) return;
+    Velocity& u = system.exact[node + 1];
+    const Mat3& R = system.pose[node + 1].R;
+    u.w += system.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
+    set_sweep_velocity(system.sweep[node + 1].velocity, u);
+}
 
 }  // namespace
 
@@ -176,41 +177,53 @@ void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& j
 }
 
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
-    const Prediction prediction{system, nodes, gravity};
-    team.for_ranges(static_cast<uint32_t>(group.nodes.size()), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; i += kSpins)
-            prediction.of({&group.nodes[i], std::min<size_t>(kSpins, end - i)});
+    const MotionKernels& kernels = motion_kernels();
+    const NodeRows rows = rows_of(system, nodes, system.exact);
+    const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kTurn, gyroscopic_euler};
+    for_batches(team, group.nodes, [&](const Batch& batch) {
+        const MassRow* mass[kBodies];
+        for (int i = 0; i < kBodies; ++i) mass[i] = rows_of<const MassRow>(&nodes.mass[batch.node[i]]);
+        const Bodies turning = which(batch, [&](uint32_t node) { return turns_freely(nodes, node); });
+        const Bodies in_block = which(batch, [&](uint32_t node) { return system.in_block[node + 1] != 0; });
+        const Bodies turned = kernels.predict(rows, batch, mass, terms, turning, in_block);
+        for (uint32_t i = 0; i < batch.count; ++i) {
+            const uint32_t node = batch.node[i];
+            const NodeKind kind = nodes.info[node].kind;
+            if (kind == NodeKind::dynamic) turn_axes(system, nodes, node, (turned >> i & 1) != 0);
+            if (kind == NodeKind::fixed) stop(system, node);
+            if (rows.load) add_torque(system, nodes, node);
+            if (in_block >> i & 1) system.start[node + 1] = {nodes.motion[node].v, nodes.motion[node].w};
+        }
     });
 }
 
 void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
-    for_nodes(team, group.nodes, [&](uint32_t node) {
-        const Velocity& u = system.exact[node + 1];
-        displace(system, nodes, node, system.h * u.v, system.h * u.w);
-    });
+    const MotionKernels& kernels = motion_kernels();
+    const NodeRows rows = rows_of(system, nodes, system.exact);
+    for_batches(team, group.nodes, [&](const Batch& batch) { kernels.commit(rows, batch, system.h, rotate); });
 }
 
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
-    for (uint32_t b : group.blocks) {
-        if (!blocks[b].corrected) continue;
-        for (uint32_t node : blocks[b].nodes)
-            displace(system, nodes, node, system.correction[node + 1].v, system.correction[node + 1].w);
-    }
+    const MotionKernels& kernels = motion_kernels();
+    const NodeRows rows = rows_of(system, nodes, system.correction);
+    for (uint32_t b : group.blocks)
+        if (blocks[b].corrected)
+            for_batches(blocks[b].nodes, [&](const Batch& batch) { kernels.commit(rows, batch, 1, rotate); });
 }
 
-bool store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+// Kept in the world, what contacts changed of a spin since the body was moved would turn about axes of another inertia
+// (measured: thin rods and cylinders that bounce gained up to 5000 times their energy).
+bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes, double velocity_filter) {
+    const MotionKernels& kernels = motion_kernels();
+    const NodeRows rows = rows_of(system, nodes, system.exact);
+    constexpr Bodies kAll = (1u << kBodies) - 1;
     std::atomic<bool> all_sane{true};
-    for_nodes(team, group.nodes, [&](uint32_t node) {
-        NodeMotion& m = nodes.motion[node];
-        const Velocity& u = system.exact[node + 1];
-        const bool turns = nodes.info[node].kind == NodeKind::dynamic && !nodes.mass[node].isotropic &&
-                           !system.in_block[node + 1] && system.h * u.w.norm() > kTurn;
-        m.v = u.v;
-        m.w = turns ? spin_after(system.pose[node + 1], u, m) : u.w;
-        const double kappa = system.in_block[node + 1] ? velocity_filter : 1.0;
-        m.slow_v += kappa * (u.v - m.slow_v);
-        m.slow_w += kappa * (u.w - m.slow_w);
-        if (!sane(m)) all_sane.store(false, std::memory_order_relaxed);
+    for_batches(team, group.nodes, [&](const Batch& batch) {
+        const Bodies turning = which(batch, [&](uint32_t node) { return turns_freely(nodes, node); });
+        const Bodies in_block = which(batch, [&](uint32_t node) { return system.in_block[node + 1] != 0; });
+        if (kernels.store(rows, batch, system.h, kTurn, turning & ~in_block, velocity_filter, in_block, kMaxSpeed) !=
+            kAll)
+            all_sane.store(false, std::memory_order_relaxed);
     });
     return all_sane.load(std::memory_order_relaxed);
 }

@@ -21,7 +21,7 @@ void commit(Team& team, System& system, const Group& group, Nodes& nodes);
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes);
 
 // The kept velocity back into the state; s += kappa (v - s) for nodes in blocks. False: some motion is not sane.
-bool store_velocity(Team& team, const System& system, const Group& group, Nodes& nodes, double velocity_filter);
+bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes, double velocity_filter);
 
 // Kinematic nodes that begin_frame() found awake move at their own velocity: how far they turned by a substep's begin,
 // for the levers of what they touch in the group being solved, ...

@@ -1,0 +1,356 @@
+// The motion kernels, in vectors of four doubles. Included by one file for each build; nothing here has a name outside
+// of it. Only IEEE operations, no fused multiply-add, in one order.
+#pragma once
+
+#include "integrate/motion_kernels.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed within one build alone
+
+namespace taut {
+namespace {
+
+typedef double Four __attribute__((vector_size(kBodies * sizeof(double))));
+typedef float FourFloats __attribute__((vector_size(kBodies * sizeof(float))));
+using Mask = decltype(Four{} < Four{});
+
+Four all(double x) { return Four{x, x, x, x}; }
+Four load(const double* p) {
+    Four f;
+    __builtin_memcpy(&f, p, sizeof f);
+    return f;
+}
+void store(const Four& f, double* p) { __builtin_memcpy(p, &f, sizeof f); }
+
+Bodies bodies(const Mask& mask) {
+    Bodies bits = 0;
+    for (int i = 0; i < kBodies; ++i) bits |= static_cast<Bodies>(mask[i] != 0) << i;
+    return bits;
+}
+Mask mask(Bodies bodies) { return (Mask{1, 2, 4, 8} & static_cast<long long>(bodies)) != 0; }
+
+// Rows to columns and back.
+void transpose(Four (&m)[4]) {
+    const Four a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6), b = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
+    const Four c = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6), d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+    m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    m[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    m[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+void transpose(FourFloats (&m)[4]) {
+    const FourFloats a = __builtin_shufflevector(m[0], m[1], 0, 4, 1, 5),
+                     b = __builtin_shufflevector(m[0], m[1], 2, 6, 3, 7);
+    const FourFloats c = __builtin_shufflevector(m[2], m[3], 0, 4, 1, 5),
+                     d = __builtin_shufflevector(m[2], m[3], 2, 6, 3, 7);
+    m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    m[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    m[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+double* numbers(MotionRow& row) { return row.x; }
+const double* numbers(const MotionRow& row) { return row.x; }
+double* numbers(PoseRow& row) { return row.x; }
+const double* numbers(const PoseRow& row) { return row.x; }
+double* numbers(PairRow& row) { return row.linear; }
+const double* numbers(const PairRow& row) { return row.linear; }
+const double* numbers(const FoundRow& row) { return row.x; }
+const double* numbers(const MassRow& row) { return &row.mass; }
+
+// Four numbers of each row, from the one at `at` on.
+struct Columns {
+    Four of[4];
+
+    template <class Row>
+    Columns(Row* rows, const Batch& batch, int at) {
+        for (int i = 0; i < kBodies; ++i) of[i] = load(numbers(rows[batch.node[i]]) + at);
+        transpose(of);
+    }
+    Columns(const MassRow* const mass[kBodies], int at) {
+        for (int i = 0; i < kBodies; ++i) of[i] = load(numbers(*mass[i]) + at);
+        transpose(of);
+    }
+    Columns(const Four& a, const Four& b, const Four& c, const Four& d) : of{a, b, c, d} {}
+
+    template <class Row>
+    void put(Row* rows, const Batch& batch, int at) {
+        transpose(of);
+        for (int i = 0; i < kBodies; ++i) store(of[i], numbers(rows[batch.node[i]]) + at);
+    }
+};
+
+struct Vector {
+    Four x, y, z;
+};
+Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector operator*(const Four& s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
+Four dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vector cross(const Vector& a, const Vector& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vector choose(const Mask& mask, const Vector& yes, const Vector& no) {
+    return {mask ? yes.x : no.x, mask ? yes.y : no.y, mask ? yes.z : no.z};
+}
+
+struct Quaternion {
+    Four x, y, z, w;
+
+    Vector vector() const { return {x, y, z}; }
+    Quaternion conjugate() const { return {-x, -y, -z, w}; }
+};
+Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+    return {(a.w * b.x + a.y * b.z) - (a.z * b.y - a.x * b.w), (a.w * b.y + a.y * b.w) + (a.z * b.x - a.x * b.z),
+            (a.w * b.z - a.y * b.x) + (a.z * b.w + a.x * b.y), (a.w * b.w - a.y * b.y) - (a.z * b.z + a.x * b.x)};
+}
+Vector rotated(const Quaternion& q, const Vector& a) {
+    Vector t = cross(q.vector(), a);
+    t = t + t;
+    return a + q.w * t + cross(q.vector(), t);
+}
+
+struct Rotation {
+    Vector column[3];
+
+    explicit Rotation(const Quaternion& q) {
+        const Four tx = 2 * q.x, ty = 2 * q.y, tz = 2 * q.z, wx = tx * q.w, wy = ty * q.w, wz = tz * q.w;
+        const Four xx = tx * q.x, xy = ty * q.x, xz = tz * q.x, yy = ty * q.y, yz = tz * q.y, zz = tz * q.z;
+        column[0] = {1 - (yy + zz), xy + wz, xz - wy};
+        column[1] = {xy - wz, 1 - (xx + zz), yz + wx};
+        column[2] = {xz + wy, yz - wx, 1 - (xx + yy)};
+    }
+    Rotation(const PoseRow* rows, const Batch& batch) {
+        const Columns a(rows, batch, 3), b(rows, batch, 7), c(rows, batch, 8);
+        column[0] = {a.of[0], a.of[1], a.of[2]};
+        column[1] = {a.of[3], b.of[0], b.of[1]};
+        column[2] = {b.of[2], b.of[3], c.of[3]};
+    }
+    // Summed as Eigen sums R a.
+    Vector operator*(const Vector& a) const {
+        const Vector x = a.x * column[0], y = a.y * column[1], z = a.z * column[2];
+        return {x.x + y.x + z.x, x.y + y.y + z.y, x.z + (y.z + z.z)};
+    }
+    Vector back(const Vector& a) const { return {dot(column[0], a), dot(column[1], a), dot(column[2], a)}; }
+};
+
+struct Motion {
+    Columns x, q, v, w;  // x, pad; q; v, w.x; w.y, w.z, slow_v.x, slow_v.y
+
+    Motion(const MotionRow* rows, const Batch& batch)
+        : x(rows, batch, 0), q(rows, batch, 4), v(rows, batch, 8), w(rows, batch, 12) {}
+    Vector place() const { return {x.of[0], x.of[1], x.of[2]}; }
+    Quaternion turn() const { return {q.of[0], q.of[1], q.of[2], q.of[3]}; }
+    Vector velocity() const { return {v.of[0], v.of[1], v.of[2]}; }
+    Vector spin() const { return {v.of[3], w.of[0], w.of[1]}; }
+};
+
+struct Found {
+    Columns x, q;
+
+    Found(const FoundRow* rows, const Batch& batch) : x(rows, batch, 0), q(rows, batch, 4) {}
+    Vector to(const Vector& now) const { return now - Vector{x.of[0], x.of[1], x.of[2]}; }
+    Quaternion to(const Quaternion& now) const {
+        return now * Quaternion{q.of[0], q.of[1], q.of[2], q.of[3]}.conjugate();
+    }
+};
+
+struct Velocities {
+    Vector v, w;
+
+    Velocities(const Vector& linear, const Vector& angular) : v(linear), w(angular) {}
+    Velocities(const PairRow* rows, const Batch& batch) {
+        const Columns a(rows, batch, 0), b(rows, batch, 2);
+        v = {a.of[0], a.of[1], a.of[2]};
+        w = {a.of[3], b.of[2], b.of[3]};
+    }
+    void put(PairRow* rows, const Batch& batch) const {
+        Columns(v.x, v.y, v.z, w.x).put(rows, batch, 0);
+        Columns(v.z, w.x, w.y, w.z).put(rows, batch, 2);
+    }
+};
+
+struct Floats {
+    FourFloats of[4];
+
+    explicit Floats(const Vector& a) : of{narrow(a.x), narrow(a.y), narrow(a.z), {}} {}
+    explicit Floats(const Quaternion& q) : of{narrow(q.x), narrow(q.y), narrow(q.z), narrow(q.w)} {}
+    void put(FloatRow* const (&row)[kBodies], float (FloatRow::*half)[4]) {
+        transpose(of);
+        for (int i = 0; i < kBodies; ++i) __builtin_memcpy(row[i]->*half, &of[i], sizeof of[i]);
+    }
+
+private:
+    static FourFloats narrow(const Four& x) { return __builtin_convertvector(x, FourFloats); }
+};
+
+// Inlined, or the vectors go by memory: a call here made commit() three times as slow.
+template <class Linear, class Angular>
+[[gnu::always_inline]] inline void put_floats(const Linear& linear, const Angular& angular,
+                                              FloatRow* const (&row)[kBodies]) {
+    Floats(linear).put(row, &FloatRow::linear);
+    Floats(angular).put(row, &FloatRow::angular);
+}
+[[gnu::always_inline]] inline void put_floats(const Vector& linear, const Quaternion& angular, FloatRow* rows,
+                                              const Batch& batch) {
+    FloatRow* const row[kBodies] = {&rows[batch.node[0]], &rows[batch.node[1]], &rows[batch.node[2]],
+                                    &rows[batch.node[3]]};
+    put_floats(linear, angular, row);
+}
+
+struct Inertia {
+    Four xx, yy, zz, xy, xz, yz;
+
+    Vector operator*(const Vector& a) const {
+        return {xx * a.x + xy * a.y + xz * a.z, xy * a.x + yy * a.y + yz * a.z, xz * a.x + yz * a.y + zz * a.z};
+    }
+};
+
+// x of [c0 c1 c2] x = r, by Cramer's rule.
+Vector solve(const Vector& c0, const Vector& c1, const Vector& c2, const Vector& r) {
+    const Vector across = cross(c1, c2);
+    const Four scale = 1 / dot(c0, across);
+    return {scale * dot(r, across), scale * dot(c0, cross(r, c2)), scale * dot(c0, cross(c1, r))};
+}
+
+// (dF/dw)^-1 f of F(w) = I (w - w0) + h m x I m, where l = I m; dF/dw e = I e + h/2 (m x I e + e x l).
+Vector newton_step(const Vector& m, const Vector& l, const Inertia& i, double h, const Vector& f) {
+    const Four none = {}, half = all(0.5 * h);
+    const auto column = [&](const Vector& own, const Vector& unit_cross_l) {
+        return own + half * (cross(m, own) + unit_cross_l);
+    };
+    return solve(column({i.xx, i.xy, i.xz}, {none, -l.z, l.y}), column({i.xy, i.yy, i.yz}, {l.z, none, -l.x}),
+                 column({i.xz, i.yz, i.zz}, {-l.y, l.x, none}), f);
+}
+
+// The explicit form spins thin bodies up; this one keeps w.I w and |I w| as they are. F is quadratic: what a Newton
+// step d leaves of it is h/4 d x I d. Three steps solve it where a substep turns the body by less than a radian or so.
+Bodies turn_freely(Vector& w, const Inertia& i, double h) {
+    constexpr double kSolved = 1e-10, kGood = 1e-6;  // of I w0
+    Vector m = w, l = i * w, f = all(h) * cross(w, l);
+    const Four scale = dot(l, l), one = all(1), zero = {};
+    Four left = dot(f, f);
+    for (int step = 0; step < 3; ++step) {
+        // A body that is solved stays as it is, so that it does not depend on those beside it.
+        const Mask asks = ~(left <= kSolved * kSolved * scale);
+        if (bodies(asks) == 0) break;
+        const Four takes = asks ? one : zero;
+        const Vector d = (-takes) * newton_step(m, l, i, h, f), ld = i * d;
+        w = w + d;
+        m = m + all(0.5) * d;
+        l = l + all(0.5) * ld;
+        f = (1 - takes) * f + takes * (all(0.25 * h) * cross(d, ld));
+        left = dot(f, f);
+    }
+    return bodies(left <= kGood * kGood * scale);
+}
+
+// Of some bodies alone.
+void damp(Vector& w, const Vector& w0, const Inertia& inertia, Bodies some, Bodies damped, const Prediction& terms) {
+    for (int k = 0; k < kBodies; ++k) {
+        if ((some >> k & 1) == 0) continue;
+        const double i[6] = {inertia.xx[k], inertia.yy[k], inertia.zz[k], inertia.xy[k], inertia.xz[k], inertia.yz[k]};
+        double spin[3] = {w0.x[k], w0.y[k], w0.z[k]};
+        terms.damp(spin, i, terms.h, (damped >> k & 1) != 0);
+        w.x[k] = spin[0], w.y[k] = spin[1], w.z[k] = spin[2];
+    }
+}
+
+Bodies predict(const NodeRows& rows, const Batch& batch, const MassRow* const mass[kBodies], const Prediction& terms,
+               Bodies turning, Bodies damped) {
+    const Motion m(rows.motion, batch);
+    const Columns masses(mass, 0), inertias(mass, 4), last(mass, 14);
+    const Quaternion q = m.turn();
+    const Rotation R(q);
+    Columns(m.x.of[0], m.x.of[1], m.x.of[2], R.column[0].x).put(rows.pose, batch, 0);
+    Columns(R.column[0].y, R.column[0].z, R.column[1].x, R.column[1].y).put(rows.pose, batch, 4);
+    Columns(R.column[1].z, R.column[2].x, R.column[2].y, R.column[2].z).put(rows.pose, batch, 8);
+    Vector a = last.of[3] * Vector{all(terms.gravity[0]), all(terms.gravity[1]), all(terms.gravity[2])};
+    if (rows.load) a = a + masses.of[1] * Velocities(rows.load, batch).v;
+    Velocities u(m.velocity() + all(terms.h) * a, m.spin());
+    if (turning != 0) {
+        const Inertia inertia = {masses.of[2],   masses.of[3],   inertias.of[0],
+                                 inertias.of[1], inertias.of[2], inertias.of[3]};
+        const Vector before = R.back(u.w);
+        Vector w = before;
+        const Bodies others = turning & (damped | ~turn_freely(w, inertia, terms.h));
+        if (others != 0) damp(w, before, inertia, others, damped, terms);
+        u.w = choose(mask(turning), R * w, u.w);
+    }
+    u.put(rows.velocity, batch);
+    const Vector none = {};  // sweeps want no -0
+    FloatRow* const sweep[kBodies] = {&rows.sweep[batch.node[0]].velocity, &rows.sweep[batch.node[1]].velocity,
+                                      &rows.sweep[batch.node[2]].velocity, &rows.sweep[batch.node[3]].velocity};
+    put_floats(u.v + none, u.w + none, sweep);
+    const Found found(rows.found, batch);
+    if (rows.sweep_pose) put_floats(found.to(m.place()), q, rows.sweep_pose, batch);
+    const Vector away = found.to(q).vector();
+    return bodies(dot(away, away) > 0.25 * terms.turn * terms.turn);
+}
+
+// exp(theta) of some, by rotate.
+[[gnu::noinline]] Quaternion rotate_each(Quaternion q, const Vector& theta, Bodies some,
+                                         void (*rotate)(const double theta[3], double q[4])) {
+    for (int i = 0; i < kBodies; ++i) {
+        if ((some >> i & 1) == 0) continue;
+        const double turn[3] = {theta.x[i], theta.y[i], theta.z[i]};
+        double out[4];
+        rotate(turn, out);
+        q.x[i] = out[0], q.y[i] = out[1], q.z[i] = out[2], q.w[i] = out[3];
+    }
+    return q;
+}
+
+// exp(theta): of turns below half a radian, which most are, a series in the square of half the angle y <= 1/16. What it
+// leaves out is less than 2e-17.
+Quaternion rotation_of(const Vector& theta, void (*rotate)(const double theta[3], double q[4])) {
+    const Four squared = dot(theta, theta), y = 0.25 * squared;
+    const Four k =
+        1.0 + y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 - y * (1.0 / 39916800)))));
+    const Four c =
+        1.0 + y * (-1.0 / 2 + y * (1.0 / 24 + y * (-1.0 / 720 +
+                                                   y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
+    const Quaternion q = {0.5 * k * theta.x, 0.5 * k * theta.y, 0.5 * k * theta.z, c};
+    const Bodies large = bodies(~(squared <= all(0.25)));
+    return large == 0 ? q : rotate_each(q, theta, large, rotate);
+}
+
+void commit(const NodeRows& rows, const Batch& batch, double h, void (*rotate)(const double theta[3], double q[4])) {
+    const Velocities u(rows.velocity, batch);
+    const Columns place(rows.motion, batch, 0), turn(rows.motion, batch, 4);
+    const Vector x = Vector{place.of[0], place.of[1], place.of[2]} + all(h) * u.v;
+    Quaternion q = rotation_of(all(h) * u.w, rotate) * Quaternion{turn.of[0], turn.of[1], turn.of[2], turn.of[3]};
+    // Of a product of unit quaternions, where |q|^2 - 1 = e is some rounding: one Newton step leaves 3/8 e^2.
+    const Four unit = 1.5 - 0.5 * ((q.x * q.x + q.z * q.z) + (q.y * q.y + q.w * q.w));
+    q = {q.x * unit, q.y * unit, q.z * unit, q.w * unit};
+    Columns(x.x, x.y, x.z, place.of[3]).put(rows.motion, batch, 0);
+    Columns(q.x, q.y, q.z, q.w).put(rows.motion, batch, 4);
+    const Found found(rows.found, batch);
+    put_floats(found.to(x), found.to(q), rows.shift, batch);
+}
+
+Mask finite(const Four& x) { return x - x == all(0); }
+
+Bodies store_velocities(const NodeRows& rows, const Batch& batch, double h, double turn, Bodies turning, double kappa,
+                        Bodies slow, double most) {
+    const Velocities u(rows.velocity, batch);
+    const Motion m(rows.motion, batch);
+    const Columns last(rows.motion, batch, 16);
+    const Mask turns = mask(turning) & (all(h * h) * dot(u.w, u.w) > turn * turn);
+    Vector w = u.w;
+    if (bodies(turns) != 0) w = choose(turns, rotated(m.turn(), Rotation(rows.pose, batch).back(u.w)), u.w);
+    const Four part = mask(slow) ? all(kappa) : all(1);
+    const Vector slow_v = {m.w.of[2], m.w.of[3], last.of[0]}, slow_w = {last.of[1], last.of[2], last.of[3]};
+    const Vector next_v = slow_v + part * (u.v - slow_v), next_w = slow_w + part * (u.w - slow_w);
+    Columns(u.v.x, u.v.y, u.v.z, w.x).put(rows.motion, batch, 8);
+    Columns(w.y, w.z, next_v.x, next_v.y).put(rows.motion, batch, 12);
+    Columns(next_v.z, next_w.x, next_w.y, next_w.z).put(rows.motion, batch, 16);
+    const Vector x = m.place();
+    const Quaternion q = m.turn();
+    const Mask there = finite(x.x) & finite(x.y) & finite(x.z) & finite(q.x) & finite(q.y) & finite(q.z) & finite(q.w);
+    return bodies(there & (dot(u.v, u.v) <= all(most * most)) & (dot(w, w) <= all(most * most)));
+}
+
+constexpr MotionKernels kTable = {predict, commit, store_velocities};
+
+}  // namespace
+}  // namespace taut
