@@ -84,11 +84,16 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     build_group(w, group, solver, *settings.kernels);
     w.profile.predict_us += watch.lap();
 
+    const bool lends = w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !w.observer;
     bool loaded = false, sane = false;  // the nodes, as far as is known
     while (!part.done()) {
         const uint32_t i = part.number();
         if (part.length() != system.h) change_length(w.team, system, group, part.length(), frame);
-        if (loaded || !sane) loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
+        if (loaded || !sane) {
+            return_motion(w.team, system, group, w.nodes);
+            loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
+        }
+        if (lends) lend_motion(w.team, system, group, w.nodes);
         find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.h);
         turn_kinematic(system, w.nodes, part.begin());
         predict(w.team, system, group, w.nodes, gravity);
@@ -129,6 +134,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         w.profile.commit_us += watch.lap();
         part.advance(substep.turn);
     }
+    return_motion(w.team, system, group, w.nodes);
     w.profile.substeps = std::max(w.profile.substeps, part.number());
     if (!sane) quarantine(w.team, w.nodes, group.nodes, w.frozen);
     if (!solver.lanes) return;
@@ -147,7 +153,7 @@ void solve(World& w, Stopwatch& watch) {
                                   &joint_kernels(),
                                   w.def.adaptive_damping != 0};
     SolverReport report;
-    begin_frame(w.team, w.system, w.nodes, w.joints);
+    begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) solve_group(w, i, solver, settings, report, watch);
     if (const uint32_t failures = report.failures; failures > 0)
@@ -185,7 +191,8 @@ void step(World& w) {
     note_loads(w.joints, w.nodes);
     const taut_vec3 g = w.def.gravity;
     w.partition.build(w.team, w.nodes, w.joints, w.pairs,
-                      {w.def.substeps, w.def.fixed_substeps != 0, solver.direct, w.def.time_step, Vec3(g.x, g.y, g.z)});
+                      {w.def.substeps, w.def.fixed_substeps != 0, solver.direct, w.def.time_step, Vec3(g.x, g.y, g.z),
+                       w.team.size() > 1});
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);

@@ -45,8 +45,12 @@ Findings look_at(Team& team, const Nodes& nodes, const Array<uint32_t>& list, do
 bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
     const Findings found = look_at(team, nodes, list, h);
     if (!found.bad) return found.loaded;
-    for (uint32_t node : list) {
-        if (!is_bad(nodes, node, h)) continue;
+    const size_t first = frozen.size();
+    for (uint32_t node : list)
+        if (is_bad(nodes, node, h)) frozen.push_back(node);
+    std::sort(frozen.begin() + static_cast<std::ptrdiff_t>(first), frozen.end());
+    for (size_t i = first; i < frozen.size(); ++i) {
+        const uint32_t node = frozen[i];
         NodeMotion& m = nodes.motion[node];
         nodes.mass.reserve_values(1);
         nodes.clear_load(node);
@@ -59,7 +63,6 @@ bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uin
         none.mass = none.inv_mass = 0;
         none.inertia = none.inv_inertia = {};
         nodes.mass.set(node, none);
-        frozen.push_back(node);
     }
     return found.loaded;
 }

@@ -20,7 +20,8 @@ struct alignas(32) SweepMass {
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
     float pad = 0;
 };
-// By node + 1. A cache line each: who gathers fetches one, and threads that write to neighbours do not meet.
+// By seat (system/system.h). A cache line each: who gathers fetches one, and threads that write to neighbours do not
+// meet.
 struct alignas(64) SweepNode {
     SweepVelocity velocity;
     SweepMass mass;
@@ -35,7 +36,7 @@ constexpr uint32_t kNoLanes = UINT32_MAX;
 struct LanePoint;
 
 struct alignas(64) LaneGroup {
-    uint32_t a[kLanes], b[kLanes];  // index into arrays by node
+    uint32_t a[kLanes], b[kLanes];  // index into arrays by seat
     uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
     float normal[3][kLanes], tangent[3][kLanes];
     float friction[kLanes];
@@ -150,21 +151,22 @@ private:
 // A thread's lane groups of a colour: [begin, end); those before inner share moving nodes with other threads' groups,
 // of whatever colour.
 struct LanePart {
-    uint32_t begin, inner, end;
+    uint32_t begin = 0, inner = 0, end = 0;
+    uint32_t pairs_begin = 0, pairs_end = 0;  // in ContactLanes::pairs, from those of the first lane group on
 };
 
 struct ContactLanes {
     explicit ContactLanes(Memory& memory)
-        : group(memory), point(memory), drive(memory), rolling(memory), part(memory), first_pair(memory), met(memory) {}
+        : group(memory), point(memory), drive(memory), rolling(memory), part(memory), pairs(memory), met(memory) {}
 
     UnsetArray<LaneGroup> group;  // of a colour, in the order of place but for borders
     LanePoints point;
     Array<LaneDrive> drive;
     Array<LaneRolling> rolling;
-    uint32_t parts = 1;          // of a colour
-    Array<LanePart> part;        // of each colour, by place
-    Array<uint32_t> first_pair;  // scratch, of each group: its first in Group::pairs
-    Array<uint8_t> met;          // scratch, of each part by node + 1: 1 where it has groups
+    uint32_t parts = 1;     // of a colour
+    Array<LanePart> part;   // of each colour, by place
+    Array<uint32_t> pairs;  // scratch: index into Group::pairs, of each colour by part
+    Array<uint8_t> met;     // scratch, of each part by seat: 1 where it has groups
 
     bool bounces = false;  // some point has restitution
 

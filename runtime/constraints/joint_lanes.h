@@ -13,7 +13,7 @@ struct alignas(64) LaneScalar {
     float value[kLanes];
 };
 
-// By node + 1, as SweepVelocity.
+// By seat, as SweepVelocity.
 struct alignas(32) SweepPose {
     float dx[3] = {0, 0, 0}, pad = 0;  // translation since the frame began [m]
     float q[4] = {0, 0, 0, 1};         // world from body: x, y, z, w
@@ -28,7 +28,7 @@ struct alignas(32) LaneFrames {
 
 struct JointGroup {
     const ConstraintType* type;
-    uint32_t node[kMaxNodes][kLanes];  // index into arrays by node
+    uint32_t node[kMaxNodes][kLanes];  // index into arrays by seat
     uint32_t block[kLanes];            // in Rows::block, kNoLanes for an empty lane
     uint32_t nodes, rows;              // of the type
     uint32_t held;                     // rows up to the last that a lane locks

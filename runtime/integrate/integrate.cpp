@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "check/quarantine.h"
 #include "integrate/gyroscopic.h"
@@ -26,9 +27,9 @@ void set_shift(SweepShift& shift, const Vec3& dx, const Quat& dq) {
     for (int i = 0; i < 4; ++i) shift.dq[i] = static_cast<float>(dq.coeffs()[i]);
 }
 
-void set_sweep_pose(System& system, uint32_t node, const Vec3& dx, const Quat& q) {
+void set_sweep_pose(System& system, uint32_t at, const Vec3& dx, const Quat& q) {
     if (system.sweep_pose.empty()) return;
-    SweepPose& pose = system.sweep_pose[node + 1];
+    SweepPose& pose = system.sweep_pose[at];
     for (int i = 0; i < 3; ++i) pose.dx[i] = static_cast<float>(dx[i]);
     for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
 }
@@ -39,11 +40,11 @@ constexpr double kTurn = 0.05;
 // Kinematic bodies do not yield: what they seem to move at beside their way is forced on what they carry.
 constexpr double kKinematicTurn = 1e-3;
 
-void note_turn(System& system, uint32_t node, const Quat& q, double least) {
-    System::Found& found = system.found[node + 1];
+void note_turn(System& system, uint32_t at, const Quat& q, double least) {
+    System::Found& found = system.found[at];
     const Quat turn = q * found.q.conjugate();
-    system.turned[node + 1] = turn.vec().squaredNorm() > 0.25 * least * least;
-    if (system.turned[node + 1]) found.q = q;
+    system.turned[at] = turn.vec().squaredNorm() > 0.25 * least * least;
+    if (system.turned[at]) found.q = q;
 }
 
 // Of a kinematic body at its own velocity.
@@ -61,44 +62,56 @@ static_assert(offsetof(System::Found, q) == offsetof(FoundRow, q) && sizeof(Syst
 static_assert(sizeof(SweepShift) == sizeof(FloatRow) && sizeof(SweepPose) == sizeof(FloatRow));
 static_assert(sizeof(SweepNode) == sizeof(SweepRow) && offsetof(SweepNode, velocity) == 0);
 
-// From the first node on; of arrays by node + 1 that is the second.
 template <class Row, class T>
 Row* rows_of(T* first) {
     return reinterpret_cast<Row*>(first);
 }
 NodeRows rows_of(System& system, Nodes& nodes, Array<Velocity>& velocity) {
-    return {rows_of<MotionRow>(nodes.motion.data()),
-            rows_of<PoseRow>(system.pose.data() + 1),
-            rows_of<PairRow>(velocity.data() + 1),
-            rows_of<const FoundRow>(system.found.data() + 1),
-            rows_of<FloatRow>(system.shift.data() + 1),
-            rows_of<SweepRow>(system.sweep.data() + 1),
-            system.sweep_pose.empty() ? nullptr : rows_of<FloatRow>(system.sweep_pose.data() + 1),
-            nodes.load.empty() ? nullptr : rows_of<const PairRow>(nodes.load.data())};
+    return {rows_of<MotionRow>(system.motion.empty() ? nodes.motion.data() : system.motion.data()),
+            nodes.load.empty() ? nullptr : rows_of<const PairRow>(nodes.load.data()),
+            rows_of<PoseRow>(system.pose.data()),
+            rows_of<PairRow>(velocity.data()),
+            rows_of<const FoundRow>(system.found.data()),
+            rows_of<FloatRow>(system.shift.data()),
+            rows_of<SweepRow>(system.sweep.data()),
+            system.sweep_pose.empty() ? nullptr : rows_of<FloatRow>(system.sweep_pose.data())};
 }
 
 template <class Act>
-void for_batches(std::span<const uint32_t> list, Act&& act) {
+void for_batches(const System& system, std::span<const uint32_t> list, Act&& act) {
+    const bool lent = !system.motion.empty();
     const auto count = static_cast<uint32_t>(list.size());
     for (uint32_t i = 0; i < count; i += kBodies) {
         Batch batch;
-        for (uint32_t k = 0; k < kBodies; ++k) batch.node[k] = list[std::min(i + k, count - 1)];
+        for (uint32_t k = 0; k < kBodies; ++k) {
+            const uint32_t node = list[std::min(i + k, count - 1)], at = system.at(node);
+            batch.node[k] = node;
+            batch.seat[k] = at;
+            batch.motion[k] = lent ? at : node;
+        }
         batch.count = std::min<uint32_t>(kBodies, count - i);
         act(batch);
     }
 }
 template <class Act>
-void for_batches(Team& team, std::span<const uint32_t> list, Act&& act) {
+void for_batches(Team& team, const System& system, std::span<const uint32_t> list, Act&& act) {
     team.for_ranges(static_cast<uint32_t>(list.size()), kGrain,
-                    [&](uint32_t begin, uint32_t end) { for_batches(list.subspan(begin, end - begin), act); });
+                    [&](uint32_t begin, uint32_t end) { for_batches(system, list.subspan(begin, end - begin), act); });
 }
 
-// Those of a batch of which it holds.
+// Those nodes or seats of a batch of which it holds.
 template <class Holds>
-Bodies which(const Batch& batch, Holds&& holds) {
+Bodies which(const uint32_t (&batch)[kBodies], Holds&& holds) {
     Bodies bits = 0;
-    for (uint32_t i = 0; i < kBodies; ++i) bits |= static_cast<Bodies>(holds(batch.node[i])) << i;
+    for (uint32_t i = 0; i < kBodies; ++i) bits |= static_cast<Bodies>(holds(batch[i])) << i;
     return bits;
+}
+
+template <class Act>
+void for_nodes(Team& team, std::span<const uint32_t> list, Act&& act) {
+    team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) act(list[i]);
+    });
 }
 
 void rotate(const double theta[3], double q[4]) {
@@ -113,15 +126,36 @@ void forget(System& system, uint32_t at) {
     system.place[at] = kNone;
 }
 
-void begin_node(System& system, const Nodes& nodes, uint32_t node) {
+void begin_node(System& system, const Nodes& nodes, uint32_t node, uint32_t at) {
     const NodeMotion& m = nodes.motion[node];
-    system.pose[node + 1] = {m.x, m.q.toRotationMatrix()};
-    system.found[node + 1] = {m.x, m.q};
-    set_sweep_pose(system, node, Vec3::Zero(), m.q);
-    system.exact[node + 1] = {m.v, m.w};
-    set_inverse_mass(system.sweep[node + 1].mass, nodes.mass[node], system.pose[node + 1].R);
-    if (nodes.sleeps(node)) system.sweep[node + 1].mass = {};  // what comes near stops at it until it wakes
-    set_sweep_velocity(system.sweep[node + 1].velocity, {m.v, m.w});
+    system.pose[at] = {m.x, m.q.toRotationMatrix()};
+    system.found[at] = {m.x, m.q};
+    set_sweep_pose(system, at, Vec3::Zero(), m.q);
+    system.exact[at] = {m.v, m.w};
+    set_inverse_mass(system.sweep[at].mass, nodes.mass[node], system.pose[at].R);
+    if (nodes.sleeps(node)) system.sweep[at].mass = {};  // what comes near stops at it until it wakes
+    set_sweep_velocity(system.sweep[at].velocity, {m.v, m.w});
+}
+
+// Nodes of groups first, in their order, then all others. Those long asleep are only touched where their seat changes.
+void take_seats(System& system, const Partition& partition, const Nodes& nodes) {
+    system.seat.resize(nodes.slots() + 1, kNone);
+    system.node_at.clear();
+    const auto take = [&](uint32_t node) {
+        const auto at = static_cast<uint32_t>(system.node_at.size());
+        const bool moved = std::exchange(system.seat[node + 1], at) != at;
+        system.node_at.push_back(node);
+        if (moved && node != kNone && nodes.rest[node] == Rest::asleep) begin_node(system, nodes, node, at);
+    };
+    const auto is_seated = [&](uint32_t node) {
+        const uint32_t at = system.seat[node + 1];
+        return at < system.node_at.size() && system.node_at[at] == node;
+    };
+    take(kNone);
+    for (uint32_t g = 0; g < partition.group_count; ++g)
+        for (const uint32_t node : partition.groups[g].nodes) take(node);
+    for (uint32_t node = 0; node < nodes.slots(); ++node)
+        if (!is_seated(node)) take(node);
 }
 
 // A dynamic node with a spin of its own: not one whose inertia is the same about all axes.
@@ -130,69 +164,84 @@ bool turns_freely(const Nodes& nodes, uint32_t node) {
 }
 
 // Quarantined in this frame.
-void stop(System& system, uint32_t node) {
-    system.exact[node + 1] = {};
-    system.sweep[node + 1] = {};
-    if (system.in_block[node + 1]) system.inertia[node + 1].setZero();  // cannot be factored, and moves freely
+void stop(System& system, uint32_t at) {
+    system.exact[at] = {};
+    system.sweep[at] = {};
+    if (system.in_block[at]) system.inertia[at].setZero();  // cannot be factored, and moves freely
 }
 
 // What a node's turn in the substep before changes.
-void turn_axes(System& system, const Nodes& nodes, uint32_t node, bool turned) {
-    const NodeMass& mass = nodes.mass[node];
-    const Mat3& R = system.pose[node + 1].R;
-    const bool in_block = system.in_block[node + 1];
-    system.turned[node + 1] = turned;
-    if (turned) system.found[node + 1].q = nodes.motion[node].q;
-    if (!mass.isotropic && (turned || in_block)) set_inverse_mass(system.sweep[node + 1].mass, mass, R);
-    if (in_block) system.inertia[node + 1] = R * mass.inertia.matrix() * R.transpose();
+void turn_axes(System& system, const NodeMass& mass, const NodeMotion& motion, uint32_t at, bool turned) {
+    const Mat3& R = system.pose[at].R;
+    const bool in_block = system.in_block[at];
+    system.turned[at] = turned;
+    if (turned) system.found[at].q = motion.q;
+    if (!mass.isotropic && (turned || in_block)) set_inverse_mass(system.sweep[at].mass, mass, R);
+    if (in_block) system.inertia[at] = R * mass.inertia.matrix() * R.transpose();
 }
 
-void add_torque(System& system, const Nodes& nodes, uint32_t node) {
+void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) {
     const Vec3& torque = nodes.load_of(node).torque;
     if (torque == Vec3::Zero() || nodes.info[node].kind != NodeKind::dynamic) return;
-    Velocity& u = system.exact[node + 1];
-    const Mat3& R = system.pose[node + 1].R;
+    Velocity& u = system.exact[at];
+    const Mat3& R = system.pose[at].R;
     u.w += system.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
-    set_sweep_velocity(system.sweep[node + 1].velocity, u);
+    set_sweep_velocity(system.sweep[at].velocity, u);
 }
 
 }  // namespace
 
-void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& joints) {
+void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, const Joints& joints) {
     const uint32_t slots = nodes.slots();
     system.make_room(slots);
     system.sweep_pose.resize(joints.ids.count() > 0 ? slots + 1 : 0);
+    take_seats(system, partition, nodes);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node)
         if (nodes.info[node].kind == NodeKind::kinematic && nodes.rest[node] != Rest::asleep)
             system.kinematic.push_back(node);
     forget(system, 0);
     team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t node = begin; node < end; ++node) {
-            forget(system, node + 1);
+        for (uint32_t at = begin + 1; at <= end; ++at) {
+            const uint32_t node = system.node_at[at];
+            forget(system, at);
             if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
-                begin_node(system, nodes, node);
+                begin_node(system, nodes, node, at);
         }
     });
+}
+
+void lend_motion(Team& team, System& system, const Group& group, const Nodes& nodes) {
+    if (!system.motion.empty()) return;
+    system.motion.resize(system.node_at.size());
+    for_nodes(team, group.nodes, [&](uint32_t node) { system.motion[system.at(node)] = nodes.motion[node]; });
+}
+
+void return_motion(Team& team, System& system, const Group& group, Nodes& nodes) {
+    if (system.motion.empty()) return;
+    for_nodes(team, group.nodes, [&](uint32_t node) { nodes.motion[node] = system.motion[system.at(node)]; });
+    system.motion.clear();
 }
 
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
+    const NodeMotion* const motion = system.motion.empty() ? nodes.motion.data() : system.motion.data();
     const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kTurn, gyroscopic_euler};
-    for_batches(team, group.nodes, [&](const Batch& batch) {
+    for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const MassRow* mass[kBodies];
         for (int i = 0; i < kBodies; ++i) mass[i] = rows_of<const MassRow>(&nodes.mass[batch.node[i]]);
-        const Bodies turning = which(batch, [&](uint32_t node) { return turns_freely(nodes, node); });
-        const Bodies in_block = which(batch, [&](uint32_t node) { return system.in_block[node + 1] != 0; });
+        const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
+        const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         const Bodies turned = kernels.predict(rows, batch, mass, terms, turning, in_block);
         for (uint32_t i = 0; i < batch.count; ++i) {
-            const uint32_t node = batch.node[i];
+            const uint32_t node = batch.node[i], at = batch.seat[i];
+            const NodeMotion& m = motion[batch.motion[i]];
             const NodeKind kind = nodes.info[node].kind;
-            if (kind == NodeKind::dynamic) turn_axes(system, nodes, node, (turned >> i & 1) != 0);
-            if (kind == NodeKind::fixed) stop(system, node);
-            if (rows.load) add_torque(system, nodes, node);
-            if (in_block >> i & 1) system.start[node + 1] = {nodes.motion[node].v, nodes.motion[node].w};
+            if (kind == NodeKind::dynamic) turn_axes(system, nodes.mass[node], m, at, (turned >> i & 1) != 0);
+            if (kind == NodeKind::fixed) stop(system, at);
+            if (rows.load) add_torque(system, nodes, node, at);
+            if (in_block >> i & 1) system.start[at] = {m.v, m.w};
         }
     });
 }
@@ -200,7 +249,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
 void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
-    for_batches(team, group.nodes, [&](const Batch& batch) { kernels.commit(rows, batch, system.h, rotate); });
+    for_batches(team, system, group.nodes, [&](const Batch& batch) { kernels.commit(rows, batch, system.h, rotate); });
 }
 
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
@@ -208,7 +257,7 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
     const NodeRows rows = rows_of(system, nodes, system.correction);
     for (uint32_t b : group.blocks)
         if (blocks[b].corrected)
-            for_batches(blocks[b].nodes, [&](const Batch& batch) { kernels.commit(rows, batch, 1, rotate); });
+            for_batches(system, blocks[b].nodes, [&](const Batch& batch) { kernels.commit(rows, batch, 1, rotate); });
 }
 
 // Kept in the world, what contacts changed of a spin since the body was moved would turn about axes of another inertia
@@ -218,9 +267,9 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
     const NodeRows rows = rows_of(system, nodes, system.exact);
     constexpr Bodies kAll = (1u << kBodies) - 1;
     std::atomic<bool> all_sane{true};
-    for_batches(team, group.nodes, [&](const Batch& batch) {
-        const Bodies turning = which(batch, [&](uint32_t node) { return turns_freely(nodes, node); });
-        const Bodies in_block = which(batch, [&](uint32_t node) { return system.in_block[node + 1] != 0; });
+    for_batches(team, system, group.nodes, [&](const Batch& batch) {
+        const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
+        const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         if (kernels.store(rows, batch, system.h, kTurn, turning & ~in_block, velocity_filter, in_block, kMaxSpeed) !=
             kAll)
             all_sane.store(false, std::memory_order_relaxed);
@@ -231,8 +280,9 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
 void turn_kinematic(System& system, const Nodes& nodes, double time) {
     for (uint32_t node : system.kinematic) {
         const NodeMotion& m = nodes.motion[node];
-        if (time == 0) system.found[node + 1].q = m.q;  // the group before this one left it at its last substep
-        note_turn(system, node, rotation_after(m, time), kKinematicTurn);
+        const uint32_t at = system.at(node);
+        if (time == 0) system.found[at].q = m.q;  // the group before this one left it at its last substep
+        note_turn(system, at, rotation_after(m, time), kKinematicTurn);
     }
 }
 
@@ -240,9 +290,10 @@ void shift_kinematic(System& system, const Nodes& nodes, double time) {
     for (uint32_t node : system.kinematic) {
         const NodeMotion& m = nodes.motion[node];
         const Quat turned = rotation_after(m, time);
-        system.pose[node + 1] = {m.x + time * m.v, turned.toRotationMatrix()};
-        set_shift(system.shift[node + 1], time * m.v, turned * system.found[node + 1].q.conjugate());
-        set_sweep_pose(system, node, time * m.v, turned);
+        const uint32_t at = system.at(node);
+        system.pose[at] = {m.x + time * m.v, turned.toRotationMatrix()};
+        set_shift(system.shift[at], time * m.v, turned * system.found[at].q.conjugate());
+        set_sweep_pose(system, at, time * m.v, turned);
     }
 }
 

@@ -7,9 +7,14 @@
 
 namespace taut {
 
-// Once a frame: poses of all nodes but those long asleep, which keep theirs, still shifts, inverse masses of nodes that
-// do not turn theirs.
-void begin_frame(Team& team, System& system, const Nodes& nodes, const Joints& joints);
+// Once a frame: seats, poses of all nodes but those long asleep, which keep theirs, still shifts, inverse masses of
+// nodes that do not turn theirs.
+void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, const Joints& joints);
+
+// From where a group's motions are, for its substeps, to where threads do not meet (System::motion), and back; what
+// there is to do and was not done. Blocks and loads need them where they are.
+void lend_motion(Team& team, System& system, const Group& group, const Nodes& nodes);
+void return_motion(Team& team, System& system, const Group& group, Nodes& nodes);
 
 // v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity);

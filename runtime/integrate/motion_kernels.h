@@ -33,16 +33,16 @@ struct SweepRow {  // SweepNode
     float mass[8];
 };
 
-// By node.
 struct NodeRows {
-    MotionRow* motion;
+    MotionRow* motion;    // by Batch::motion
+    const PairRow* load;  // by node; null where nothing was put on any
+    // By seat.
     PoseRow* pose;
     PairRow* velocity;
     const FoundRow* found;
     FloatRow* shift;
     SweepRow* sweep;
     FloatRow* sweep_pose;  // null where there are no joints
-    const PairRow* load;   // null where nothing was put on any
 };
 
 // A bit for each of kBodies nodes.
@@ -51,7 +51,7 @@ using Bodies = uint32_t;
 // Nodes that are worked on side by side. Where there are fewer the last stands for what is missing: it comes out the
 // same each time.
 struct Batch {
-    uint32_t node[kBodies];
+    uint32_t node[kBodies], seat[kBodies], motion[kBodies];
     uint32_t count;
 };
 

@@ -62,8 +62,8 @@ struct Columns {
     Four of[4];
 
     template <class Row>
-    Columns(Row* rows, const Batch& batch, int at) {
-        for (int i = 0; i < kBodies; ++i) of[i] = load(numbers(rows[batch.node[i]]) + at);
+    Columns(Row* rows, const uint32_t (&which)[kBodies], int at) {
+        for (int i = 0; i < kBodies; ++i) of[i] = load(numbers(rows[which[i]]) + at);
         transpose(of);
     }
     Columns(const MassRow* const mass[kBodies], int at) {
@@ -73,9 +73,9 @@ struct Columns {
     Columns(const Four& a, const Four& b, const Four& c, const Four& d) : of{a, b, c, d} {}
 
     template <class Row>
-    void put(Row* rows, const Batch& batch, int at) {
+    void put(Row* rows, const uint32_t (&which)[kBodies], int at) {
         transpose(of);
-        for (int i = 0; i < kBodies; ++i) store(of[i], numbers(rows[batch.node[i]]) + at);
+        for (int i = 0; i < kBodies; ++i) store(of[i], numbers(rows[which[i]]) + at);
     }
 };
 
@@ -120,7 +120,7 @@ struct Rotation {
         column[2] = {xz + wy, yz - wx, 1 - (xx + yy)};
     }
     Rotation(const PoseRow* rows, const Batch& batch) {
-        const Columns a(rows, batch, 3), b(rows, batch, 7), c(rows, batch, 8);
+        const Columns a(rows, batch.seat, 3), b(rows, batch.seat, 7), c(rows, batch.seat, 8);
         column[0] = {a.of[0], a.of[1], a.of[2]};
         column[1] = {a.of[3], b.of[0], b.of[1]};
         column[2] = {b.of[2], b.of[3], c.of[3]};
@@ -137,7 +137,7 @@ struct Motion {
     Columns x, q, v, w;  // x, pad; q; v, w.x; w.y, w.z, slow_v.x, slow_v.y
 
     Motion(const MotionRow* rows, const Batch& batch)
-        : x(rows, batch, 0), q(rows, batch, 4), v(rows, batch, 8), w(rows, batch, 12) {}
+        : x(rows, batch.motion, 0), q(rows, batch.motion, 4), v(rows, batch.motion, 8), w(rows, batch.motion, 12) {}
     Vector place() const { return {x.of[0], x.of[1], x.of[2]}; }
     Quaternion turn() const { return {q.of[0], q.of[1], q.of[2], q.of[3]}; }
     Vector velocity() const { return {v.of[0], v.of[1], v.of[2]}; }
@@ -147,7 +147,7 @@ struct Motion {
 struct Found {
     Columns x, q;
 
-    Found(const FoundRow* rows, const Batch& batch) : x(rows, batch, 0), q(rows, batch, 4) {}
+    Found(const FoundRow* rows, const Batch& batch) : x(rows, batch.seat, 0), q(rows, batch.seat, 4) {}
     Vector to(const Vector& now) const { return now - Vector{x.of[0], x.of[1], x.of[2]}; }
     Quaternion to(const Quaternion& now) const {
         return now * Quaternion{q.of[0], q.of[1], q.of[2], q.of[3]}.conjugate();
@@ -158,14 +158,14 @@ struct Velocities {
     Vector v, w;
 
     Velocities(const Vector& linear, const Vector& angular) : v(linear), w(angular) {}
-    Velocities(const PairRow* rows, const Batch& batch) {
-        const Columns a(rows, batch, 0), b(rows, batch, 2);
+    Velocities(const PairRow* rows, const uint32_t (&which)[kBodies]) {
+        const Columns a(rows, which, 0), b(rows, which, 2);
         v = {a.of[0], a.of[1], a.of[2]};
         w = {a.of[3], b.of[2], b.of[3]};
     }
-    void put(PairRow* rows, const Batch& batch) const {
-        Columns(v.x, v.y, v.z, w.x).put(rows, batch, 0);
-        Columns(v.z, w.x, w.y, w.z).put(rows, batch, 2);
+    void put(PairRow* rows, const uint32_t (&which)[kBodies]) const {
+        Columns(v.x, v.y, v.z, w.x).put(rows, which, 0);
+        Columns(v.z, w.x, w.y, w.z).put(rows, which, 2);
     }
 };
 
@@ -192,8 +192,8 @@ template <class Linear, class Angular>
 }
 [[gnu::always_inline]] inline void put_floats(const Vector& linear, const Quaternion& angular, FloatRow* rows,
                                               const Batch& batch) {
-    FloatRow* const row[kBodies] = {&rows[batch.node[0]], &rows[batch.node[1]], &rows[batch.node[2]],
-                                    &rows[batch.node[3]]};
+    FloatRow* const row[kBodies] = {&rows[batch.seat[0]], &rows[batch.seat[1]], &rows[batch.seat[2]],
+                                    &rows[batch.seat[3]]};
     put_floats(linear, angular, row);
 }
 
@@ -261,11 +261,11 @@ Bodies predict(const NodeRows& rows, const Batch& batch, const MassRow* const ma
     const Columns masses(mass, 0), inertias(mass, 4), last(mass, 14);
     const Quaternion q = m.turn();
     const Rotation R(q);
-    Columns(m.x.of[0], m.x.of[1], m.x.of[2], R.column[0].x).put(rows.pose, batch, 0);
-    Columns(R.column[0].y, R.column[0].z, R.column[1].x, R.column[1].y).put(rows.pose, batch, 4);
-    Columns(R.column[1].z, R.column[2].x, R.column[2].y, R.column[2].z).put(rows.pose, batch, 8);
+    Columns(m.x.of[0], m.x.of[1], m.x.of[2], R.column[0].x).put(rows.pose, batch.seat, 0);
+    Columns(R.column[0].y, R.column[0].z, R.column[1].x, R.column[1].y).put(rows.pose, batch.seat, 4);
+    Columns(R.column[1].z, R.column[2].x, R.column[2].y, R.column[2].z).put(rows.pose, batch.seat, 8);
     Vector a = last.of[3] * Vector{all(terms.gravity[0]), all(terms.gravity[1]), all(terms.gravity[2])};
-    if (rows.load) a = a + masses.of[1] * Velocities(rows.load, batch).v;
+    if (rows.load) a = a + masses.of[1] * Velocities(rows.load, batch.node).v;
     Velocities u(m.velocity() + all(terms.h) * a, m.spin());
     if (turning != 0) {
         const Inertia inertia = {masses.of[2],   masses.of[3],   inertias.of[0],
@@ -276,10 +276,10 @@ Bodies predict(const NodeRows& rows, const Batch& batch, const MassRow* const ma
         if (others != 0) damp(w, before, inertia, others, damped, terms);
         u.w = choose(mask(turning), R * w, u.w);
     }
-    u.put(rows.velocity, batch);
+    u.put(rows.velocity, batch.seat);
     const Vector none = {};  // sweeps want no -0
-    FloatRow* const sweep[kBodies] = {&rows.sweep[batch.node[0]].velocity, &rows.sweep[batch.node[1]].velocity,
-                                      &rows.sweep[batch.node[2]].velocity, &rows.sweep[batch.node[3]].velocity};
+    FloatRow* const sweep[kBodies] = {&rows.sweep[batch.seat[0]].velocity, &rows.sweep[batch.seat[1]].velocity,
+                                      &rows.sweep[batch.seat[2]].velocity, &rows.sweep[batch.seat[3]].velocity};
     put_floats(u.v + none, u.w + none, sweep);
     const Found found(rows.found, batch);
     if (rows.sweep_pose) put_floats(found.to(m.place()), q, rows.sweep_pose, batch);
@@ -315,15 +315,15 @@ Quaternion rotation_of(const Vector& theta, void (*rotate)(const double theta[3]
 }
 
 void commit(const NodeRows& rows, const Batch& batch, double h, void (*rotate)(const double theta[3], double q[4])) {
-    const Velocities u(rows.velocity, batch);
-    const Columns place(rows.motion, batch, 0), turn(rows.motion, batch, 4);
+    const Velocities u(rows.velocity, batch.seat);
+    const Columns place(rows.motion, batch.motion, 0), turn(rows.motion, batch.motion, 4);
     const Vector x = Vector{place.of[0], place.of[1], place.of[2]} + all(h) * u.v;
     Quaternion q = rotation_of(all(h) * u.w, rotate) * Quaternion{turn.of[0], turn.of[1], turn.of[2], turn.of[3]};
     // Of a product of unit quaternions, where |q|^2 - 1 = e is some rounding: one Newton step leaves 3/8 e^2.
     const Four unit = 1.5 - 0.5 * ((q.x * q.x + q.z * q.z) + (q.y * q.y + q.w * q.w));
     q = {q.x * unit, q.y * unit, q.z * unit, q.w * unit};
-    Columns(x.x, x.y, x.z, place.of[3]).put(rows.motion, batch, 0);
-    Columns(q.x, q.y, q.z, q.w).put(rows.motion, batch, 4);
+    Columns(x.x, x.y, x.z, place.of[3]).put(rows.motion, batch.motion, 0);
+    Columns(q.x, q.y, q.z, q.w).put(rows.motion, batch.motion, 4);
     const Found found(rows.found, batch);
     put_floats(found.to(x), found.to(q), rows.shift, batch);
 }
@@ -332,18 +332,18 @@ Mask finite(const Four& x) { return x - x == all(0); }
 
 Bodies store_velocities(const NodeRows& rows, const Batch& batch, double h, double turn, Bodies turning, double kappa,
                         Bodies slow, double most) {
-    const Velocities u(rows.velocity, batch);
+    const Velocities u(rows.velocity, batch.seat);
     const Motion m(rows.motion, batch);
-    const Columns last(rows.motion, batch, 16);
+    const Columns last(rows.motion, batch.motion, 16);
     const Mask turns = mask(turning) & (all(h * h) * dot(u.w, u.w) > turn * turn);
     Vector w = u.w;
     if (bodies(turns) != 0) w = choose(turns, rotated(m.turn(), Rotation(rows.pose, batch).back(u.w)), u.w);
     const Four part = mask(slow) ? all(kappa) : all(1);
     const Vector slow_v = {m.w.of[2], m.w.of[3], last.of[0]}, slow_w = {last.of[1], last.of[2], last.of[3]};
     const Vector next_v = slow_v + part * (u.v - slow_v), next_w = slow_w + part * (u.w - slow_w);
-    Columns(u.v.x, u.v.y, u.v.z, w.x).put(rows.motion, batch, 8);
-    Columns(w.y, w.z, next_v.x, next_v.y).put(rows.motion, batch, 12);
-    Columns(next_v.z, next_w.x, next_w.y, next_w.z).put(rows.motion, batch, 16);
+    Columns(u.v.x, u.v.y, u.v.z, w.x).put(rows.motion, batch.motion, 8);
+    Columns(w.y, w.z, next_v.x, next_v.y).put(rows.motion, batch.motion, 12);
+    Columns(next_v.z, next_w.x, next_w.y, next_w.z).put(rows.motion, batch.motion, 16);
     const Vector x = m.place();
     const Quaternion q = m.turn();
     const Mask there = finite(x.x) & finite(x.y) & finite(x.z) & finite(q.x) & finite(q.y) & finite(q.z) & finite(q.w);

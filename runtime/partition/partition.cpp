@@ -79,7 +79,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     choose_substeps(rules);
     colour_joints();
     colour_pairs(pairs);
-    distribute(pairs);
+    distribute(pairs, rules.by_place);
 }
 
 void Partition::run(Team& team, std::span<const Part> parts, const Nodes& nodes) {

@@ -72,7 +72,7 @@ struct Group {
 
     uint32_t substeps = 0;
     uint32_t sweeps = 1;    // least biased sweeps a substep
-    Array<uint32_t> nodes;  // moved by forces, ascending
+    Array<uint32_t> nodes;  // moved by forces, in the order of PartitionRules
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one, in order of
     // index. The others: pairs with the most points first, then by place.
     Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
@@ -97,6 +97,7 @@ struct PartitionRules {
     bool direct;        // joints form blocks that take in their contacts, and towers are blocks; else all is swept
     double time_step;   // of a frame [s]
     Vec3 gravity;       // [m/s^2]
+    bool by_place;      // nodes of a group by place, for threads that take a stretch each; else ascending
 };
 
 class Partition {
@@ -163,7 +164,8 @@ private:
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
     void colour_pairs(const Pairs& pairs);
     void colour_joints();
-    void distribute(const Pairs& pairs);
+    void distribute(const Pairs& pairs, bool by_place);
+    void list_nodes(bool by_place);
     void list_joints(uint32_t group);
     void list_pairs(uint32_t group, const Pairs& pairs);
     void list_spans(const Pairs& pairs);

@@ -35,7 +35,7 @@ double ActiveSet::speed(const BoundedRow& row, const Array<Velocity>& velocity) 
     const double* j = row.jacobian;
     for (int n = 0; n < row.nodes; ++n, j += row.stride) {
         if (row.place[n] == kNone) continue;
-        const Velocity& u = velocity[b_.nodes[row.place[n]] + 1];
+        const Velocity& u = velocity[sys_.at(b_.nodes[row.place[n]])];
         const double linear = row.begin > 0 ? 0.0 : j[0] * u.v[0] + j[1] * u.v[1] + j[2] * u.v[2];
         v += linear + j[3] * u.w[0] + j[4] * u.w[1] + j[5] * u.w[2];
     }

@@ -61,7 +61,7 @@ double ActiveSet::negligible() const {
     double least = 1e300, fastest = 0;
     for (uint32_t node : b_.nodes) {
         least = std::min(least, s_.nodes.mass[node].mass);
-        fastest = std::max(fastest, sys_.start[node + 1].v.squaredNorm());
+        fastest = std::max(fastest, sys_.start[sys_.at(node)].v.squaredNorm());
     }
     return least * (kSettledAtRest * sys_.h * sys_.h * s_.settings.gravity_squared + kSettled * fastest);
 }

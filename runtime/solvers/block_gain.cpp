@@ -49,9 +49,10 @@ double BlockSolve::joint_work() const {
 double BlockSolve::energy_between(const Array<Velocity>& a, const Array<Velocity>& b) const {
     double sum = 0;
     for (uint32_t node : b_.nodes) {
-        const Vec3 v = a[node + 1].v - b[node + 1].v, w = a[node + 1].w - b[node + 1].w;
+        const uint32_t i = sys_.at(node);
+        const Vec3 v = a[i].v - b[i].v, w = a[i].w - b[i].w;
         sum += 0.5 * s_.nodes.mass[node].mass * v.squaredNorm();
-        if (s_.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * w.dot(sys_.inertia[node + 1] * w);
+        if (s_.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * w.dot(sys_.inertia[i] * w);
     }
     return sum;
 }
@@ -95,7 +96,7 @@ void BlockSolve::limit_gain() {
     solve_closing(b_.closing);
     if (gained_.excessive(most)) {
         const double tried = b_.closing, whole = gained_.gain;
-        for (uint32_t node : b_.nodes) sys_.kept[node + 1] = sys_.exact[node + 1];
+        copy_velocities(sys_, b_, sys_.exact, sys_.kept);
         solve_closing(0);
         const double none = std::min(0.0, gained_.gain), q = energy_between(sys_.kept, sys_.exact);
         const double slope = whole - none - q, root = std::sqrt(slope * slope - 4 * q * none);
@@ -108,7 +109,10 @@ void BlockSolve::limit_gain() {
 // The most that a node's velocities differ by [m/s].
 double BlockSolve::fastest_between(const Array<Velocity>& a, const Array<Velocity>& b) const {
     double most = 0;
-    for (uint32_t node : b_.nodes) most = std::max(most, (a[node + 1].v - b[node + 1].v).squaredNorm());
+    for (uint32_t node : b_.nodes) {
+        const uint32_t i = sys_.at(node);
+        most = std::max(most, (a[i].v - b[i].v).squaredNorm());
+    }
     return std::sqrt(most);
 }
 
@@ -117,7 +121,7 @@ double BlockSolve::fastest_between(const Array<Velocity>& a, const Array<Velocit
 // the part of the push that they are asked for, and one without it tells how much of it is too much.
 void BlockSolve::limit_push() {
     if (b_.tower || !set.undoes_overlaps() || fastest_between(sys_.exact, sys_.free) <= kWhip) return;
-    for (uint32_t node : b_.nodes) sys_.kept[node + 1] = sys_.exact[node + 1];
+    copy_velocities(sys_, b_, sys_.exact, sys_.kept);
     set.aim_unbiased();
     solve_known();
     const double whip = fastest_between(sys_.kept, sys_.exact);

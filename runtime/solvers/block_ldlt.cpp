@@ -21,9 +21,10 @@ constexpr uint8_t kWhipsFrames = 60;      // a block that turned too far is apar
 // The velocity that the sweeps left on a node of a block, relative to the one they were given: contact impulses.
 void add_contact_changes(Substep& s, const Block& block) {
     for (uint32_t node : block.nodes) {
-        const SweepVelocity& u = s.system.sweep[node + 1].velocity;
-        const Velocity& given = s.system.exact[node + 1];
-        Velocity& free = s.system.free[node + 1];
+        const uint32_t i = s.system.at(node);
+        const SweepVelocity& u = s.system.sweep[i].velocity;
+        const Velocity& given = s.system.exact[i];
+        Velocity& free = s.system.free[i];
         for (int k = 0; k < 3; ++k) {
             free.v[k] += static_cast<double>(u.v[k] - static_cast<float>(given.v[k]));
             free.w[k] += static_cast<double>(u.w[k] - static_cast<float>(given.w[k]));
@@ -33,18 +34,19 @@ void add_contact_changes(Substep& s, const Block& block) {
 
 // What sweeps changed, onto the solution.
 void take_from_sweeps(Substep& s, const Block& block) {
-    for (uint32_t node : block.nodes) s.system.free[node + 1] = s.system.exact[node + 1];
+    copy_velocities(s.system, block, s.system.exact, s.system.free);
     add_contact_changes(s, block);
-    for (uint32_t node : block.nodes) s.system.exact[node + 1] = s.system.free[node + 1];
+    copy_velocities(s.system, block, s.system.free, s.system.exact);
 }
 
 void give_to_sweeps(Substep& s, const Block& block) {
-    for (uint32_t node : block.nodes) set_sweep_velocity(s.system.sweep[node + 1].velocity, s.system.exact[node + 1]);
+    for (uint32_t node : block.nodes) {
+        const uint32_t i = s.system.at(node);
+        set_sweep_velocity(s.system.sweep[i].velocity, s.system.exact[i]);
+    }
 }
 
-void move_freely(Substep& s, const Block& block) {
-    for (uint32_t node : block.nodes) s.system.exact[node + 1] = s.system.free[node + 1];
-}
+void move_freely(Substep& s, const Block& block) { copy_velocities(s.system, block, s.system.free, s.system.exact); }
 
 bool has_sweeps(const Substep& s) {
     return !s.system.contacts.group.empty() || !s.group.joints.empty() || !s.group.span_pairs.empty();
@@ -92,7 +94,7 @@ void gather(Substep& s) {
     s.scratch.bounded.clear();
     for (uint32_t b : s.group.blocks) {
         Block& block = s.blocks[b];
-        for (uint32_t node : block.nodes) s.system.free[node + 1] = s.system.exact[node + 1];
+        copy_velocities(s.system, block, s.system.exact, s.system.free);
         add_contact_changes(s, block);
         BlockSolve solve(s, block);
         solve.analyse();
@@ -146,7 +148,7 @@ void relax(Substep& s) {
             for (uint32_t i = 0; i < kRelaxSweeps; ++i) sweep_rows(s, block.first_contact, block.contact_count, false);
             take_from_sweeps(s, block);
         } else if (block.bounded_count > 0 && !block.failed) {
-            for (uint32_t node : block.nodes) s.system.exact[node + 1] = s.system.kept[node + 1];
+            copy_velocities(s.system, block, s.system.kept, s.system.exact);
             give_to_sweeps(s, block);
         }
     }

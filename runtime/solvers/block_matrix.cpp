@@ -84,7 +84,7 @@ void BlockSolve::analyse() {
         }
     }
     for (uint64_t link : b_.links)
-        matrix.link(local(static_cast<uint32_t>(link >> 32) + 1), local(static_cast<uint32_t>(link) + 1));
+        matrix.link(local(sys_.at(static_cast<uint32_t>(link >> 32))), local(sys_.at(static_cast<uint32_t>(link))));
     b_.solution.resize(2 * unknowns());
     b_.known.resize((nodes_ + joints()) * kDof);
     b_.force.resize(joints() * kMaxRows);
@@ -137,7 +137,7 @@ void BlockSolve::add_mass(uint32_t i) {
     const double mass = s_.nodes.mass[node].mass;
     const double diagonal[9] = {mass, 0, 0, 0, mass, 0, 0, 0, mass};
     b_.matrix.add(b_.places[i], {diagonal, 3, 3, 3});
-    if (size_of(i) == 6) b_.matrix.add(b_.places[i], {sys_.inertia[node + 1].data(), 3, 3, 3, 3, 3});
+    if (size_of(i) == 6) b_.matrix.add(b_.places[i], {sys_.inertia[sys_.at(node)].data(), 3, 3, 3, 3, 3});
 }
 
 // K, or |K|, of a joint's force at this substep's poses: (6 nodes) x (6 nodes).

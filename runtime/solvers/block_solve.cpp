@@ -84,10 +84,10 @@ void BlockSolve::right_hand_side() {
     for (uint32_t i = 0; i < nodes_; ++i) {
         const uint32_t node = b_.nodes[i];
         double* x = &b_.solution[i * kDof];
-        const Velocity& u = sys_.free[node + 1];
+        const Velocity& u = sys_.free[sys_.at(node)];
         Vec3::Map(x) = s_.nodes.mass[node].mass * u.v + Vec3::Map(known(i));
         Vec3::Map(x + 3).setZero();
-        if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[node + 1] * u.w + Vec3::Map(known(i) + 3);
+        if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[sys_.at(node)] * u.w + Vec3::Map(known(i) + 3);
     }
     for (uint32_t j = 0; j < joints(); ++j) {
         const RowBlock& block = row(j);
@@ -129,7 +129,7 @@ void BlockSolve::solve_known() {
 void BlockSolve::take_solution() {
     for (uint32_t i = 0; i < nodes_; ++i) {
         const double* x = &b_.solution[i * kDof];
-        sys_.exact[b_.nodes[i] + 1] = {Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5])};
+        sys_.exact[sys_.at(b_.nodes[i])] = {Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5])};
     }
 }
 
@@ -267,14 +267,14 @@ void BlockSolve::solve_again() {
 // A tower's resting rows refer to a first relaxed solution, an articulation's to the biased one: measured.
 void BlockSolve::solve_relaxed() {
     Array<Velocity>& exact = sys_.exact;
-    for (uint32_t node : b_.nodes) sys_.kept[node + 1] = exact[node + 1];
+    copy_velocities(sys_, b_, exact, sys_.kept);
     if (b_.tower) {
         set.aim_relaxed(false);
         solve_known();
     }
     set.aim_relaxed(true);
     solve_known();
-    for (uint32_t node : b_.nodes) std::swap(sys_.kept[node + 1], exact[node + 1]);
+    for (uint32_t node : b_.nodes) std::swap(sys_.kept[sys_.at(node)], exact[sys_.at(node)]);
     relaxed_ = true;
 }
 
@@ -322,7 +322,7 @@ double BlockSolve::lever_turn(const RowBlock& block) const {
 double BlockSolve::largest_turn() const {
     constexpr double kSlow = 0.03;  // levers on bodies that turn by less need no look [rad]
     double fastest = 0;
-    for (uint32_t i = 0; i < nodes_; ++i) fastest = std::max(fastest, sys_.exact[b_.nodes[i] + 1].w.squaredNorm());
+    for (uint32_t i = 0; i < nodes_; ++i) fastest = std::max(fastest, sys_.exact[sys_.at(b_.nodes[i])].w.squaredNorm());
     const bool slow = sys_.h * sys_.h * fastest <= kSlow * kSlow;
     double most = slow && joints() > 0 ? fastest : 0;
     for (uint32_t j = 0; j < joints(); ++j) {
@@ -341,8 +341,9 @@ bool BlockSolve::settle() {
         Pose poses[kMaxNodes];
         for (int n = 0; n < block.type->nodes; ++n) {
             poses[n] = sys_.pose[block.node[n]];
-            if (local(block.node[n]) == kNone) continue;
-            const NodeMotion& m = s_.nodes.motion[block.node[n] - 1];
+            const uint32_t i = local(block.node[n]);
+            if (i == kNone) continue;
+            const NodeMotion& m = s_.nodes.motion[b_.nodes[i]];
             poses[n] = {m.x, m.q.toRotationMatrix()};
         }
         double* error = &b_.solution[(nodes_ + j) * kDof];
@@ -362,7 +363,7 @@ bool BlockSolve::settle() {
     b_.matrix.solve(b_.solution.data());
     for (uint32_t i = 0; i < nodes_; ++i) {
         const double* x = &b_.solution[i * kDof];
-        sys_.correction[b_.nodes[i] + 1] = {Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5])};
+        sys_.correction[sys_.at(b_.nodes[i])] = {Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5])};
     }
     return true;
 }

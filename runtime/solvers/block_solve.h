@@ -11,6 +11,12 @@
 
 namespace taut {
 
+// Of a block's nodes.
+inline void copy_velocities(const System& system, const Block& block, const Array<Velocity>& from,
+                            Array<Velocity>& to) {
+    for (const uint32_t node : block.nodes) to[system.at(node)] = from[system.at(node)];
+}
+
 class BlockSolve {
 public:
     BlockSolve(Substep& s, Block& b)

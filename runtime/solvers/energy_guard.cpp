@@ -21,9 +21,10 @@ constexpr double kBurst = 12, kPatience = 40;
 double kinetic_energy(const Substep& s, const Block& block, const Array<Velocity>& velocity) {
     double sum = 0;
     for (uint32_t node : block.nodes) {
-        const Velocity& u = velocity[node + 1];
+        const uint32_t i = s.system.at(node);
+        const Velocity& u = velocity[i];
         sum += 0.5 * s.nodes.mass[node].mass * u.v.squaredNorm();
-        if (s.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * u.w.dot(s.system.inertia[node + 1] * u.w);
+        if (s.nodes.info[node].kind == NodeKind::dynamic) sum += 0.5 * u.w.dot(s.system.inertia[i] * u.w);
     }
     return sum;
 }
@@ -34,24 +35,26 @@ double internal_energy(const Substep& s, const Block& block, double kinetic) {
     double mass = 0;
     Vec3 centre = Vec3::Zero(), momentum = Vec3::Zero();
     for (uint32_t node : block.nodes) {
+        const uint32_t i = s.system.at(node);
         const double m = s.nodes.mass[node].mass;
         mass += m;
-        centre += m * s.system.pose[node + 1].x;
-        momentum += m * s.system.exact[node + 1].v;
+        centre += m * s.system.pose[i].x;
+        momentum += m * s.system.exact[i].v;
     }
     centre /= mass;
     const Vec3 drift = momentum / mass;
     Mat3 inertia = Mat3::Zero();
     Vec3 spin = Vec3::Zero();
     for (uint32_t node : block.nodes) {
+        const uint32_t i = s.system.at(node);
         const double m = s.nodes.mass[node].mass;
-        const Vec3 d = s.system.pose[node + 1].x - centre;
-        const Velocity& u = s.system.exact[node + 1];
+        const Vec3 d = s.system.pose[i].x - centre;
+        const Velocity& u = s.system.exact[i];
         inertia += m * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
         spin += m * d.cross(u.v - drift);
         if (s.nodes.info[node].kind != NodeKind::dynamic) continue;
-        inertia += s.system.inertia[node + 1];
-        spin += s.system.inertia[node + 1] * u.w;
+        inertia += s.system.inertia[i];
+        spin += s.system.inertia[i] * u.w;
     }
     inertia.diagonal().array() += 1e-12 * inertia.trace() + 1e-300;
     const Vec3 w = inertia.inverse() * spin;
@@ -69,11 +72,12 @@ EnergyGain energy_gain(const Substep& s, const Block& block, double row_work) {
     double work = row_work, mass = 0;  // of everything that is not an ideal joint
     for (uint32_t node : block.nodes) {
         const double m = s.nodes.mass[node].mass;
-        const Velocity &v0 = s.system.start[node + 1], &free = s.system.free[node + 1], &v1 = s.system.exact[node + 1];
+        const uint32_t i = s.system.at(node);
+        const Velocity &v0 = s.system.start[i], &free = s.system.free[i], &v1 = s.system.exact[i];
         mass += m;
         work += 0.5 * m * (free.v - v0.v).dot(v0.v + v1.v);
         if (s.nodes.info[node].kind == NodeKind::dynamic)
-            work += 0.5 * (s.system.inertia[node + 1] * (free.w - v0.w)).dot(v0.w + v1.w);
+            work += 0.5 * (s.system.inertia[i] * (free.w - v0.w)).dot(v0.w + v1.w);
     }
     const double h = s.system.h, internal = internal_energy(s, block, after);
     const double fall = 0.5 * mass * s.settings.gravity_squared * h * h, scale = before + std::abs(work) + fall;

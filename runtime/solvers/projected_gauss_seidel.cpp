@@ -12,10 +12,10 @@ namespace {
 // What the sweeps changed becomes part of the solution, except where a direct solve owns it.
 void publish(Substep& s, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
-        const uint32_t node = s.group.nodes[i];
-        if (s.system.in_block[node + 1]) continue;
-        const SweepVelocity& u = s.system.sweep[node + 1].velocity;
-        Velocity& exact = s.system.exact[node + 1];
+        const uint32_t at = s.system.at(s.group.nodes[i]);
+        if (s.system.in_block[at]) continue;
+        const SweepVelocity& u = s.system.sweep[at].velocity;
+        Velocity& exact = s.system.exact[at];
         for (int k = 0; k < 3; ++k) {
             exact.v[k] += static_cast<double>(u.v[k] - static_cast<float>(exact.v[k]));
             exact.w[k] += static_cast<double>(u.w[k] - static_cast<float>(exact.w[k]));
@@ -139,7 +139,7 @@ private:
         if (insides > 0) add({&Program::insides_part, pass, colour}, through_alone_, false);
     }
     static bool is_small(uint32_t colour, uint32_t groups) {
-        constexpr uint32_t kSmall = 3;  // lane groups
+        constexpr uint32_t kSmall = 1;  // lane groups
         return colour + 1 == kMaxColours || groups <= kSmall;
     }
     // After all that came before, and before all that comes.

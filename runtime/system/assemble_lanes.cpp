@@ -152,7 +152,7 @@ void build_lanes(Team& team, System& system, const Group& group, const Pairs& pa
     ContactLanes& lanes = system.contacts;
     lanes.drive.clear();
     lanes.rolling.clear();
-    share_out(team, lanes, pairs, group, system.sweep);
+    share_out(team, system, pairs, group);
     const auto prepare = [&](uint32_t g) { kernels.prepare(lanes.view(), g, g + 1, system.sweep.data()); };
     std::atomic<bool> bounces{false}, special{false};
     for_lane_parts(team, lanes, [&](uint32_t part) {
@@ -201,15 +201,16 @@ bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
 
 void turn_lanes(Team& team, System& system, const Group& group, const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
-    team.for_ranges(static_cast<uint32_t>(lanes.group.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    for_lane_parts(team, lanes, [&](uint32_t part) {
         LaneTurns turns;
-        for (uint32_t g = begin; g < end; ++g)
+        for (uint32_t g = lanes.part[part].begin; g < lanes.part[part].end; ++g)
             if (note_turns(lanes.group[g], system, turns))
                 kernels.turn(lanes.view(), g, turns, system.shift.data(), system.sweep.data());
     });
     for (const uint32_t node : group.nodes) {
-        if (!system.turned[node + 1]) continue;
-        float(&dq)[4] = system.shift[node + 1].dq;  // from here on
+        const uint32_t at = system.at(node);
+        if (!system.turned[at]) continue;
+        float(&dq)[4] = system.shift[at].dq;  // from here on
         dq[0] = dq[1] = dq[2] = 0;
         dq[3] = 1;
     }

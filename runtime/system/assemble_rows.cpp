@@ -30,7 +30,7 @@ void add_joint(System& system, Joint& joint, bool in_lanes) {
     block.force = joint.lambda;
     block.drift = joint.drift;
     block.slow_turn = &joint.slow_turn;
-    for (int i = 0; i < joint.type->nodes; ++i) block.node[i] = joint.node[i] + 1;  // kNone becomes the world, 0
+    for (int i = 0; i < joint.type->nodes; ++i) block.node[i] = system.at(joint.node[i]);
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
     block.compliance_block = joint.type->compliance ? joint.type->compliance(joint.data) : nullptr;
@@ -44,7 +44,7 @@ void add_joint(System& system, Joint& joint, bool in_lanes) {
 
 // Of a contact point, world axes.
 Vec3 position_of(const System& system, const Nodes& nodes, const Pair& pair, int k) {
-    const Pose& a = system.pose[pair.a + 1];
+    const Pose& a = system.pose[system.at(pair.a)];
     return a.x - a.R * nodes.mass[pair.a].centre + pair.manifold.points[k].position.cast<double>();
 }
 
@@ -57,8 +57,8 @@ Mat3 basis_of(const Pair& pair) {
 
 // Effective anchors and offset of a contact point, so that C is the gap and zero slip at the present poses.
 ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
-    const Pose& a = system.pose[pair.a + 1];
-    const Pose& b = system.pose[pair.b + 1];
+    const Pose& a = system.pose[system.at(pair.a)];
+    const Pose& b = system.pose[system.at(pair.b)];
     const NodeMotion &ma = nodes.motion[pair.a], &mb = nodes.motion[pair.b];
     const Levers levers = levers_of(pair, k, a.R * nodes.mass[pair.a].centre, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w});
     const Levers cores = cores_of(pair, levers);
@@ -83,11 +83,11 @@ double share_along(const Vec3& from, const Vec3& to, const Vec3& point) {
 void find_meeting_points(const System& system, const Nodes& nodes, const Pair& pair, int k, Vec3 (&point)[2]) {
     const auto side = [&](uint32_t node, uint32_t other) {
         Movement m = movement_of(nodes, node, other);
-        if (other == kNone) m.x = system.pose[node + 1].x;
+        if (other == kNone) m.x = system.pose[system.at(node)].x;
         return m;
     };
     const Movement a = side(pair.a, pair.a2), b = side(pair.b, pair.b2);
-    const Pose& first = system.pose[pair.a + 1];
+    const Pose& first = system.pose[system.at(pair.a)];
     const Vec3 arm = pair.a2 == kNone ? Vec3(first.R * nodes.mass[pair.a].centre) : Vec3(a.x - first.x);
     const Levers levers = levers_of(pair, k, arm, a, b);
     point[0] = a.x + levers.a;
@@ -105,13 +105,13 @@ SpanContactData span_contact_data(const System& system, const Nodes& nodes, cons
     for (int s = 0; s < 2; ++s) {
         const double sign = s == 0 ? -1 : 1;
         const Vec3& at = point[s];
-        const Pose& one = system.pose[side[s][0] + 1];
+        const Pose& one = system.pose[system.at(side[s][0])];
         if (side[s][1] == kNone) {
             data.weight[s] = sign;
             data.anchor[s] = one.R.transpose() * (at - one.x);
             apart += sign * at;
         } else {
-            const Pose& other = system.pose[side[s][1] + 1];
+            const Pose& other = system.pose[system.at(side[s][1])];
             const double t = share_along(one.x, other.x, at);
             data.weight[s] = sign * (1 - t);
             data.weight[s + 2] = sign * t;
@@ -146,8 +146,8 @@ void carry(System& system, RowBlock& block, Impulse& impulse) {
 RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
     RowBlock& block = add_block(system, kContact);
     block.data = &data;
-    block.node[0] = pair.a + 1;
-    block.node[1] = pair.b + 1;
+    block.node[0] = system.at(pair.a);
+    block.node[1] = system.at(pair.b);
     const Vec3 apart =
         velocity_at(system, block.node[1], data.anchor_b) - velocity_at(system, block.node[0], data.anchor_a);
     note_approach(apart, data.basis.row(0), pair.restitution, block);
@@ -160,7 +160,7 @@ RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& dat
     const uint32_t nodes[kMaxNodes] = {pair.a, pair.b, pair.a2, pair.b2};
     Vec3 apart = Vec3::Zero();
     for (int n = 0; n < kMaxNodes; ++n) {
-        block.node[n] = nodes[n] + 1;  // kNone becomes the world, 0
+        block.node[n] = system.at(nodes[n]);
         apart += data.weight[n] * velocity_at(system, block.node[n], data.anchor[n]);
     }
     note_approach(apart, data.basis.row(0), pair.restitution, block);
@@ -182,8 +182,8 @@ void add_rolling(System& system, Pair& pair, uint32_t points) {
     RollingData& data = system.rows.rolling_data.emplace_back();
     data.basis = basis_of(pair);
     block.data = &data;
-    block.node[0] = pair.a + 1;
-    block.node[1] = pair.b + 1;
+    block.node[0] = system.at(pair.a);
+    block.node[1] = system.at(pair.b);
     block.arm[0] = pair.spinning;
     block.arm[1] = pair.rolling;
     block.loaded = points;
@@ -223,7 +223,7 @@ void reserve_room(Array<Data>& data, size_t most) {
     data.reserve(most);
 }
 
-// Of arrays by node, those that only nodes in blocks use.
+// Of arrays by seat, those that only nodes in blocks use.
 void make_room_for_blocks(System& system) {
     const size_t count = system.pose.size();
     for (Array<Velocity>* each : {&system.free, &system.kept, &system.correction, &system.start}) each->resize(count);
@@ -249,8 +249,9 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         blocks[b].first_row_block = static_cast<uint32_t>(rows.block.size());
         blocks[b].contact_count = 0;
         for (uint32_t i = 0; i < blocks[b].nodes.size(); ++i) {
-            system.in_block[blocks[b].nodes[i] + 1] = 1;
-            system.place[blocks[b].nodes[i] + 1] = i;
+            const uint32_t at = system.at(blocks[b].nodes[i]);
+            system.in_block[at] = 1;
+            system.place[at] = i;
         }
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j], false);
     }

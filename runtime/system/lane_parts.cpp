@@ -8,58 +8,78 @@ namespace {
 // The overflow colour takes one pair at a time.
 uint32_t width_of(uint32_t colour) { return colour + 1 == kMaxColours ? 1 : kLanes; }
 
-uint32_t count_groups(const Group& group, uint32_t colour) {
-    const uint32_t width = width_of(colour);
-    return (group.pair_colour_begin[colour + 1] - group.pair_colour_begin[colour] + width - 1) / width;
-}
+// The part that each place is of: stretches in which pairs have about as many points.
+struct Cut {
+    uint32_t part[kSlices];
 
-void reserve_groups(ContactLanes& lanes, const Group& group) {
-    size_t groups = 0;
-    for (uint32_t c = 0; c < kMaxColours; ++c) groups += count_groups(group, c);
-    if (groups > lanes.group.capacity()) lanes.group.reserve(with_slack(groups));
-}
+    Cut(const Group& group, const Pairs& pairs, uint32_t parts) {
+        uint64_t points[kSlices] = {}, all = 0, before = 0;
+        for (size_t i = 0; i < group.pairs.size(); ++i) {
+            const uint32_t count = pairs.active[group.pairs[i]].points;
+            points[group.pair_place[i]] += count;
+            all += count;
+        }
+        for (uint32_t place = 0; place < kSlices; ++place) {
+            const uint64_t twice_middle = 2 * before + points[place];
+            part[place] = static_cast<uint32_t>(twice_middle * parts / (2 * all + 1));
+            before += points[place];
+        }
+    }
+};
 
-// Lane groups of one colour, whose pairs come with the most points first, so that there are few empty places; in the
-// order of the place of their middle pair. A thread takes a stretch of them, of the overflow colour one takes all.
-void add_colour(ContactLanes& lanes, const Group& group, uint32_t colour) {
-    const uint32_t width = width_of(colour);
+// The pairs of a colour by part, of the overflow colour all in one; in a part as the group has them: those with the
+// most points first, so that there are few empty places in lane groups, then by place.
+void add_colour(ContactLanes& lanes, const Group& group, uint32_t colour, const Cut& cut) {
     const uint32_t begin = group.pair_colour_begin[colour], end = group.pair_colour_begin[colour + 1];
-    const uint32_t count = count_groups(group, colour), first = static_cast<uint32_t>(lanes.group.size());
-    const auto place_of = [&](uint32_t i) {
-        const uint32_t from = begin + i * width, to = std::min(from + width, end);
-        return group.pair_place[(from + to) / 2];
-    };
-    uint32_t next[kSlices + 1] = {};
-    for (uint32_t i = 0; i < count; ++i) ++next[place_of(i) + 1u];
-    for (uint32_t p = 0; p < kSlices; ++p) next[p + 1] += next[p];
-    lanes.group.resize(first + count);
-    lanes.first_pair.resize(first + count);
-    for (uint32_t i = 0; i < count; ++i) lanes.first_pair[first + next[place_of(i)]++] = begin + i * width;
-    const uint32_t parts = colour + 1 == kMaxColours ? 1 : lanes.parts;
+    const uint32_t width = width_of(colour);
+    const auto part_of = [&](uint32_t i) { return width == 1 ? 0 : cut.part[group.pair_place[i]]; };
+    uint32_t groups = lanes.part.empty() ? 0 : lanes.part.back().end, pairs = begin;
+    lanes.part.resize(lanes.part.size() + lanes.parts);
+    LanePart* const part = lanes.part.data() + lanes.part.size() - lanes.parts;
+    for (uint32_t i = begin; i < end; ++i) ++part[part_of(i)].pairs_end;
     for (uint32_t k = 0; k < lanes.parts; ++k) {
-        const auto from = [&](uint32_t part) { return first + std::min(part, parts) * count / parts; };
-        lanes.part.push_back({from(k), from(k), from(k + 1)});
+        const uint32_t count = part[k].pairs_end;
+        part[k] = {groups, groups, groups + (count + width - 1) / width, pairs, pairs};
+        pairs += count;
+        groups = part[k].end;
+    }
+    for (uint32_t i = begin; i < end; ++i) lanes.pairs[part[part_of(i)].pairs_end++] = i;
+}
+
+// The pairs of a lane group.
+void choose_pairs(LaneGroup& g, const System& system, const Pairs& pairs, const Group& group,
+                  std::span<const uint32_t> chosen) {
+    g.points = pairs.active[group.pairs[chosen.front()]].points;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        const ActivePair* const active = lane < chosen.size() ? &pairs.active[group.pairs[chosen[lane]]] : nullptr;
+        g.pair[lane] = active ? active->pair : kNone;
+        g.a[lane] = active ? system.at(active->a) : 0;
+        g.b[lane] = active ? system.at(active->b) : 0;
     }
 }
 
-// The pairs of a lane group, from one on in the order of the group.
-void choose_pairs(LaneGroup& g, const Pairs& pairs, const Group& group, uint32_t colour, uint32_t from) {
-    const uint32_t filled = std::min(width_of(colour), group.pair_colour_begin[colour + 1] - from);
-    g.points = pairs.active[group.pairs[from]].points;
-    for (uint32_t lane = 0; lane < kLanes; ++lane) {
-        const ActivePair* const active = lane < filled ? &pairs.active[group.pairs[from + lane]] : nullptr;
-        g.pair[lane] = active ? active->pair : kNone;
-        g.a[lane] = active ? active->a + 1 : 0;
-        g.b[lane] = active ? active->b + 1 : 0;
-    }
+// The lane groups of a part, in the order of the place of their middle pair.
+void choose_pairs(System& system, const Pairs& pairs, const Group& group, const LanePart& part, uint32_t width) {
+    ContactLanes& lanes = system.contacts;
+    const auto chosen = [&](uint32_t g) {
+        const uint32_t from = part.pairs_begin + g * width;
+        return std::span(&lanes.pairs[from], std::min(width, part.pairs_end - from));
+    };
+    const auto place_of = [&](uint32_t g) { return group.pair_place[chosen(g)[chosen(g).size() / 2]]; };
+    const uint32_t count = part.end - part.begin;
+    uint32_t next[kSlices + 1] = {};
+    for (uint32_t g = 0; g < count; ++g) ++next[place_of(g) + 1u];
+    for (uint32_t p = 0; p < kSlices; ++p) next[p + 1] += next[p];
+    for (uint32_t g = 0; g < count; ++g)
+        choose_pairs(lanes.group[part.begin + next[place_of(g)]++], system, pairs, group, chosen(g));
 }
 
 // Which parts have lane groups at which nodes.
 class Meetings {
 public:
-    Meetings(ContactLanes& lanes, const Array<SweepNode>& nodes)
-        : lanes_(lanes), met_(lanes.met), sweep_(nodes), nodes_(nodes.size()) {
-        met_.resize(nodes_ * lanes.parts);
+    explicit Meetings(System& system)
+        : lanes_(system.contacts), met_(lanes_.met), sweep_(system.sweep), nodes_(sweep_.size()) {
+        met_.resize(nodes_ * lanes_.parts);
     }
     void note(uint32_t part) {
         uint8_t* const met = &met_[nodes_ * part];
@@ -115,19 +135,22 @@ void place_points(ContactLanes& lanes) {
 
 }  // namespace
 
-void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group, const Array<SweepNode>& nodes) {
+void share_out(Team& team, System& system, const Pairs& pairs, const Group& group) {
+    ContactLanes& lanes = system.contacts;
     lanes.group.clear();
     lanes.point.clear();
     lanes.part.clear();
     lanes.parts = team.size();
-    reserve_groups(lanes, group);
-    lanes.first_pair.clear();
-    for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c);
-    Meetings meetings(lanes, nodes);
+    lanes.pairs.resize(group.pairs.size());
+    const Cut cut(group, pairs, lanes.parts);
+    for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c, cut);
+    const size_t groups = lanes.part.back().end;
+    if (groups > lanes.group.capacity()) lanes.group.reserve(with_slack(groups));
+    lanes.group.resize(groups);
+    Meetings meetings(system);
     const auto choose = [&](uint32_t part) {
         for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts)
-            for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)
-                choose_pairs(lanes.group[g], pairs, group, i / lanes.parts, lanes.first_pair[g]);
+            choose_pairs(system, pairs, group, lanes.part[i], width_of(i / lanes.parts));
         if (lanes.parts > 1) meetings.note(part);
     };
     constexpr uint32_t kAfter[] = {0, 1};  // borders once all have noted

@@ -4,12 +4,13 @@
 
 #include "constraints/contact_lanes.h"
 #include "partition/partition.h"
+#include "system/system.h"
 #include "threads/team.h"
 
 namespace taut {
 
-// Lane groups of all colours with their pairs and nodes, a part of each colour for each thread. nodes: by node + 1.
-void share_out(Team& team, ContactLanes& lanes, const Pairs& pairs, const Group& group, const Array<SweepNode>& nodes);
+// Lane groups of all colours with their pairs and nodes, a part of each colour for each thread.
+void share_out(Team& team, System& system, const Pairs& pairs, const Group& group);
 
 constexpr uint32_t kFewGroups = 16;  // that are done before anybody could help
 

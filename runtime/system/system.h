@@ -8,7 +8,8 @@
 // Row by row, from C lambda = -error - damping C d(error)/dt at the end of the substep (Frâncu 2016, eq. 6.44):
 //   c = C / (h (h + d)),  target = -error / (h + d),  d = C * damping [s]; a rigid row has C = d = 0.
 //
-// Arrays by node have index node + 1; index 0 is the world, which never moves.
+// Arrays by seat: of each node System::at(node); 0 is the world, which never moves. Seats follow the order in which
+// threads take the nodes of groups, so that what a thread writes lies together.
 #pragma once
 
 #include "base/memory.h"
@@ -36,7 +37,7 @@ struct RowBlock {
     double* force;                   // lambda of the last substep, then of this one [N]; type->rows
     Vec3* slow_turn;                 // of joints whose type has a line
     const double* drift;             // of joints: what of C is still to come within the frame is left out
-    uint32_t node[kMaxNodes];        // indices into arrays by node; unused ones 0
+    uint32_t node[kMaxNodes];        // indices into arrays by seat; unused ones 0
     uint32_t row;                    // first row
     uint32_t jacobian;               // first entry of [node][row][6]
     double compliance[2];            // of each row, and of each that is an angle [m/N, rad/(N m)], 0: rigid
@@ -106,7 +107,10 @@ struct System {
     };
 
     explicit System(Memory& memory)
-        : pose(memory),
+        : seat(memory),
+          node_at(memory),
+          motion(memory),
+          pose(memory),
           exact(memory),
           free(memory),
           kept(memory),
@@ -128,15 +132,24 @@ struct System {
     // In what begin_frame() fills, for so many nodes: as they come, not in the step that sees them first.
     void make_room(size_t nodes) {
         const size_t size = nodes + 1;
+        grow_to(seat, size), grow_to(node_at, size);
         grow_to(pose, size), grow_to(exact, size), grow_to(found, size), grow_to(turned, size);
         grow_to(in_block, size), grow_to(place, size);
         grow_to(sweep, size), grow_to(shift, size);
     }
 
+    uint32_t at(uint32_t node) const { return seat[node + 1]; }  // kNone: the world
+
     double h = 0;           // substep [s]
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
 
-    // by node + 1; of those for nodes in blocks all or, where no block ever was, none
+    Array<uint32_t> seat;     // by node + 1; begin_frame()
+    Array<uint32_t> node_at;  // by seat
+    // By seat, of a group while its motions are lent: as nodes lie in the order in which a host made them, threads that
+    // move some each would write to the same cache lines. Else empty.
+    Array<NodeMotion> motion;
+
+    // by seat; of those for nodes in blocks all or, where no block ever was, none
     Array<Pose> pose;             // at the start of the substep; predict()
     Array<Velocity> exact;        // predict(): v* = v + h a; solvers: v+
     Array<Velocity> free;         // v* with contact impulses, of nodes in blocks; block_ldlt

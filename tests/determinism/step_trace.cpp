@@ -23,7 +23,10 @@ public:
 
     Hash& of(uint32_t node) { return sum_[node]; }
     Hash& of(const PairEnds& pair) { return of_moving(pair.a, pair.b); }
-    Hash& of(const RowBlock& rows) { return sum_[std::max(rows.node[0], rows.node[1]) - 1]; }
+    Hash& of(const RowBlock& rows) {
+        const auto number = [&](int n) { return world_.system.node_at[rows.node[n]] + 1; };  // 0: the world
+        return sum_[std::max(number(0), number(1)) - 1];
+    }
     Hash& of(const Joint& joint) { return of_moving(joint.node[0], joint.node[1]); }
 
     std::vector<uint64_t> values() const {
@@ -116,9 +119,12 @@ void add_lanes(const World& world, Sums& sums) {
     for (const LaneGroup& group : lanes.group)
         for (int lane = 0; lane < kLanes; ++lane) {
             if (group.pair[lane] == UINT32_MAX) continue;
-            Hash& hash = sums.of(world.pairs.list[group.pair[lane]]);
-            for (uint32_t p = 0; p < group.points; ++p)
-                for (const auto& impulse : group.point[p].impulse) hash.add(impulse[lane]);
+            const Pair& pair = world.pairs.list[group.pair[lane]];
+            Hash& hash = sums.of(pair);
+            // Who stands beside a pair decides how many points its lane group has and what sign zeros have, till they
+            // are stored.
+            for (int p = 0; p < pair.manifold.count; ++p)
+                for (const auto& impulse : group.point[p].impulse) hash.add(impulse[lane] + 0.0f);
         }
 }
 
@@ -141,10 +147,11 @@ void add_system(const World& world, const StageEnd& end, Sums& sums) {
     for (uint32_t node : world.partition.groups[end.group].nodes) {
         Hash& hash = sums.of(node);
         add_motion(world, node, sums);
-        hash.add(system.exact[node + 1].v);
-        hash.add(system.exact[node + 1].w);
-        const SweepVelocity& u = system.sweep[node + 1].velocity;
-        const SweepShift& shift = system.shift[node + 1];
+        const uint32_t at = system.at(node);
+        hash.add(system.exact[at].v);
+        hash.add(system.exact[at].w);
+        const SweepVelocity& u = system.sweep[at].velocity;
+        const SweepShift& shift = system.shift[at];
         for (int i = 0; i < 3; ++i)
             for (float x : {u.v[i], u.w[i], shift.dx[i], shift.dq[i]}) hash.add(x);
     }

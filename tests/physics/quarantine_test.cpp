@@ -88,4 +88,38 @@ INSTANTIATE_TEST_SUITE_P(Of, Quarantine,
                                          Burst{"link", 3, true}),
                          [](const auto& tested) { return tested.param.name; });
 
+// Threads of a team have the motions of a large pile in a place of their own while a frame lasts; what goes too fast in
+// between is found there, and all comes out as on one thread.
+TEST(QuarantineOnTeams, OfWhatGoesTooFastWithinAFrame) {
+    std::vector<uint64_t> hashes;
+    for (const uint32_t threads : {1u, 2u, 3u}) {
+        World world([&](taut_world_def& def) {
+            def.threads = threads;
+            def.gravity = {0, -1e4f, 0};
+        });
+        world.add_ground();
+        const taut_shape cube = world.box({0.25, 0.25, 0.25});
+        for (int i = 0; i < 800; ++i)
+            world.add({.shape = cube,
+                       .position = {0.51 * (i % 20), 0.26 + 0.51 * (i / 400), 0.51 * (i / 20 % 20)},
+                       .mass = 5,
+                       .gravity_scale = 1e-4 * kG});
+        const taut_body fast =
+            world.add({.shape = cube, .position = {0, 1e6, 0}, .mass = 5, .gravity_scale = -970});  // 40 km/s a substep
+        uint32_t frozen = 0;
+        for (int frame = 0; frame < 20; ++frame) {
+            world.step();
+            taut_events events{};
+            ok(taut_world_get_events(world.handle, &events));
+            frozen += events.quarantined_count;
+            for (uint32_t i = 0; i < events.quarantined_count; ++i)
+                EXPECT_EQ(events.quarantined[i].body.bits, fast.bits);
+        }
+        EXPECT_EQ(frozen, 1u);
+        hashes.push_back(0);
+        ok(taut_world_get_state_hash(world.handle, &hashes.back()));
+        EXPECT_EQ(hashes.back(), hashes.front()) << threads << " threads";
+    }
+}
+
 }  // namespace

@@ -362,7 +362,7 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
     sweep_biased(s);
     // Those that turned so far that their levers followed have none of the frame's beginning any more.
     const auto turned = [&](uint32_t node) {
-        return rig.w.system.found[node + 1].q.coeffs() != found_at[node + 1].q.coeffs();
+        return rig.w.system.found[rig.w.system.at(node)].q.coeffs() != found_at[rig.w.system.at(node)].q.coeffs();
     };
     int compared = 0, skipped = 0;
     for (const LaneGroup& g : rig.w.system.contacts.group)
@@ -376,8 +376,9 @@ TEST_P(FusedSweep, FollowsTheGapAsTheBodiesMove) {
                 double moved[2];
                 for (int end = 0; end < 2; ++end) {
                     const uint32_t node = end == 0 ? pair.a : pair.b;
-                    const System::Found& found = rig.w.system.found[node + 1];
-                    const System::Found& of_a = rig.w.system.found[pair.a + 1];  // its centre is its origin here
+                    const System::Found& found = rig.w.system.found[rig.w.system.at(node)];
+                    const System::Found& of_a =
+                        rig.w.system.found[rig.w.system.at(pair.a)];  // its centre is its origin here
                     const Vec3 half = (0.5f * point.separation * pair.manifold.normal).cast<double>();
                     const Vec3 at = of_a.x + point.position.cast<double>() + (end == 0 ? -half : half);
                     const NodeMotion& m = rig.w.nodes.motion[node];

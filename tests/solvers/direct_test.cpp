@@ -109,7 +109,7 @@ double growth(const Rig& rig, const Joint& joint, const double* now, const doubl
     Eigen::Matrix<double, 12, 12, Eigen::RowMajor> k, before;
     Pose poses[2];
     for (int n = 0; n < 2; ++n)
-        if (joint.node[n] != kNone) poses[n] = rig.w.system.pose[joint.node[n] + 1];
+        if (joint.node[n] != kNone) poses[n] = rig.w.system.pose[rig.w.system.at(joint.node[n])];
     joint.type->stiffness(joint.data, poses, now, Curvature::positive, k.data());
     joint.type->stiffness(joint.data, poses, old, Curvature::positive, before.data());
     double most = 0;
@@ -277,7 +277,7 @@ TEST(BlockLdltEnds, KinematicNodesDriveTheirJoints) {
     rig.begin(kBlockLdlt);
     rig.predict();
     rig.solve();
-    EXPECT_LE((rig.w.system.exact[load + 1].v - Vec3(0, 5, 0)).norm(), 1e-9);
+    EXPECT_LE((rig.w.system.exact[rig.w.system.at(load)].v - Vec3(0, 5, 0)).norm(), 1e-9);
 }
 
 // A body without mass, as quarantine leaves one behind in mid-frame, fails its block and nothing else.
@@ -294,7 +294,7 @@ TEST(BlockLdltFailure, LeavesTheUnconstrainedVelocity) {
     rig.solve();
     EXPECT_EQ(rig.report.failures, 1u);
     EXPECT_TRUE(velocities(rig).allFinite());
-    EXPECT_NEAR(rig.w.system.exact[good + 1].v.y(), -9.81 * rig.h, 1e-12);
+    EXPECT_NEAR(rig.w.system.exact[rig.w.system.at(good)].v.y(), -9.81 * rig.h, 1e-12);
 }
 
 }  // namespace

@@ -92,8 +92,8 @@ public:
     // As at the start of a frame of one group: partition, rows, lanes.
     void begin(const Solver& with) {
         solver = with;
-        w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct, 1.0 / 60, Vec3::Zero()});
-        begin_frame(w.team, w.system, w.nodes, w.joints);
+        w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct, 1.0 / 60, Vec3::Zero(), false});
+        begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.h = h;
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
@@ -187,7 +187,8 @@ inline DenseSubstep solve_dense(Rig& rig, const std::vector<Forces>& sets, bool 
         if (w.nodes.info[node].kind == NodeKind::dynamic)
             m.bottomRightCorner<3, 3>() = R * mass.inertia.matrix() * R.transpose();
         Eigen::Matrix<double, 6, 1> u;
-        u << w.system.exact[node + 1].v, w.system.exact[node + 1].w;
+        const Velocity& velocity = w.system.exact[w.system.at(node)];
+        u << velocity.v, velocity.w;
         if (w.nodes.info[node].kind == NodeKind::particle) u.tail<3>().setZero();
         a.block<6, 6>(at[node], at[node]) = m;
         b.segment<6>(at[node]) = m * u;
@@ -264,7 +265,7 @@ inline Eigen::VectorXd velocities(const Rig& rig) {
     std::vector<double> all;
     for (uint32_t node = 0; node < rig.w.nodes.slots(); ++node) {
         if (!moves_by_forces(rig.w.nodes.info[node].kind)) continue;
-        const Velocity& u = rig.w.system.exact[node + 1];
+        const Velocity& u = rig.w.system.exact[rig.w.system.at(node)];
         const bool turns = rig.w.nodes.info[node].kind == NodeKind::dynamic;
         for (int k = 0; k < 3; ++k) all.push_back(u.v[k]);
         for (int k = 0; k < 3; ++k) all.push_back(turns ? u.w[k] : 0.0);

@@ -176,7 +176,7 @@ TEST_P(Motions, GiveTheSameBitsWhoeverIsBesideThem) {
             EXPECT_TRUE(same(now, all)) << turn;
             for (uint32_t i = 0; i < kBodies; ++i) {
                 MotionRig alone = before;
-                alone.batch = {{i, i, i, i}, 1};
+                alone.batch = {{i, i, i, i}, {i, i, i, i}, {i, i, i, i}, 1};
                 step(*kernels, alone, turning >> i & 1 ? 0b1111 : 0, damped >> i & 1 ? 0b1111 : 0);
                 EXPECT_TRUE(same(alone.motion[i], all.motion[i])) << turn;
                 EXPECT_TRUE(same(alone.pose[i], all.pose[i]));

@@ -19,13 +19,13 @@ struct MotionRig {
     FoundRow found[kBodies] = {};
     FloatRow shift[kBodies] = {}, sweep_pose[kBodies] = {};
     SweepRow sweep[kBodies] = {};
-    Batch batch{{0, 1, 2, 3}, kBodies};
+    Batch batch{{0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}, kBodies};
 
     MotionRig() {
         for (MotionRow& row : motion) row.q[3] = 1;
         for (FoundRow& row : found) row.q[3] = 1;
     }
-    NodeRows rows() { return {motion, pose, velocity, found, shift, sweep, sweep_pose, load}; }
+    NodeRows rows() { return {motion, load, pose, velocity, found, shift, sweep, sweep_pose}; }
     void set_mass(int i, const NodeMass& m) {
         const Sym3& I = m.inertia;
         mass[i] = {m.mass, m.inv_mass, {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz}, {}, {}, m.gravity_scale};

@@ -17,7 +17,7 @@ struct Graph {
     std::vector<Pair> touching;  // find_active() brings them to pairs
     Pairs pairs{memory};
     Partition partition{memory};
-    PartitionRules rules{4, false, true, 1.0 / 60, Vec3::Zero()};
+    PartitionRules rules{4, false, true, 1.0 / 60, Vec3::Zero(), false};
 
     uint32_t add(NodeKind kind, double mass = 1) {
         const uint32_t node = nodes.add();
