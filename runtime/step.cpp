@@ -85,15 +85,16 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     w.profile.predict_us += watch.lap();
 
     const bool lends = w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !w.observer;
+    MotionLoan loan(w.team, system, group, w.nodes);
     bool loaded = false, sane = false;  // the nodes, as far as is known
     while (!part.done()) {
         const uint32_t i = part.number();
         if (part.length() != system.h) change_length(w.team, system, group, part.length(), frame);
         if (loaded || !sane) {
-            return_motion(w.team, system, group, w.nodes);
+            loan.end();
             loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
         }
-        if (lends) lend_motion(w.team, system, group, w.nodes);
+        if (lends) loan.begin();
         find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.h);
         turn_kinematic(system, w.nodes, part.begin());
         predict(w.team, system, group, w.nodes, gravity);
@@ -134,7 +135,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         w.profile.commit_us += watch.lap();
         part.advance(substep.turn);
     }
-    return_motion(w.team, system, group, w.nodes);
+    loan.end();
     w.profile.substeps = std::max(w.profile.substeps, part.number());
     if (!sane) quarantine(w.team, w.nodes, group.nodes, w.frozen);
     if (!solver.lanes) return;

@@ -66,8 +66,11 @@ template <class Row, class T>
 Row* rows_of(T* first) {
     return reinterpret_cast<Row*>(first);
 }
+NodeMotion* motions_of(System& system, Nodes& nodes) {
+    return system.lent ? system.motion.data() : nodes.motion.data();
+}
 NodeRows rows_of(System& system, Nodes& nodes, Array<Velocity>& velocity) {
-    return {rows_of<MotionRow>(system.motion.empty() ? nodes.motion.data() : system.motion.data()),
+    return {rows_of<MotionRow>(motions_of(system, nodes)),
             nodes.load.empty() ? nullptr : rows_of<const PairRow>(nodes.load.data()),
             rows_of<PoseRow>(system.pose.data()),
             rows_of<PairRow>(velocity.data()),
@@ -79,7 +82,6 @@ NodeRows rows_of(System& system, Nodes& nodes, Array<Velocity>& velocity) {
 
 template <class Act>
 void for_batches(const System& system, std::span<const uint32_t> list, Act&& act) {
-    const bool lent = !system.motion.empty();
     const auto count = static_cast<uint32_t>(list.size());
     for (uint32_t i = 0; i < count; i += kBodies) {
         Batch batch;
@@ -87,7 +89,7 @@ void for_batches(const System& system, std::span<const uint32_t> list, Act&& act
             const uint32_t node = list[std::min(i + k, count - 1)], at = system.at(node);
             batch.node[k] = node;
             batch.seat[k] = at;
-            batch.motion[k] = lent ? at : node;
+            batch.motion[k] = system.lent ? at : node;
         }
         batch.count = std::min<uint32_t>(kBodies, count - i);
         act(batch);
@@ -211,22 +213,23 @@ void begin_frame(Team& team, System& system, const Partition& partition, const N
     });
 }
 
-void lend_motion(Team& team, System& system, const Group& group, const Nodes& nodes) {
-    if (!system.motion.empty()) return;
-    system.motion.resize(system.node_at.size());
-    for_nodes(team, group.nodes, [&](uint32_t node) { system.motion[system.at(node)] = nodes.motion[node]; });
+void MotionLoan::begin() {
+    if (system_.lent) return;
+    grow_to(system_.motion, system_.node_at.size());
+    system_.lent = true;
+    for_nodes(team_, group_.nodes, [&](uint32_t node) { system_.motion[system_.at(node)] = nodes_.motion[node]; });
 }
 
-void return_motion(Team& team, System& system, const Group& group, Nodes& nodes) {
-    if (system.motion.empty()) return;
-    for_nodes(team, group.nodes, [&](uint32_t node) { nodes.motion[node] = system.motion[system.at(node)]; });
-    system.motion.clear();
+void MotionLoan::end() {
+    if (!system_.lent) return;
+    for_nodes(team_, group_.nodes, [&](uint32_t node) { nodes_.motion[node] = system_.motion[system_.at(node)]; });
+    system_.lent = false;
 }
 
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
-    const NodeMotion* const motion = system.motion.empty() ? nodes.motion.data() : system.motion.data();
+    const NodeMotion* const motion = motions_of(system, nodes);
     const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kTurn, gyroscopic_euler};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const MassRow* mass[kBodies];

@@ -11,10 +11,25 @@ namespace taut {
 // nodes that do not turn theirs.
 void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, const Joints& joints);
 
-// From where a group's motions are, for its substeps, to where threads do not meet (System::motion), and back; what
-// there is to do and was not done. Blocks and loads need them where they are.
-void lend_motion(Team& team, System& system, const Group& group, const Nodes& nodes);
-void return_motion(Team& team, System& system, const Group& group, Nodes& nodes);
+// While it lasts, the motions of a group are not in the state but where threads do not meet: System::motion. Blocks and
+// loads need them in the state.
+class MotionLoan {
+public:
+    MotionLoan(Team& team, System& system, const Group& group, Nodes& nodes)
+        : team_(team), system_(system), group_(group), nodes_(nodes) {}
+    ~MotionLoan() { end(); }
+    MotionLoan(const MotionLoan&) = delete;
+    MotionLoan& operator=(const MotionLoan&) = delete;
+
+    void begin();  // where it has not; throws std::bad_alloc
+    void end();    // where it lasts
+
+private:
+    Team& team_;
+    System& system_;
+    const Group& group_;
+    Nodes& nodes_;
+};
 
 // v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity);

@@ -141,6 +141,8 @@ void share_out(Team& team, System& system, const Pairs& pairs, const Group& grou
     lanes.point.clear();
     lanes.part.clear();
     lanes.parts = team.size();
+    lanes.pairs.clear();
+    reserve_more(lanes.pairs, group.pairs.size());
     lanes.pairs.resize(group.pairs.size());
     const Cut cut(group, pairs, lanes.parts);
     for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c, cut);

@@ -146,8 +146,9 @@ struct System {
     Array<uint32_t> seat;     // by node + 1; begin_frame()
     Array<uint32_t> node_at;  // by seat
     // By seat, of a group while its motions are lent: as nodes lie in the order in which a host made them, threads that
-    // move some each would write to the same cache lines. Else empty.
+    // move some each would write to the same cache lines.
     Array<NodeMotion> motion;
+    bool lent = false;
 
     // by seat; of those for nodes in blocks all or, where no block ever was, none
     Array<Pose> pose;             // at the start of the substep; predict()
