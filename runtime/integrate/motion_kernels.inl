@@ -288,16 +288,15 @@ Bodies predict(const NodeRows& rows, const Batch& batch, const MassRow* const ma
 }
 
 // exp(theta) of some, by rotate.
-[[gnu::noinline]] Quaternion rotate_each(Quaternion q, const Vector& theta, Bodies some,
-                                         void (*rotate)(const double theta[3], double q[4])) {
+[[gnu::noinline]] void rotate_each(double (&q)[4][kBodies], const double (&theta)[3][kBodies], Bodies some,
+                                   void (*rotate)(const double theta[3], double q[4])) {
     for (int i = 0; i < kBodies; ++i) {
         if ((some >> i & 1) == 0) continue;
-        const double turn[3] = {theta.x[i], theta.y[i], theta.z[i]};
+        const double turn[3] = {theta[0][i], theta[1][i], theta[2][i]};
         double out[4];
         rotate(turn, out);
-        q.x[i] = out[0], q.y[i] = out[1], q.z[i] = out[2], q.w[i] = out[3];
+        for (int k = 0; k < 4; ++k) q[k][i] = out[k];
     }
-    return q;
 }
 
 // exp(theta): of turns below half a radian, which most are, a series in the square of half the angle y <= 1/16. What it
@@ -311,7 +310,12 @@ Quaternion rotation_of(const Vector& theta, void (*rotate)(const double theta[3]
                                                    y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
     const Quaternion q = {0.5 * k * theta.x, 0.5 * k * theta.y, 0.5 * k * theta.z, c};
     const Bodies large = bodies(~(squared <= all(0.25)));
-    return large == 0 ? q : rotate_each(q, theta, large, rotate);
+    if (large == 0) return q;
+    double each[4][kBodies], turns[3][kBodies];
+    store(q.x, each[0]), store(q.y, each[1]), store(q.z, each[2]), store(q.w, each[3]);
+    store(theta.x, turns[0]), store(theta.y, turns[1]), store(theta.z, turns[2]);
+    rotate_each(each, turns, large, rotate);
+    return {load(each[0]), load(each[1]), load(each[2]), load(each[3])};
 }
 
 void commit(const NodeRows& rows, const Batch& batch, double h, void (*rotate)(const double theta[3], double q[4])) {
