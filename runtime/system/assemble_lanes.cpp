@@ -143,8 +143,6 @@ void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs) {
 
 bool is_special(const LaneGroup& g) { return g.first_drive != kNoLanes || g.rolling != kNoLanes; }
 
-constexpr uint32_t kGrain = 16;  // lane groups that a thread takes at a time
-
 }  // namespace
 
 void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
