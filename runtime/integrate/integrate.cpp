@@ -121,7 +121,7 @@ void rotate(const double theta[3], double q[4]) {
     for (int i = 0; i < 4; ++i) q[i] = turn.coeffs()[i];
 }
 
-// What the last frame left, by index.
+// What the last frame left at a seat.
 void forget(System& system, uint32_t at) {
     system.shift[at] = {};
     system.turned[at] = system.in_block[at] = 0;
