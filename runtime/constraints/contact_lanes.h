@@ -82,7 +82,7 @@ struct LaneView {
     const LaneGroup* group;
     const LaneDrive* drive;
     LaneRolling* rolling;
-    bool shared = false;  // threads share them: what a node has is often in the cache of another core
+    uint32_t movers = 0;  // seats 1 to here move, and what they have is often in the cache of another core
 };
 
 // An array whose new elements hold whatever was there before: for large ones that are filled at once, each part by the
@@ -172,7 +172,7 @@ struct ContactLanes {
 
     std::span<const LanePart> parts_of(uint32_t colour) const { return {&part[colour * parts], parts}; }
 
-    LaneView view() { return {group.data(), drive.data(), rolling.data(), false}; }
+    LaneView view() { return {group.data(), drive.data(), rolling.data(), 0}; }
 };
 
 // Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.

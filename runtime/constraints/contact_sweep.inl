@@ -175,12 +175,15 @@ struct ContactSweep {
         a.subtract_spin(spin);
     }
 
-    // Of the group after one, of the same colour: no other thread works on its nodes.
-    static void prefetch_next(LaneView contacts, uint32_t i, uint32_t end, const SweepNode* nodes,
-                              const SweepShift* shifts = nullptr) {
-        if (!contacts.shared || i + 1 == end) return;
-        Side::prefetch(contacts.group[i + 1].a, nodes, shifts);
-        Side::prefetch(contacts.group[i + 1].b, nodes, shifts);
+    // Of the next group, and at the beginning of the first too. They are of the same colour: no other thread works on
+    // their nodes.
+    static void prefetch_ahead(LaneView contacts, uint32_t i, uint32_t begin, uint32_t end, const SweepNode* nodes,
+                               const SweepShift* shifts = nullptr) {
+        if (contacts.movers == 0) return;
+        for (uint32_t k = i == begin ? i : i + 1; k < i + 2 && k < end; ++k) {
+            Side::prefetch(contacts.group[k].a, nodes, shifts, contacts.movers);
+            Side::prefetch(contacts.group[k].b, nodes, shifts, contacts.movers);
+        }
     }
 
     // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue. put(value, array) writes a value of
@@ -287,7 +290,7 @@ struct ContactSweep {
 
     static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes) {
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, nodes);
+            prefetch_ahead(contacts, i, begin, end, nodes);
             const LaneGroup& g = contacts.group[i];
             if (!bears(g)) continue;
             const Frame f(g);
@@ -346,7 +349,7 @@ struct ContactSweep {
         const F least = F::all(-terms.push), slow = F::all(-terms.hit);
         const F soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, nodes, shifts);
+            prefetch_ahead(contacts, i, begin, end, nodes, shifts);
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(g, Frame(g), shifts);
             sweep_group(contacts, g, nodes, [&](const LanePoint& p) {
@@ -363,7 +366,7 @@ struct ContactSweep {
                               const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_next(contacts, i, end, nodes);
+            prefetch_ahead(contacts, i, begin, end, nodes);
             sweep_group(contacts, contacts.group[i], nodes, [&](const LanePoint& p) {
                 const F gap = F::load(p.gap);
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, zero), one, zero};

@@ -48,10 +48,12 @@ struct SweepSide {
         inv_mass = mass[0];
         xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
     }
-    // Asks for what gather() will read and scatter() write soon: another core may have changed it last.
-    static void prefetch(const uint32_t node[kLanes], const SweepNode* nodes, const SweepShift* shifts) {
+    // Asks for what gather() will read and scatter() write soon: another core may have changed it last. Whether a node
+    // moves its seat tells; a look at its mass would wait for the line, and fetch it twice.
+    static void prefetch(const uint32_t node[kLanes], const SweepNode* nodes, const SweepShift* shifts,
+                         uint32_t movers) {
         for (int i = 0; i < kLanes; ++i)
-            if (nodes[node[i]].mass.inv_mass > 0) prefetch_to_write(&nodes[node[i]]);
+            if (node[i] - 1 < movers) prefetch_to_write(&nodes[node[i]]);
         for (int i = 0; shifts && i < kLanes; ++i) __builtin_prefetch(&shifts[node[i]]);
     }
     // What no impulse moves is not written: groups on other threads read it.

@@ -156,6 +156,7 @@ void take_seats(System& system, const Partition& partition, const Nodes& nodes) 
     take(kNone);
     for (uint32_t g = 0; g < partition.group_count; ++g)
         for (const uint32_t node : partition.groups[g].nodes) take(node);
+    system.movers = static_cast<uint32_t>(system.node_at.size()) - 1;
     for (uint32_t node = 0; node < nodes.slots(); ++node)
         if (!is_seated(node)) take(node);
 }

@@ -51,7 +51,7 @@ public:
     // shared: with nodes that other threads' groups move too.
     void contacts(Pass pass, uint32_t begin, uint32_t end, bool shared) const {
         LaneView contacts = contacts_;
-        contacts.shared = shared;
+        contacts.movers = shared ? s_.system.movers : 0;
         const SweepShift* const shifts = pass == Pass::first_biased ? s_.system.shift.data() : nullptr;
         if (pass == Pass::warm_start) contact_.warm_start(contacts, begin, end, nodes_);
         if (is_biased(pass)) contact_.sweep_biased(contacts, begin, end, nodes_, shifts, soft_);

@@ -145,6 +145,7 @@ struct System {
 
     Array<uint32_t> seat;     // by node + 1; begin_frame()
     Array<uint32_t> node_at;  // by seat
+    uint32_t movers = 0;      // nodes of groups, in seats 1 to this
     // By seat, of a group while its motions are lent: as nodes lie in the order in which a host made them, threads that
     // move some each would write to the same cache lines.
     Array<NodeMotion> motion;
