@@ -13,7 +13,8 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 32, kArrivalGrain = 8;  // pairs that a thread takes at a time
+constexpr uint32_t kTogether = 8;      // runs of pairs that a thread takes at a time: enough to find many side by side
+constexpr uint32_t kArrivalGrain = 8;  // pairs that a thread takes at a time
 constexpr uint32_t kFewArriving = 32, kMostArriving = 1024;
 constexpr uint32_t kSoon = 4;  // pairs that a loop asks the memory for ahead of itself
 
@@ -80,22 +81,25 @@ bool lost_points(const Pairs& pairs, const NearPair& near) {
 void look_at_all(Team& team, const Detection& of, Arrivals& arrivals) {
     Pairs& pairs = of.pairs;
     std::atomic<bool> any_fast = false;
-    team.for_ranges(static_cast<uint32_t>(pairs.near.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    const auto count = static_cast<uint32_t>(pairs.near.size());
+    team.for_runs(count, Homes::kRun, kTogether, pairs.homes, [&](const Team::Runs& runs) {
         Findings findings(of);
-        for (uint32_t next = begin; next < end; next += Asked::kTogether) {
-            const Asked asked(pairs, next, std::min(next + Asked::kTogether, end));
-            for (uint32_t k = 0; k < asked.count(); ++k) {
-                NearPair& near = asked.take(k);
-                look_at(of, arrivals, findings, near);
-                near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
-                if (near.fast) any_fast.store(true, std::memory_order_relaxed);
+        runs.for_each([&](uint32_t begin, uint32_t end) {
+            for (uint32_t next = begin; next < end; next += Asked::kTogether) {
+                const Asked asked(pairs, next, std::min(next + Asked::kTogether, end));
+                for (uint32_t k = 0; k < asked.count(); ++k) {
+                    NearPair& near = asked.take(k);
+                    look_at(of, arrivals, findings, near);
+                    near.changes = near.arrives || seeks_parts(near) || lost_points(pairs, near);
+                    if (near.fast) any_fast.store(true, std::memory_order_relaxed);
+                }
             }
-        }
+        });
         findings.take_over();
     });
     pairs.any_fast = any_fast.load(std::memory_order_relaxed);
-    gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
-           [&](uint32_t i) { return pairs.near[i].changes; });
+    gather(
+        team, count, pairs.picked, [&](uint32_t i) { return pairs.near[i].changes; }, pairs.homes);
 }
 
 // Room for about so many arrivals, if they are not few.
@@ -155,16 +159,15 @@ void list_active(Team& team, Pairs& pairs) {
         for_parts(pairs, near, [&](const Pair&) { ++count; });
         return count;
     };
-    write_list(team, static_cast<uint32_t>(pairs.near.size()), pairs.active, count_of,
-               [&](uint32_t index, ActivePair* to) {
-                   NearPair& near = pairs.near[index];
-                   for (uint32_t p = near.pair; p != kNone; p = pairs.list[p].next) {
-                       const Pair& pair = pairs.list[p];
-                       near.asks = pair.asks;
-                       *to++ = {pair.a,  pair.b,  p,         static_cast<uint32_t>(pair.manifold.count),
-                                pair.a2, pair.b2, pair.asks, index};
-                   }
-               });
+    const auto write = [&](uint32_t index, ActivePair* to) {
+        NearPair& near = pairs.near[index];
+        for (uint32_t p = near.pair; p != kNone; p = pairs.list[p].next) {
+            const Pair& pair = pairs.list[p];
+            near.asks = pair.asks;
+            *to++ = {pair.a, pair.b, p, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks, index};
+        }
+    };
+    write_list(team, static_cast<uint32_t>(pairs.near.size()), pairs.active, count_of, write, pairs.homes);
 }
 
 // Bodies that lost a push have lost what held it too: see note_lost().
@@ -219,6 +222,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     const bool is_first = pairs.list.size() == 0;
     if (is_first) prepare_arrivals(static_cast<uint32_t>(pairs.near.size()), pairs.arriving);
     Arrivals arrivals(pairs.arriving);
+    pairs.homes.settle(team.size(), static_cast<uint32_t>(pairs.near.size()));
     look_at_all(team, of, arrivals);
     admit_arriving(team, of, arrivals);
     prepare_arrivals(is_first ? 0 : arrivals.number(), pairs.arriving);

@@ -152,12 +152,14 @@ void publish_contacts(World& world) {
     world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
     world.pairs.ended.clear();
     Pairs& pairs = world.pairs;
-    gather(world.team, static_cast<uint32_t>(pairs.active.size()), pairs.picked, [&](uint32_t i) {
+    const auto has_news = [&](uint32_t i) {
         constexpr uint32_t kSoon = 4;
         if (i + kSoon < pairs.active.size())
             prefetch(pairs.list[pairs.active[i + kSoon].pair], sizeof(Pair) - Pair::kSought);
         return Touch::begins(pairs, i) && update_touching(pairs, Touch::from(pairs, i));
-    });
+    };
+    gather(world.team, static_cast<uint32_t>(pairs.active.size()), pairs.picked, has_news,
+           [&](uint32_t i) { return pairs.homes(pairs.active[i].near); });
     Publisher publisher(world);
     for (const uint32_t i : world.pairs.picked) publisher.tell(Touch::from(pairs, i));
     sort_by_slots(world.contact_end);

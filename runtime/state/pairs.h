@@ -13,6 +13,7 @@
 #include "collision/collide.h"
 #include "state/colliders.h"
 #include "state/motion.h"
+#include "threads/homes.h"
 
 namespace taut {
 
@@ -220,6 +221,7 @@ struct Pairs {
           picked(memory),
           arriving(memory),
           unheld(memory),
+          homes(memory),
           parts(memory) {}
 
     // In what update_bounds() fills, for so many colliders: as they come, not in the step that sees them first.
@@ -266,6 +268,7 @@ struct Pairs {
     Array<Arrival> arriving;                // scratch; find_contacts()
     Array<uint8_t> unheld;                  // by node: 1 where others pushed against one that is gone; find_contacts()
     uint8_t any_unheld = 0;                 // 1 where there is one
+    Homes homes;                            // of near; share_out()
     collision::Parts parts;                 // of the pair looked at last
 };
 

@@ -22,7 +22,7 @@ double row_residual(System& system, const JointKernels& kernels);
 void store_contact_rows(const System& system);
 
 // Once a frame and group: contacts by colour into lanes, with effective masses.
-void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
+void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels);
 // Once a substep: levers and effective masses of contacts on bodies that turned.
 void turn_lanes(Team& team, System& system, const Group& group, const ContactKernels& kernels);

@@ -145,7 +145,7 @@ bool is_special(const LaneGroup& g) { return g.first_drive != kNoLanes || g.roll
 
 }  // namespace
 
-void build_lanes(Team& team, System& system, const Group& group, const Pairs& pairs, const Nodes& nodes,
+void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
     lanes.drive.clear();
@@ -195,23 +195,34 @@ bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
     return any;
 }
 
+// A node's rotation counts from here on, if its levers turned with it.
+void turn_from_here(System& system, uint32_t node) {
+    const uint32_t at = system.at(node);
+    if (!system.turned[at]) return;
+    float(&dq)[4] = system.shift[at].dq;
+    dq[0] = dq[1] = dq[2] = 0;
+    dq[3] = 1;
+}
+
 }  // namespace
 
 void turn_lanes(Team& team, System& system, const Group& group, const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
-    for_lane_parts(team, lanes, [&](uint32_t part) {
+    const auto turn = [&](const LanePart& part) {
         LaneTurns turns;
-        for (uint32_t g = lanes.part[part].begin; g < lanes.part[part].end; ++g)
+        for (uint32_t g = part.begin; g < part.end; ++g)
             if (note_turns(lanes.group[g], system, turns))
                 kernels.turn(lanes.view(), g, turns, system.shift.data(), system.sweep.data());
+    };
+    const auto count = static_cast<uint32_t>(group.nodes.size());
+    const auto begin_of = [&](uint32_t part) { return static_cast<uint32_t>(uint64_t{count} * part / lanes.parts); };
+    constexpr uint32_t kAfter[] = {0, 1};  // nodes once the lanes of all parts have seen how they turned
+    for_parts(team, lanes, kAfter, [&](uint32_t stage, uint32_t part) {
+        if (stage == 0)
+            for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts) turn(lanes.part[i]);
+        else
+            for (uint32_t i = begin_of(part); i < begin_of(part + 1); ++i) turn_from_here(system, group.nodes[i]);
     });
-    for (const uint32_t node : group.nodes) {
-        const uint32_t at = system.at(node);
-        if (!system.turned[at]) continue;
-        float(&dq)[4] = system.shift[at].dq;  // from here on
-        dq[0] = dq[1] = dq[2] = 0;
-        dq[3] = 1;
-    }
 }
 
 void store_lanes(Team& team, const System& system, Pairs& pairs) {

@@ -58,9 +58,18 @@ void choose_pairs(LaneGroup& g, const System& system, const Pairs& pairs, const 
     }
 }
 
-// The lane groups of a part, in the order of the place of their middle pair.
-void choose_pairs(System& system, const Pairs& pairs, const Group& group, const LanePart& part, uint32_t width) {
+// For the homes of a part's pairs.
+void vote(const ContactLanes& lanes, const Group& group, uint32_t part, Pairs& pairs) {
+    for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts)
+        for (uint32_t k = lanes.part[i].pairs_begin; k < lanes.part[i].pairs_end; ++k)
+            pairs.homes.vote(part, pairs.active[group.pairs[lanes.pairs[k]]].near);
+}
+
+// The lane groups of part i, in the order of the place of their middle pair.
+void choose_pairs(System& system, const Pairs& pairs, const Group& group, uint32_t i) {
     ContactLanes& lanes = system.contacts;
+    const LanePart& part = lanes.part[i];
+    const uint32_t width = width_of(i / lanes.parts);
     const auto chosen = [&](uint32_t g) {
         const uint32_t from = part.pairs_begin + g * width;
         return std::span(&lanes.pairs[from], std::min(width, part.pairs_end - from));
@@ -135,7 +144,7 @@ void place_points(ContactLanes& lanes) {
 
 }  // namespace
 
-void share_out(Team& team, System& system, const Pairs& pairs, const Group& group) {
+void share_out(Team& team, System& system, Pairs& pairs, const Group& group) {
     ContactLanes& lanes = system.contacts;
     lanes.group.clear();
     lanes.point.clear();
@@ -151,9 +160,10 @@ void share_out(Team& team, System& system, const Pairs& pairs, const Group& grou
     lanes.group.resize(groups);
     Meetings meetings(system);
     const auto choose = [&](uint32_t part) {
-        for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts)
-            choose_pairs(system, pairs, group, lanes.part[i], width_of(i / lanes.parts));
-        if (lanes.parts > 1) meetings.note(part);
+        for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts) choose_pairs(system, pairs, group, i);
+        if (lanes.parts == 1) return;
+        meetings.note(part);
+        vote(lanes, group, part, pairs);
     };
     constexpr uint32_t kAfter[] = {0, 1};  // borders once all have noted
     for_parts(team, lanes, {kAfter, lanes.parts > 1 ? 2u : 1u}, [&](uint32_t stage, uint32_t part) {

@@ -9,8 +9,9 @@
 
 namespace taut {
 
-// Lane groups of all colours with their pairs and nodes, a part of each colour for each thread.
-void share_out(Team& team, System& system, const Pairs& pairs, const Group& group);
+// Lane groups of all colours with their pairs and nodes, a part of each colour for each thread. Parts vote for
+// the homes of their pairs.
+void share_out(Team& team, System& system, Pairs& pairs, const Group& group);
 
 constexpr uint32_t kFewGroups = 16;  // that are done before anybody could help
 

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "base/memory.h"
 #include "threads/team.h"
 
 namespace taut {
+
+// Of loops that nobody has in hand: as much for each.
+struct Evenly {};
 
 // A range cut into blocks.
 class Blocks {
@@ -20,12 +24,18 @@ public:
     uint32_t begin(uint32_t block) const { return block * length_; }
     uint32_t end(uint32_t block) const { return std::min(begin(block) + length_, count_); }
 
-    // act(block) for all of them.
-    template <class Act>
-    void for_each(Team& team, Act&& act) const {
-        team.for_ranges(number(), 1, [&](uint32_t first, uint32_t last) {
+    // act(block) for all of them; home(index) of the first in each, or Evenly.
+    template <class Home, class Act>
+    void for_each(Team& team, Home&& home, Act&& act) const {
+        const auto some = [&](uint32_t first, uint32_t last) {
             for (uint32_t block = first; block < last; ++block) act(block);
-        });
+        };
+        if constexpr (std::is_same_v<std::remove_cvref_t<Home>, Evenly>)
+            team.for_ranges(number(), 1, some);
+        else
+            team.for_runs(
+                number(), 1, 1, [&](uint32_t block) { return home(begin(block)); },
+                [&](const Team::Runs& runs) { runs.for_each(some); });
     }
 
 private:
@@ -35,12 +45,12 @@ private:
 };
 
 // Into picked, in ascending order, the indices below count for which picks(index) holds. Each is asked once.
-template <class Picks>
-void gather(Team& team, uint32_t count, Array<uint32_t>& picked, Picks&& picks) {
+template <class Picks, class Home = Evenly>
+void gather(Team& team, uint32_t count, Array<uint32_t>& picked, Picks&& picks, const Home& home = {}) {
     const Blocks blocks(count);
     uint32_t found[Blocks::kMost];
     picked.resize(count);  // each block picks into its own part
-    blocks.for_each(team, [&](uint32_t block) {
+    blocks.for_each(team, home, [&](uint32_t block) {
         uint32_t* const first = picked.data() + blocks.begin(block);
         uint32_t* to = first;
         for (uint32_t i = blocks.begin(block); i < blocks.end(block); ++i) {
@@ -57,11 +67,12 @@ void gather(Team& team, uint32_t count, Array<uint32_t>& picked, Picks&& picks) 
 
 // Into list, in ascending order of the indices below count, length_of(index) elements for each, which write(index, to)
 // leaves at `to`.
-template <class T, class LengthOf, class Write>
-void write_list(Team& team, uint32_t count, Array<T>& list, LengthOf&& length_of, Write&& write) {
+template <class T, class LengthOf, class Write, class Home = Evenly>
+void write_list(Team& team, uint32_t count, Array<T>& list, LengthOf&& length_of, Write&& write,
+                const Home& home = {}) {
     const Blocks blocks(count);
     size_t first[Blocks::kMost];
-    blocks.for_each(team, [&](uint32_t block) {
+    blocks.for_each(team, home, [&](uint32_t block) {
         first[block] = 0;
         for (uint32_t i = blocks.begin(block); i < blocks.end(block); ++i) first[block] += length_of(i);
     });
@@ -69,7 +80,7 @@ void write_list(Team& team, uint32_t count, Array<T>& list, LengthOf&& length_of
     for (uint32_t block = 0; block < blocks.number(); ++block) whole += std::exchange(first[block], whole);
     if (whole > list.size()) reserve_more(list, whole - list.size());
     list.resize(whole);
-    blocks.for_each(team, [&](uint32_t block) {
+    blocks.for_each(team, home, [&](uint32_t block) {
         T* to = list.data() + first[block];
         for (uint32_t i = blocks.begin(block); i < blocks.end(block); ++i) {
             write(i, to);
@@ -83,7 +94,7 @@ template <class T, class Of, class Join>
 T reduce(Team& team, uint32_t count, T none, Of&& of, Join&& join) {
     const Blocks blocks(count);
     T parts[Blocks::kMost];
-    blocks.for_each(team, [&](uint32_t block) { parts[block] = of(blocks.begin(block), blocks.end(block)); });
+    blocks.for_each(team, Evenly{}, [&](uint32_t block) { parts[block] = of(blocks.begin(block), blocks.end(block)); });
     for (uint32_t block = 0; block < blocks.number(); ++block) none = join(none, parts[block]);
     return none;
 }

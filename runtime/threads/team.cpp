@@ -40,7 +40,12 @@ private:
 }  // namespace
 
 Team::Team(const taut_hooks& hooks, uint32_t threads)
-    : hooks_(hooks), size_(threads), after_(threads > 1 ? kMaxStages : 0), part_(threads) {
+    : hooks_(hooks),
+      size_(threads),
+      run_at_(threads > 1 ? kMostRuns : 0),
+      first_run_(threads + 2),
+      after_(threads > 1 ? kMaxStages : 0),
+      part_(threads) {
     if (hooks_.enqueue_task) return;
     own_.reserve(threads - 1);
     try {

@@ -46,6 +46,37 @@ public:
         hand_out(chunks.stages, {}, chunk);
     }
 
+    // Some runs of a loop: [k length, (k + 1) length) below count for each k.
+    struct Runs {
+        std::span<const uint32_t> which;
+        uint32_t length, count;
+
+        template <class Act>  // act(begin, end)
+        void for_each(Act&& act) const {
+            for (const uint32_t k : which) act(k * length, std::min((k + 1) * length, count));
+        }
+    };
+    // act(Runs) over [0, count) in runs of a length, each of the part home(its begin), at most so many together; in all
+    // else as for_ranges(). The caller alone takes all as one run.
+    template <class Home, class Act>
+    void for_runs(uint32_t count, uint32_t length, uint32_t together, Home&& home, Act&& act) {
+        if (size_ == 1 || count < 2 * length) {
+            constexpr uint32_t kFirst[] = {0};
+            if (count > 0) act(Runs{kFirst, count, count});
+            return;
+        }
+        length *= count / (kMostRuns * length) + 1;
+        const uint32_t number = (count + length - 1) / length;
+        const uint32_t most = share_runs(number, [&](uint32_t k) { return home(k * length) % size_; });
+        constexpr uint32_t kLeast = 4;  // stages of a part that has as much as others: for these to help with
+        together = std::clamp(number / (kLeast * size_), 1u, together);
+        const auto some = [&](uint32_t stage, uint32_t part) {
+            const uint32_t end = first_run_[part + 1], from = std::min(first_run_[part] + stage * together, end);
+            act(Runs{std::span(run_at_).subspan(from, std::min(together, end - from)), length, count});
+        };
+        hand_out((most + together - 1) / together, {}, some);
+    }
+
     // run(stage, part) for each of size() parts, whose stages go one after the other. A stage begins when all parts
     // have done the first after[stage] stages, at most as many as come before it; after may not fall. In all else as
     // for_ranges(), but threads go from stage to stage by themselves, some tenths of a microsecond each.
@@ -78,6 +109,17 @@ private:
         }
         uint32_t begin(uint32_t chunk) const { return static_cast<uint32_t>(uint64_t{chunk} * count / number); }
     };
+
+    // Lists the runs of each part; how many the one with the most has.
+    template <class HomeOf>
+    uint32_t share_runs(uint32_t number, HomeOf&& home_of) {
+        std::ranges::fill(first_run_, 0);
+        for (uint32_t i = 0; i < number; ++i) ++first_run_[home_of(i) + 2];
+        const uint32_t most = std::ranges::max(first_run_);
+        for (uint32_t part = 0; part < size_; ++part) first_run_[part + 2] += first_run_[part + 1];
+        for (uint32_t i = 0; i < number; ++i) run_at_[first_run_[home_of(i) + 1]++] = i;
+        return most;
+    }
 
     // A loop as a worker sees it.
     struct Job {
@@ -113,8 +155,11 @@ private:
     void live(uint32_t worker);
     static void help_as_task(uint32_t begin, uint32_t end, uint32_t worker, void* team);
 
+    static constexpr uint32_t kMostRuns = 1024;
+
     taut_hooks hooks_;
     uint32_t size_;
+    std::vector<uint32_t> run_at_, first_run_;  // of the loop that is out: runs by part, and where each begins
     std::vector<std::thread> own_;
     void* token_ = nullptr;  // of the host's task
     bool called_ = false;    // helpers are there, or on their way

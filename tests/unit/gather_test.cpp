@@ -65,6 +65,27 @@ TEST(Gather, WritesListsOfManyLengths) {
     });
 }
 
+// Whoever has which block in hand.
+TEST(Gather, PicksAndWritesInOrderAtHomes) {
+    Memory memory(taut_hooks{});
+    Array<uint32_t> picked(memory), list(memory);
+    const auto home = [](uint32_t i) { return i * 40503u >> 4; };
+    with_teams([&](Team& team, uint32_t count) {
+        taut::gather(team, count, picked, is_picked, home);
+        taut::write_list(
+            team, count, list, [](uint32_t i) { return is_picked(i) ? 1u : 0u; },
+            [](uint32_t i, uint32_t* to) {
+                if (is_picked(i)) *to = i;
+            },
+            home);
+        EXPECT_EQ(std::vector(picked.begin(), picked.end()), std::vector(list.begin(), list.end()));
+        EXPECT_TRUE(std::ranges::is_sorted(picked));
+        uint32_t number = 0;
+        for (uint32_t i = 0; i < count; ++i) number += is_picked(i);
+        EXPECT_EQ(picked.size(), number);
+    });
+}
+
 // A sum whose rounding depends on its order.
 TEST(Gather, ReducesToTheSameBits) {
     const auto sum = [](Team& team, uint32_t count) {

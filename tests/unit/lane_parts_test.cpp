@@ -75,6 +75,24 @@ TEST_P(LaneParts, HaveEachPairOnceAndNoNodeTwice) {
     for (const auto& [pair, count] : times) EXPECT_EQ(count, 1) << pair;
 }
 
+// Of a run of near pairs the part that sweeps most is home.
+TEST_P(LaneParts, VoteForTheHomesOfTheirPairs) {
+    const auto count = static_cast<uint32_t>(pairs.active.size());
+    for (uint32_t i = 0; i < count; ++i) pairs.active[i].near = i;
+    pairs.homes.settle(threads_.size(), count);
+    share_out(threads_, system_, pairs, partition.groups[0]);
+    std::map<uint32_t, std::map<uint32_t, uint32_t>> swept;  // how many of a run by which part
+    for_groups([&](uint32_t part, const LaneGroup& g) {
+        for (int lane = 0; lane < kLanes; ++lane)
+            if (g.pair[lane] != kNone) ++swept[g.pair[lane] / Homes::kRun][part];
+    });
+    pairs.homes.settle(threads_.size(), count);
+    for (auto& [run, by] : swept) {
+        const uint32_t home = pairs.homes(run * Homes::kRun);
+        for (const auto& [part, number] : by) EXPECT_LE(number, by[home]) << "run " << run << ", part " << part;
+    }
+}
+
 // What other parts meet comes first, and is little; the rest lies together in memory.
 TEST_P(LaneParts, MeetAtTheirBordersAlone) {
     std::map<uint32_t, std::set<uint32_t>> parts_of;  // by seat

@@ -36,6 +36,51 @@ TEST(Team, OwnThreadsRunEveryIndexOnce) {
     }
 }
 
+// Runs of a length, each once, whoever has which: all parts, one alone, one that is not there.
+TEST(Team, RunsEveryRunOnce) {
+    for (uint32_t threads : {1u, 2u, 3u, 8u}) {
+        Team team({}, threads);
+        const RestAfter rest(team);
+        std::vector<uint32_t> hits(200000);
+        for (uint32_t count : {0u, 1u, 63u, 128u, 1000u, 200000u})
+            for (uint32_t home : {0u, 1u, 2u, 13u}) {
+                const uint32_t together = 1 + home;
+                std::fill(hits.begin(), hits.end(), 0);
+                const auto home_of = [&](uint32_t begin) { return home == 0 ? begin / 7 : home; };
+                const auto hit = [&](uint32_t begin, uint32_t end) {
+                    EXPECT_EQ(begin % 64, 0u);
+                    for (uint32_t i = begin; i < end; ++i) ++hits[i];
+                };
+                team.for_runs(count, 64, together, home_of, [&](const Team::Runs& runs) {
+                    EXPECT_LE(runs.which.size(), together);
+                    runs.for_each(hit);
+                });
+                for (uint32_t i = 0; i < hits.size(); ++i)
+                    ASSERT_EQ(hits[i], i < count ? 1u : 0u) << "index " << i << " of " << count << ", home " << home;
+            }
+    }
+}
+
+// Two threads each begin with what is their own, and wait there for the other.
+TEST(Team, RunsBeginAtTheirHomes) {
+    constexpr uint32_t kRuns = 20;
+    Team team({}, 2);
+    const RestAfter rest(team);
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<uint32_t> own{0}, others{0};
+    const auto is_of_helper = [](uint32_t begin) { return begin / 64 % 3 == 0; };
+    team.for_runs(
+        kRuns * 64, 64, 1, [&](uint32_t begin) { return is_of_helper(begin) ? 1u : 0u; },
+        [&](const Team::Runs& runs) {
+            runs.for_each([&](uint32_t begin, uint32_t) {
+                ++(is_of_helper(begin) == (std::this_thread::get_id() != caller) ? own : others);
+            });
+            while (own + others < 2) std::this_thread::yield();
+        });
+    EXPECT_EQ(own + others, kRuns);
+    EXPECT_GE(own, 2u);
+}
+
 // Chunks that differ by one at most, as many for each thread.
 TEST(Team, CutsLoopsEvenly) {
     for (uint32_t threads : {2u, 3u, 5u}) {
