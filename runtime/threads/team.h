@@ -72,6 +72,7 @@ public:
         together = std::clamp(number / (kLeast * size_), 1u, together);
         const auto some = [&](uint32_t stage, uint32_t part) {
             const uint32_t end = first_run_[part + 1], from = std::min(first_run_[part] + stage * together, end);
+            if (from == end) return;
             act(Runs{std::span(run_at_).subspan(from, std::min(together, end - from)), length, count});
         };
         hand_out((most + together - 1) / together, {}, some);

@@ -67,18 +67,22 @@ TEST(Team, RunsBeginAtTheirHomes) {
     Team team({}, 2);
     const RestAfter rest(team);
     const std::thread::id caller = std::this_thread::get_id();
-    std::atomic<uint32_t> own{0}, others{0};
-    const auto is_of_helper = [](uint32_t begin) { return begin / 64 % 3 == 0; };
-    team.for_runs(
-        kRuns * 64, 64, 1, [&](uint32_t begin) { return is_of_helper(begin) ? 1u : 0u; },
-        [&](const Team::Runs& runs) {
-            runs.for_each([&](uint32_t begin, uint32_t) {
-                ++(is_of_helper(begin) == (std::this_thread::get_id() != caller) ? own : others);
-            });
-            while (own + others < 2) std::this_thread::yield();
+    const auto home_of = [](uint32_t begin) { return begin / 64 % 3 == 0 ? 1u : 0u; };
+    std::atomic<uint32_t> ran{0};
+    std::vector<uint32_t> homes[2];  // of what a thread ran
+    team.for_runs(kRuns * 64, 64, 1, home_of, [&](const Team::Runs& runs) {
+        runs.for_each([&](uint32_t begin, uint32_t) {
+            homes[std::this_thread::get_id() == caller ? 0 : 1].push_back(home_of(begin));
+            ++ran;
         });
-    EXPECT_EQ(own + others, kRuns);
-    EXPECT_GE(own, 2u);
+        while (ran < 2) std::this_thread::yield();
+    });
+    EXPECT_EQ(ran, kRuns);
+    EXPECT_EQ(homes[0].size() + homes[1].size(), kRuns);
+    for (uint32_t part : {0u, 1u}) {
+        ASSERT_FALSE(homes[part].empty());
+        EXPECT_EQ(homes[part].front(), part);
+    }
 }
 
 // Chunks that differ by one at most, as many for each thread.
