@@ -175,15 +175,12 @@ struct ContactSweep {
         a.subtract_spin(spin);
     }
 
-    // Of the next group, and at the beginning of the first too. They are of the same colour: no other thread works on
-    // their nodes.
-    static void prefetch_ahead(LaneView contacts, uint32_t i, uint32_t begin, uint32_t end, const SweepNode* nodes,
-                               const SweepShift* shifts = nullptr) {
-        if (contacts.movers == 0) return;
-        for (uint32_t k = i == begin ? i : i + 1; k < i + 2 && k < end; ++k) {
-            Side::prefetch(contacts.group[k].a, nodes, shifts, contacts.movers);
-            Side::prefetch(contacts.group[k].b, nodes, shifts, contacts.movers);
-        }
+    // Of a group that comes soon, of the same colour as the one at hand: no other thread works on its nodes.
+    static void prefetch(LaneView contacts, uint32_t i, uint32_t end, const SweepNode* nodes,
+                         const SweepShift* shifts = nullptr) {
+        if (contacts.movers == 0 || i >= end) return;
+        Side::prefetch(contacts.group[i].a, nodes, shifts, contacts.movers);
+        Side::prefetch(contacts.group[i].b, nodes, shifts, contacts.movers);
     }
 
     // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue. put(value, array) writes a value of
@@ -289,8 +286,9 @@ struct ContactSweep {
     }
 
     static void warm_start(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes) {
+        prefetch(contacts, begin, end, nodes);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_ahead(contacts, i, begin, end, nodes);
+            prefetch(contacts, i + 1, end, nodes);
             const LaneGroup& g = contacts.group[i];
             if (!bears(g)) continue;
             const Frame f(g);
@@ -348,8 +346,9 @@ struct ContactSweep {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
         const F least = F::all(-terms.push), slow = F::all(-terms.hit);
         const F soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
+        prefetch(contacts, begin, end, nodes, shifts);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_ahead(contacts, i, begin, end, nodes, shifts);
+            prefetch(contacts, i + 1, end, nodes, shifts);
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(g, Frame(g), shifts);
             sweep_group(contacts, g, nodes, [&](const LanePoint& p) {
@@ -365,8 +364,9 @@ struct ContactSweep {
     static void sweep_relaxed(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes,
                               const SweepTerms& terms) {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h);
+        prefetch(contacts, begin, end, nodes);
         for (uint32_t i = begin; i < end; ++i) {
-            prefetch_ahead(contacts, i, begin, end, nodes);
+            prefetch(contacts, i + 1, end, nodes);
             sweep_group(contacts, contacts.group[i], nodes, [&](const LanePoint& p) {
                 const F gap = F::load(p.gap);
                 return PointTerms{F::if_greater(gap, zero, gap * inv_h, zero), one, zero};
