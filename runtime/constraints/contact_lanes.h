@@ -82,7 +82,7 @@ struct LaneView {
     const LaneGroup* group;
     const LaneDrive* drive;
     LaneRolling* rolling;
-    uint32_t movers = 0;  // seats 1 to here move, and what they have is often in the cache of another core
+    uint32_t movers = 0;  // of groups that threads share: seats 1 to here move, and another core may hold them; else 0
 };
 
 // An array whose new elements hold whatever was there before: for large ones that are filled at once, each part by the

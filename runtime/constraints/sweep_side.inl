@@ -49,7 +49,7 @@ struct SweepSide {
         xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
     }
     // Asks for what gather() will read and scatter() write soon: another core may have changed it last. Whether a node
-    // moves its seat tells; a look at its mass would wait for the line, and fetch it twice.
+    // moves its seat tells (0, the world, wraps round); a look at its mass would wait for the line, and fetch it twice.
     static void prefetch(const uint32_t node[kLanes], const SweepNode* nodes, const SweepShift* shifts,
                          uint32_t movers) {
         for (int i = 0; i < kLanes; ++i)
