@@ -15,8 +15,9 @@
 namespace taut::collision {
 namespace {
 
-// A fat box reaches this much further than the tight one on every side [m].
-constexpr float kFat = 0.05f;
+// A fat box reaches so much further than the tight one on every side [m], and of what is small by so much of its
+// shortest side: more, and all in a heap of small bodies are near each other; less, and they leave their boxes too often.
+constexpr float kFat = 0.02f, kFatOfSide = 0.1f;
 
 // Bodies that fall side by side would all leave their boxes in the same step: some reach less far ahead. Their places
 // tell which, not their ids, which depend on what lived before them.
@@ -32,7 +33,8 @@ btDbvtVolume tight_volume(const Box& box) { return btDbvtVolume::FromMM(vector(b
 
 btDbvtVolume fat_volume(const Box& box, const Vec3f& ahead) {
     btDbvtVolume volume = tight_volume(box);
-    volume.Expand(btVector3(kFat, kFat, kFat));
+    const float fat = std::min(kFat, kFatOfSide * (box.hi - box.lo).minCoeff());
+    volume.Expand(btVector3(fat, fat, fat));
     volume.SignedExpand(vector(ahead));
     return volume;
 }

@@ -98,8 +98,11 @@ bool keep_in_leaf(const Nodes& nodes, const Collider& collider, const Shapes& sh
 // What came and went: as the broadphase tells, or, where records were forgotten before, found anew.
 void find_news(const collision::Broadphase& broadphase, bool was_complete, Pairs& pairs) {
     const std::span<const uint64_t> keys = broadphase.pairs();
-    pairs.arrived.clear();
-    pairs.departed.clear();
+    constexpr size_t kFew = 64;  // at once; where more never come or go, the first that do take all the room
+    for (Array<uint64_t>* each : {&pairs.arrived, &pairs.departed}) {
+        each->clear();
+        each->reserve(kFew);
+    }
     if (was_complete) {
         pairs.arrived.assign(broadphase.arrived().begin(), broadphase.arrived().end());
         pairs.departed.assign(broadphase.departed().begin(), broadphase.departed().end());
