@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 
+#include "heap.h"
 #include "metrics.h"
 #include "scenes/catalogue.h"
 #include "scenes/taut_world.h"
@@ -28,6 +29,7 @@ struct Options {
     bool geometric_stiffness = true;
     bool adaptive_damping = false;
     bool sleep = false;
+    bool cold_memory = false;
     uint32_t warm_up = 0;
     double spike_limit = 0;
 };
@@ -61,6 +63,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
     app.add_flag("--adaptive-damping", options.adaptive_damping, "damp by the size of the geometric stiffness");
     app.add_flag("--sleep", options.sleep, "let what came to rest sleep; not for the peers");
+    app.add_flag("--cold-memory", options.cold_memory, "do not write to memory ahead of the steps that need it");
     app.add_option("--warm-up", options.warm_up, "steps before the worst one is looked for");
     app.add_option("--spike-limit", options.spike_limit, "fail if the worst step takes so many times the median");
     app.add_flag("--list", list, "print all scenes");
@@ -104,7 +107,10 @@ std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene&
 #endif
 }
 
+constexpr size_t kHeap = size_t{64} << 20;  // bytes, more than any scene takes
+
 int run(const Options& options) {
+    if (!options.cold_memory) warm_heap(kHeap);
     scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""});
     if (options.substeps) scene.world.substeps = *options.substeps;
     if (options.solver && options.engine == "taut") scene.world.solver = scenes::solver_named(*options.solver);
