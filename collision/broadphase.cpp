@@ -15,8 +15,8 @@
 namespace taut::collision {
 namespace {
 
-// A fat box reaches so much further than the tight one on every side [m], and of what is small by so much of its
-// shortest side: more, and all in a heap of small bodies are near each other; less, and they leave their boxes too often.
+// A fat box reaches so much further than the tight one on every side [m], of what is small by this part of its shortest
+// side. More, and in a heap of small bodies all are near each other; less, and they leave their boxes too often.
 constexpr float kFat = 0.02f, kFatOfSide = 0.1f;
 
 // Bodies that fall side by side would all leave their boxes in the same step: some reach less far ahead. Their places
