@@ -98,7 +98,7 @@ bool keep_in_leaf(const Nodes& nodes, const Collider& collider, const Shapes& sh
 // What came and went: as the broadphase tells, or, where records were forgotten before, found anew.
 void find_news(const collision::Broadphase& broadphase, bool was_complete, Pairs& pairs) {
     const std::span<const uint64_t> keys = broadphase.pairs();
-    constexpr size_t kFew = 64;  // at once; where more never come or go, the first that do take all the room
+    constexpr size_t kFew = 64;  // of what comes or goes in a step: for so many the first step takes the memory
     for (Array<uint64_t>* each : {&pairs.arrived, &pairs.departed}) {
         each->clear();
         each->reserve(kFew);

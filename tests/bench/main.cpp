@@ -107,7 +107,7 @@ std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene&
 #endif
 }
 
-constexpr size_t kHeap = size_t{64} << 20;  // bytes, more than any scene takes
+constexpr size_t kHeap = size_t{64} << 20;  // bytes; boxes2000 takes 7e6, ragdolls100 11e6
 
 int run(const Options& options) {
     if (!options.cold_memory) warm_heap(kHeap);
