@@ -171,6 +171,11 @@ struct ContactLanes {
     bool bounces = false;  // some point has restitution
 
     std::span<const LanePart> parts_of(uint32_t colour) const { return {&part[colour * parts], parts}; }
+    // act(i), an index into part, for a thread's part of each colour in turn.
+    template <class Act>
+    void for_colours(uint32_t thread, Act&& act) const {
+        for (uint32_t i = thread; i < part.size(); i += parts) act(i);
+    }
 
     LaneView view() { return {group.data(), drive.data(), rolling.data(), 0}; }
 };

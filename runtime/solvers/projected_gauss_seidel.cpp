@@ -195,9 +195,7 @@ private:
     const LanePart& lanes_of(const Piece& piece, uint32_t part) const {
         return s_.system.contacts.parts_of(piece.colour)[part];
     }
-    uint32_t begin_of(uint32_t part, uint32_t count) const {
-        return static_cast<uint32_t>(uint64_t{count} * part / s_.team.size());
-    }
+    uint32_t begin_of(uint32_t part, uint32_t count) const { return begin_of_part(part, s_.team.size(), count); }
 
     static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (3 * kMaxColours + 1) + 1;
     static_assert(kMost <= Team::kMaxStages);

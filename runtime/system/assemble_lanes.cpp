@@ -215,11 +215,11 @@ void turn_lanes(Team& team, System& system, const Group& group, const ContactKer
                 kernels.turn(lanes.view(), g, turns, system.shift.data(), system.sweep.data());
     };
     const auto count = static_cast<uint32_t>(group.nodes.size());
-    const auto begin_of = [&](uint32_t part) { return static_cast<uint32_t>(uint64_t{count} * part / lanes.parts); };
+    const auto begin_of = [&](uint32_t part) { return begin_of_part(part, lanes.parts, count); };
     constexpr uint32_t kAfter[] = {0, 1};  // nodes once the lanes of all parts have seen how they turned
     for_parts(team, lanes, kAfter, [&](uint32_t stage, uint32_t part) {
         if (stage == 0)
-            for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts) turn(lanes.part[i]);
+            lanes.for_colours(part, [&](uint32_t i) { turn(lanes.part[i]); });
         else
             for (uint32_t i = begin_of(part); i < begin_of(part + 1); ++i) turn_from_here(system, group.nodes[i]);
     });

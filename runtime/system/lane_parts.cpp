@@ -60,9 +60,10 @@ void choose_pairs(LaneGroup& g, const System& system, const Pairs& pairs, const 
 
 // For the homes of a part's pairs.
 void vote(const ContactLanes& lanes, const Group& group, uint32_t part, Pairs& pairs) {
-    for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts)
+    lanes.for_colours(part, [&](uint32_t i) {
         for (uint32_t k = lanes.part[i].pairs_begin; k < lanes.part[i].pairs_end; ++k)
             pairs.homes.vote(part, pairs.active[group.pairs[lanes.pairs[k]]].near);
+    });
 }
 
 // The lane groups of part i, in the order of the place of their middle pair.
@@ -93,18 +94,19 @@ public:
     void note(uint32_t part) {
         uint8_t* const met = &met_[nodes_ * part];
         std::fill_n(met, nodes_, uint8_t{0});
-        for (uint32_t i = part; i < lanes_.part.size(); i += lanes_.parts)
+        lanes_.for_colours(part, [&](uint32_t i) {
             for (uint32_t g = lanes_.part[i].begin; g < lanes_.part[i].end; ++g)
                 for (uint32_t lane = 0; lane < kLanes; ++lane)
                     met[lanes_.group[g].a[lane]] = met[lanes_.group[g].b[lane]] = 1;
+        });
     }
     // In each part of a colour the groups at the border come first.
     void put_borders_first(uint32_t part) {
-        for (uint32_t i = part; i < lanes_.part.size(); i += lanes_.parts) {
+        lanes_.for_colours(part, [&](uint32_t i) {
             LanePart& of = lanes_.part[i];
             for (uint32_t g = of.begin; g < of.end; ++g)
                 if (is_border(lanes_.group[g], part)) swap_choice(lanes_.group[g], lanes_.group[of.inner++]);
-        }
+        });
     }
 
 private:
@@ -137,9 +139,10 @@ private:
 // read, and would take what another thread writes.
 void place_points(ContactLanes& lanes) {
     for (uint32_t k = 0; k < lanes.parts; ++k)
-        for (uint32_t i = k; i < lanes.part.size(); i += lanes.parts)
+        lanes.for_colours(k, [&](uint32_t i) {
             for (uint32_t g = lanes.part[i].begin; g < lanes.part[i].end; ++g)
                 lanes.group[g].point = lanes.point.take(lanes.group[g].points);
+        });
 }
 
 }  // namespace
@@ -160,7 +163,7 @@ void share_out(Team& team, System& system, Pairs& pairs, const Group& group) {
     lanes.group.resize(groups);
     Meetings meetings(system);
     const auto choose = [&](uint32_t part) {
-        for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts) choose_pairs(system, pairs, group, i);
+        lanes.for_colours(part, [&](uint32_t i) { choose_pairs(system, pairs, group, i); });
         if (lanes.parts == 1) return;
         meetings.note(part);
         vote(lanes, group, part, pairs);

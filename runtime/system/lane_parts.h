@@ -27,9 +27,7 @@ void for_parts(Team& team, const ContactLanes& lanes, std::span<const uint32_t> 
 template <class Act>
 void for_lane_parts(Team& team, const ContactLanes& lanes, Act&& act) {
     constexpr uint32_t kAtOnce[] = {0};
-    for_parts(team, lanes, kAtOnce, [&](uint32_t, uint32_t part) {
-        for (uint32_t i = part; i < lanes.part.size(); i += lanes.parts) act(i);
-    });
+    for_parts(team, lanes, kAtOnce, [&](uint32_t, uint32_t part) { lanes.for_colours(part, act); });
 }
 
 }  // namespace taut

@@ -20,6 +20,11 @@
 
 namespace taut {
 
+// Where a part of [0, count) begins, of so many that are as long but for one.
+constexpr uint32_t begin_of_part(uint32_t part, uint32_t parts, uint32_t count) {
+    return static_cast<uint32_t>(uint64_t{part} * count / parts);
+}
+
 class Team {
 public:
     // threads: of the whole team. Without task hooks it owns threads - 1 of its own. Throws std::system_error.
@@ -108,7 +113,7 @@ private:
             if (number > parts) number -= number % parts;
             stages = (number + parts - 1) / parts;
         }
-        uint32_t begin(uint32_t chunk) const { return static_cast<uint32_t>(uint64_t{chunk} * count / number); }
+        uint32_t begin(uint32_t chunk) const { return begin_of_part(chunk, number, count); }
     };
 
     // Lists the runs of each part; how many the one with the most has.
