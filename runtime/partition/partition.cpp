@@ -26,6 +26,7 @@ Partition::Partition(Memory& memory)
       rank_(memory),
       rank_begin_(memory),
       efforts_(memory),
+      presses_(memory),
       queue_(memory),
       adjacency_begin_(memory),
       adjacency_(memory) {}
@@ -68,6 +69,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
         throw;
     }
     find_loads(nodes);
+    find_pressed(nodes, pairs);
     find_slender(nodes, rules);
     for (Island& island : island_) island.tower = false;
     if (rules.direct) find_towers();

@@ -23,7 +23,6 @@ struct BlockMemory {
     uint32_t guard_left = 0;         // substeps for which no slow velocity is spared
     uint32_t since_trip = 1u << 30;  // substeps since the guard last tripped
     bool escalated = false;          // tripped twice in a short time, of unequal masses: more substeps
-    uint8_t refused_left = 0;        // frames for which a tower that was refused takes more substeps
     uint8_t whips_left = 0;          // frames for which its island is apart from those that need no shorter substeps
     uint8_t hit_left = 0;            // frames for which it takes in its contacts after a hit
 };
@@ -42,7 +41,6 @@ struct Block {
     Array<BlockPlace> places;              // of its nodes and joints in the matrix; see solvers/block_matrix.cpp
     Array<double> solution, known, force;  // scratch of its solve
     bool tower = false;                    // no joints: bodies that stand on each other
-    bool refused = false;                  // this substep's tower did not stand as one: its contacts were swept
     bool looped = false;                   // more joints than a tree
     bool passing = false;                  // direct while a load lasts that sweeps hold as well: it may turn far
     bool failed = false;                   // this substep's matrix could not be factored
@@ -123,6 +121,7 @@ private:
         uint32_t substeps = 0, sweeps = 1, group = 0;
         float ratio = 1;       // heaviest load over its support, where any is kHeavyOnLight
         bool slender = false;  // a column that sweeps of the world's substeps cannot hold
+        bool pressed = false;  // a heavy body pushes a light one against something; of those that may be towers
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -137,6 +136,11 @@ private:
         bool hit = false;                // in this frame
     };
 
+    struct Press {       // of a heavy body
+        uint32_t light;  // slot of the one that it touches
+        Vec3f along;     // unit, from the heavy one to that
+    };
+
     // Parts that write nothing which another one reads.
     using Part = void (Partition::*)(const Nodes& nodes);
     void run(Team& team, std::span<const Part> parts, const Nodes& nodes);
@@ -149,7 +153,9 @@ private:
     void make_room();
     void number_islands();
     void find_loads(const Nodes& nodes);
+    void find_pressed(const Nodes& nodes, const Pairs& pairs);
     void find_slender(const Nodes& nodes, const PartitionRules& rules);
+    static bool may_be_tower(const Island& island);
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     void choose_direct(const Nodes& nodes, const Joints& joints);
@@ -199,6 +205,7 @@ private:
     Array<uint32_t> rank_;                         // scratch: of an item, its colour, kind and place
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<uint32_t> efforts_;                      // scratch: that occur
+    Array<Press> presses_;                         // scratch: by light
     Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
     Array<uint32_t> adjacency_begin_, adjacency_;  // scratch: by node, those it touches, for levels
 };

@@ -178,7 +178,6 @@ uint64_t state_hash(const World& world) {
         hash.add(uint64_t{block.memory.whips_left} << 8 | block.memory.hit_left);
         hash.add(static_cast<uint64_t>(block.memory.solved));
         hash.add(static_cast<uint64_t>(block.memory.since_trip));
-        hash.add(static_cast<uint64_t>(block.memory.refused_left));
     }
     return hash.value();
 }

@@ -18,15 +18,8 @@ constexpr double kClosing = 1e-9;        // [m]
 // loaded cable changes tenfold from substep to substep; with c of the last one, cables slide at a third of
 // Coulomb's force.
 constexpr double kSlipMiss = 0.1;
-// Of a tower: share of all impulses that may be of the wrong sign, and what may close unseen [m]. Tighter refuses the
-// substeps of an impact, and the change to sweeps is what kicks a tower (measured: of 72 hit by a heavy box 0 fall, 27
-// with 0.1 and 1 mm).
-constexpr double kAcceptedPull = 0.3;
-constexpr double kAcceptedClosing = 5e-3;
 
 using Kind = BoundedRow::Kind;
-
-double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
 }  // namespace
 
@@ -237,24 +230,6 @@ bool ActiveSet::drop_pulling() {
     }
     follow_loads();
     return changed;
-}
-
-bool ActiveSet::acceptable() const {
-    double pull = 0, excess = 0, total = 0, closing = 0;
-    auto all = rows();
-    for (size_t i = 0; i < all.size(); ++i) {
-        const BoundedRow& r = all[i];
-        if (r.kind != Kind::push) continue;
-        if (!r.on) {
-            closing = std::max(closing, -(r.gap + sys_.h * speed(r, sys_.exact)));
-            continue;
-        }
-        total += std::abs(r.mu);
-        pull += std::max(0.0, -r.mu);
-        if (i + 2 < all.size() && all[i + 1].kind == Kind::tangent)
-            excess += std::max(0.0, length(all[i + 1].mu, all[i + 2].mu) - all[i + 1].limit * std::max(0.0, r.mu));
-    }
-    return pull <= kAcceptedPull * total && excess <= kAcceptedPull * total && closing <= kAcceptedClosing;
 }
 
 // The impulse that a friction is bound by, and the one that it has.

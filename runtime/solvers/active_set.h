@@ -32,7 +32,7 @@ public:
     bool undoes_overlaps() const;
     // At ratios of 10000 an impact with eight left one chain in eight caught on the rim by a link's end, with twelve
     // one in 48. Of heaps of 100 ragdolls that fell with four in blocks without contacts, 4 of 26 jammed for seconds.
-    uint32_t rounds() const { return b_.tower ? 8 : 16; }
+    static constexpr uint32_t kRounds = 16;
 
     void aim_biased();                      // goals of the solve that moves positions
     void aim_unbiased();                    // likewise without the push that undoes overlaps
@@ -52,8 +52,6 @@ public:
     void stop_short();
     // Drops rows that pull; false: none did.
     bool drop_pulling();
-    // Of a tower: no row pulls, slides beyond its cone or closes unseen by more than a little.
-    bool acceptable() const;
     // Slips for the next substep and impulses back into their rows.
     void store();
     // Work on velocities that went from v0 to v1: mu . J (v0 + v1) / 2 [J].

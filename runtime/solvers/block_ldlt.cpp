@@ -9,13 +9,11 @@
 #include "base/clock.h"
 #include "solvers/block_solve.h"
 #include "solvers/projected_gauss_seidel.h"
-#include "solvers/row_sweep.h"
 
 namespace taut {
 namespace {
 
 constexpr double kSettleMassRatio = 100;  // see block_solve.cpp
-constexpr uint8_t kRefusedFrames = 60;    // a refused tower takes more substeps for so long
 constexpr uint8_t kWhipsFrames = 60;      // a block that turned too far is apart from calm ones for so long
 
 // The velocity that the sweeps left on a node of a block, relative to the one they were given: contact impulses.
@@ -52,24 +50,12 @@ bool has_sweeps(const Substep& s) {
     return !s.system.contacts.group.empty() || !s.group.joints.empty() || !s.group.span_pairs.empty();
 }
 
-// A tower that does not stand as one: its contacts are swept in this substep.
-void sweep_tower(Substep& s, Block& block) {
-    block.refused = true;
-    block.memory.refused_left = kRefusedFrames;
-    ++s.report.refusals;
-    move_freely(s, block);
-    give_to_sweeps(s, block);
-    warm_start_rows(s, block.first_contact, block.contact_count);
-    sweep_rows(s, block.first_contact, block.contact_count, true);
-    take_from_sweeps(s, block);
-}
-
 void finish(Substep& s, Block& block, BlockSolve& solve) {
     block.turn = block.passing ? 0 : static_cast<float>(solve.largest_turn());
     if (static_cast<double>(block.turn) > s.most_turn)
         block.memory.whips_left = kWhipsFrames;
-    else if (!solve.finish())
-        sweep_tower(s, block);
+    else
+        solve.finish();
 }
 
 void note_turn(Substep& s) {
@@ -109,7 +95,6 @@ void solve(Substep& s) {
     gather(s);
     for_blocks(s, [&](Block& block) {
         BlockSolve solve(s, block);
-        block.refused = false;
         block.failed = !solve.solve_first();
         if (block.failed) {
             ++s.report.failures;
@@ -144,13 +129,9 @@ void settle(Substep& s) {
 void relax(Substep& s) {
     for (uint32_t b : s.group.blocks) {
         Block& block = s.blocks[b];
-        if (block.refused) {
-            for (uint32_t i = 0; i < kRelaxSweeps; ++i) sweep_rows(s, block.first_contact, block.contact_count, false);
-            take_from_sweeps(s, block);
-        } else if (block.bounded_count > 0 && !block.failed) {
-            copy_velocities(s.system, block, s.system.kept, s.system.exact);
-            give_to_sweeps(s, block);
-        }
+        if (block.bounded_count == 0 || block.failed) continue;
+        copy_velocities(s.system, block, s.system.kept, s.system.exact);
+        give_to_sweeps(s, block);
     }
     if (!has_sweeps(s)) return;
     sweep_relaxed(s);

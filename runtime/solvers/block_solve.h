@@ -30,8 +30,8 @@ public:
     void solve_again();
     // Velocities without the push of overlaps, into System::kept.
     void solve_relaxed();
-    // Relaxed solution, forces and memory; false: a tower is not held by this solution.
-    bool finish();
+    // Relaxed solution, forces and memory.
+    void finish();
     // By how much a lever or line of its joints turns in this substep, at most [rad].
     double largest_turn() const;
     // Displacements that close the joints at the moved positions; false if they are closed well enough.

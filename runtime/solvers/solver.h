@@ -25,7 +25,7 @@ struct SolverSettings {
 };
 
 struct SolverReport {
-    std::atomic<uint32_t> solves{0}, resolves{0}, rounds{0}, guard_trips{0}, failures{0}, refusals{0};
+    std::atomic<uint32_t> solves{0}, resolves{0}, rounds{0}, guard_trips{0}, failures{0};
     float direct_us = 0;  // spent in direct solves
     double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
 };

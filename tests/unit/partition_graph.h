@@ -41,12 +41,14 @@ struct Graph {
         joint.loaded = kLoadedAfter;
         return joints.add(joint);
     }
-    void touch(uint32_t a, uint32_t b) {
+    void touch(uint32_t a, uint32_t b) { touch(std::min(a, b), std::max(a, b), Vec3f::UnitY()); }
+    // normal: from a to b.
+    void touch(uint32_t a, uint32_t b, const Vec3f& normal) {
         Pair& pair = touching.emplace_back();
         pair.key = pair_key(a, b);
         pair.a = std::min(a, b);
         pair.b = std::max(a, b);
-        pair.manifold.normal = Vec3f::UnitY();
+        pair.manifold.normal = a < b ? normal : Vec3f(-normal);
         pair.manifold.count = 1;
     }
     void find_active() {

@@ -266,17 +266,6 @@ TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
     EXPECT_EQ(partition.group_count, 1u);
 }
 
-// A refused tower sags like any pile until it is a block again.
-TEST_F(PartitionTest, RefusedTowersTakeFourTimesTheSubsteps) {
-    const std::vector<uint32_t> boxes = tower(13);
-    build();
-    partition.blocks[0].memory.refused_left = 2;
-    for (uint32_t expected : {16u, 16u, 4u}) {
-        build();
-        EXPECT_EQ(substeps_of(boxes[0]), expected);
-    }
-}
-
 // As tall, but five bodies a level lean on each other.
 TEST_F(PartitionTest, WidePilesDoNot) {
     std::vector<std::vector<uint32_t>> columns;
@@ -318,6 +307,43 @@ TEST_F(PartitionTest, LoadsCountOnlyOnASupport) {
     touch(light, heavy);
     build();
     EXPECT_EQ(substeps_of(light), 4u);
+}
+
+// A heavy and a light body on the ground, of which the one touches the other along a direction.
+struct Touching {
+    uint32_t heavy, light, ground;
+};
+Touching side_by_side(Graph& graph, const Vec3f& along, double mass = 10) {
+    const Touching of = {graph.add(NodeKind::dynamic, mass), graph.add(NodeKind::dynamic), graph.add(NodeKind::fixed)};
+    for (const uint32_t body : {of.heavy, of.light}) graph.touch(body, of.ground, -Vec3f::UnitY());
+    graph.touch(of.heavy, of.light, along);
+    return of;
+}
+
+TEST_F(PartitionTest, WhatAHeavyBodyPushesAgainstSomethingIsABlockWithIt) {
+    std::vector<uint32_t> light = {side_by_side(*this, -Vec3f::UnitY()).light};  // lies under it
+    const Touching at_a_wall = side_by_side(*this, Vec3f::UnitX()), at_a_box = side_by_side(*this, Vec3f::UnitX());
+    touch(at_a_wall.light, add(NodeKind::fixed), Vec3f(0.8f, 0.6f, 0));
+    touch(add(NodeKind::dynamic), at_a_box.light, -Vec3f::UnitX());
+    for (const Touching& of : {at_a_wall, at_a_box}) light.push_back(of.light);
+    build();
+    ASSERT_EQ(partition.blocks.size(), light.size());
+    for (size_t i = 0; i < light.size(); ++i)
+        EXPECT_TRUE(std::ranges::count(partition.blocks[i].nodes, light[i])) << "block " << i;
+}
+
+TEST_F(PartitionTest, WhatStandsBesideAHeavyBodyIsSwept) {
+    side_by_side(*this, Vec3f::UnitX());                             // leans on it
+    side_by_side(*this, Vec3f::UnitY());                             // lies on it
+    side_by_side(*this, -Vec3f::UnitY(), 9);                         // is not so light
+    join(side_by_side(*this, -Vec3f::UnitY()).heavy, kNone, kBall);  // hangs on a joint
+    const Touching corner = side_by_side(*this, Vec3f::UnitX());     // is pushed past it
+    touch(corner.light, add(NodeKind::fixed), Vec3f(0.4f, 0, 0.9f));
+    const Touching wide = side_by_side(*this, -Vec3f::UnitY());  // is one of many
+    for (int i = 0; i < 60; ++i) touch(wide.light, tower(1)[0], Vec3f::UnitX());
+    build();
+    for (const Block& block : partition.blocks) EXPECT_FALSE(block.tower) << "of node " << block.nodes[0];
+    EXPECT_EQ(substeps_of(wide.light), 4u);
 }
 
 TEST_F(PartitionTest, JointedIslandsDoNotTakeFourTimes) {
