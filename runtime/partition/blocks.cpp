@@ -33,6 +33,8 @@ constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
 // landed, mostly after the hit was over; from the sixth on, six dolls. Their joints opened as far as without.
 constexpr uint8_t kSweptAfter = 10, kSweptFor = 15;
 
+constexpr float kPress = 0.5f;  // cosine: a body between two others is pushed by one against the other
+
 // Of nodes: with a joint that is solved directly, or in a tower; or taken in with a contact.
 constexpr uint8_t kHeld = 1, kTaken = 2;
 
@@ -77,6 +79,33 @@ void note_loads(Joints& joints, const Nodes& nodes) {
         else
             joint.loaded = joint.loaded > after ? joint.loaded - 1 : 0;
     }
+}
+
+// What a heavy body pushes against something, whatever the heavy one meets besides: stopped by a wall or the ground
+// that it meets behind the light one, it would swallow that in sweeps, and be thrown back as they push it out. So 1000
+// kg that fell on four pebbles sank in to the ground in two of three falls.
+void Partition::find_pressed(const Nodes& nodes, const Pairs& pairs) {
+    presses_.clear();
+    if (!heavy_on_light_) return;
+    const auto normal_from = [&](uint32_t node, size_t p) {
+        const Vec3f& normal = pairs.list[pairs.active[p].pair].manifold.normal;
+        return node == graph_.touches[p].a ? normal : Vec3f(-normal);
+    };
+    for (uint32_t p = 0; p < graph_.touches.size(); ++p) {
+        const auto& [a, b] = graph_.touches[p];
+        if (a == kNone || b == kNone || pairs.active[p].spans() || island_[island_of_[a]].nodes > kMostTower) continue;
+        const uint32_t light = nodes.mass[a].mass < nodes.mass[b].mass ? a : b, heavy = a + b - light;
+        if (!(nodes.mass[heavy].mass * nodes.mass[light].inv_mass >= static_cast<double>(kHeavyOnLight))) continue;
+        reserve_more(presses_, 1);
+        presses_.push_back({light, heavy, p, normal_from(heavy, p)});
+    }
+    if (presses_.empty()) return;
+    std::ranges::sort(presses_, {}, [](const Press& press) { return std::pair(press.light, press.pair); });
+    for (uint32_t p = 0; p < graph_.touches.size(); ++p)
+        for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b})
+            for (Press& press : std::ranges::equal_range(presses_, node, {}, &Press::light))
+                press.holds = press.holds || press.along.dot(normal_from(node, p)) > kPress;
+    std::erase_if(presses_, [](const Press& press) { return !press.holds; });
 }
 
 // False if the block would grow too much; the contact is swept then.
@@ -133,6 +162,7 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
         for (const uint32_t node : ends)
             if (moving(nodes, node) && core_[node] == 0) core_[node] = tower ? kHeld : kTaken;
     }
+    take_pressed();
     take_between(nodes, pairs);
     fill_blocks(nodes, joints, pairs);
     recall_blocks(nodes, joints);
@@ -151,6 +181,11 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
         c.always = c.always || direct;
     }
+    for (const Press& press : presses_)
+        for (const uint32_t node : {press.light, press.heavy}) {
+            Component& c = component_[find(node)];
+            c.direct = c.direct || c.joints > 0;
+        }
     auto is_block = [](const Component& c) { return c.direct && c.joints <= c.nodes + kMostLoops; };
     joint_in_block_.assign(joints.record.size(), 0);
     for (size_t j = 0; j < joints.record.size(); ++j) {
@@ -168,8 +203,16 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
     }
 }
 
-// What lies between a mechanism that takes it in and the world: its contact with the world as well, lest a press go
-// through what it presses.
+void Partition::take_pressed() {
+    for (const Press& press : presses_) {
+        if (!pair_in_block_[press.pair]) pair_in_block_[press.pair] = join_contact(press.light, press.heavy);
+        if (!pair_in_block_[press.pair]) continue;
+        core_[press.light] = core_[press.heavy] = kTaken;
+    }
+}
+
+// What lies between a mechanism or a heavy body that takes it in and the world: its contact with the world as well,
+// lest a press go through what it presses.
 void Partition::take_between(const Nodes& nodes, const Pairs& pairs) {
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         if (pair_in_block_[p]) continue;

@@ -15,11 +15,7 @@ constexpr uint32_t kSlenderness = 4;       // at most this many bodies a level: 
 constexpr uint32_t kLowLevels = 2;         // or more than this, so small that they
 constexpr double kBuckling = 0.8;          // buckle: see find_slender()
 constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
-constexpr float kHeavyOnLight = 10;        // load over support mass: four times the substeps
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
-
-constexpr uint32_t kMostTower = 60;  // bodies of a tower that is a block: a heavy load on light bodies, or many levels
-constexpr float kPress = 0.5f;       // cosine: a body between two others is pushed by one against the other
 
 // Of a column of such bodies, breadth^2 over height [m]: of cubes, their side. By their moments of inertia, which for
 // a slab of sides b, b and t are m b^2/6 and m (b^2 + t^2)/12: exact for cubes, too small by half for thin plates.
@@ -86,33 +82,6 @@ void Partition::find_loads(const Nodes& nodes) {
     }
 }
 
-// What a heavy body pushes against something, whatever the heavy one meets besides: stopped by a wall or the ground
-// that it meets behind the light one, it would swallow that in sweeps, and be thrown back as they push it out. So 1000
-// kg that fell on four pebbles sank in to the ground in two of three falls.
-void Partition::find_pressed(const Nodes& nodes, const Pairs& pairs) {
-    for (Island& island : island_) island.pressed = false;
-    if (!heavy_on_light_) return;
-    const auto normal_from = [&](uint32_t node, size_t p) {
-        const Vec3f& normal = pairs.list[pairs.active[p].pair].manifold.normal;
-        return node == graph_.touches[p].a ? normal : Vec3f(-normal);
-    };
-    presses_.clear();
-    for (size_t p = 0; p < graph_.touches.size(); ++p) {
-        const auto& [a, b] = graph_.touches[p];
-        if (a == kNone || b == kNone || !may_be_tower(island_[island_of_[a]])) continue;
-        const uint32_t light = nodes.mass[a].mass < nodes.mass[b].mass ? a : b, heavy = a + b - light;
-        if (!(nodes.mass[heavy].mass * nodes.mass[light].inv_mass >= static_cast<double>(kHeavyOnLight))) continue;
-        reserve_more(presses_, 1);
-        presses_.push_back({light, normal_from(heavy, p)});
-    }
-    if (presses_.empty()) return;
-    std::ranges::sort(presses_, {}, &Press::light);
-    for (size_t p = 0; p < graph_.touches.size(); ++p)
-        for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b})
-            for (const Press& press : std::ranges::equal_range(presses_, node, {}, &Press::light))
-                if (press.along.dot(normal_from(node, p)) > kPress) island_[island_of_[node]].pressed = true;
-}
-
 // A column of n bodies buckles under its own weight. What one sweep leaves of the weight m g i of the i bodies above
 // sinks in by about g i h^2: as if each contact were a spring of m/h^2 to either side of a base of breadth b, which
 // holds a tilt with m b^2/(4 h^2). A rod of such hinges, one every height t, of weight m g/t and height n t, buckles
@@ -134,13 +103,11 @@ void Partition::find_slender(const Nodes& nodes, const PartitionRules& rules) {
     }
 }
 
-bool Partition::may_be_tower(const Island& island) { return !island.jointed && island.nodes <= kMostTower; }
-
 // Islands without joints in which weight rests on what sweeps cannot hold.
 void Partition::find_towers() {
     for (Island& island : island_) {
-        const bool hard = island.ratio >= kHeavyOnLight || island.slender || island.pressed;
-        island.tower = may_be_tower(island) && hard;
+        const bool hard = island.ratio >= kHeavyOnLight || island.slender;
+        island.tower = !island.jointed && island.nodes <= kMostTower && hard;
     }
 }
 

@@ -87,6 +87,8 @@ void note_loads(Joints& joints, const Nodes& nodes);
 constexpr uint8_t kLoadedAfter = 3, kLoadedFor = 60;  // frames
 
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
+constexpr float kHeavyOnLight = 10;   // load over support mass, from which on a load is heavy
+constexpr uint32_t kMostTower = 60;   // bodies of an island that is solved directly, or what a heavy one of it presses
 constexpr uint32_t kSlices = 64;      // along the line on which the moving nodes are spread widest
 
 struct PartitionRules {
@@ -121,7 +123,6 @@ private:
         uint32_t substeps = 0, sweeps = 1, group = 0;
         float ratio = 1;       // heaviest load over its support, where any is kHeavyOnLight
         bool slender = false;  // a column that sweeps of the world's substeps cannot hold
-        bool pressed = false;  // a heavy body pushes a light one against something; of those that may be towers
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -136,9 +137,10 @@ private:
         bool hit = false;                // in this frame
     };
 
-    struct Press {       // of a heavy body
-        uint32_t light;  // slot of the one that it touches
-        Vec3f along;     // unit, from the heavy one to that
+    struct Press {                    // of a heavy body
+        uint32_t light, heavy, pair;  // slots of the two that touch; index in Pairs::active
+        Vec3f along;                  // unit, from the heavy one to the light one
+        bool holds = false;           // that one touches something that way
     };
 
     // Parts that write nothing which another one reads.
@@ -153,12 +155,12 @@ private:
     void make_room();
     void number_islands();
     void find_loads(const Nodes& nodes);
-    void find_pressed(const Nodes& nodes, const Pairs& pairs);
     void find_slender(const Nodes& nodes, const PartitionRules& rules);
-    static bool may_be_tower(const Island& island);
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    void find_pressed(const Nodes& nodes, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);
+    void take_pressed();
     void take_between(const Nodes& nodes, const Pairs& pairs);
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     bool join_contact(uint32_t a, uint32_t b);

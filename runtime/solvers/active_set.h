@@ -32,7 +32,8 @@ public:
     bool undoes_overlaps() const;
     // At ratios of 10000 an impact with eight left one chain in eight caught on the rim by a link's end, with twelve
     // one in 48. Of heaps of 100 ragdolls that fell with four in blocks without contacts, 4 of 26 jammed for seconds.
-    static constexpr uint32_t kRounds = 16;
+    // Towers of many bodies take too long for more.
+    uint32_t rounds() const { return b_.tower && b_.nodes.size() > kManyBodies ? 8 : 16; }
 
     void aim_biased();                      // goals of the solve that moves positions
     void aim_unbiased();                    // likewise without the push that undoes overlaps
@@ -62,6 +63,8 @@ public:
     double speed(const BoundedRow& row, const Array<Velocity>& velocity) const;
 
 private:
+    static constexpr size_t kManyBodies = 32;
+
     bool nears_stops(const RowBlock& block) const;
     void gather_stop(BoundedRow& row, const AxisRow& axis, double curved);
     void gather_axes(uint32_t block);

@@ -225,7 +225,7 @@ bool BlockSolve::factor_rounds() {
         add_bounded();
         if (!solve_round()) return false;
         advance(round == 1);
-        if (round == ActiveSet::kRounds || set.settled()) break;
+        if (round == set.rounds() || set.settled()) break;
         ++s_.report.rounds;
         if (set.revise()) continue;
         if (!b_.tower) break;

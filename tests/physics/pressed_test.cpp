@@ -52,6 +52,17 @@ struct Press {
         heavy =
             w.add({.shape = w.box(heavy_box.half), .position = heavy_box.centre, .velocity = velocity, .mass = mass});
     }
+    // A ball joint in the middle of the one.
+    void tie(taut_body one, taut_body other, taut_joint_solve solve) {
+        taut_ball_joint_def def;
+        taut_ball_joint_def_init(&def);
+        def.body_a = one;
+        def.body_b = other;
+        def.anchor_b = (position(one) - position(other)).pos();
+        def.solve = solve;
+        taut_joint joint{};
+        ok(taut_world_add_ball_joint(w.handle, &def, &joint));
+    }
     double kinetic() const {
         const BodyState now = state(heavy);
         const Vec v = now.velocity, s = now.rotation.rotate_back(now.spin), h = heavy_box.half;
@@ -83,17 +94,27 @@ struct Outcome {
     double depth, energy;  // as in Press
 };
 
-// A slab of 2 m falls on pebbles that lie on the ground.
-Outcome slab_on_pebbles(Light kind, double mass, std::mt19937& random) {
+// A slab of 2 m falls on pebbles that lie on the ground, some of them tied together in pairs.
+Outcome slab_on(Light kind, double mass, std::mt19937& random, uint32_t ties, taut_joint_solve solve) {
     const double radius = between(random, 0.02, 0.06), height = between(random, 0.05, 4);
     const Box slab = {{0, 2 * radius + 0.1 + height, 0}, {1, 0.1, 1}, {}}, ground = {{0, -1, 0}, {5, 1, 5}, {}};
     Press press(kG, slab, ground, mass, radius);
     const int count = 4 + static_cast<int>(random() % 40);
     for (int i = 0; i < count; ++i)
         press.add_light(kind, {between(random, -0.9, 0.9), radius, between(random, -0.9, 0.9)});
+    for (size_t i = 0; i < ties && 2 * i + 1 < press.light.size(); ++i)
+        press.tie(press.light[2 * i], press.light[2 * i + 1], solve);
     press.add_heavy({});
     press.run(150);
     return {press.depth, press.energy};
+}
+
+Outcome slab_on_pebbles(Light kind, double mass, std::mt19937& random) {
+    return slab_on(kind, mass, random, 0, TAUT_JOINT_SOLVE_DIRECT);
+}
+Outcome slab_on_tied_pebbles(Light kind, double mass, std::mt19937& random) {
+    const uint32_t ties = 1 + random() % 6;
+    return slab_on(kind, mass, random, ties, random() % 2 ? TAUT_JOINT_SOLVE_DIRECT : TAUT_JOINT_SOLVE_BY_LOAD);
 }
 
 // A box of 1 m flies against a wall, free of weight, with light ones before that.
@@ -127,6 +148,9 @@ protected:
 
 // Swept, because the slab had its own contact with the ground ahead: of 240 starts a third to a half sank in.
 TEST_P(HeavyOn, PebblesStopsOnThem) { expect_none_sinks_in(slab_on_pebbles); }
+
+// With joints about, and pebbles flew apart where those were swept while they carried little.
+TEST_P(HeavyOn, TiedPebblesStopsOnThem) { expect_none_sinks_in(slab_on_tied_pebbles); }
 
 // As many did here, and one in twenty came back with up to five times its energy.
 TEST_P(HeavyOn, WhatIsBeforeAWallStopsThere) { expect_none_sinks_in(box_at_wall); }
