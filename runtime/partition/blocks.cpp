@@ -102,9 +102,11 @@ void Partition::find_pressed(const Nodes& nodes, const Pairs& pairs) {
     if (presses_.empty()) return;
     std::ranges::sort(presses_, {}, [](const Press& press) { return std::pair(press.light, press.pair); });
     for (uint32_t p = 0; p < graph_.touches.size(); ++p)
-        for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b})
-            for (Press& press : std::ranges::equal_range(presses_, node, {}, &Press::light))
-                press.holds = press.holds || press.along.dot(normal_from(node, p)) > kPress;
+        for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b}) {
+            auto press = std::ranges::lower_bound(presses_, node, {}, &Press::light);
+            for (; press != presses_.end() && press->light == node; ++press)
+                press->holds = press->holds || press->along.dot(normal_from(node, p)) > kPress;
+        }
     std::erase_if(presses_, [](const Press& press) { return !press.holds; });
 }
 
