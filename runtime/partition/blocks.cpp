@@ -82,8 +82,8 @@ void note_loads(Joints& joints, const Nodes& nodes) {
 }
 
 // What a heavy body pushes against something, whatever the heavy one meets besides: stopped by a wall or the ground
-// that it meets behind the light one, it would swallow that in sweeps, and be thrown back as they push it out. So 1000
-// kg that fell on four pebbles sank in to the ground in two of three falls.
+// that it meets behind the light one, it would swallow that in sweeps, and be thrown back as they push it out. Of 160
+// pebbles under 10 t that fell on them from a metre, 138 were driven into the ground.
 void Partition::find_pressed(const Nodes& nodes, const Pairs& pairs) {
     presses_.clear();
     if (!heavy_on_light_) return;

@@ -71,8 +71,10 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     find_loads(nodes);
     find_slender(nodes, rules);
     for (Island& island : island_) island.tower = false;
-    if (rules.direct) find_towers();
-    find_pressed(nodes, pairs);
+    if (rules.direct) {
+        find_towers();
+        find_pressed(nodes, pairs);
+    }
     const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });
     if (rules.direct && (any || !presses_.empty()))
         build_blocks(nodes, joints, pairs, rules);

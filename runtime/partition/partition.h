@@ -40,7 +40,7 @@ struct Block {
     SparseBlockLdlt matrix;                // unknowns: nodes, then joints
     Array<BlockPlace> places;              // of its nodes and joints in the matrix; see solvers/block_matrix.cpp
     Array<double> solution, known, force;  // scratch of its solve
-    bool tower = false;                    // no joints: bodies that stand on each other
+    bool tower = false;                    // no joints: bodies that stand on each other or are pressed
     bool looped = false;                   // more joints than a tree
     bool passing = false;                  // direct while a load lasts that sweeps hold as well: it may turn far
     bool failed = false;                   // this substep's matrix could not be factored
