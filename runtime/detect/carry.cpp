@@ -110,12 +110,6 @@ bool bore(const collision::Manifold& old, const Pair& before) {
 
 }  // namespace
 
-void forget_impulses(Pair& pair) {
-    std::fill(pair.impulse, pair.impulse + 4, Impulse{});
-    pair.turning = {};
-    pair.spin_slip = -1;
-}
-
 void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
     if (old.count == 0) return forget_impulses(pair);
     if (bore(old, before)) {
@@ -124,6 +118,7 @@ void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
         // Flat faces keep most of their points, and the rest are not worth the time.
         const bool is_round = pair.patch > 0;
         carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
+        std::fill(pair.impulse + pair.manifold.count, pair.impulse + 4, Impulse{});
     } else {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
     }

@@ -13,7 +13,4 @@ void carry(const collision::Manifold& old, const Pair& before, Pair& pair);
 // The same for a manifold whose points are those of the last frame, with the normal that they had.
 void carry_on(const Vec3f& old_normal, Pair& pair);
 
-// As if the pair had just met.
-void forget_impulses(Pair& pair);
-
 }  // namespace taut

@@ -62,6 +62,10 @@ double hit_of(const Nodes& nodes, const Pair& pair, double time_step, double sub
     return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
 }
 
+bool is_heavy_on(const Nodes& nodes, uint32_t heavy, uint32_t light) {
+    return nodes.mass[heavy].mass * nodes.mass[light].inv_mass >= static_cast<double>(kHeavyOnLight);
+}
+
 }  // namespace
 
 void note_loads(Joints& joints, const Nodes& nodes) {
@@ -81,33 +85,59 @@ void note_loads(Joints& joints, const Nodes& nodes) {
     }
 }
 
+Vec3f Partition::normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const {
+    const Vec3f& normal = pairs.list[pairs.active[pair].pair].manifold.normal;
+    return node == graph_.touches[pair].a ? normal : Vec3f(-normal);
+}
+
+void Partition::add_press(const Press& press) {
+    pressed_[press.pair] = 1;
+    reserve_more(presses_, 1);
+    presses_.push_back(press);
+}
+
 // What a heavy body pushes against something, whatever the heavy one meets besides: stopped by a wall or the ground
 // that it meets behind the light one, it would swallow that in sweeps, and be thrown back as they push it out. Of 160
 // pebbles under 10 t that fell on them from a metre, 138 were driven into the ground.
 void Partition::find_pressed(const Nodes& nodes, const Pairs& pairs) {
     presses_.clear();
     if (!heavy_on_light_) return;
-    const auto normal_from = [&](uint32_t node, size_t p) {
-        const Vec3f& normal = pairs.list[pairs.active[p].pair].manifold.normal;
-        return node == graph_.touches[p].a ? normal : Vec3f(-normal);
-    };
+    std::fill(pressed_.begin(), pressed_.end(), 0);
     for (uint32_t p = 0; p < graph_.touches.size(); ++p) {
         const auto& [a, b] = graph_.touches[p];
         if (a == kNone || b == kNone || pairs.active[p].spans() || island_[island_of_[a]].nodes > kMostTower) continue;
         const uint32_t light = nodes.mass[a].mass < nodes.mass[b].mass ? a : b, heavy = a + b - light;
-        if (!(nodes.mass[heavy].mass * nodes.mass[light].inv_mass >= static_cast<double>(kHeavyOnLight))) continue;
-        reserve_more(presses_, 1);
-        presses_.push_back({light, heavy, p, normal_from(heavy, p)});
+        if (is_heavy_on(nodes, heavy, light)) add_press({light, heavy, p, normal_from(pairs, heavy, p)});
     }
     if (presses_.empty()) return;
-    std::ranges::sort(presses_, {}, [](const Press& press) { return std::pair(press.light, press.pair); });
-    for (uint32_t p = 0; p < graph_.touches.size(); ++p)
-        for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b}) {
-            auto press = std::ranges::lower_bound(presses_, node, {}, &Press::light);
-            for (; press != presses_.end() && press->light == node; ++press)
-                press->holds = press->holds || press->along.dot(normal_from(node, p)) > kPress;
-        }
+    push_on(nodes, pairs);
     std::erase_if(presses_, [](const Press& press) { return !press.holds; });
+}
+
+// And what that pushes on to something that does not yield, through as many others as there are: of a dozen cubes that
+// a box shoved to a wall, the first alone were solved with it, and the rest swallowed.
+void Partition::push_on(const Nodes& nodes, const Pairs& pairs) {
+    const size_t by_heavy = presses_.size();
+    auto& meets_hard = core_;  // until blocks are built
+    meets_hard.assign(nodes.slots(), 0);
+    for (size_t i = 0; i < presses_.size(); ++i) {  // grows
+        const uint32_t light = presses_[i].light;
+        const Vec3f along = presses_[i].along;
+        for (const uint32_t p : touches_of(light)) {
+            if (!(along.dot(normal_from(pairs, light, p)) > kPress)) continue;
+            presses_[i].holds = true;
+            const uint32_t next = graph_.touches[p].other(light);
+            if (next == kNone || is_heavy_on(nodes, next, light))
+                meets_hard[light] = 1;
+            else if (!pressed_[p] && !pairs.active[p].spans())
+                add_press({next, light, p, along});
+        }
+    }
+    for (size_t i = presses_.size(); i-- > by_heavy;) {
+        Press& press = presses_[i];
+        press.holds = meets_hard[press.light] != 0;
+        if (press.holds) meets_hard[press.by] = 1;
+    }
 }
 
 // False if the block would grow too much; the contact is swept then.
@@ -184,7 +214,7 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
         c.always = c.always || direct;
     }
     for (const Press& press : presses_)
-        for (const uint32_t node : {press.light, press.heavy}) {
+        for (const uint32_t node : {press.light, press.by}) {
             Component& c = component_[find(node)];
             c.direct = c.direct || c.joints > 0;
         }
@@ -207,9 +237,9 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
 
 void Partition::take_pressed() {
     for (const Press& press : presses_) {
-        if (!pair_in_block_[press.pair]) pair_in_block_[press.pair] = join_contact(press.light, press.heavy);
+        if (!pair_in_block_[press.pair]) pair_in_block_[press.pair] = join_contact(press.light, press.by);
         if (!pair_in_block_[press.pair]) continue;
-        core_[press.light] = core_[press.heavy] = kTaken;
+        core_[press.light] = core_[press.by] = kTaken;
     }
 }
 

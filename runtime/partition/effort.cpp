@@ -34,26 +34,23 @@ void Partition::find_levels(const Nodes&) {
     std::fill(adjacency_begin_.begin(), adjacency_begin_.end(), 0);
     uint32_t reached = 0;  // in queue_
     for (const auto& [a, b] : graph_.touches) {
-        if (a != kNone && b != kNone) {
-            ++adjacency_begin_[a + 2];
-            ++adjacency_begin_[b + 2];
-        } else if (a != b) {
+        for (const uint32_t node : {a, b})
+            if (node != kNone) ++adjacency_begin_[node + 2];
+        if (a != b && (a == kNone || b == kNone)) {
             const uint32_t node = std::min(a, b);
             if (level_[node] == 0) queue_[reached++] = node;
             level_[node] = 1;
         }
     }
     for (size_t i = 2; i < adjacency_begin_.size(); ++i) adjacency_begin_[i] += adjacency_begin_[i - 1];
-    for (const auto& [a, b] : graph_.touches) {
-        if (a == kNone || b == kNone) continue;
-        adjacency_[adjacency_begin_[a + 1]++] = b;
-        adjacency_[adjacency_begin_[b + 1]++] = a;
-    }
+    for (uint32_t p = 0; p < graph_.touches.size(); ++p)
+        for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b})
+            if (node != kNone) adjacency_[adjacency_begin_[node + 1]++] = p;
     for (uint32_t head = 0; head < reached; ++head) {
         const uint32_t node = queue_[head], above = level_[node] + 1;
-        for (uint32_t k = adjacency_begin_[node]; k < adjacency_begin_[node + 1]; ++k) {
-            const uint32_t next = adjacency_[k];
-            if (level_[next] != 0) continue;
+        for (const uint32_t p : touches_of(node)) {
+            const uint32_t next = graph_.touches[p].other(node);
+            if (next == kNone || level_[next] != 0) continue;
             level_[next] = above;
             queue_[reached++] = next;
         }

@@ -27,6 +27,7 @@ Partition::Partition(Memory& memory)
       rank_begin_(memory),
       efforts_(memory),
       presses_(memory),
+      pressed_(memory),
       queue_(memory),
       adjacency_begin_(memory),
       adjacency_(memory) {}
@@ -108,6 +109,7 @@ void Partition::make_room() {
     fit(adjacency_begin_, slots + 2);
     fit(adjacency_, 2 * touches);
     fit(pair_colour_, touches);
+    fit(pressed_, touches);
 }
 
 // Union-find over all that ties and touches.

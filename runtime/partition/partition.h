@@ -137,10 +137,11 @@ private:
         bool hit = false;                // in this frame
     };
 
-    struct Press {                    // of a heavy body
-        uint32_t light, heavy, pair;  // slots of the two that touch; index in Pairs::active
-        Vec3f along;                  // unit, from the heavy one to the light one
-        bool holds = false;           // that one touches something that way
+    // By a heavy body, or by what that presses.
+    struct Press {
+        uint32_t light, by, pair;  // slots of the two that touch; index in Pairs::active
+        Vec3f along;               // unit, from the heavy body to the first light one
+        bool holds = false;        // that way it touches something; of what others press, what does not yield
     };
 
     // Parts that write nothing which another one reads.
@@ -158,7 +159,10 @@ private:
     void find_slender(const Nodes& nodes, const PartitionRules& rules);
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    Vec3f normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const;
+    void add_press(const Press& press);
     void find_pressed(const Nodes& nodes, const Pairs& pairs);
+    void push_on(const Nodes& nodes, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);
     void take_pressed();
     void take_between(const Nodes& nodes, const Pairs& pairs);
@@ -183,6 +187,9 @@ private:
     uint32_t rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const;
     bool is_in(uint32_t group, std::span<const uint32_t> nodes) const;
 
+    std::span<const uint32_t> touches_of(uint32_t node) const {
+        return {adjacency_.data() + adjacency_begin_[node], adjacency_begin_[node + 1] - adjacency_begin_[node]};
+    }
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
     void unite(std::span<const uint32_t> all);  // those that are not kNone
@@ -207,9 +214,10 @@ private:
     Array<uint32_t> rank_;                         // scratch: of an item, its colour, kind and place
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<uint32_t> efforts_;                      // scratch: that occur
-    Array<Press> presses_;                         // scratch: by light
+    Array<Press> presses_;                         // scratch: what presses others before those
+    Array<uint8_t> pressed_;                       // scratch: by index in Pairs::active
     Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
-    Array<uint32_t> adjacency_begin_, adjacency_;  // scratch: by node, those it touches, for levels
+    Array<uint32_t> adjacency_begin_, adjacency_;  // by slot: its touches, by index in Pairs::active
 };
 
 }  // namespace taut

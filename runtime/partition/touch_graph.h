@@ -20,6 +20,7 @@ public:
     // Ends that forces move; kNone in place of all others.
     struct Touch {
         uint32_t a, b;  // the sides of a pair, of which each is the first of its nodes
+        uint32_t other(uint32_t end) const { return end == a ? b : a; }
         bool operator==(const Touch&) const = default;
     };
     using Tie = std::array<uint32_t, kMaxNodes>;

@@ -8,12 +8,12 @@
 namespace taut {
 namespace {
 
-// c of a contact over its k, in blocks with joints. Stiffer holds heavier loads over edges (measured: 1e-3 sinks 10 mm
-// at 10000:1, 3e-5 2.7 mm at 100000:1), as long as a manifold keeps its points; see collision/manifold.h, add_beside.
-constexpr double kContactSoftness = 3e-5;
-constexpr double kTowerSoftness = 1e-5;  // in towers, at most; a load of r times a row's own mass sinks as c r
-constexpr double kSpeculative = 5e-4;    // [m] wider gaps, and any that did not push, are not resting contacts
-constexpr double kClosing = 1e-9;        // [m]
+// c of a contact over its k, at most, and times the block's mass ratio: a load of r times a row's own mass sinks in as
+// c r. Stiffer holds heavier loads over edges (measured: 1e-3 sinks 10 mm at 10000:1), as long as a manifold keeps its
+// points; see collision/manifold.h, add_beside. Under a press of 10 MN one light body in three sank in with 3e-5.
+constexpr double kSoftness = 1e-5, kSoftnessByRatio = 1e-2;
+constexpr double kSpeculative = 5e-4;  // [m] wider gaps, and any that did not push, are not resting contacts
+constexpr double kClosing = 1e-9;      // [m]
 // Share by which a sliding contact's c may miss |v| / (friction * push) after a round. The push on a light link of a
 // loaded cable changes tenfold from substep to substep; with c of the last one, cables slide at a third of
 // Coulomb's force.
@@ -106,12 +106,13 @@ void ActiveSet::gather_tangents(BoundedRow& first, uint32_t width, uint32_t load
     if (on && slip < 0) begin_slip(first);
 }
 
+double ActiveSet::softness() const { return std::min(kSoftness, kSoftnessByRatio / b_.mass_ratio); }
+
 void ActiveSet::gather_contact(uint32_t index) {
     const RowBlock& block = sys_.rows.block[index];
-    const double softness = b_.tower ? std::min(kTowerSoftness, 1e-2 / b_.mass_ratio) : kContactSoftness;
     const uint32_t first = b_.bounded_count;
     for (int row = 0; row < 3; ++row) {
-        BoundedRow& r = add(row == 0 ? Kind::push : Kind::tangent, index, row, 1, softness);
+        BoundedRow& r = add(row == 0 ? Kind::push : Kind::tangent, index, row, 1, softness());
         r.mu = sys_.rows.impulse[block.row + static_cast<uint32_t>(row)];
         if (row > 0) r.target = r.relaxed_target = block.drive[row - 1];
     }
@@ -131,7 +132,7 @@ void ActiveSet::gather_rolling(uint32_t index) {
     const uint32_t first = b_.bounded_count, load = first - kContactRows * block.loads;
     for (int row = 0; row < 3; ++row) {
         if (block.arm[row > 0] == 0) continue;
-        BoundedRow& r = add(Kind::tangent, index, row, 1, kContactSoftness);
+        BoundedRow& r = add(Kind::tangent, index, row, 1, softness());
         r.mu = sys_.rows.impulse[block.row + static_cast<uint32_t>(row)];
     }
     BoundedRow* r = &rows()[first];
@@ -169,12 +170,12 @@ void ActiveSet::aim_unbiased() {
 }
 
 // Rows that rest keep the impulse they have, mu, in spite of their softness.
-void ActiveSet::aim_relaxed(bool with_reference) {
+void ActiveSet::aim_relaxed() {
     for (BoundedRow& r : rows()) {
         r.goal = r.relaxed_target;
         if (r.bounce > 0 && r.on && r.mu > 0) r.goal = r.bounce;
         const bool slides = r.kind == Kind::tangent && r.c > r.least;
-        if (with_reference && r.on && r.bounce == 0 && !r.speculative && !r.physical && !slides) r.goal += r.c * r.mu;
+        if (r.on && r.bounce == 0 && !r.speculative && !r.physical && !slides) r.goal += r.c * r.mu;
     }
 }
 
@@ -214,21 +215,8 @@ bool ActiveSet::revise() {
         changed = changed || r.on != before;
     }
     follow_loads();
-    if (b_.tower) return changed;
     for (BoundedRow& r : rows())
         if (r.width > 0 && r.on) changed = revise_slip(r) || changed;
-    return changed;
-}
-
-bool ActiveSet::drop_pulling() {
-    bool changed = false;
-    for (BoundedRow& r : rows()) {
-        if (r.kind != Kind::push || !r.on || r.mu >= 0) continue;
-        r.on = false;
-        r.mu = 0;
-        changed = true;
-    }
-    follow_loads();
     return changed;
 }
 

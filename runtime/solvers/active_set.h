@@ -4,11 +4,13 @@
 //             limit. Each is the slope of a convex energy, so that the substep is the minimum of
 //               (v - v*)^T A (v - v*) / 2 + sum of the rows' energies     over the v that the joints allow
 //   round     solve with the rows that are on and the limits that hold at the iterate (Newton's step); the iterate goes
-//             on towards that solution as far as the energy falls. Taken in full, steps run in circles where many
-//             joints rub: a chain on an edge lost a contact now and then, and what hung on it was never at rest
+//             on towards that solution as far as the energy falls. Taken in full, steps run in circles: where many
+//             joints rub a chain on an edge lost a contact now and then, and what hung on it was never at rest; light
+//             bodies that a heavy one crushed against a wall were thrown out at kilometres a second
 //   short     where rounds run out the iterate is the solution: momentum and joints hold on it, laws nearly
 //   tangents  secant: a sliding contact aims at no slip and has c = |v| / (friction * push), which gives that impulse
-//             against the slip v, implicitly; c follows in each round. From substep to substep it is at most halved.
+//             against the slip v, implicitly; c follows in each round: with that of the last substep what is wedged is
+//             let go as the push grows. From substep to substep it is at most halved.
 //             Rolling and spinning friction likewise, with angular velocities and an arm in the place of friction
 //   relaxed   solved again on the same factor: rows that rest want velocity 0 with the impulse they have, so that the
 //             push that undoes overlaps moves positions and is not kept
@@ -35,10 +37,10 @@ public:
     // Towers of many bodies take too long for more.
     uint32_t rounds() const { return b_.tower && b_.nodes.size() > kManyBodies ? 8 : 16; }
 
-    void aim_biased();                      // goals of the solve that moves positions
-    void aim_unbiased();                    // likewise without the push that undoes overlaps
-    void ease(double part);                 // leaves so much of that push, in this substep
-    void aim_relaxed(bool with_reference);  // of the one whose velocities are kept
+    void aim_biased();       // goals of the solve that moves positions
+    void aim_unbiased();     // likewise without the push that undoes overlaps
+    void ease(double part);  // leaves so much of that push, in this substep
+    void aim_relaxed();      // of the one whose velocities are kept
     // Impulses of the rows that are on, from System::exact.
     void take_impulses();
     void begin_rounds();
@@ -51,8 +53,6 @@ public:
     bool revise();
     // The rounds are over: impulses are those of the iterate, and so will be what is solved on the same factor.
     void stop_short();
-    // Drops rows that pull; false: none did.
-    bool drop_pulling();
     // Slips for the next substep and impulses back into their rows.
     void store();
     // Work on velocities that went from v0 to v1: mu . J (v0 + v1) / 2 [J].
@@ -68,6 +68,7 @@ private:
     bool nears_stops(const RowBlock& block) const;
     void gather_stop(BoundedRow& row, const AxisRow& axis, double curved);
     void gather_axes(uint32_t block);
+    double softness() const;
     void gather_contact(uint32_t block);
     BoundedRow& add(BoundedRow::Kind kind, uint32_t index, int row, double sign, double softness);
     void gather_rolling(uint32_t block);

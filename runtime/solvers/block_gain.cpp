@@ -120,7 +120,7 @@ double BlockSolve::fastest_between(const Array<Velocity>& a, const Array<Velocit
 // obeys them all whips the bodies between: at 20 to 250 m/s for pushes of 3. Solutions on the same factor are linear in
 // the part of the push that they are asked for, and one without it tells how much of it is too much.
 void BlockSolve::limit_push() {
-    if (b_.tower || !set.undoes_overlaps() || fastest_between(sys_.exact, sys_.free) <= kWhip) return;
+    if (!set.undoes_overlaps() || fastest_between(sys_.exact, sys_.free) <= kWhip) return;
     copy_velocities(sys_, b_, sys_.exact, sys_.kept);
     set.aim_unbiased();
     solve_known();

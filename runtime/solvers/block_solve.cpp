@@ -192,11 +192,8 @@ bool BlockSolve::solve_round() {
     return true;
 }
 
-// Steps of a tower are whole, and its last round counts: swept in the substeps of an impact, in which rows still pulled
-// or closed after eight rounds, what hit a light body at a wall came back with up to nine times its energy.
 void BlockSolve::advance(bool first) {
-    const double t = set.advance(first || b_.tower);
-    if (b_.tower) return;
+    const double t = set.advance(first);
     for (size_t i = 0; i < unknowns(); ++i) {
         double& at = iterate()[i];
         at = t == 1 ? b_.solution[i] : at + t * (b_.solution[i] - at);
@@ -205,7 +202,6 @@ void BlockSolve::advance(bool first) {
 
 // The iterate is the solution, and what is solved on the same factor from now on is as far from its own.
 void BlockSolve::stop_short() {
-    if (b_.tower) return;
     for (size_t i = 0; i < unknowns(); ++i) {
         iterate()[i] -= b_.solution[i];
         b_.solution[i] += iterate()[i];
@@ -214,7 +210,7 @@ void BlockSolve::stop_short() {
     set.stop_short();
 }
 
-// Rounds over the active set; of a tower, the relaxed solution has to push as well.
+// Rounds over the active set.
 bool BlockSolve::factor_rounds() {
     std::fill_n(iterate(), unknowns(), 0.0);
     if (set.empty()) return solve_round();
@@ -227,10 +223,7 @@ bool BlockSolve::factor_rounds() {
         advance(round == 1);
         if (round == set.rounds() || set.settled()) break;
         ++s_.report.rounds;
-        if (set.revise()) continue;
-        if (!b_.tower) break;
-        solve_relaxed();
-        if (!set.drop_pulling()) break;
+        if (!set.revise()) break;
     }
     stop_short();
     limit_push();
@@ -265,15 +258,10 @@ void BlockSolve::solve_again() {
     if (s_.settings.geometric_stiffness) limit_gain();
 }
 
-// A tower's resting rows refer to a first relaxed solution, an articulation's to the biased one: measured.
 void BlockSolve::solve_relaxed() {
     Array<Velocity>& exact = sys_.exact;
     copy_velocities(sys_, b_, exact, sys_.kept);
-    if (b_.tower) {
-        set.aim_relaxed(false);
-        solve_known();
-    }
-    set.aim_relaxed(true);
+    set.aim_relaxed();
     solve_known();
     for (uint32_t node : b_.nodes) std::swap(sys_.kept[sys_.at(node)], exact[sys_.at(node)]);
     relaxed_ = true;

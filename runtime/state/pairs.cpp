@@ -24,6 +24,16 @@ uint32_t take_slot(Pairs& pairs, const PairEnds& ends) {
     return slot;
 }
 
+void forget_impulses(Pair& pair) {
+    std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+    pair.turning = {};
+    pair.spin_slip = -1;
+}
+
+void leave_block(Pair& pair) {
+    if (pair.in_block()) forget_impulses(pair);
+}
+
 void give_slots(Pairs& pairs, NearPair& near) {
     for (uint32_t slot = near.pair; slot != kNone; slot = pairs.list[slot].next) {
         pairs.list[slot].manifold.count = 0;

@@ -132,7 +132,9 @@ struct Pair : PairEnds {
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
     bool turns() const { return spinning > 0 || rolling > 0; }
-    bool in_block() const { return impulse[0].slip >= 0; }  // in the last substep
+    bool in_block() const {  // in the last substep, and pushed
+        return std::any_of(impulse, impulse + 4, [](const Impulse& of_point) { return of_point.slip >= 0; });
+    }
     bool twists() const { return turns() || patch > 0; }
     // Arms of the torques in sweeps [m]: of the surfaces, or of the patch, whichever resist more. Friction in a patch
     // of even pressure resists spinning by 2/3 mu a of the force; one that loses a part alpha of what it takes to
@@ -285,6 +287,12 @@ void reserve_slots(Pairs& pairs, size_t more);
 uint32_t take_slot(Pairs& pairs, const PairEnds& ends);
 // The records of a pair that is left without points.
 void give_slots(Pairs& pairs, NearPair& near);
+
+// As if the two had just met.
+void forget_impulses(Pair& pair);
+// Of a pair that is swept from now on. A direct solve sets hundreds of times a light body's momentum against as much
+// from its other side, and sweeps that begin with what is left of that throw it out at kilometres a second.
+void leave_block(Pair& pair);
 
 // Before the active pairs are listed anew: brings the records of a few of them to where they lie in the order of near.
 // A thread that goes through a part of near then has them for itself: of neighbours in memory processors fetch what

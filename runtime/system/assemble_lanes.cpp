@@ -98,18 +98,20 @@ void prefetch_pair(const LaneGroup& g, const LaneGroup* next, int lane, const Pa
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
-bool fill_group(LaneGroup& g, const LaneGroup* next, const Pairs& pairs, const Nodes& nodes) {
+bool fill_group(LaneGroup& g, const LaneGroup* next, Pairs& pairs, const Nodes& nodes) {
     bool bounces = false, driven = false, turns = false, round = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         prefetch_pair(g, next, lane, pairs);
         uint32_t filled = 0;
-        if (const Pair* pair = pair_of(g, lane, pairs)) {
-            fill_pair(g, lane, *pair, nodes);
-            filled = static_cast<uint32_t>(pair->manifold.count);
-            bounces = bounces || pair->restitution > 0;
-            driven = driven || pair->driven;
-            turns = turns || pair->twists();
-            round = round || pair->round_a > 0 || pair->round_b > 0;
+        if (g.pair[lane] != kNone) {
+            Pair& pair = pairs.list[g.pair[lane]];
+            leave_block(pair);
+            fill_pair(g, lane, pair, nodes);
+            filled = static_cast<uint32_t>(pair.manifold.count);
+            bounces = bounces || pair.restitution > 0;
+            driven = driven || pair.driven;
+            turns = turns || pair.twists();
+            round = round || pair.round_a > 0 || pair.round_b > 0;
         } else {
             clear_pair(g, lane);
         }

@@ -341,6 +341,23 @@ TEST_F(PartitionTest, WhatAHeavyBodyPushesAgainstSomethingIsABlockWithIt) {
     }
 }
 
+TEST_F(PartitionTest, WhatAHeavyBodyPushesThroughOthersIsABlockWithThem) {
+    const Touching of = side_by_side(*this, Vec3f::UnitX());
+    const uint32_t next = add(NodeKind::dynamic), last = add(NodeKind::dynamic), beside = add(NodeKind::dynamic);
+    touch(of.light, next, Vec3f(0.8f, 0, 0.6f));
+    touch(next, last, Vec3f(0.8f, 0, -0.6f));
+    touch(last, add(NodeKind::fixed), Vec3f::UnitX());
+    touch(next, beside, Vec3f::UnitZ());
+    touch(beside, add(NodeKind::fixed), Vec3f::UnitZ());
+    build();
+    ASSERT_EQ(partition.blocks.size(), 1u);
+    const Block& block = partition.blocks[0];
+    for (const uint32_t body : {of.heavy, of.light, next, last})
+        EXPECT_TRUE(std::ranges::count(block.nodes, body)) << "node " << body;
+    EXPECT_EQ(block.nodes.size(), 4u) << "not what is pushed past them";
+    EXPECT_EQ(block.pairs.size(), 6u) << "three among them, two on the ground, one at the wall";
+}
+
 TEST_F(PartitionTest, WhatStandsBesideAHeavyBodyIsSwept) {
     side_by_side(*this, Vec3f::UnitX());                          // leans on it
     side_by_side(*this, Vec3f::UnitY());                          // lies on it
