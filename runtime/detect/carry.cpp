@@ -112,13 +112,13 @@ bool bore(const collision::Manifold& old, const Pair& before) {
 
 void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
     if (old.count == 0) return forget_impulses(pair);
+    pair.in_block = before.in_block;
     if (bore(old, before)) {
         Impulse carried[4];
         std::copy(before.impulse, before.impulse + 4, carried);
         // Flat faces keep most of their points, and the rest are not worth the time.
         const bool is_round = pair.patch > 0;
         carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
-        std::fill(pair.impulse + pair.manifold.count, pair.impulse + 4, Impulse{});
     } else {
         std::fill(pair.impulse, pair.impulse + 4, Impulse{});
     }

@@ -175,7 +175,7 @@ void forget_unheld(Pairs& pairs) {
     if (!pairs.any_unheld) return;
     for (const ActivePair& active : pairs.active) {
         Pair& pair = pairs.list[active.pair];
-        if ((pairs.unheld[active.a] || pairs.unheld[active.b]) && !pair.in_block()) forget_impulses(pair);
+        if ((pairs.unheld[active.a] || pairs.unheld[active.b]) && !pair.in_block) forget_impulses(pair);
     }
 }
 

@@ -109,7 +109,7 @@ bool adopt(const Shaped& shaped, const Detection& of, bool known, const collisio
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
     if (!known) meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
-    const float push = before.in_block() ? 0 : push_of(old, before.impulse);
+    const float push = before.in_block ? 0 : push_of(old, before.impulse);
     carry(old, before, pair);
     if (push > 0) note_lost(of, pair, push, old.normal, push_of(pair.manifold, pair.impulse) * pair.manifold.normal);
     return shaped.can_be_kept() && keep_manifold(of.pairs, of.time, pair);
@@ -132,7 +132,7 @@ void take_over(const Shaped& shaped, const Detection& of, const collision::Manif
     near.kept = pair.manifold.count > 0 && adopt(shaped, of, known, old, pair, pair);
     near.changed = false;
     if (pair.manifold.count > 0) return;
-    if (old.count > 0 && !pair.in_block()) note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
+    if (old.count > 0 && !pair.in_block) note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
 }
 
 // Whether the axis that parted two last still does.

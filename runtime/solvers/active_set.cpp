@@ -250,14 +250,15 @@ bool ActiveSet::revise_slip(BoundedRow& lead) const {
 // c of a friction in the next substep, and its impulse within its bound.
 void ActiveSet::follow_slip(BoundedRow& lead) const {
     const double bound = bound_of(lead), size = size_of(lead), excess = std::max(0.0, size - bound);
+    for (BoundedRow* r = &lead; r < &lead + lead.width && excess > 0; ++r) r->mu *= bound / size;
+    if (!(bound > 0)) return;  // with c of no push the next push would be without friction
     const bool slid = lead.c > lead.least;
     double next = 0;
     if (slid || excess > 1e-6 * bound) {
-        next = std::max(slid ? 0.5 * lead.c : 0, (slide(lead, sys_.kept) + excess * lead.k) / std::max(1e-30, bound));
+        next = std::max(slid ? 0.5 * lead.c : 0, (slide(lead, sys_.kept) + excess * lead.k) / bound);
         if (next <= lead.least) next = 0;
     }
     *lead.slip = static_cast<float>(std::min(next, 1e30));
-    for (BoundedRow* r = &lead; r < &lead + lead.width && excess > 0; ++r) r->mu *= bound / size;
 }
 
 void ActiveSet::store() {

@@ -31,7 +31,9 @@ void forget_impulses(Pair& pair) {
 }
 
 void leave_block(Pair& pair) {
-    if (pair.in_block()) forget_impulses(pair);
+    if (!pair.in_block) return;
+    pair.in_block = false;
+    forget_impulses(pair);
 }
 
 void give_slots(Pairs& pairs, NearPair& near) {

@@ -122,6 +122,7 @@ struct Pair : PairEnds {
     bool touching = false;                  // overlapped or was pushed in the last step
     bool pushed = false;                    // some point was in this step, in any of its substeps
     bool answered = false;                  // the host gave this step's friction and restitution
+    bool in_block = false;                  // was solved directly when it was solved last
     uint8_t asks = 0;                       // bits of contact events, kAsks: of the world and the two colliders
 
     // What find_contacts() alone asks for: the last kSought bytes.
@@ -132,9 +133,6 @@ struct Pair : PairEnds {
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
     bool turns() const { return spinning > 0 || rolling > 0; }
-    bool in_block() const {  // in the last substep, and pushed
-        return std::any_of(impulse, impulse + 4, [](const Impulse& of_point) { return of_point.slip >= 0; });
-    }
     bool twists() const { return turns() || patch > 0; }
     // Arms of the torques in sweeps [m]: of the surfaces, or of the patch, whichever resist more. Friction in a patch
     // of even pressure resists spinning by 2/3 mu a of the force; one that loses a part alpha of what it takes to

@@ -267,6 +267,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         if (contacts_as_rows || as_rows != &group.pairs) forget_pushes(*as_rows, pairs);
     if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
     for (const uint32_t p : group.span_pairs) leave_block(pairs.list[pairs.active[p].pair]);
+    for (const uint32_t p : group.direct_pairs) pairs.list[pairs.active[p].pair].in_block = true;
     add_contacts(system, group.span_pairs, pairs, nodes);
     rows.lasting = static_cast<uint32_t>(rows.block.size());
     rows.lasting_spans = static_cast<uint32_t>(rows.span_data.size());
