@@ -88,8 +88,8 @@ struct ContactSweep {
         const F length2 = q1 * q1 + q2 * q2;
         const F one = F::all(1);
         const F scale = F::if_greater(length2, squared, limit / F::sqrt(F::max(length2, F::all(1e-30f))), one);
-        p1 = scale * q1;
-        p2 = scale * q2;
+        p1 = F::if_greater(limit, zero, scale * q1, zero);  // squares of what is tiny are 0, as that of no limit
+        p2 = F::if_greater(limit, zero, scale * q2, zero);
     }
 
     // Normal row, then the tangents. Slip is what it was before the normal row and what its impulse adds to it, so that
