@@ -1,15 +1,13 @@
 // taut-bench: runs one scene without pictures and prints its figures as one JSON object on one line.
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <optional>
 
 #include "heap.h"
 #include "metrics.h"
+#include "options.h"
 #include "scenes/catalogue.h"
 #include "scenes/taut_world.h"
 #include "step_times.h"
@@ -17,75 +15,6 @@
 namespace bench {
 
 namespace {
-
-enum ExitCode { kFine = 0, kRunFailed = 1, kBadArguments = 2 };
-
-struct Options {
-    std::string scene, engine = "taut";
-    std::optional<uint32_t> steps, substeps;
-    std::optional<std::string> solver;
-    uint32_t threads = 1;
-    uint64_t seed = 0;
-    bool geometric_stiffness = true;
-    bool adaptive_damping = false;
-    bool sleep = false;
-    bool cold = false;
-    uint32_t warm_up = 0;
-    double spike_limit = 0;
-};
-
-void print_scenes() {
-    for (const scenes::Family& family : scenes::families())
-        if (!family.needs_mesh)
-            std::printf("%-22s %4u steps  %s (as in %s)\n", family.pattern, family.steps, family.description,
-                        family.example);
-}
-
-std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
-    Options options;
-    uint32_t steps = 0, substeps = 0;
-    std::string solver;
-    bool list = false, no_stiffness = false;
-    CLI::App app{
-        "Runs a scene without pictures and prints its figures as one JSON object on one line.\n"
-        "Exit codes: 0 fine, 1 the run failed, 2 bad arguments."};
-    app.add_option("--scene", options.scene, "scene by name, see --list");
-    CLI::Option* steps_flag =
-        app.add_option("--steps", steps, "steps (default: the scene's)")->check(CLI::Range(1, 10000000));
-    app.add_option("--threads", options.threads, "threads of a step; the peers step on one")->check(CLI::Range(1, 64));
-    app.add_option("--engine", options.engine, "taut; bullet or ode in builds with TAUT_BENCH_PEERS");
-    CLI::Option* substeps_flag =
-        app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
-    CLI::Option* solver_flag = app.add_option("--solver", solver,
-                                              "block_ldlt, projected_gauss_seidel or accelerated_jacobi;\n"
-                                              "of ode: step (default with joints) or quickstep");
-    app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
-    app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
-    app.add_flag("--adaptive-damping", options.adaptive_damping, "damp by the size of the geometric stiffness");
-    app.add_flag("--sleep", options.sleep, "let what came to rest sleep; not for the peers");
-    app.add_flag("--cold", options.cold, "begin with memory that is new and code that never ran");
-    app.add_option("--warm-up", options.warm_up, "steps before the worst one is looked for");
-    app.add_option("--spike-limit", options.spike_limit, "fail if the worst step takes so many times the median");
-    app.add_flag("--list", list, "print all scenes");
-    app.footer(kFieldHelp);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        *exit_code = app.exit(error, std::cout, std::cerr) == 0 ? kFine : kBadArguments;
-        return std::nullopt;
-    }
-    if (list) {
-        print_scenes();
-        *exit_code = kFine;
-        return std::nullopt;
-    }
-    if (options.scene.empty()) throw scenes::BadScene("--scene NAME is required, see --list");
-    if (steps_flag->count() > 0) options.steps = steps;
-    if (substeps_flag->count() > 0) options.substeps = substeps;
-    if (solver_flag->count() > 0) options.solver = solver;
-    options.geometric_stiffness = !no_stiffness;
-    return options;
-}
 
 std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene& scene) {
     if (options.engine == "taut") return make_taut_engine(scene);
@@ -107,17 +36,16 @@ std::unique_ptr<Engine> make_engine(const Options& options, const scenes::Scene&
 #endif
 }
 
-// As in a program that has run for a while: the heap holds what the scene will take, and its code was called before, by
-// the first steps of a world of its own.
-void warm(const Options& options, const scenes::Scene& scene) {
-    constexpr size_t kHeap = size_t{64} << 20;  // bytes; boxes2000 takes 7e6, ragdolls100 11e6
-    constexpr int kSteps = 2;
-    warm_heap(kHeap);
-    const std::unique_ptr<Engine> engine = make_engine(options, scene);
-    for (int i = 0; i < kSteps; ++i) engine->step();
-}
+// A scene and who steps it.
+struct Subject {
+    Options options;
+    scenes::Scene scene;
 
-int run(const Options& options) {
+    std::unique_ptr<Engine> engine() const { return make_engine(options, scene); }
+    uint32_t steps() const { return options.steps.value_or(scene.steps); }
+};
+
+Subject subject(const Options& options) {
     scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""});
     if (options.substeps) scene.world.substeps = *options.substeps;
     if (options.solver && options.engine == "taut") scene.world.solver = scenes::solver_named(*options.solver);
@@ -125,37 +53,123 @@ int run(const Options& options) {
     scene.world.adaptive_damping = options.adaptive_damping ? 1 : 0;
     scene.world.sleeping = options.sleep ? 1 : 0;
     scene.world.threads = options.engine == "taut" ? options.threads : 1;
-    if (!options.cold) warm(options, scene);
-    uint32_t steps = options.steps.value_or(scene.steps);
-    std::unique_ptr<Engine> engine = make_engine(options, scene);
-    Metrics metrics(scene, *engine, steps);
+    return {options, scene};
+}
+
+// The same for what it is measured beside.
+Subject other_subject(Options options) {
+    options.threads = 1;
+    if (options.beside != "one-thread") {
+        options.engine = options.beside;
+        options.substeps.reset();
+        options.solver.reset();
+    }
+    return subject(options);
+}
+
+// As in a program that has run for a while: the heap holds what the scene will take, and its code was called before, by
+// the first steps of a world of its own.
+void warm(const Subject& subject) {
+    constexpr size_t kHeap = size_t{64} << 20;  // bytes; boxes2000 takes 7e6, ragdolls100 11e6
+    constexpr int kSteps = 2;
+    warm_heap(kHeap);
+    const std::unique_ptr<Engine> engine = subject.engine();
+    for (int i = 0; i < kSteps; ++i) engine->step();
+}
+
+template <class After>
+StepTimes time_steps(Engine& engine, uint32_t steps, After&& after_step) {
     StepTimes times;
-    SolveTime solve;
     for (uint32_t step = 0; step < steps; ++step) {
-        auto begin = std::chrono::steady_clock::now();
+        const auto begin = std::chrono::steady_clock::now();
         const double worked = thread_ms();
-        engine->step();
+        engine.step();
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-        times.add(took.count(), thread_ms() - worked, engine->stage_times());
-        SolveTime last = engine->solve_time();
+        times.add(took.count(), thread_ms() - worked, engine.stage_times());
+        after_step(step);
+    }
+    return times;
+}
+
+// Once more from the start. Steps that end in another state are not the same work.
+void run_again(const Subject& subject, uint64_t state_hash, StepTimes& times) {
+    const std::unique_ptr<Engine> engine = subject.engine();
+    times.keep_least(time_steps(*engine, subject.steps(), [](uint32_t) {}));
+    if (engine->state_hash() != state_hash) throw std::runtime_error("two runs of the scene end in different states");
+}
+
+// What another takes for the scene.
+struct Other {
+    explicit Other(const Options& options) : of(other_subject(options)) {
+        if (!options.cold) warm(of);
+        const std::unique_ptr<Engine> engine = of.engine();
+        times = time_steps(*engine, of.steps(), [](uint32_t) {});
+        state_hash = engine->state_hash();
+    }
+
+    Subject of;
+    StepTimes times;
+    uint64_t state_hash = 0;
+};
+
+std::string hexadecimal(uint64_t number) {
+    char digits[20];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(number));
+    return digits;
+}
+
+// False, with a line that says why: a limit was asked for that does not hold.
+bool holds_limits(const Options& options, const Spike& spike, double ratio) {
+    const bool spikes = options.spike_limit > 0 && spike.ratio > options.spike_limit;
+    const bool lags = options.ratio_limit > 0 && ratio > options.ratio_limit;
+    if (spikes)
+        std::fprintf(stderr, "taut-bench: step %zu took %.2f times the median, most of it in stage %s\n", spike.step,
+                     spike.ratio, spike.stage);
+    if (lags)
+        std::fprintf(stderr, "taut-bench: the mean step took %.3f times that of %s\n", ratio, options.beside.c_str());
+    return !spikes && !lags;
+}
+
+int run(const Options& options) {
+    const Subject ours = subject(options);
+    const scenes::Scene& scene = ours.scene;
+    if (!options.cold) warm(ours);
+    const std::unique_ptr<Engine> engine = ours.engine();
+    Metrics metrics(scene, *engine, ours.steps());
+    SolveTime solve;
+    StepTimes times = time_steps(*engine, ours.steps(), [&](uint32_t step) {
+        const SolveTime last = engine->solve_time();
         solve.microseconds += last.microseconds;
         solve.solves += last.solves;
         metrics.after_step(step);
+    });
+    std::optional<Other> other;
+    if (!options.beside.empty()) other.emplace(options);
+    for (uint32_t i = 1; i < options.runs; ++i) {
+        run_again(ours, engine->state_hash(), times);
+        if (other) run_again(other->of, other->state_hash, other->times);
     }
-    char hash[20];
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(engine->state_hash()));
     nlohmann::ordered_json json;
     json["engine"] = engine->name();
     json["scene"] = scene.name;
     json["threads"] = scene.world.threads;
     json["bodies"] = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                    [](const scenes::Body& body) { return body.kind != TAUT_BODY_STATIC; });
-    json["steps"] = steps;
+    json["steps"] = ours.steps();
+    json["runs"] = options.runs;
     times.report(json);
     const Spike spike = times.worst_after(options.warm_up);
     spike.report(json);
+    const double ratio = other ? times.mean() / other->times.mean() : 0;
+    if (other) {
+        json["beside"] = options.beside;
+        json["beside_mean_ms"] = other->times.mean();
+        json["beside_median_ms"] = other->times.median();
+        json["mean_ratio"] = ratio;
+        json["median_ratio"] = times.median() / other->times.median();
+    }
     json["finite"] = metrics.finite() ? 1 : 0;
-    json["state_hash"] = hash;
+    json["state_hash"] = hexadecimal(engine->state_hash());
     metrics.report(json);
     if (solve.solves > 0) json["solve_us"] = solve.microseconds / solve.solves;
     json["solver"] = engine->solver();
@@ -165,12 +179,7 @@ int run(const Options& options) {
     json["adaptive_damping"] = options.adaptive_damping ? 1 : 0;
     if (options.sleep) json["asleep"] = engine->asleep();
     std::printf("%s\n", json.dump().c_str());
-    if (options.spike_limit > 0 && spike.ratio > options.spike_limit) {
-        std::fprintf(stderr, "taut-bench: step %zu took %.2f times the median, most of it in stage %s\n", spike.step,
-                     spike.ratio, spike.stage);
-        return kRunFailed;
-    }
-    return kFine;
+    return holds_limits(options, spike, ratio) ? kFine : kRunFailed;
 }
 
 }  // namespace

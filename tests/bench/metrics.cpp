@@ -64,9 +64,14 @@ std::vector<scenes::Shape> unscaled(std::vector<scenes::Shape> shapes) {
 }  // namespace
 
 const char* const kFieldHelp = R"(JSON fields (one object on one line):
-  engine scene threads bodies steps   what ran; bodies counts dynamic bodies and particles
-  mean_ms median_ms p99_ms max_ms     wall time of one step
+  engine scene threads bodies steps runs
+                                      what ran; bodies counts dynamic bodies and particles
+  mean_ms median_ms p99_ms max_ms     wall time of one step, the quietest of the runs
   late_ms                             the same, median of the last 60 steps
+  worst_step worst_ratio worst_stage  the slowest, in parts of the median, and what made it slow; by the time that
+                                      the calling thread worked
+  beside beside_mean_ms beside_median_ms mean_ratio median_ratio
+                                      with --beside: what the other took, and which part of it this did
   finite                              1 if every pose and velocity stayed finite
   state_hash                          of the final state; equal hashes mean equal runs
  piles: from final poses and true shapes

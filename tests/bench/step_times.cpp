@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <utility>
 
 namespace bench {
@@ -40,12 +41,26 @@ void StepTimes::add(double milliseconds, double thread_milliseconds, std::vector
     stages_.push_back(std::move(stages));
 }
 
+void StepTimes::keep_least(const StepTimes& other) {
+    for (size_t step = 0; step < whole_.size(); ++step) {
+        whole_[step] = std::min(whole_[step], other.whole_[step]);
+        thread_[step] = std::min(thread_[step], other.thread_[step]);
+        for (size_t i = 0; i < stages_[step].size(); ++i)
+            stages_[step][i].milliseconds =
+                std::min(stages_[step][i].milliseconds, other.stages_[step][i].milliseconds);
+    }
+}
+
+double StepTimes::mean() const {
+    return std::accumulate(whole_.begin(), whole_.end(), 0.0) / static_cast<double>(whole_.size());
+}
+
+double StepTimes::median() const { return part_of(whole_, 0.5); }
+
 void StepTimes::report(nlohmann::ordered_json& json) const {
     constexpr size_t kLate = 60;
-    double sum = 0;
-    for (double t : whole_) sum += t;
-    json["mean_ms"] = sum / static_cast<double>(whole_.size());
-    json["median_ms"] = part_of(whole_, 0.5);
+    json["mean_ms"] = mean();
+    json["median_ms"] = median();
     json["p99_ms"] = part_of(whole_, 0.99);
     json["max_ms"] = part_of(whole_, 1);
     json["late_ms"] = part_of(from(whole_, whole_.size() - std::min(kLate, whole_.size())), 0.5);

@@ -24,6 +24,11 @@ struct Spike {
 class StepTimes {
 public:
     void add(double milliseconds, double thread_milliseconds, std::vector<StageTime> stages);
+    // Of each step the less that this run and another of the same scene took: what the machine did beside is in neither
+    // of them, or in one.
+    void keep_least(const StepTimes& other);
+    double mean() const;    // [ms]
+    double median() const;  // [ms]
     void report(nlohmann::ordered_json& json) const;
     Spike worst_after(size_t warm_up) const;  // steps; all zero if there are no others
 
