@@ -99,6 +99,30 @@ struct JointView {
     const LaneScalar* compliance;
 };
 
+// What groups have of one kind in this frame, one after the other.
+template <class T>
+class LanePlaces {
+public:
+    explicit LanePlaces(Memory& memory) : all_(memory) {}
+
+    void clear() { taken_ = 0; }
+    uint32_t taken() const { return taken_; }
+    // The next places, with whatever an earlier frame left there; the first of them.
+    uint32_t take(uint32_t count) {
+        const uint32_t first = taken_;
+        taken_ += count;
+        if (all_.size() < taken_) all_.resize(taken_);
+        return first;
+    }
+    T& operator[](uint32_t place) { return all_[place]; }
+    const T& operator[](uint32_t place) const { return all_[place]; }
+    T* data() { return all_.data(); }
+
+private:
+    Array<T> all_;
+    uint32_t taken_ = 0;
+};
+
 struct JointLanes {
     explicit JointLanes(Memory& memory)
         : group(memory),
@@ -113,14 +137,13 @@ struct JointLanes {
           colour_begin(memory) {}
 
     Array<JointGroup> group;
-    Array<LaneRow> row;
-    Array<LaneCoordinate> coordinate;  // one for each row
-    Array<LaneAxis> axis;
-    Array<LaneAxisLaw> law;  // one for each axis
-    Array<LaneFrames> frames;
-    Array<LaneScalar> jacobian, factor, compliance;
-    uint32_t jacobians = 0, factors = 0;  // how many of them this frame has: what is written before it is read stays
-    Array<uint32_t> colour_begin;         // first group of each colour, and one past the last
+    LanePlaces<LaneRow> row;
+    LanePlaces<LaneCoordinate> coordinate;  // one for each row
+    LanePlaces<LaneAxis> axis;
+    LanePlaces<LaneAxisLaw> law;  // one for each axis
+    LanePlaces<LaneFrames> frames;
+    LanePlaces<LaneScalar> jacobian, factor, compliance;
+    Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
 
     JointView view() {
         return {group.data(), row.data(),      coordinate.data(), axis.data(),

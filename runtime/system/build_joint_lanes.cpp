@@ -49,28 +49,20 @@ void add_axes(System& system, JointGroup& g, std::span<const uint32_t> blocks) {
     for (uint32_t b : blocks)
         for_each_axis(system.rows.block[b], system.h,
                       [&](uint32_t r, const AxisRow& axis) { has[r][axis.part] = true; });
-    g.first_axis = size_of(lanes.axis);
+    g.first_axis = lanes.axis.taken();
     for (uint32_t r = 0; r < g.rows; ++r) {
         for (const uint32_t part : kOrder) {
             if (!has[r][part]) continue;
-            LaneAxis& axis = lanes.axis.emplace_back();
+            LaneAxis& axis = lanes.axis[lanes.axis.take(1)];
             axis.row = r;
             axis.part = part;
-            lanes.law.push_back({});
         }
     }
-    g.axes = size_of(lanes.axis) - g.first_axis;
+    g.axes = lanes.axis.taken() - g.first_axis;
+    lanes.law.take(g.axes);
 }
 
-// The next places of an array, with whatever an earlier frame left there; returns the first.
-uint32_t take(Array<LaneScalar>& array, uint32_t& taken, uint32_t count) {
-    const uint32_t first = taken;
-    taken += count;
-    if (array.size() < taken) array.resize(taken);
-    return first;
-}
-
-// Room for at most kLanes joints of a colour and type.
+// Places for at most kLanes joints of a colour and type; fill_group() clears them.
 void add_group(System& system, std::span<const uint32_t> blocks) {
     JointLanes& lanes = system.joints;
     const auto& all = system.rows.block;
@@ -82,27 +74,18 @@ void add_group(System& system, std::span<const uint32_t> blocks) {
     g.held = 0;
     for (uint32_t b : blocks) g.held = std::max(g.held, static_cast<uint32_t>(all[b].held()));
     if (type.evaluate_lanes) g.first_turn = static_cast<uint32_t>(std::countr_zero(type.angular));
-    g.first_row = size_of(lanes.row);
-    g.first_jacobian = take(lanes.jacobian, lanes.jacobians, kDof * g.nodes * g.rows);
-    g.first_factor = take(lanes.factor, lanes.factors, triangle(g.rows, 0));
-    g.first_compliance = g.first_frames = kNoLanes;
-    lanes.row.resize(lanes.row.size() + g.rows, LaneRow{});
-    lanes.coordinate.resize(lanes.row.size(), LaneCoordinate{});
+    g.first_row = lanes.row.take(g.rows);
+    lanes.coordinate.take(g.rows);
+    g.first_jacobian = lanes.jacobian.take(kDof * g.nodes * g.rows);
+    g.first_factor = lanes.factor.take(triangle(g.rows, 0));
     auto elastic = [&](uint32_t b) {
         bool any = false;
         for (int r = 0; r < type.rows; ++r) any = any || (all[b].locked(r) && all[b].elastic(r));
         return any;
     };
-    if (std::any_of(blocks.begin(), blocks.end(), elastic)) {
-        g.first_compliance = size_of(lanes.compliance);
-        lanes.compliance.resize(lanes.compliance.size() + triangle(g.rows, 0), LaneScalar{});
-    }
-    if (type.evaluate_lanes) {
-        g.first_frames = size_of(lanes.frames);
-        lanes.frames.push_back({});
-    } else {  // empty lanes stay 0
-        std::fill(lanes.jacobian.begin() + g.first_jacobian, lanes.jacobian.begin() + lanes.jacobians, LaneScalar{});
-    }
+    const bool any_elastic = std::any_of(blocks.begin(), blocks.end(), elastic);
+    g.first_compliance = any_elastic ? lanes.compliance.take(triangle(g.rows, 0)) : kNoLanes;
+    g.first_frames = type.evaluate_lanes ? lanes.frames.take(1) : kNoLanes;
     add_axes(system, g, blocks);
     std::fill(g.block, g.block + kLanes, kNoLanes);
     std::copy(blocks.begin(), blocks.end(), g.block);
@@ -241,10 +224,32 @@ void fill_frames(const System& system, LaneFrames& out, int lane, const RowBlock
     for (int k = 0; k < 3; ++k) out.apart[k][lane] = static_cast<float>(apart[k]);
 }
 
+// Whatever is not filled: empty lanes move nothing.
+void clear_group(JointLanes& lanes, const JointGroup& g) {
+    std::fill_n(&lanes.row[g.first_row], g.rows, LaneRow{});
+    std::fill_n(&lanes.coordinate[g.first_row], g.rows, LaneCoordinate{});
+    for (uint32_t a = g.first_axis; a < g.first_axis + g.axes; ++a) {
+        LaneAxis& axis = lanes.axis[a];
+        const uint32_t row = axis.row, part = axis.part;
+        axis = {};
+        axis.row = row;
+        axis.part = part;
+        lanes.law[a] = {};
+    }
+    if (g.first_compliance != kNoLanes)
+        std::fill_n(&lanes.compliance[g.first_compliance], triangle(g.rows, 0), LaneScalar{});
+    if (g.first_frames == kNoLanes) {
+        std::fill_n(&lanes.jacobian[g.first_jacobian], kDof * g.nodes * g.rows, LaneScalar{});
+        return;
+    }
+    LaneFrames& frames = lanes.frames[g.first_frames];
+    frames = {};
+    for (auto& each : frames.frame) std::fill(each[3], each[3] + kLanes, 1.0f);
+}
+
 void fill_group(System& system, JointGroup& g, const Times& times) {
     JointLanes& lanes = system.joints;
-    if (g.first_frames != kNoLanes)
-        for (auto& each : lanes.frames[g.first_frames].frame) std::fill(each[3], each[3] + kLanes, 1.0f);
+    clear_group(lanes, g);
     for (int lane = 0; lane < kLanes; ++lane) {
         if (g.block[lane] == kNoLanes) continue;
         const RowBlock& block = system.rows.block[g.block[lane]];
@@ -265,7 +270,8 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
     lanes.axis.clear();
     lanes.law.clear();
     lanes.frames.clear();
-    lanes.jacobians = lanes.factors = 0;
+    lanes.jacobian.clear();
+    lanes.factor.clear();
     lanes.compliance.clear();
     lanes.colour_begin.assign(1, 0);
     const uint32_t first = system.rows.direct;
