@@ -164,7 +164,9 @@ void list_active(Team& team, Pairs& pairs) {
         for (uint32_t p = near.pair; p != kNone; p = pairs.list[p].next) {
             const Pair& pair = pairs.list[p];
             near.asks = pair.asks;
-            *to++ = {pair.a, pair.b, p, static_cast<uint32_t>(pair.manifold.count), pair.a2, pair.b2, pair.asks, index};
+            const auto points = static_cast<uint8_t>(pair.manifold.count);
+            const float borne = push_of(pair.manifold, pair.impulse);
+            *to++ = {pair.a, pair.b, p, points, pair.asks, pair.loaded, pair.in_block, pair.a2, pair.b2, borne, index};
         }
     };
     write_list(team, static_cast<uint32_t>(pairs.near.size()), pairs.active, count_of, write, pairs.homes);
@@ -209,7 +211,7 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
             found = pair.key;
             near.kept = refresh_part(shaped, of, pair) && (is_first || near.kept);
         }
-        active.points = static_cast<uint32_t>(pair.manifold.count);
+        active.points = static_cast<uint8_t>(pair.manifold.count);
     }
 }
 

@@ -61,13 +61,6 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
     pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
 }
 
-// Of all points together [N s].
-float push_of(const collision::Manifold& manifold, const Impulse* impulse) {
-    float sum = 0;
-    for (int k = 0; k < manifold.count; ++k) sum += impulse[k].normal;
-    return sum;
-}
-
 // What is wedged is pushed by what would throw it out at a hundred metres a second, from both sides. Where one side
 // slips off, or pushes another way from now on, a substep's sweeps take no more than most of the other's away, and as
 // contacts do not pull, the rest stays; direct solves do not lag. Bodies that lose more than this speed [m/s] of a

@@ -33,11 +33,6 @@ constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
 // landed, mostly after the hit was over; from the sixth on, six dolls. Their joints opened as far as without.
 constexpr uint8_t kSweptAfter = 10, kSweptFor = 15;
 
-constexpr float kPress = 0.5f;  // cosine: a body between two others is pushed by one against the other
-
-// Of nodes: with a joint that is solved directly, or in a tower; or taken in with a contact.
-constexpr uint8_t kHeld = 1, kTaken = 2;
-
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 
 bool by_load(const Joint& joint) { return joint.solve == JointSolve::by_load; }
@@ -45,12 +40,11 @@ uint8_t loaded_after(const Joint& joint) { return by_load(joint) ? kSweptAfter :
 
 // By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
 // infinite where it sank in or carries what sweeps do not hold.
-double hit_of(const Nodes& nodes, const Pair& pair, double time_step, double substep) {
+double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_step, double substep) {
     const RelativeMotion motion = relative_motion(nodes, pair);
-    double fastest = 0, carried = 0;
+    double fastest = 0;
     for (int k = 0; k < pair.manifold.count; ++k) {
         const collision::ContactPoint& point = pair.manifold.points[k];
-        carried += static_cast<double>(pair.impulse[k].normal);
         const double speed = static_cast<double>(motion.approach(point.position, pair.manifold.normal));
         const auto separation = static_cast<double>(point.separation);
         if (separation < -kSunk) return std::numeric_limits<double>::infinity();
@@ -58,12 +52,8 @@ double hit_of(const Nodes& nodes, const Pair& pair, double time_step, double sub
     }
     double inverse = 0;  // of the reduced mass [1/kg]
     for (const uint32_t side : {pair.a, pair.b}) inverse += moving(nodes, side) ? nodes.mass[side].inv_mass : 0;
-    if (carried * inverse > kLoad * substep) return std::numeric_limits<double>::infinity();
+    if (borne * inverse > kLoad * substep) return std::numeric_limits<double>::infinity();
     return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
-}
-
-bool is_heavy_on(const Nodes& nodes, uint32_t heavy, uint32_t light) {
-    return nodes.mass[heavy].mass * nodes.mass[light].inv_mass >= static_cast<double>(kHeavyOnLight);
 }
 
 }  // namespace
@@ -82,61 +72,6 @@ void note_loads(Joints& joints, const Nodes& nodes) {
             joint.loaded = static_cast<uint8_t>(joint.loaded + 1 < after ? joint.loaded + 1 : then);
         else
             joint.loaded = joint.loaded > after ? joint.loaded - 1 : 0;
-    }
-}
-
-Vec3f Partition::normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const {
-    const Vec3f& normal = pairs.list[pairs.active[pair].pair].manifold.normal;
-    return node == graph_.touches[pair].a ? normal : Vec3f(-normal);
-}
-
-void Partition::add_press(const Press& press) {
-    pressed_[press.pair] = 1;
-    reserve_more(presses_, 1);
-    presses_.push_back(press);
-}
-
-// What a heavy body pushes against something, whatever the heavy one meets besides: stopped by a wall or the ground
-// that it meets behind the light one, it would swallow that in sweeps, and be thrown back as they push it out. Of 160
-// pebbles under 10 t that fell on them from a metre, 138 were driven into the ground.
-void Partition::find_pressed(const Nodes& nodes, const Pairs& pairs) {
-    presses_.clear();
-    if (!heavy_on_light_) return;
-    std::fill(pressed_.begin(), pressed_.end(), 0);
-    for (uint32_t p = 0; p < graph_.touches.size(); ++p) {
-        const auto& [a, b] = graph_.touches[p];
-        if (a == kNone || b == kNone || pairs.active[p].spans() || island_[island_of_[a]].nodes > kMostTower) continue;
-        const uint32_t light = nodes.mass[a].mass < nodes.mass[b].mass ? a : b, heavy = a + b - light;
-        if (is_heavy_on(nodes, heavy, light)) add_press({light, heavy, p, normal_from(pairs, heavy, p)});
-    }
-    if (presses_.empty()) return;
-    push_on(nodes, pairs);
-    std::erase_if(presses_, [](const Press& press) { return !press.holds; });
-}
-
-// And what that pushes on to something that does not yield, through as many others as there are: of a dozen cubes that
-// a box shoved to a wall, the first alone were solved with it, and the rest swallowed.
-void Partition::push_on(const Nodes& nodes, const Pairs& pairs) {
-    const size_t by_heavy = presses_.size();
-    auto& meets_hard = core_;  // until blocks are built
-    meets_hard.assign(nodes.slots(), 0);
-    for (size_t i = 0; i < presses_.size(); ++i) {  // grows
-        const uint32_t light = presses_[i].light;
-        const Vec3f along = presses_[i].along;
-        for (const uint32_t p : touches_of(light)) {
-            if (!(along.dot(normal_from(pairs, light, p)) > kPress)) continue;
-            presses_[i].holds = true;
-            const uint32_t next = graph_.touches[p].other(light);
-            if (next == kNone || is_heavy_on(nodes, next, light))
-                meets_hard[light] = 1;
-            else if (!pressed_[p] && !pairs.active[p].spans())
-                add_press({next, light, p, along});
-        }
-    }
-    for (size_t i = presses_.size(); i-- > by_heavy;) {
-        Press& press = presses_[i];
-        press.holds = meets_hard[press.light] != 0;
-        if (press.holds) meets_hard[press.by] = 1;
     }
 }
 
@@ -235,14 +170,6 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
     }
 }
 
-void Partition::take_pressed() {
-    for (const Press& press : presses_) {
-        if (!pair_in_block_[press.pair]) pair_in_block_[press.pair] = join_contact(press.light, press.by);
-        if (!pair_in_block_[press.pair]) continue;
-        core_[press.light] = core_[press.by] = kTaken;
-    }
-}
-
 // What lies between a mechanism or a heavy body that takes it in and the world: its contact with the world as well,
 // lest a press go through what it presses.
 void Partition::take_between(const Nodes& nodes, const Pairs& pairs) {
@@ -266,7 +193,8 @@ void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const Partition
             return moving(nodes, node) && component_[find(node)].always && !component_[find(node)].hit;
         };
         if (!waits(pair.a) && !waits(pair.b)) continue;
-        const double hit = hit_of(nodes, pairs.list[pair.pair], rules.time_step, rules.time_step / rules.substeps);
+        const double hit = hit_of(nodes, pairs.list[pair.pair], static_cast<double>(pair.borne), rules.time_step,
+                                  rules.time_step / rules.substeps);
         for (const uint32_t node : {pair.a, pair.b})
             if (waits(node) && hit > kHit * nodes.mass[node].mass)
                 component_[find(node)].loaded = component_[find(node)].hit = true;

@@ -59,12 +59,13 @@ void Partition::find_levels(const Nodes&) {
 
 // Whether any load can be a heavy one.
 void Partition::weigh(const Nodes& nodes) {
-    double heaviest = 0, lightest_inverse = 0;
+    double heaviest = 0;
+    lightest_ = std::numeric_limits<double>::infinity();
     for (const uint32_t node : graph_.movers) {
         heaviest = std::max(heaviest, nodes.mass[node].mass);
-        lightest_inverse = std::max(lightest_inverse, nodes.mass[node].inv_mass);
+        lightest_ = std::min(lightest_, nodes.mass[node].mass);
     }
-    heavy_on_light_ = static_cast<float>(heaviest * lightest_inverse) >= kHeavyOnLight;
+    heavy_on_light_ = static_cast<float>(heaviest / lightest_) >= kHeavyOnLight;
 }
 
 // Of what is a level higher than what it touches.

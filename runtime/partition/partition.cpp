@@ -27,6 +27,7 @@ Partition::Partition(Memory& memory)
       rank_begin_(memory),
       efforts_(memory),
       presses_(memory),
+      small_(memory),
       pressed_(memory),
       queue_(memory),
       adjacency_begin_(memory),
@@ -51,8 +52,7 @@ void Partition::unite(std::span<const uint32_t> all) {
     }
 }
 
-void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs,
-                      const PartitionRules& rules) {
+void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pairs& pairs, const PartitionRules& rules) {
     static constexpr Part kOfFrame[] = {&Partition::find_places, &Partition::weigh};
     // In this order two threads have as much to do.
     static constexpr Part kOfGraph[] = {&Partition::find_levels, &Partition::find_places, &Partition::unite_touching,
@@ -62,6 +62,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
             make_room();
             run(team, kOfGraph, nodes);
             number_islands();
+            list_small();
         } else {
             run(team, kOfFrame, nodes);
         }
@@ -74,7 +75,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     for (Island& island : island_) island.tower = false;
     if (rules.direct) {
         find_towers();
-        find_pressed(nodes, pairs);
+        find_pressed(nodes, pairs, rules);
     }
     const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });
     if (rules.direct && (any || !presses_.empty()))
@@ -110,6 +111,7 @@ void Partition::make_room() {
     fit(adjacency_, 2 * touches);
     fit(pair_colour_, touches);
     fit(pressed_, touches);
+    fit(small_, touches);
 }
 
 // Union-find over all that ties and touches.
@@ -139,6 +141,20 @@ void Partition::number_islands() {
     for (const TouchGraph::Tie& tie : graph_.ties)
         for (const uint32_t node : tie)
             if (node != kNone) island_[island_of_[node]].jointed = true;
+}
+
+// The touches of islands that a block may hold.
+void Partition::list_small() {
+    small_.clear();
+    const auto is_small = [](const Island& island) { return island.nodes > 1 && island.nodes <= kMostTower; };
+    if (std::none_of(island_.begin(), island_.end(), is_small)) return;
+    for (const uint32_t node : graph_.movers) {
+        if (!is_small(island_[island_of_[node]])) continue;
+        for (const uint32_t p : touches_of(node)) {
+            const uint32_t other = graph_.touches[p].other(node);
+            if (other == kNone || node < other) small_.push_back(p);
+        }
+    }
 }
 
 void Partition::forget_blocks(const Joints& joints) {

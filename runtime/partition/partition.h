@@ -106,7 +106,7 @@ public:
 
     // Rebuilds islands, groups and colours from the joints and touching pairs of this frame; what follows from the
     // graph of touches alone is kept while that stays.
-    void build(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    void build(Team& team, const Nodes& nodes, const Joints& joints, Pairs& pairs, const PartitionRules& rules);
 
     Array<Group> groups;  // in ascending order of effort; the first group_count are used
     uint32_t group_count = 0;
@@ -121,8 +121,9 @@ private:
         bool jointed = false;
         // Of the frame.
         uint32_t substeps = 0, sweeps = 1, group = 0;
-        float ratio = 1;       // heaviest load over its support, where any is kHeavyOnLight
-        bool slender = false;  // a column that sweeps of the world's substeps cannot hold
+        float ratio = 1;        // heaviest load over its support, where any is kHeavyOnLight
+        bool slender = false;   // a column that sweeps of the world's substeps cannot hold
+        bool squeezed = false;  // by something kinematic, harder than sweeps hold
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -137,11 +138,15 @@ private:
         bool hit = false;                // in this frame
     };
 
-    // By a heavy body, or by what that presses.
+    // Of nodes in blocks: with a joint that is solved directly, or in a tower; or taken in with a contact.
+    static constexpr uint8_t kHeld = 1, kTaken = 2;
+
+    // By a heavy body, by a load, or by what these press.
     struct Press {
         uint32_t light, by, pair;  // slots of the two that touch; index in Pairs::active
         Vec3f along;               // unit, from the heavy body to the first light one
-        bool holds = false;        // that way it touches something; of what others press, what does not yield
+        bool holds = false;        // carries a load, or that way the light one touches something; of what others
+                                   // press, what does not yield
     };
 
     // Parts that write nothing which another one reads.
@@ -161,7 +166,10 @@ private:
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     Vec3f normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const;
     void add_press(const Press& press);
-    void find_pressed(const Nodes& nodes, const Pairs& pairs);
+    void list_small();
+    void note_held(const Nodes& nodes, const Pairs& pairs);
+    void find_squeezed(const Nodes& nodes, Pairs& pairs, double weight);
+    void find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void push_on(const Nodes& nodes, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);
     void take_pressed();
@@ -207,6 +215,7 @@ private:
     Array<Block> spare_;
     Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot
     bool all_coloured_ = false;                    // no pair was left out in pair_colour_
+    double lightest_ = 0;                          // of the nodes [kg]
     bool heavy_on_light_ = false;                  // some node is kHeavyOnLight times as heavy as another
     Array<uint64_t> used_;                         // by slot: colours taken
     Array<uint8_t> place_;                         // by slot, of what moves
@@ -215,6 +224,7 @@ private:
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those
+    Array<uint32_t> small_;                        // scratch: touches of small islands, by index in Pairs::active
     Array<uint8_t> pressed_;                       // scratch: by index in Pairs::active
     Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
     Array<uint32_t> adjacency_begin_, adjacency_;  // by slot: its touches, by index in Pairs::active

@@ -140,6 +140,7 @@ void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
     for (uint32_t word : near.cache) hash.add(static_cast<uint64_t>(word));
     for (uint32_t word : pair.cache) hash.add(static_cast<uint64_t>(word));
     if (pair.in_block) hash.add(uint64_t{1});
+    if (pair.loaded > 0) hash.add(uint64_t{2} + pair.loaded);
     if (near.kept) add_found(hash, pair.found, pair.manifold.count);
     for (int k = 0; k < pair.manifold.count; ++k) {
         hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));

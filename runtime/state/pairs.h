@@ -123,7 +123,8 @@ struct Pair : PairEnds {
     bool pushed = false;                    // some point was in this step, in any of its substeps
     bool answered = false;                  // the host gave this step's friction and restitution
     bool in_block = false;                  // was solved directly when it was solved last
-    uint8_t asks = 0;                       // bits of contact events, kAsks: of the world and the two colliders
+    uint8_t loaded = 0;  // frames in a row in which it bore more than sweeps hold; partition/blocks.cpp
+    uint8_t asks = 0;    // bits of contact events, kAsks: of the world and the two colliders
 
     // What find_contacts() alone asks for: the last kSought bytes.
     PointsCache cache{};
@@ -144,6 +145,13 @@ struct Pair : PairEnds {
         return std::max(rolling, rolls_a || rolls_b ? 3.0f / 16 * kLoss * patch : 0);
     }
 };
+
+// The sum of the points' normal impulses [N s].
+inline float push_of(const collision::Manifold& manifold, const Impulse* impulse) {
+    float sum = 0;
+    for (int k = 0; k < manifold.count; ++k) sum += impulse[k].normal;
+    return sum;
+}
 
 // What was found of a pair that has no record yet.
 struct Arrival {
@@ -184,11 +192,14 @@ inline bool same_tangents(const Vec3f& one, const Vec3f& other) {
 
 // A pair with contact points in this frame, in brief: what partition and assembly go through.
 struct ActivePair {
-    uint32_t a, b;  // nodes
-    uint32_t pair;  // index into Pairs::list
-    uint32_t points;
+    uint32_t a, b;   // nodes
+    uint32_t pair;   // index into Pairs::list
+    uint8_t points;  // of these, as of the pair: asks, loaded, in_block
+    uint8_t asks = 0;
+    uint8_t loaded = 0;
+    bool in_block = false;
     uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
-    uint32_t asks = 0;                // as the pair
+    float borne = 0;                  // by its points, as the frame begins [N s]: in the last substep
     uint32_t near = 0;                // index into Pairs::near
 
     bool spans() const { return a2 != kNone || b2 != kNone; }

@@ -85,7 +85,7 @@ public:
         w.pairs.active.clear();
         for (uint32_t i = 0; i < w.pairs.list.size(); ++i) {
             const Pair& p = w.pairs.list[i];
-            w.pairs.active.push_back({p.a, p.b, i, static_cast<uint32_t>(p.manifold.count)});
+            w.pairs.active.push_back({p.a, p.b, i, static_cast<uint8_t>(p.manifold.count)});
         }
     }
 

@@ -57,12 +57,22 @@ struct Graph {
         for (uint32_t i = 0; i < touching.size(); ++i) {
             if (i == pairs.list.size()) pairs.list.emplace_back();
             pairs.list[i] = touching[i];
-            pairs.active.push_back({touching[i].a, touching[i].b, i, 1});
+            ActivePair& active = pairs.active.emplace_back(ActivePair{touching[i].a, touching[i].b, i, 1});
+            active.loaded = touching[i].loaded;
+            active.in_block = touching[i].in_block;
+            active.borne = touching[i].impulse[0].normal;
         }
     }
     void build() {
         find_active();
         partition.build(team, nodes, joints, pairs, rules);
+        for (uint32_t i = 0; i < touching.size(); ++i) touching[i].loaded = pairs.list[i].loaded;
+    }
+    // As if the blocks had been solved.
+    void hold_blocks() {
+        for (Pair& pair : touching) pair.in_block = false;
+        for (const Block& block : partition.blocks)
+            for (const uint32_t p : block.pairs) touching[pairs.active[p].pair].in_block = true;
     }
     bool moving(uint32_t node) const { return node != kNone && moves_by_forces(nodes.info[node].kind); }
     uint32_t substeps_of(uint32_t node) const {

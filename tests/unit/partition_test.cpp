@@ -309,68 +309,6 @@ TEST_F(PartitionTest, LoadsCountOnlyOnASupport) {
     EXPECT_EQ(substeps_of(light), 4u);
 }
 
-// A heavy and a light body on the ground, of which the one touches the other along a direction.
-struct Touching {
-    uint32_t heavy, light, ground;
-};
-Touching side_by_side(Graph& graph, const Vec3f& along, double mass = 10) {
-    const Touching of = {graph.add(NodeKind::dynamic, mass), graph.add(NodeKind::dynamic), graph.add(NodeKind::fixed)};
-    for (const uint32_t body : {of.heavy, of.light}) graph.touch(body, of.ground, -Vec3f::UnitY());
-    graph.touch(of.heavy, of.light, along);
-    return of;
-}
-
-TEST_F(PartitionTest, WhatAHeavyBodyPushesAgainstSomethingIsABlockWithIt) {
-    const Touching below = side_by_side(*this, -Vec3f::UnitY()), at_a_wall = side_by_side(*this, Vec3f::UnitX()),
-                   at_a_box = side_by_side(*this, Vec3f::UnitX()), tied = side_by_side(*this, -Vec3f::UnitY());
-    touch(at_a_wall.light, add(NodeKind::fixed), Vec3f(0.8f, 0.6f, 0));
-    touch(add(NodeKind::dynamic), at_a_box.light, -Vec3f::UnitX());
-    const uint32_t joint = join(tied.light, kNone);
-    joints.record[joint].solve = JointSolve::by_load;
-    joints.record[joint].loaded = 0;
-    build();
-    ASSERT_EQ(partition.blocks.size(), 4u);
-    for (const Touching& of : {below, at_a_wall, at_a_box, tied}) {
-        const auto block = std::ranges::find_if(
-            partition.blocks, [&](const Block& one) { return std::ranges::count(one.nodes, of.light) > 0; });
-        ASSERT_NE(block, partition.blocks.end()) << "node " << of.light;
-        EXPECT_TRUE(std::ranges::count(block->nodes, of.heavy)) << "node " << of.light;
-        EXPECT_EQ(block->nodes.size(), 2u) << "not the box at which it is pushed";
-        EXPECT_EQ(block->pairs.size(), of.light == at_a_wall.light ? 4u : 3u) << "with the ground and the wall";
-        EXPECT_EQ(block->joints.size(), of.light == tied.light ? 1u : 0u) << joint;
-    }
-}
-
-TEST_F(PartitionTest, WhatAHeavyBodyPushesThroughOthersIsABlockWithThem) {
-    const Touching of = side_by_side(*this, Vec3f::UnitX());
-    const uint32_t next = add(NodeKind::dynamic), last = add(NodeKind::dynamic), beside = add(NodeKind::dynamic);
-    touch(of.light, next, Vec3f(0.8f, 0, 0.6f));
-    touch(next, last, Vec3f(0.8f, 0, -0.6f));
-    touch(last, add(NodeKind::fixed), Vec3f::UnitX());
-    touch(next, beside, Vec3f::UnitZ());
-    touch(beside, add(NodeKind::fixed), Vec3f::UnitZ());
-    build();
-    ASSERT_EQ(partition.blocks.size(), 1u);
-    const Block& block = partition.blocks[0];
-    for (const uint32_t body : {of.heavy, of.light, next, last})
-        EXPECT_TRUE(std::ranges::count(block.nodes, body)) << "node " << body;
-    EXPECT_EQ(block.nodes.size(), 4u) << "not what is pushed past them";
-    EXPECT_EQ(block.pairs.size(), 6u) << "three among them, two on the ground, one at the wall";
-}
-
-TEST_F(PartitionTest, WhatStandsBesideAHeavyBodyIsSwept) {
-    side_by_side(*this, Vec3f::UnitX());                          // leans on it
-    side_by_side(*this, Vec3f::UnitY());                          // lies on it
-    side_by_side(*this, -Vec3f::UnitY(), 9);                      // is not so light
-    const Touching corner = side_by_side(*this, Vec3f::UnitX());  // is pushed past it
-    touch(corner.light, add(NodeKind::fixed), Vec3f(0.4f, 0, 0.9f));
-    const Touching wide = side_by_side(*this, -Vec3f::UnitY());  // is one of many
-    for (int i = 0; i < 60; ++i) touch(wide.light, tower(1)[0], Vec3f::UnitX());
-    build();
-    EXPECT_TRUE(partition.blocks.empty());
-    EXPECT_EQ(substeps_of(wide.light), 4u);
-}
-
 TEST_F(PartitionTest, JointedIslandsDoNotTakeFourTimes) {
     const std::vector<uint32_t> boxes = tower(1, 1);
     const uint32_t heavy = add(NodeKind::dynamic, 50);
