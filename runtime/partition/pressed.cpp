@@ -17,7 +17,7 @@ constexpr double kPressed = 20, kPressedBesideHeld = kPressed / 3;  // weights
 constexpr double kLeastGravity = 9.81;  // where there is less, weights are as on Earth [m/s^2]
 constexpr uint8_t kPressedFor = 10;     // frames
 
-// What a weight of 1 kg gives in a substep [m/s].
+// The impulse of a weight in a substep, over its mass [N s/kg].
 double weight_of(const PartitionRules& rules) {
     return std::max(rules.gravity.norm(), kLeastGravity) * rules.time_step / rules.substeps;
 }

@@ -123,7 +123,7 @@ struct Pair : PairEnds {
     bool pushed = false;                    // some point was in this step, in any of its substeps
     bool answered = false;                  // the host gave this step's friction and restitution
     bool in_block = false;                  // was solved directly when it was solved last
-    uint8_t loaded = 0;  // frames in a row in which it bore more than sweeps hold; partition/blocks.cpp
+    uint8_t loaded = 0;  // frames in which it bore much, one after another in a small island; partition/pressed.cpp
     uint8_t asks = 0;    // bits of contact events, kAsks: of the world and the two colliders
 
     // What find_contacts() alone asks for: the last kSought bytes.

@@ -47,8 +47,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--warm-up", options.warm_up, "steps before the worst one is looked for");
     app.add_option("--spike-limit", options.spike_limit, "fail if the worst step takes so many times the median");
     app.add_option("--runs", options.runs, "runs; of each step the quietest counts")->check(CLI::Range(1, 1000));
-    app.add_option("--beside", options.beside,
-                   "what else steps the scene, in turns with this: one-thread, bullet, ode");
+    app.add_option("--beside", options.beside, "what else steps the scene, in turns with this")
+        ->check(CLI::IsMember({"one-thread", "bullet", "ode"}));
     app.add_option("--ratio-limit", options.ratio_limit,
                    "fail if the mean step takes more than this part of the other's");
     app.add_flag("--list", list, "print all scenes");

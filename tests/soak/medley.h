@@ -56,7 +56,7 @@ private:
 // What holds for one kind of scene from any start.
 struct Bounds {
     bool driven = false;      // energy comes in; else it rises by no more than a hundredth of the motion's
-    bool leaves_room = true;  // in the end hardly any start in twenty overlaps by more than a third of a core
+    bool leaves_room = true;  // in the end at most one start in twenty overlaps by more than a third of a core
     double fastest = 0;       // no body is faster [m/s]
     double gap = 0;           // no joint opens wider [m]
 };

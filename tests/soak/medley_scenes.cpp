@@ -160,7 +160,7 @@ void cup(Medley& m, Random& random) {
     }
 }
 
-// A plate on a motor, of the given strength over its weight, comes down on rubble.
+// A plate on a motor of half to four times its weight comes down on rubble.
 void press(Medley& m, Random& random) {
     m.add_ground();
     m.scatter(random, 10, {-0.5, 0, -0.5}, {0.5, 0, 0.5});
