@@ -66,7 +66,7 @@ struct Vise {
 class ViseOn : public testing::TestWithParam<Kind> {};
 
 // Swept, of 60 starts with 1 kN 44 to 53 were deeper than 5 mm, and of five boxes of .2 kg in line one went through the
-// wall; with 100 kN they sank in by up to 22 cm. What a body of a row bears is up to a hundred thousand times its weight.
+// wall; with 100 kN they sank in by up to 22 cm. A body bears up to a hundred thousand times its weight.
 TEST_P(ViseOn, HoldsARowThatItPresses) {
     for (const double force : {200.0, 1e3, 1e4, 1e5}) {
         std::mt19937 random(static_cast<uint32_t>(force));
