@@ -114,6 +114,7 @@ void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
     if (old.count == 0) return forget_impulses(pair);
     pair.in_block = before.in_block;
     pair.loaded = before.loaded;
+    pair.substeps = before.substeps;
     if (bore(old, before)) {
         Impulse carried[4];
         std::copy(before.impulse, before.impulse + 4, carried);

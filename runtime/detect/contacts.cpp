@@ -165,7 +165,7 @@ void list_active(Team& team, Pairs& pairs) {
             const Pair& pair = pairs.list[p];
             near.asks = pair.asks;
             const auto points = static_cast<uint8_t>(pair.manifold.count);
-            const float borne = push_of(pair.manifold, pair.impulse);
+            const float borne = push_of(pair.manifold, pair.impulse) * static_cast<float>(pair.substeps);
             *to++ = {pair.a, pair.b, p, points, pair.asks, pair.loaded, pair.in_block, pair.a2, pair.b2, borne, index};
         }
     };

@@ -40,7 +40,7 @@ uint8_t loaded_after(const Joint& joint) { return by_load(joint) ? kSweptAfter :
 
 // By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
 // infinite where it sank in or carries what sweeps do not hold.
-double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_step, double substep) {
+double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_step) {
     const RelativeMotion motion = relative_motion(nodes, pair);
     double fastest = 0;
     for (int k = 0; k < pair.manifold.count; ++k) {
@@ -52,7 +52,7 @@ double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_st
     }
     double inverse = 0;  // of the reduced mass [1/kg]
     for (const uint32_t side : {pair.a, pair.b}) inverse += moving(nodes, side) ? nodes.mass[side].inv_mass : 0;
-    if (borne * inverse > kLoad * substep) return std::numeric_limits<double>::infinity();
+    if (borne * inverse > kLoad * time_step) return std::numeric_limits<double>::infinity();
     return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
 }
 
@@ -193,8 +193,7 @@ void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const Partition
             return moving(nodes, node) && component_[find(node)].always && !component_[find(node)].hit;
         };
         if (!waits(pair.a) && !waits(pair.b)) continue;
-        const double hit = hit_of(nodes, pairs.list[pair.pair], static_cast<double>(pair.borne), rules.time_step,
-                                  rules.time_step / rules.substeps);
+        const double hit = hit_of(nodes, pairs.list[pair.pair], static_cast<double>(pair.borne), rules.time_step);
         for (const uint32_t node : {pair.a, pair.b})
             if (waits(node) && hit > kHit * nodes.mass[node].mass)
                 component_[find(node)].loaded = component_[find(node)].hit = true;

@@ -8,6 +8,7 @@ Partition::Partition(Memory& memory)
     : groups(memory),
       blocks(memory),
       graph_(memory),
+      walls_(memory),
       parent_(memory),
       island_of_(memory),
       level_(memory),
@@ -29,7 +30,10 @@ Partition::Partition(Memory& memory)
       presses_(memory),
       small_(memory),
       pressed_(memory),
+      tied_(memory),
       queue_(memory),
+      weak_(memory),
+      standing_(memory),
       adjacency_begin_(memory),
       adjacency_(memory) {}
 
@@ -60,6 +64,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pair
     try {
         if (graph_.update(team, nodes, joints, pairs)) {
             make_room();
+            note_ties();
             run(team, kOfGraph, nodes);
             number_islands();
             list_small();
@@ -71,7 +76,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pair
         throw;
     }
     find_loads(nodes);
-    find_slender(nodes, rules);
+    find_slender(nodes, pairs, rules);
     for (Island& island : island_) island.tower = false;
     if (rules.direct) {
         find_towers();
@@ -106,12 +111,19 @@ void Partition::make_room() {
     const size_t slots = graph_.moves.size(), touches = graph_.touches.size();
     for (auto* by_slot : {&parent_, &level_, &queue_}) fit(*by_slot, slots);
     fit(place_, slots);
+    fit(tied_, slots);
     fit(used_, slots);
     fit(adjacency_begin_, slots + 2);
     fit(adjacency_, 2 * touches);
     fit(pair_colour_, touches);
     fit(pressed_, touches);
     fit(small_, touches);
+}
+
+void Partition::note_ties() {
+    for (const TouchGraph::Tie& tie : graph_.ties)
+        for (const uint32_t node : tie)
+            if (node != kNone) tied_[node] = 1;
 }
 
 // Union-find over all that ties and touches.

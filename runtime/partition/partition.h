@@ -13,6 +13,7 @@
 
 #include "linear/sparse_block_ldlt.h"
 #include "partition/touch_graph.h"
+#include "partition/walls.h"
 
 namespace taut {
 
@@ -121,9 +122,13 @@ private:
         bool jointed = false;
         // Of the frame.
         uint32_t substeps = 0, sweeps = 1, group = 0;
-        float ratio = 1;        // heaviest load over its support, where any is kHeavyOnLight
-        bool slender = false;   // a column that sweeps of the world's substeps cannot hold
-        bool squeezed = false;  // by something kinematic, harder than sweeps hold
+        float ratio = 1;             // heaviest load over its support, where any is kHeavyOnLight
+        float stiffness = 1;         // that contacts need to hold its walls, in parts of what the world's substeps give
+        bool slender = false;        // a column that sweeps of the world's substeps cannot hold
+        bool rises = false;          // high enough for some body in the world to buckle
+        bool may_be_column = false;  // of its own, which a block may hold
+        bool weak = false;           // has bodies in weak_
+        bool squeezed = false;       // by something kinematic, harder than sweeps hold
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -159,9 +164,11 @@ private:
     void weigh(const Nodes& nodes);
 
     void make_room();
+    void note_ties();
     void number_islands();
     void find_loads(const Nodes& nodes);
-    void find_slender(const Nodes& nodes, const PartitionRules& rules);
+    void find_slender(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
+    void find_walls(const Nodes& nodes, const Pairs& pairs, double sag, const Vec3f& up);
     void find_towers();
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     Vec3f normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const;
@@ -195,14 +202,14 @@ private:
     uint32_t rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const;
     bool is_in(uint32_t group, std::span<const uint32_t> nodes) const;
 
-    std::span<const uint32_t> touches_of(uint32_t node) const {
-        return {adjacency_.data() + adjacency_begin_[node], adjacency_begin_[node + 1] - adjacency_begin_[node]};
-    }
+    Adjacency adjacent() const { return {adjacency_begin_, adjacency_}; }
+    std::span<const uint32_t> touches_of(uint32_t node) const { return adjacent().of(node); }
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
     void unite(std::span<const uint32_t> all);  // those that are not kNone
 
     TouchGraph graph_;
+    Walls walls_;
     Array<uint32_t> parent_;     // union-find over slots; roots are the smallest slot
     Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces
     Array<uint32_t> level_;      // by slot: bodies between it and a support
@@ -216,6 +223,7 @@ private:
     Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot
     bool all_coloured_ = false;                    // no pair was left out in pair_colour_
     double lightest_ = 0;                          // of the nodes [kg]
+    double least_footing_ = 0;                     // of those without joints [m]; see buckling.cpp
     bool heavy_on_light_ = false;                  // some node is kHeavyOnLight times as heavy as another
     Array<uint64_t> used_;                         // by slot: colours taken
     Array<uint8_t> place_;                         // by slot, of what moves
@@ -226,7 +234,9 @@ private:
     Array<Press> presses_;                         // scratch: what presses others before those
     Array<uint32_t> small_;                        // scratch: touches of small islands, by index in Pairs::active
     Array<uint8_t> pressed_;                       // scratch: by index in Pairs::active
+    Array<uint8_t> tied_;                          // by slot: has a joint
     Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
+    Array<uint32_t> weak_, standing_;              // scratch: nodes that may buckle, and all of their islands
     Array<uint32_t> adjacency_begin_, adjacency_;  // by slot: its touches, by index in Pairs::active
 };
 

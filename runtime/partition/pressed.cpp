@@ -17,9 +17,9 @@ constexpr double kPressed = 20, kPressedBesideHeld = kPressed / 3;  // weights
 constexpr double kLeastGravity = 9.81;  // where there is less, weights are as on Earth [m/s^2]
 constexpr uint8_t kPressedFor = 10;     // frames
 
-// The impulse of a weight in a substep, over its mass [N s/kg].
+// The impulse of a weight in a frame, over its mass [N s/kg].
 double weight_of(const PartitionRules& rules) {
-    return std::max(rules.gravity.norm(), kLeastGravity) * rules.time_step / rules.substeps;
+    return std::max(rules.gravity.norm(), kLeastGravity) * rules.time_step;
 }
 
 // Counts the frames in which a contact bore more than that [N s]; whether it did so for a while.

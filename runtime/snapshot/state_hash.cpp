@@ -132,7 +132,7 @@ void add_found(Hash& hash, const FoundManifold& found, int count) {
     for (int k = 0; k < count; ++k) hash.add(found.separation[k]);
 }
 
-void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
+void add_pair(Hash& hash, const NearPair& near, const Pair& pair, uint32_t substeps) {
     if (pair.manifold.count == 0) return;
     hash.add(pair.key);
     if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
@@ -141,6 +141,7 @@ void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
     for (uint32_t word : pair.cache) hash.add(static_cast<uint64_t>(word));
     if (pair.in_block) hash.add(uint64_t{1});
     if (pair.loaded > 0) hash.add(uint64_t{2} + pair.loaded);
+    if (pair.substeps != 0 && pair.substeps != substeps) hash.add(uint64_t{pair.substeps} << 32);
     if (near.kept) add_found(hash, pair.found, pair.manifold.count);
     for (int k = 0; k < pair.manifold.count; ++k) {
         hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));
@@ -155,9 +156,9 @@ void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
         hash.add(x);
 }
 
-void add_pairs(Hash& hash, const Pairs& pairs) {
+void add_pairs(Hash& hash, const Pairs& pairs, uint32_t substeps) {
     for_near(pairs, [&](const NearPair& near) {
-        for_parts(pairs, near, [&](const Pair& pair) { add_pair(hash, near, pair); });
+        for_parts(pairs, near, [&](const Pair& pair) { add_pair(hash, near, pair, substeps); });
     });
     for (const Stay& stay : pairs.mechanisms.stays) hash.add(static_cast<uint64_t>(stay.root) << 32 | stay.frames);
 }
@@ -173,7 +174,7 @@ uint64_t state_hash(const World& world) {
     add_colliders(hash, world.colliders);
     add_joints(hash, world.joints);
     add_cables(hash, world.cables);
-    add_pairs(hash, world.pairs);
+    add_pairs(hash, world.pairs, world.def.substeps);
     for (const Block& block : world.partition.blocks) {
         hash.add(block.memory.excess_energy);
         hash.add(static_cast<uint64_t>(block.memory.guard_left) << 1 | block.memory.escalated);

@@ -30,6 +30,17 @@ void forget_impulses(Pair& pair) {
     pair.spin_slip = -1;
 }
 
+void change_substeps(Pair& pair, uint32_t substeps) {
+    if (pair.substeps == substeps) return;
+    const float factor = static_cast<float>(pair.substeps) / static_cast<float>(substeps);
+    const auto scale = [&](Impulse& impulse) {
+        for (float* each : {&impulse.normal, &impulse.tangent1, &impulse.tangent2}) *each *= factor;
+    };
+    std::for_each_n(pair.impulse, pair.manifold.count, scale);
+    scale(pair.turning);
+    pair.substeps = static_cast<uint16_t>(substeps);
+}
+
 void leave_block(Pair& pair) {
     if (!pair.in_block) return;
     pair.in_block = false;

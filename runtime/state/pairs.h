@@ -123,8 +123,9 @@ struct Pair : PairEnds {
     bool pushed = false;                    // some point was in this step, in any of its substeps
     bool answered = false;                  // the host gave this step's friction and restitution
     bool in_block = false;                  // was solved directly when it was solved last
-    uint8_t loaded = 0;  // frames in which it bore much, one after another in a small island; partition/pressed.cpp
-    uint8_t asks = 0;    // bits of contact events, kAsks: of the world and the two colliders
+    uint8_t loaded = 0;     // frames in which it bore much, one after another in a small island; partition/pressed.cpp
+    uint8_t asks = 0;       // bits of contact events, kAsks: of the world and the two colliders
+    uint16_t substeps = 0;  // that are as long as the one that its impulses are of, in a frame; 0: it has none
 
     // What find_contacts() alone asks for: the last kSought bytes.
     PointsCache cache{};
@@ -199,7 +200,7 @@ struct ActivePair {
     uint8_t loaded = 0;
     bool in_block = false;
     uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
-    float borne = 0;                  // by its points, as the frame begins [N s]: in the last substep
+    float borne = 0;                  // by its points, if they push all frame as in the last substep [N s]
     uint32_t near = 0;                // index into Pairs::near
 
     bool spans() const { return a2 != kNone || b2 != kNone; }
@@ -299,6 +300,8 @@ void give_slots(Pairs& pairs, NearPair& near);
 
 // As if the two had just met.
 void forget_impulses(Pair& pair);
+// Impulses push as hard as before in substeps of another length.
+void change_substeps(Pair& pair, uint32_t substeps);
 // Of a pair that is swept from now on. A direct solve sets hundreds of times a light body's momentum against as much
 // from its other side, and sweeps that begin with what is left of that throw it out at kilometres a second.
 void leave_block(Pair& pair);

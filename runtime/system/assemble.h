@@ -37,5 +37,7 @@ void store_joint_lanes(Team& team, const System& system);
 
 // Where the next substep has another length: forces stay, impulses become those of that length.
 void change_length(Team& team, System& system, const Group& group, double h, double frame);
+// Once a frame is over: impulses are of substeps of which so many make a frame.
+void note_substeps(const Group& group, uint32_t substeps, Pairs& pairs);
 
 }  // namespace taut

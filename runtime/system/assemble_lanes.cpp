@@ -98,7 +98,7 @@ void prefetch_pair(const LaneGroup& g, const LaneGroup* next, int lane, const Pa
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
-bool fill_group(LaneGroup& g, const LaneGroup* next, Pairs& pairs, const Nodes& nodes) {
+bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& pairs, const Nodes& nodes) {
     bool bounces = false, driven = false, turns = false, round = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         prefetch_pair(g, next, lane, pairs);
@@ -106,6 +106,7 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, Pairs& pairs, const Nodes& 
         if (g.pair[lane] != kNone) {
             Pair& pair = pairs.list[g.pair[lane]];
             leave_block(pair);
+            change_substeps(pair, substeps);
             fill_pair(g, lane, pair, nodes);
             filled = static_cast<uint32_t>(pair.manifold.count);
             bounces = bounces || pair.restitution > 0;
@@ -159,7 +160,7 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
             LaneGroup& g = lanes.group[i];
-            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, pairs, nodes))
+            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, group.substeps, pairs, nodes))
                 bounces.store(true, std::memory_order_relaxed);
             if (is_special(g))
                 special.store(true, std::memory_order_relaxed);

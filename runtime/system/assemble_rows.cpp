@@ -231,8 +231,12 @@ void make_room_for_blocks(System& system) {
 }
 
 // Of pairs that come as rows, at the beginning of a frame.
-void forget_pushes(std::span<const uint32_t> active_pairs, Pairs& pairs) {
-    for (uint32_t p : active_pairs) pairs.list[pairs.active[p].pair].pushed = false;
+void begin_rows(std::span<const uint32_t> active_pairs, uint32_t substeps, Pairs& pairs) {
+    for (uint32_t p : active_pairs) {
+        Pair& pair = pairs.list[pairs.active[p].pair];
+        pair.pushed = false;
+        change_substeps(pair, substeps);
+    }
 }
 
 }  // namespace
@@ -264,7 +268,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     reserve_room(rows.span_data, kPoints * (group.span_pairs.size() + group.direct_pairs.size()));
     reserve_room(rows.rolling_data, whole);
     for (const Array<uint32_t>* as_rows : {&group.pairs, &group.span_pairs, &group.direct_pairs})
-        if (contacts_as_rows || as_rows != &group.pairs) forget_pushes(*as_rows, pairs);
+        if (contacts_as_rows || as_rows != &group.pairs) begin_rows(*as_rows, group.substeps, pairs);
     if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
     for (const uint32_t p : group.span_pairs) leave_block(pairs.list[pairs.active[p].pair]);
     for (const uint32_t p : group.direct_pairs) pairs.list[pairs.active[p].pair].in_block = true;

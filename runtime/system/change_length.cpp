@@ -31,4 +31,10 @@ void change_length(Team& team, System& system, const Group& group, double h, dou
     build_joint_lanes(team, system, group, frame);
 }
 
+void note_substeps(const Group& group, uint32_t substeps, Pairs& pairs) {
+    if (substeps == group.substeps) return;
+    for (const Array<uint32_t>* list : {&group.pairs, &group.span_pairs, &group.direct_pairs})
+        for (const uint32_t p : *list) pairs.list[pairs.active[p].pair].substeps = static_cast<uint16_t>(substeps);
+}
+
 }  // namespace taut

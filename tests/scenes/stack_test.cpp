@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Scene, Stands,
                                          Standing{"pyramid7", 1, 0.01}, Standing{"pyramid8", 1, 0.01},
                                          Standing{"pyramid9", 1, 0.01}, Standing{"pyramid10", 1, 0.01},
                                          Standing{"pyramid13", 1, 0.01}, Standing{"pyramid30", 1, 0.01},
-                                         Standing{"heavy_on_light_r10", 1, 0.01}),
+                                         Standing{"pyramid40", 1, 0.01}, Standing{"heavy_on_light_r10", 1, 0.01}),
                          [](const auto& tested) { return tested.param.scene; });
 
 // Made 0.2 m inside the ground: the push must not throw it out.

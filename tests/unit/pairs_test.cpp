@@ -110,5 +110,23 @@ TEST(Pair, LeavesABlockWithoutItsImpulses) {
     for (const Impulse& impulse : swept.impulse) EXPECT_EQ(impulse.normal, 500);
 }
 
+TEST(Pair, PushesAsHardInSubstepsOfAnotherLength) {
+    Pair pair;
+    pair.manifold.count = 2;
+    pair.impulse[1] = {6, 4, -2, 0.5f};
+    pair.turning.tangent2 = 12;
+    change_substeps(pair, 4);
+    EXPECT_EQ(pair.impulse[1].normal, 0) << "it had no length";
+    pair.impulse[1] = {6, 4, -2, 0.5f};
+    pair.turning.tangent2 = 12;
+    change_substeps(pair, 8);
+    EXPECT_EQ(pair.substeps, 8);
+    EXPECT_EQ(pair.impulse[1].normal, 3);
+    EXPECT_EQ(pair.impulse[1].tangent1, 2);
+    EXPECT_EQ(pair.impulse[1].tangent2, -1);
+    EXPECT_EQ(pair.impulse[1].slip, 0.5f);
+    EXPECT_EQ(pair.turning.tangent2, 6);
+}
+
 }  // namespace
 }  // namespace taut::test

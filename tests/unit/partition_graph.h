@@ -57,10 +57,11 @@ struct Graph {
         for (uint32_t i = 0; i < touching.size(); ++i) {
             if (i == pairs.list.size()) pairs.list.emplace_back();
             pairs.list[i] = touching[i];
-            ActivePair& active = pairs.active.emplace_back(ActivePair{touching[i].a, touching[i].b, i, 1});
+            const auto points = static_cast<uint8_t>(touching[i].manifold.count);
+            ActivePair& active = pairs.active.emplace_back(ActivePair{touching[i].a, touching[i].b, i, points});
             active.loaded = touching[i].loaded;
             active.in_block = touching[i].in_block;
-            active.borne = touching[i].impulse[0].normal;
+            active.borne = touching[i].impulse[0].normal * static_cast<float>(touching[i].substeps);
         }
     }
     void build() {

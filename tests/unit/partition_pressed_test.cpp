@@ -85,9 +85,11 @@ struct Row {
     }
     // From one contact on to before another [N].
     void bear(size_t from, size_t to, double force) const {
-        for (size_t i = from; i < to; ++i)
-            of.touching[first + i].impulse[0].normal =
-                static_cast<float>(force * of.rules.time_step / of.rules.substeps);
+        for (size_t i = from; i < to; ++i) {
+            Pair& pair = of.touching[first + i];
+            pair.substeps = static_cast<uint16_t>(of.rules.substeps);
+            pair.impulse[0].normal = static_cast<float>(force * of.rules.time_step / of.rules.substeps);
+        }
     }
 
     Graph& of;
