@@ -81,7 +81,7 @@ void Partition::find_walls(const Nodes& nodes, const Pairs& pairs, double sag, c
     reserve_more(standing_, graph_.movers.size());
     std::ranges::copy_if(graph_.movers, std::back_inserter(standing_),
                          [&](uint32_t node) { return island_[island_of_[node]].weak; });
-    for (const Walls::Row& row : walls_.find_rows(graph_, adjacent(), nodes, pairs, standing_, weak_, up)) {
+    for (const Walls::Row& row : walls_.find_rows({graph_, adjacent(), nodes, pairs, standing_, up}, weak_)) {
         const double tall = row.weights() * row.column, bond = row.bonded ? kBond : 1;
         float& stiffness = island_[island_of_[row.node]].stiffness;
         stiffness = std::max(stiffness, static_cast<float>(sag * tall * std::sqrt(tall) / (bond * row.footing)));

@@ -3,12 +3,22 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "state/joints.h"
 #include "state/pairs.h"
 #include "threads/team.h"
 
 namespace taut {
+
+// Touches of each node, by slot: index in TouchGraph::touches, as in Pairs::active.
+struct Adjacency {
+    std::span<const uint32_t> begin, touches;
+
+    std::span<const uint32_t> of(uint32_t node) const {
+        return touches.subspan(begin[node], begin[node + 1] - begin[node]);
+    }
+};
 
 class TouchGraph {
 public:

@@ -18,79 +18,77 @@ constexpr uint32_t kHeld = 4;      // one in so many of a column may have a neig
 constexpr float kCosine[] = {
     1, 0.98078528f, 0.92387953f, 0.83146961f, 0.70710678f, 0.55557023f, 0.38268343f, 0.19509032f, 0};
 
-// 32 horizontal ways, by their components along two axes.
-struct Compass {
-    Vec3f axis[2];
-    std::array<float, 32> x, y;
+}  // namespace
 
-    explicit Compass(const Vec3f& up) {
-        axis[0] = tangent_of(up);
-        axis[1] = up.cross(axis[0]);
-        for (uint32_t i = 0; i < 8; ++i) {
-            const float c = kCosine[i], s = kCosine[8 - i];
+// Horizontal ways, by their components along two axes.
+struct Walls::Compass {
+    Vec3f axis[2];
+    std::array<float, kWays> x, y;
+
+    explicit Compass(const Vec3f& up) : axis{tangent_of(up), up.cross(tangent_of(up))} {
+        for (uint32_t i = 0; i < kWays / 4; ++i) {
+            const float c = kCosine[i], s = kCosine[kWays / 4 - i];
             x[i] = c, y[i] = s;
-            x[i + 8] = -s, y[i + 8] = c;
-            x[i + 16] = -c, y[i + 16] = -s;
-            x[i + 24] = s, y[i + 24] = -c;
+            x[i + kWays / 4] = -s, y[i + kWays / 4] = c;
+            x[i + kWays / 2] = -c, y[i + kWays / 2] = -s;
+            x[i + 3 * kWays / 4] = s, y[i + 3 * kWays / 4] = -c;
         }
     }
-    // Closes those into which a neighbour reaches; way: to it, horizontal unit vector along the axes.
-    template <class Open>
+    // Closes those into which a neighbour reaches, on the way (x, y) of unit length.
     void close(float way_x, float way_y, Open& open) const {
-        for (uint32_t i = 0; i < open.size(); ++i)
-            open[i] = x[i] * way_x + y[i] * way_y > kOpen ? uint16_t{0} : open[i];
+        for (uint32_t i = 0; i < kWays; ++i) open[i] = x[i] * way_x + y[i] * way_y > kOpen ? uint16_t{0} : open[i];
     }
 };
 
-}  // namespace
-
 Walls::Walls(Memory& memory) : body_(memory), open_(memory), upper_(memory), order_(memory), rows_(memory) {}
 
-std::span<const Walls::Row> Walls::find_rows(const TouchGraph& graph, const Adjacency& adjacent, const Nodes& nodes,
-                                             const Pairs& pairs, std::span<const uint32_t> standing,
-                                             std::span<const uint32_t> bodies, const Vec3f& up) {
-    look(graph, adjacent, pairs, standing, up);
-    load(graph, adjacent, nodes, standing);
-    list_rows(nodes, bodies);
+std::span<const Walls::Row> Walls::find_rows(const Site& site, std::span<const uint32_t> of) {
+    begin(site);
+    const Compass compass(site.up);
+    for (const uint32_t node : site.bodies)
+        for (const uint32_t p : site.adjacent.of(node)) {
+            const auto& [a, b] = site.graph.touches[p];
+            if (node == a || a == kNone) look(site, compass, node, p);  // once each
+        }
+    bear(site);
+    lay_courses(site);
+    list_rows(site.nodes, of);
     return rows_;
 }
 
-// Who stands on whom, and who is beside whom.
-void Walls::look(const TouchGraph& graph, const Adjacency& adjacent, const Pairs& pairs,
-                 std::span<const uint32_t> standing, const Vec3f& up) {
-    const Compass compass(up);
-    body_.resize(graph.moves.size());
-    open_.resize(graph.moves.size());
-    upper_.resize(graph.touches.size());
-    for (const uint32_t node : standing) {
+void Walls::begin(const Site& site) {
+    body_.resize(site.graph.moves.size());
+    open_.resize(site.graph.moves.size());
+    upper_.resize(site.graph.touches.size());
+    for (const uint32_t node : site.bodies) {
         body_[node] = {};
         body_[node].bond = node;
         open_[node].fill(1);
     }
-    for (const uint32_t node : standing)
-        for (const uint32_t p : adjacent.of(node)) {
-            const auto& [a, b] = graph.touches[p];
-            if (node == b && a != kNone) continue;  // by its other end
-            const Vec3f& normal = pairs.list[pairs.active[p].pair].manifold.normal;
-            const Vec3f way = pairs.active[p].a == node ? normal : Vec3f(-normal);
-            const float rise = way.dot(up);
-            const uint32_t other = graph.touches[p].other(node);
-            upper_[p] = kNone;
-            if (std::abs(rise) > kUpright && pairs.active[p].points >= kStands) {
-                upper_[p] = rise > 0 ? other : node;
-                if (upper_[p] != kNone) ++body_[upper_[p]].bases;
-                if (const uint32_t base = base_of(graph, upper_[p], p); base != kNone) ++body_[base].waits_for;
-            }
-            const float x = way.dot(compass.axis[0]), y = way.dot(compass.axis[1]), beside = std::sqrt(x * x + y * y);
-            if (beside <= kSideways) continue;
-            compass.close(x / beside, y / beside, open_[node]);
-            if (other != kNone) compass.close(-x / beside, -y / beside, open_[other]);
-        }
+}
+
+// By a touch: which end stands on the other, or that they are beside each other.
+void Walls::look(const Site& site, const Compass& compass, uint32_t node, uint32_t touch) {
+    const ActivePair& pair = site.pairs.active[touch];
+    const Vec3f& normal = site.pairs.list[pair.pair].manifold.normal;
+    const Vec3f way = pair.a == node ? normal : Vec3f(-normal);
+    const uint32_t other = site.graph.touches[touch].other(node);
+    const float rise = way.dot(site.up);
+    upper_[touch] = kNone;
+    if (std::abs(rise) > kUpright && pair.points >= kStands) {
+        const uint32_t upper = upper_[touch] = rise > 0 ? other : node;
+        if (upper != kNone) ++body_[upper].bases;
+        if (const uint32_t base = base_of(site, upper, touch); base != kNone) ++body_[base].waits_for;
+    }
+    const float x = way.dot(compass.axis[0]), y = way.dot(compass.axis[1]), beside = std::sqrt(x * x + y * y);
+    if (beside <= kSideways) return;
+    compass.close(x / beside, y / beside, open_[node]);
+    if (other != kNone) compass.close(-x / beside, -y / beside, open_[other]);
 }
 
 // What a body stands on by a touch; kNone: no body, or it does not.
-uint32_t Walls::base_of(const TouchGraph& graph, uint32_t node, uint32_t touch) const {
-    return node != kNone && upper_[touch] == node ? graph.touches[touch].other(node) : kNone;
+uint32_t Walls::base_of(const Site& site, uint32_t node, uint32_t touch) const {
+    return node != kNone && upper_[touch] == node ? site.graph.touches[touch].other(node) : kNone;
 }
 
 uint32_t Walls::root_of(uint32_t node) {
@@ -98,64 +96,77 @@ uint32_t Walls::root_of(uint32_t node) {
     return node;
 }
 
-// From the top down what bodies bear, from the bottom up their courses.
-void Walls::load(const TouchGraph& graph, const Adjacency& adjacent, const Nodes& nodes,
-                 std::span<const uint32_t> standing) {
+// From the top down.
+void Walls::bear(const Site& site) {
     order_.clear();
-    reserve_more(order_, standing.size());
-    for (const uint32_t node : standing)
+    reserve_more(order_, site.bodies.size());
+    for (const uint32_t node : site.bodies)
         if (body_[node].waits_for == 0) order_.push_back(node);
     for (size_t i = 0; i < order_.size(); ++i) {
         const uint32_t node = order_[i];
-        Body& body = body_[node];
-        body.borne += nodes.mass[node].mass;
-        if (body.above != kNone)
+        body_[node].borne += site.nodes.mass[node].mass;
+        if (const uint32_t above = body_[node].above; above != kNone)
             for (uint32_t k = 0; k < kWays; ++k)
-                open_[node][k] = static_cast<uint16_t>(open_[node][k] + open_[body.above][k]);
-        for (const uint32_t p : adjacent.of(node)) {
-            const uint32_t base = base_of(graph, node, p);
-            if (base == kNone) continue;
-            Body& below = body_[base];
-            below.borne += body.borne / body.bases;
-            if (body.column >= below.column) {
-                below.column = body.column + 1;
-                below.above = node;
-            }
-            if (body.bases > 1)
-                body_[std::max(root_of(node), root_of(base))].bond = std::min(root_of(node), root_of(base));
-            if (--below.waits_for == 0) order_.push_back(base);
-        }
+                open_[node][k] = static_cast<uint16_t>(open_[node][k] + open_[above][k]);
+        for (const uint32_t p : site.adjacent.of(node))
+            if (const uint32_t base = base_of(site, node, p); base != kNone) put_on(base, node);
     }
+}
+
+void Walls::put_on(uint32_t base, uint32_t upper) {
+    const Body& body = body_[upper];
+    Body& below = body_[base];
+    below.borne += body.borne / body.bases;
+    if (body.column >= below.column) {
+        below.column = body.column + 1;
+        below.above = upper;
+    }
+    if (body.bases > 1) {
+        const uint32_t one = root_of(upper), other = root_of(base);
+        body_[std::max(one, other)].bond = std::min(one, other);
+    }
+    if (--below.waits_for == 0) order_.push_back(base);
+}
+
+// From the bottom up.
+void Walls::lay_courses(const Site& site) {
     for (size_t i = order_.size(); i-- > 0;)
-        for (const uint32_t p : adjacent.of(order_[i]))
-            if (const uint32_t base = base_of(graph, order_[i], p); base != kNone)
-                body_[order_[i]].course = std::max(body_[order_[i]].course, body_[base].course + 1);
+        for (const uint32_t p : site.adjacent.of(order_[i])) {
+            const uint32_t base = base_of(site, order_[i], p);
+            uint32_t& course = body_[order_[i]].course;
+            if (base != kNone) course = std::max(course, body_[base].course + 1);
+        }
 }
 
-bool Walls::may_lean_out(uint32_t node) const {
-    const uint32_t column = body_[node].column, least = column - column / kHeld;
-    return std::ranges::any_of(open_[node], [&](uint16_t open) { return open >= least; });
+bool Walls::may_lean_out(const Body& body, const Open& open) const {
+    const uint32_t least = body.column - body.column / kHeld;
+    return std::ranges::any_of(open, [&](uint16_t bodies) { return bodies >= least; });
 }
 
-// Of what is bonded one row a course.
-void Walls::list_rows(const Nodes& nodes, std::span<const uint32_t> bodies) {
-    for (const uint32_t node : bodies) {
+// Of what is bonded with these one row a course; returns how many.
+uint32_t Walls::make_room(std::span<const uint32_t> of) {
+    for (const uint32_t node : of) {
         Body& root = body_[root_of(node)];
         root.courses = std::max(root.courses, body_[node].course);
     }
     uint32_t count = 0;
-    for (const uint32_t node : bodies) {
+    for (const uint32_t node : of) {
         Body& root = body_[root_of(node)];
         if (root.courses == 0) continue;
         root.first_row = count;
         count += std::exchange(root.courses, 0);
     }
+    return count;
+}
+
+void Walls::list_rows(const Nodes& nodes, std::span<const uint32_t> of) {
+    const uint32_t count = make_room(of);
     rows_.clear();
     reserve_more(rows_, count);
     rows_.resize(count);
-    for (const uint32_t node : bodies) {
+    for (const uint32_t node : of) {
         const Body& body = body_[node];
-        if (body.bases == 0 || !may_lean_out(node)) continue;
+        if (body.bases == 0 || !may_lean_out(body, open_[node])) continue;
         Row& row = rows_[body_[root_of(node)].first_row + body.course - 1];
         const double own = footing(nodes.mass[node]);
         row.footing = row.node == kNone ? own : std::min(row.footing, own);

@@ -13,19 +13,19 @@
 
 namespace taut {
 
-// Touches by slot of a node: index in TouchGraph::touches, as in Pairs::active.
-struct Adjacency {
-    std::span<const uint32_t> begin, touches;
-
-    std::span<const uint32_t> of(uint32_t node) const {
-        return touches.subspan(begin[node], begin[node + 1] - begin[node]);
-    }
-};
-
 class Walls {
 public:
     explicit Walls(Memory& memory);
 
+    // What stands in some islands.
+    struct Site {
+        const TouchGraph& graph;
+        Adjacency adjacent;
+        const Nodes& nodes;
+        const Pairs& pairs;
+        std::span<const uint32_t> bodies;  // all of theirs
+        Vec3f up;                          // unit vector against gravity
+    };
     // Bodies of a course that may lean out.
     struct Row {
         uint32_t node = kNone;       // one of them
@@ -37,10 +37,8 @@ public:
         // That each bears on average; of what is heavy, which has rules of its own, no more than twice the column.
         double weights() const { return std::min(borne / mass, 2.0 * column); }
     };
-    // Of bodies; all of their islands are in `standing`. up: unit vector against gravity.
-    std::span<const Row> find_rows(const TouchGraph& graph, const Adjacency& adjacent, const Nodes& nodes,
-                                   const Pairs& pairs, std::span<const uint32_t> standing,
-                                   std::span<const uint32_t> bodies, const Vec3f& up);
+    // Of some of the bodies.
+    std::span<const Row> find_rows(const Site& site, std::span<const uint32_t> of);
 
 private:
     static constexpr uint32_t kWays = 32;  // horizontal, 11.25 degrees apart
@@ -59,13 +57,17 @@ private:
         uint32_t first_row = 0;  // and where its rows begin
     };
 
-    void look(const TouchGraph& graph, const Adjacency& adjacent, const Pairs& pairs,
-              std::span<const uint32_t> standing, const Vec3f& up);
-    void load(const TouchGraph& graph, const Adjacency& adjacent, const Nodes& nodes,
-              std::span<const uint32_t> standing);
-    void list_rows(const Nodes& nodes, std::span<const uint32_t> bodies);
-    bool may_lean_out(uint32_t node) const;
-    uint32_t base_of(const TouchGraph& graph, uint32_t node, uint32_t touch) const;
+    struct Compass;
+
+    void begin(const Site& site);
+    void look(const Site& site, const Compass& compass, uint32_t node, uint32_t touch);
+    void bear(const Site& site);
+    void put_on(uint32_t base, uint32_t upper);
+    void lay_courses(const Site& site);
+    uint32_t make_room(std::span<const uint32_t> of);
+    void list_rows(const Nodes& nodes, std::span<const uint32_t> of);
+    bool may_lean_out(const Body& body, const Open& open) const;
+    uint32_t base_of(const Site& site, uint32_t node, uint32_t touch) const;
     uint32_t root_of(uint32_t node);
 
     Array<Body> body_;       // by slot
