@@ -73,7 +73,7 @@ struct Masonry : Graph {
 
 struct MasonryWalls : testing::Test, Masonry {};
 
-// s = 0.8 / 1.5 g h^2 n^3 / b, h = 1/240 s: 0.91, 1.2, 2.9, 4.5 and 12.7; substeps^2 / 16 is no less.
+// s = 0.8 / 1.5 g h^2 n^3 / b, h = 1/240 s: 0.91, 1.2, 2.0, 3.1, 4.5, 12.6, 58; substeps^2 / 16 is no less, up to 16.
 TEST_F(MasonryWalls, ColumnsOfABlockTakeWhatTheyNeed) {
     for (const auto& [height, substeps] :
          {std::pair(10u, 4u), {11u, 6u}, {13u, 6u}, {15u, 8u}, {17u, 12u}, {24u, 16u}, {40u, 16u}}) {
