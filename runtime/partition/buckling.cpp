@@ -2,6 +2,8 @@
 // their own weight.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "partition/footing.h"
 #include "partition/partition.h"

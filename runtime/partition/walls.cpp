@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "partition/footing.h"
 
@@ -138,7 +139,7 @@ void Walls::lay_courses(const Site& site) {
         }
 }
 
-bool Walls::may_lean_out(const Body& body, const Open& open) const {
+bool Walls::may_lean_out(const Body& body, const Open& open) {
     const uint32_t least = body.column - body.column / kHeld;
     return std::ranges::any_of(open, [&](uint16_t bodies) { return bodies >= least; });
 }

@@ -66,7 +66,7 @@ private:
     void lay_courses(const Site& site);
     uint32_t make_room(std::span<const uint32_t> of);
     void list_rows(const Nodes& nodes, std::span<const uint32_t> of);
-    bool may_lean_out(const Body& body, const Open& open) const;
+    static bool may_lean_out(const Body& body, const Open& open);
     uint32_t base_of(const Site& site, uint32_t node, uint32_t touch) const;
     uint32_t root_of(uint32_t node);
 

@@ -34,18 +34,22 @@ struct Site {
     }
 };
 
-// In running bond, not quite in line, whichever way it runs; half bricks at its ends.
-void lay_wall(Site& site, const Vec& half, int courses, int length, std::mt19937& random) {
-    const double turn = between(random, 0, 3);
+// In running bond, not quite in line; half bricks at its ends.
+void lay_bond(Site& site, const Vec& half, int courses, int length, double turn, std::mt19937& random) {
     for (int course = 0; course < courses; ++course)
         for (int i = 0; i < length + course % 2; ++i) {
             const bool at_end = course % 2 && (i == 0 || i == length);
             const double along = 2 * half.x * (i - 0.5 * (course % 2)) + (at_end ? (i == 0 ? 0.5 : -0.5) * half.x : 0);
-            const Vec off(along + between(random, -0.01, 0.01) * half.x, half.y * (1 + 2 * course),
-                          between(random, -0.05, 0.05) * half.z);
+            const Vec off{along + between(random, -0.01, 0.01) * half.x, half.y * (1 + 2 * course),
+                          between(random, -0.05, 0.05) * half.z};
             site.lay({(at_end ? 0.49 : 0.98) * half.x, half.y, half.z}, Quat::turn({0, 1, 0}, turn).rotate(off),
                      Quat::turn({0, 1, 0}, turn + between(random, -0.01, 0.01)));
         }
+}
+
+// Whichever way it runs.
+void lay_wall(Site& site, const Vec& half, int courses, int length, std::mt19937& random) {
+    lay_bond(site, half, courses, length, between(random, 0, 3), random);
 }
 
 // Columns that nothing bonds.
@@ -60,13 +64,8 @@ void lay_block(Site& site, const Vec& half, int courses, int length, std::mt1993
 }
 
 // Between two posts, which hold it by its ends alone.
-void lay_filling(Site& site, const Vec& half, int courses, int length, std::mt19937&) {
-    for (int course = 0; course < courses; ++course)
-        for (int i = 0; i < length + course % 2; ++i) {
-            const bool at_end = course % 2 && (i == 0 || i == length);
-            const double along = 2 * half.x * (i - 0.5 * (course % 2)) + (at_end ? (i == 0 ? 0.5 : -0.5) * half.x : 0);
-            site.lay({(at_end ? 0.4995 : 0.9995) * half.x, half.y, half.z}, {along, half.y * (1 + 2 * course), 0}, {});
-        }
+void lay_filling(Site& site, const Vec& half, int courses, int length, std::mt19937& random) {
+    lay_bond(site, half, courses, length, 0, random);
     for (const double x : {-half.x - 0.5, half.x * (2 * length - 1) + 0.5})
         site.world.add({.kind = TAUT_BODY_STATIC, .shape = site.world.box({0.5, 5, 0.5}), .position = {x, 5, 0}});
 }
