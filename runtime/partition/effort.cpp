@@ -13,6 +13,8 @@ namespace {
 constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
 
+constexpr float kMostStiffness = 16;  // that more substeps give
+
 // How many times the substeps, in halves, for contacts so much stiffer: stiffness grows with the square of substeps.
 uint32_t halves_for(float stiffness) {
     uint32_t halves = 2;
@@ -64,10 +66,12 @@ void Partition::find_loads(const Nodes& nodes) {
     }
 }
 
-// Islands without joints in which weight rests on what sweeps cannot hold.
-void Partition::find_towers() {
+// Islands without joints in which weight rests on what sweeps cannot hold, however many substeps they may take.
+void Partition::find_towers(const PartitionRules& rules) {
+    const float most = rules.fixed ? 1 : kMostStiffness;
     for (Island& island : island_) {
-        const bool hard = island.ratio >= kHeavyOnLight || island.slender;
+        const bool buckles = island.may_be_column && island.stiffness > most;
+        const bool hard = island.ratio >= kHeavyOnLight || buckles;
         island.tower = !island.jointed && island.nodes <= kMostTower && hard;
     }
 }
@@ -83,8 +87,6 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         }
         if (island.ratio >= kHeavyOnLight && !island.jointed)
             halves = 8;
-        else if (island.slender)
-            halves = std::max(halves, 4u);
         else if (island.levels > kSwayingLevels)
             island.sweeps = rules.fixed ? 1 : 2;
         island.substeps = rules.fixed ? rules.substeps : (rules.substeps * halves + 1) / 2;

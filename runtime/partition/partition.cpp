@@ -76,10 +76,10 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pair
         throw;
     }
     find_loads(nodes);
-    find_slender(nodes, pairs, rules);
+    find_columns(nodes, pairs, rules);
     for (Island& island : island_) island.tower = false;
     if (rules.direct) {
-        find_towers();
+        find_towers(rules);
         find_pressed(nodes, pairs, rules);
     }
     const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });

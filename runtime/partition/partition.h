@@ -122,11 +122,10 @@ private:
         bool jointed = false;
         // Of the frame.
         uint32_t substeps = 0, sweeps = 1, group = 0;
-        float ratio = 1;             // heaviest load over its support, where any is kHeavyOnLight
-        float stiffness = 1;         // that contacts need to hold its walls, in parts of what the world's substeps give
-        bool slender = false;        // a column that sweeps of the world's substeps cannot hold
-        bool rises = false;          // high enough for some body in the world to buckle
-        bool may_be_column = false;  // of its own, which a block may hold
+        float ratio = 1;      // heaviest load over its support, where any is kHeavyOnLight
+        float stiffness = 1;  // that contacts need to hold its columns, in parts of what the world's substeps give
+        bool rises = false;   // high enough for some body in the world to buckle
+        bool may_be_column = false;  // one as a whole, which a block may hold
         bool weak = false;           // has bodies in weak_
         bool squeezed = false;       // by something kinematic, harder than sweeps hold
         bool tower = false, whips = false;
@@ -167,9 +166,9 @@ private:
     void note_ties();
     void number_islands();
     void find_loads(const Nodes& nodes);
-    void find_slender(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
+    void find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     void find_walls(const Nodes& nodes, const Pairs& pairs, double sag, const Vec3f& up);
-    void find_towers();
+    void find_towers(const PartitionRules& rules);
     void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
     Vec3f normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const;
     void add_press(const Press& press);

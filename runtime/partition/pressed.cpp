@@ -12,10 +12,18 @@ constexpr float kPress = 0.5f;  // cosine: a body between two others is pushed b
 // A contact between bodies that bears twenty times the weight of the lighter is taken in as one with a body of ten
 // times its mass is, whatever presses: swept, a box of .2 kg sinks in by 3.5 mm under 50 N, and by 7 cm under 1 kN.
 // Where one of the two is held already a third is enough, lest some of a row be swept. After so many frames, as blows
-// are over sooner: after six, boxes of a pile that landed were in blocks, and with half the load all its columns.
-constexpr double kPressed = 20, kPressedBesideHeld = kPressed / 3;  // weights
+// are over sooner: after six, boxes of a pile that landed were in blocks, and with half the load all its columns. What
+// stands high bears as many weights itself, and twice that as it lands.
+constexpr double kPressed = 20;       // weights, or
+constexpr double kPressedByBody = 2;  // so many for each body of the island
+constexpr double kBesideHeld = 1.0 / 3;
 constexpr double kLeastGravity = 9.81;  // where there is less, weights are as on Earth [m/s^2]
 constexpr uint8_t kPressedFor = 10;     // frames
+
+// How many weights of the lighter body are too much.
+double most_weights(uint32_t bodies, bool beside_held) {
+    return std::max(kPressed, kPressedByBody * bodies) * (beside_held ? kBesideHeld : 1);
+}
 
 // The impulse of a weight in a frame, over its mass [N s/kg].
 double weight_of(const PartitionRules& rules) {
@@ -58,14 +66,14 @@ void Partition::find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRu
     std::fill(pressed_.begin(), pressed_.end(), 0);
     note_held(nodes, pairs);
     find_squeezed(nodes, pairs, weight);
-    const double least = kPressedBesideHeld * lightest_ * weight;
+    const double least = most_weights(0, true) * lightest_ * weight;
     for (const uint32_t p : small_) {
         const auto& [a, b] = graph_.touches[p];
         const ActivePair& pair = pairs.active[p];
         if (a == kNone || b == kNone || pair.spans()) continue;
         if (!heavy_on_light_ && static_cast<double>(pair.borne) <= least && pair.loaded == 0) continue;
         const uint32_t light = nodes.mass[a].mass < nodes.mass[b].mass ? a : b, heavy = a + b - light;
-        const double most = core_[a] || core_[b] ? kPressedBesideHeld : kPressed;
+        const double most = most_weights(island_[island_of_[a]].nodes, core_[a] || core_[b]);
         const bool bore = bears(pairs, pairs.active[p], most * nodes.mass[light].mass * weight);
         const bool loaded = bore && !island_[island_of_[a]].squeezed;
         if (loaded || is_heavy_on(nodes, heavy, light))
@@ -95,9 +103,9 @@ void Partition::find_squeezed(const Nodes& nodes, Pairs& pairs, double weight) {
         const ActivePair& pair = pairs.active[p];
         const uint32_t pushed = a == kNone ? b : a, by = pair.a == pushed ? pair.b : pair.a;
         if (nodes.info[by].kind != NodeKind::kinematic) continue;
-        const double most = core_[pushed] ? kPressedBesideHeld : kPressed;
-        if (bears(pairs, pairs.active[p], most * nodes.mass[pushed].mass * weight))
-            island_[island_of_[pushed]].squeezed = true;
+        Island& island = island_[island_of_[pushed]];
+        const double most = most_weights(island.nodes, core_[pushed]);
+        if (bears(pairs, pairs.active[p], most * nodes.mass[pushed].mass * weight)) island.squeezed = true;
     }
 }
 

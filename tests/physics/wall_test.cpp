@@ -13,7 +13,7 @@ struct Site {
     std::vector<taut_body> bricks;
     std::vector<Vec> laid;
 
-    Site() { world.add_ground(0.6); }
+    explicit Site(const std::function<void(taut_world_def&)>& change = {}) : world(change) { world.add_ground(0.6); }
     void lay(const Vec& half, const Vec& at, const Quat& rotation) {
         bricks.push_back(world.add({.shape = world.box(half),
                                     .position = at,
@@ -103,7 +103,44 @@ INSTANTIATE_TEST_SUITE_P(Masonry, Laying,
                                          Laid{"BetweenPosts", lay_filling, {0.1, 0.05, 0.05}, 20, 20}),
                          [](const auto& tested) { return tested.param.name; });
 
-// Cubes that fall into a bin are held by each other.
+// Columns of cubes that fall on the ground side by side are swept, at any frame rate: direct solves of them all would
+// take ten times as long, and ten times that as they land.
+struct Columns {
+    const char* name;
+    double side;  // [m]
+    uint32_t height;
+    float rate;  // [Hz]
+};
+void PrintTo(const Columns& columns, std::ostream* out) { *out << columns.name; }
+
+class Dropped : public testing::TestWithParam<Columns> {};
+
+TEST_P(Dropped, AreSwept) {
+    const auto& [name, side, height, rate] = GetParam();
+    constexpr int kRow = 7;
+    std::mt19937 random(1);
+    Site site([rate = rate](taut_world_def& def) { def.time_step = 1 / rate; });
+    for (uint32_t layer = 0; layer < height; ++layer)
+        for (int i = 0; i < kRow * kRow; ++i)
+            site.lay({0.5 * side, 0.5 * side, 0.5 * side},
+                     {1.36 * side * (i % kRow), (1.2 + 1.6 * layer) * side, 1.36 * side * (i / kRow)},
+                     Quat::turn(direction(random), between(random, 0, 0.3)));
+    uint32_t solves = 0, substeps = 0;
+    for (int frame = 0; frame < static_cast<int>(4 * rate); ++frame) {
+        site.world.step();
+        solves += site.world.profile().solves;
+        substeps += site.world.profile().substeps;
+    }
+    EXPECT_LE(solves, substeps) << "one column or two, for a while";
+}
+
+INSTANTIATE_TEST_SUITE_P(Columns, Dropped,
+                         testing::Values(Columns{"OfTen", 0.5, 10, 60}, Columns{"OfTenAtThirtyHertz", 0.5, 10, 30},
+                                         Columns{"OfThirteen", 0.5, 13, 60}, Columns{"OfSixteen", 0.5, 16, 60},
+                                         Columns{"OfTenSmallCubes", 0.1, 10, 60}),
+                         [](const auto& tested) { return tested.param.name; });
+
+// Cubes that fall into a bin are held by each other, but for columns of some that meet in the air.
 TEST(Heap, OfSmallCubesTakesNoMoreSubsteps) {
     std::mt19937 random(1);
     Site site;
@@ -118,8 +155,9 @@ TEST(Heap, OfSmallCubesTakesNoMoreSubsteps) {
     for (int i = 0; i < 900; ++i)
         site.lay({kHalf, kHalf, kHalf}, {between(random, -0.3, 0.3), 0.1 + 0.015 * i, between(random, -0.3, 0.3)},
                  Quat::turn({0, 1, 0}, between(random, 0, 3)));
+    site.world.step(60);
     int more = 0;
-    for (int frame = 0; frame < 300; ++frame) {
+    for (int frame = 60; frame < 300; ++frame) {
         site.world.step();
         more += site.world.profile().substeps > 4;
     }

@@ -160,8 +160,18 @@ TEST_F(PressedBodies, BringInWhatBearsAThirdBesideThem) {
     EXPECT_EQ(block_holds(), 0u);
 }
 
+// A column of fifteen bears as many weights where it stands, and twice that as it lands.
+TEST_F(PressedBodies, OfManyBearTwiceTheirWeight) {
+    const Row row(*this, add(NodeKind::dynamic), 14, 15 * 19);
+    for (int frame = 0; frame < 2 * kFrames; ++frame) build();
+    EXPECT_TRUE(partition.blocks.empty());
+    row.bear(0, 15, 15 * 20);
+    for (int frame = 0; frame < kFrames; ++frame) build();
+    EXPECT_EQ(partition.blocks.size(), 1u);
+}
+
 TEST_F(PressedBodies, OfLargeIslandsAreSwept) {
-    const Row row(*this, add(NodeKind::dynamic), 61, kHard);
+    const Row row(*this, add(NodeKind::dynamic), 61, 10 * kHard);
     for (int frame = 0; frame < 2 * kFrames; ++frame) build();
     EXPECT_TRUE(partition.blocks.empty());
 }

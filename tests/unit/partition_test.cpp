@@ -245,29 +245,8 @@ TEST_F(PartitionTest, AFixedHubNeedsOneColour) {
 
 // ---------------------------------------------------------------- substeps
 
-TEST_F(PartitionTest, TowersOfManyLevelsAreBlocks) {
-    const std::vector<uint32_t> low = tower(12), tall = tower(13), taller = tower(60), too_tall = tower(61);
-    build();
-    ASSERT_EQ(partition.blocks.size(), 2u);
-    for (const Block& block : partition.blocks) {
-        EXPECT_TRUE(block.tower);
-        EXPECT_EQ(block.pairs.size(), block.nodes.size());
-        EXPECT_EQ(block.links.size(), block.nodes.size() - 1) << "the ground is no node";
-    }
-    EXPECT_EQ(partition.blocks[0].nodes.size(), 13u);
-    EXPECT_EQ(partition.blocks[1].nodes.size(), 60u);
-    EXPECT_EQ(substeps_of(low[0]), 4u);
-    EXPECT_EQ(substeps_of(tall[0]), 4u);
-    EXPECT_EQ(substeps_of(too_tall[0]), 8u) << "swept";
-    EXPECT_EQ(partition.group_count, 3u) << "the low one is swept twice as often as the blocks";
-    rules.fixed = true;
-    build();
-    EXPECT_EQ(substeps_of(too_tall[0]), 4u);
-    EXPECT_EQ(partition.group_count, 1u);
-}
-
-// As tall, but five bodies a level lean on each other.
-TEST_F(PartitionTest, WidePilesDoNot) {
+// Where nothing weighs anything, nothing buckles.
+TEST_F(PartitionTest, PilesWithoutWeightTakeNoMore) {
     std::vector<std::vector<uint32_t>> columns;
     for (int i = 0; i < 5; ++i) columns.push_back(tower(20));
     for (size_t level = 0; level < 20; ++level)

@@ -1,4 +1,4 @@
-// Walls and columns within broad islands, which take as many substeps as their contacts need to hold them.
+// Walls and columns take as many substeps as their contacts need to hold them.
 #include <gtest/gtest.h>
 
 #include "unit/partition_graph.h"
@@ -72,6 +72,58 @@ struct Masonry : Graph {
 };
 
 struct MasonryWalls : testing::Test, Masonry {};
+struct MasonryColumns : testing::Test, Masonry {};
+
+// s = 0.8 g h^2 n^3 / b, h = 1/240 s: 0.99, 1.4, 1.8, 2.4, 3.7, 4.6, 7.9, 9.3, 14.5; substeps^2 / 16 is no less.
+TEST_F(MasonryColumns, TakeWhatTheyNeed) {
+    for (const auto& [height, substeps] : {std::pair(9u, 4u),
+                                           {10u, 6u},
+                                           {11u, 6u},
+                                           {12u, 8u},
+                                           {14u, 8u},
+                                           {15u, 12u},
+                                           {18u, 12u},
+                                           {19u, 16u},
+                                           {22u, 16u}}) {
+        Masonry fresh;
+        EXPECT_EQ(fresh.built(fresh.column(height)[0]), substeps) << height;
+        EXPECT_TRUE(fresh.partition.blocks.empty()) << height;
+    }
+}
+
+// 16.6 and 291; no substeps give that much.
+TEST_F(MasonryColumns, AreBlocksWhereSweepsDoNotHoldThem) {
+    const std::vector<uint32_t> tall = column(23), taller = column(60), too_tall = column(61);
+    build();
+    ASSERT_EQ(partition.blocks.size(), 2u);
+    for (const Block& block : partition.blocks) {
+        EXPECT_TRUE(block.tower);
+        EXPECT_EQ(block.pairs.size(), block.nodes.size());
+        EXPECT_EQ(block.links.size(), block.nodes.size() - 1) << "the ground is no node";
+    }
+    EXPECT_EQ(partition.blocks[0].nodes.size(), tall.size());
+    EXPECT_EQ(substeps_of(tall[0]), 4u);
+    EXPECT_EQ(substeps_of(taller[0]), 4u);
+    EXPECT_EQ(substeps_of(too_tall[0]), 16u) << "swept";
+    EXPECT_EQ(partition.group_count, 2u);
+}
+
+TEST_F(MasonryColumns, AreBlocksWhereSubstepsAreFixed) {
+    const std::vector<uint32_t> low = column(9), tall = column(10);
+    rules.fixed = true;
+    build();
+    ASSERT_EQ(partition.blocks.size(), 1u);
+    EXPECT_EQ(partition.blocks[0].nodes.size(), tall.size());
+    EXPECT_EQ(substeps_of(low[0]), 4u);
+    EXPECT_EQ(substeps_of(tall[0]), 4u);
+}
+
+// Two that lean on each other are a column as one is.
+TEST_F(MasonryColumns, MayBeOfSeveral) {
+    const auto columns = block(2, 1, 15);
+    EXPECT_EQ(built(columns[0][0]), 12u);
+    EXPECT_TRUE(partition.blocks.empty());
+}
 
 // s = 0.8 / 1.5 g h^2 n^3 / b, h = 1/240 s: 0.91, 1.2, 2.0, 3.1, 4.5, 12.6, 58; substeps^2 / 16 is no less, up to 16.
 TEST_F(MasonryWalls, ColumnsOfABlockTakeWhatTheyNeed) {
@@ -127,7 +179,6 @@ TEST_F(MasonryWalls, WhatFallsBucklesNot) {
     EXPECT_EQ(built(columns[0][0]), 4u);
 }
 
-// A tower of its own would be solved directly.
 TEST_F(MasonryWalls, StandBesideMechanismsToo) {
     const std::vector<uint32_t> doll = {cube(), cube()}, cubes = column(20);
     join(doll[0], doll[1]);
