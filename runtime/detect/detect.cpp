@@ -72,8 +72,8 @@ struct BoxMotion {
         along = nodes.origin(collider.node) - before.position;
         swing = 3.15 * sine * (arm.norm() + 0.5 * static_cast<double>((box.hi - box.lo).norm()));
     }
-    // By no more than what is left of the contact margin: it cannot have left the box.
-    bool is_small() const { return along.norm() + swing <= static_cast<double>(kContactMargin) - kBoxLag; }
+    // By no more than what is left of its margin: it cannot have left the box.
+    bool is_small(float margin) const { return along.norm() + swing <= (1 - kBoxLag) * static_cast<double>(margin); }
     // The box, less the motion foreseen, wherever it went.
     collision::Box after(const Reach& reach) const {
         const Vec3f way = along.cast<float>(), all = Vec3f::Constant(static_cast<float>(swing));
@@ -87,7 +87,7 @@ bool keep_in_leaf(const Nodes& nodes, const Collider& collider, const Shapes& sh
                   const collision::Broadphase& broadphase, Reach& reach) {
     if (collider.node_b == kNone) {
         const BoxMotion motion(nodes, collider, reach.box);
-        if (motion.is_small()) return true;
+        if (motion.is_small(shapes.record[collider.shape].margin)) return true;
         reach = {motion.after(reach), Vec3f::Zero()};
         if (broadphase.holds(c, reach.box)) return true;
     }
@@ -147,24 +147,31 @@ CentrePose pose_of(const Nodes& nodes, uint32_t node, double elapsed) {
     return {m.x + elapsed * m.v, rotation_from_vector(elapsed * m.w) * m.q};
 }
 
+// How far apart a collider gets contact points [m]. One that spans two nodes is as thin as a cable is, and as long.
+float margin_of(const Shapes& shapes, const Collider& collider) {
+    return collider.node_b == kNone ? shapes.record[collider.shape].margin : kContactMargin;
+}
+
 // How far a collider may get in the frame, linear way and turning.
-void look_ahead(const Nodes& nodes, const Collider& collider, const Pace& pace, const Stance& stance, double time_step,
-                Travel& travel) {
+void look_ahead(const Nodes& nodes, const Shapes& shapes, const Collider& collider, const Pace& pace,
+                const Stance& stance, double time_step, Travel& travel) {
+    travel.margin = margin_of(shapes, collider);
     travel.ahead = static_cast<float>(time_step * nodes.motion[collider.node].v.norm() + pace.turning);
     travel.thickness = static_cast<float>(pace.thickness);
     const bool yields = moves_by_forces(nodes.info[collider.node].kind);
     travel.swing = yields ? swing_of(stance, static_cast<float>(time_step)) : 0;
 }
 
-collision::Box grown(collision::Box box) {
-    box.lo.array() -= kContactMargin;
-    box.hi.array() += kContactMargin;
+collision::Box grown(collision::Box box, float margin) {
+    box.lo.array() -= margin;
+    box.hi.array() += margin;
     return box;
 }
 
 // Whether a box that was made before holds its collider where it is and gets to in the frame.
 bool box_holds(const Reach& reach, const Travel& travel) {
-    return std::abs(travel.way - reach.made) + static_cast<double>(travel.ahead) <= kBoxLag;
+    return std::abs(travel.way - reach.made) + static_cast<double>(travel.ahead) <=
+           kBoxLag * static_cast<double>(travel.margin);
 }
 
 void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& shapes, Pairs& pairs,
@@ -181,7 +188,8 @@ void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& 
         most = most.cwiseMax(ahead_b);
         ahead = 0.5f * (ahead + ahead_b);
     }
-    collision::Box box = grown(collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]));
+    const collision::Box tight = collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]);
+    collision::Box box = grown(tight, pairs.travel[c].margin);
     box.lo += least;
     box.hi += most;
     if (!spans) grow_turning(pairs.pace[c], box);  // else its ends tell
@@ -236,7 +244,8 @@ void place_collider(const Nodes& nodes, const Shapes& shapes, const Collider& co
 }
 
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider) {
-    return grown(collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)));
+    return grown(collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)),
+                 margin_of(shapes, collider));
 }
 
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
@@ -251,7 +260,7 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
             if (collider.node == kNone) continue;
             pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape], time_step);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
-            look_ahead(nodes, collider, pairs.pace[c], pairs.stance[c], time_step, pairs.travel[c]);
+            look_ahead(nodes, shapes, collider, pairs.pace[c], pairs.stance[c], time_step, pairs.travel[c]);
             if (!moves(nodes, collider) || box_holds(pairs.reach[c], pairs.travel[c])) continue;
             make_box(nodes, collider, c, shapes, pairs, time_step);
             pairs.reach[c].left = !broadphase.holds(c, pairs.reach[c].box);

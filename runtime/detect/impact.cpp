@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kReach = 0.25 * static_cast<double>(kContactMargin);  // as near as this have met [m], and
 constexpr double kReachOfThickness = 0.25;                             // so much of the thicker one at most
+static_assert(kReach < static_cast<double>(kLeastContactMargin));
 constexpr double kDepth = 0.25;  // of the thinner one: what stays above grazes, and is left to the next frame
 // What lies within so many radii of a ball inside a shape, about the centre that it turns about, is as good as thick:
 // it grazes what it turns past, by as little as this in a frame [rad]. Cubes, stones and bricks of 2:1:1 lie within,

@@ -30,13 +30,15 @@ double closing_way(const Detection& of, const PairEnds& pair, double time) {
         return moves_by_forces(of.nodes.info[node].kind) ? swing_of(of.pairs.stance[collider], static_cast<float>(time))
                                                          : 0;
     };
+    const float both = swing(pair.a, pair.collider_a()) + swing(pair.b, pair.collider_b());
     return way +
-           static_cast<double>(beyond_margin(swing(pair.a, pair.collider_a()) + swing(pair.b, pair.collider_b())));
+           static_cast<double>(beyond_margin(both, contact_margin(of.pairs, pair.collider_a(), pair.collider_b())));
 }
 
 // So that a fast pair meets its contacts before it overlaps.
 float margin_of(const Detection& of, const PairEnds& pair, double time) {
-    return kContactMargin + static_cast<float>(std::min(kMaxReach, closing_way(of, pair, time)));
+    return contact_margin(of.pairs, pair.collider_a(), pair.collider_b()) +
+           static_cast<float>(std::min(kMaxReach, closing_way(of, pair, time)));
 }
 
 // Of the origin of a collider's shape, which the narrowphase knows, from that of its node.

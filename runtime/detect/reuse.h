@@ -29,14 +29,19 @@ inline bool may_be_fast(const Pairs& pairs, const NearPair& near) {
     return !(a.ahead + b.ahead <= a.thickness + b.thickness);
 }
 
-// What the contact margin does not take in of a way [m].
-inline float beyond_margin(float way) { return std::max(way - kContactMargin, 0.0f); }
+// How far apart two colliders get contact points [m].
+inline float contact_margin(const Pairs& pairs, uint32_t a, uint32_t b) {
+    return std::min(pairs.travel[a].margin, pairs.travel[b].margin);
+}
+// What that does not take in of how far the two swing [m].
+inline float beyond_margin(float swing, float margin) { return std::max(swing - margin, 0.0f); }
 
 // Whether two colliders that were found further apart than the contact margin still are, wherever they go in a frame.
 inline bool stay_clear(const Pairs& pairs, const NearPair& near) {
     const Travel &a = pairs.travel[near.collider_a()], &b = pairs.travel[near.collider_b()];
-    const float swing = near.against_fixed ? beyond_margin(a.swing + b.swing) : 0;
-    const double way = a.way + b.way + static_cast<double>(a.ahead + b.ahead + swing + kContactMargin);
+    const float margin = std::min(a.margin, b.margin);
+    const float swing = near.against_fixed ? beyond_margin(a.swing + b.swing, margin) : 0;
+    const double way = a.way + b.way + static_cast<double>(a.ahead + b.ahead + swing + margin);
     const bool is_clear = way < near.clear, may_be_fast = taut::may_be_fast(pairs, near);
     return is_clear & !may_be_fast;  // which of the two holds would be mispredicted
 }

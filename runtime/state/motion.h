@@ -14,7 +14,7 @@ using Quatf = Eigen::Quaternion<float, Eigen::DontAlign>;
 
 // Where a collider may be until the next frame.
 struct Reach {
-    collision::Box box;  // tight, grown by the contact margin, of which kBoxLag may be used up, and the motion [m]
+    collision::Box box;  // tight, grown by its contact margin, of which kBoxLag may be used up, and the motion [m]
     Vec3f ahead;         // the motion, of the middle [m]
     bool left = false;   // is outside its fat box
     double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
@@ -40,6 +40,7 @@ struct Travel {
     float ahead = 0;      // the same of the next frame, by its velocities [m]
     float thickness = 0;  // as in Pace [m]
     float swing = 0;      // of its furthest point about its origin in the next frame, if forces move it [m]
+    float margin = 0;     // how far apart it gets contact points [m]
 };
 
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.

@@ -17,10 +17,8 @@
 
 namespace taut {
 
-// How far apart two surfaces get contact points [m]; tight boxes are grown by it before they enter the broadphase.
-constexpr float kContactMargin = 0.01f;
-// A box is kept until its collider moved, or is about to move, so far from where it was made [m].
-constexpr double kBoxLag = 0.005;
+// A box is kept until its collider moved, or is about to move, so far from where it was made, in parts of its margin.
+constexpr double kBoxLag = 0.5;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
 

@@ -103,6 +103,17 @@ INSTANTIATE_TEST_SUITE_P(Masonry, Laying,
                                          Laid{"BetweenPosts", lay_filling, {0.1, 0.05, 0.05}, 20, 20}),
                          [](const auto& tested) { return tested.param.name; });
 
+// Seven by seven cubes a layer, turned a little.
+void drop_columns(Site& site, double side, uint32_t layers) {
+    constexpr int kRow = 7;
+    std::mt19937 random(1);
+    for (uint32_t layer = 0; layer < layers; ++layer)
+        for (int i = 0; i < kRow * kRow; ++i)
+            site.lay({0.5 * side, 0.5 * side, 0.5 * side},
+                     {1.36 * side * (i % kRow), (1.2 + 1.6 * layer) * side, 1.36 * side * (i / kRow)},
+                     Quat::turn(direction(random), between(random, 0, 0.3)));
+}
+
 // Columns of cubes that fall on the ground side by side are swept, at any frame rate: direct solves of them all would
 // take ten times as long, and ten times that as they land.
 struct Columns {
@@ -117,14 +128,8 @@ class Dropped : public testing::TestWithParam<Columns> {};
 
 TEST_P(Dropped, AreSwept) {
     const auto& [name, side, height, rate] = GetParam();
-    constexpr int kRow = 7;
-    std::mt19937 random(1);
     Site site([rate = rate](taut_world_def& def) { def.time_step = 1 / rate; });
-    for (uint32_t layer = 0; layer < height; ++layer)
-        for (int i = 0; i < kRow * kRow; ++i)
-            site.lay({0.5 * side, 0.5 * side, 0.5 * side},
-                     {1.36 * side * (i % kRow), (1.2 + 1.6 * layer) * side, 1.36 * side * (i / kRow)},
-                     Quat::turn(direction(random), between(random, 0, 0.3)));
+    drop_columns(site, side, height);
     uint32_t solves = 0, substeps = 0;
     for (int frame = 0; frame < static_cast<int>(4 * rate); ++frame) {
         site.world.step();
@@ -162,6 +167,17 @@ TEST(Heap, OfSmallCubesTakesNoMoreSubsteps) {
         more += site.world.profile().substeps > 4;
     }
     EXPECT_LE(more, 6);
+}
+
+TEST(Heap, OfSmallCubesHasFewContacts) {
+    const auto contacts = [](double side) {
+        Site site;
+        drop_columns(site, side, 6);
+        site.world.step(240);
+        return site.world.profile().touching;
+    };
+    const uint32_t large = contacts(0.5), small = contacts(0.03);
+    EXPECT_LT(small, 2 * large);
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ struct Pose {
 
 Vec3 within(Random& random, double length) { return random.uniform(0, length) * random.unit(); }
 
+constexpr float kMargin = kContactMargin;
+
 // Two bodies of one shape each.
 struct Couple {
     Memory memory{taut_hooks{}};
@@ -46,7 +48,7 @@ struct Couple {
         }
         pairs.placement.resize(2);
         pairs.stance.resize(2);
-        pairs.travel.resize(2);
+        pairs.travel.assign(2, Travel{.margin = kMargin});
         pair.key = near.key = pair_key(0, 1);
         pair.a = 0, pair.b = 1;
     }
@@ -62,8 +64,6 @@ struct Couple {
         return collision::collide(shape(0), pairs.placement[0], shape(1), pairs.placement[1], margin, cache, out);
     }
 };
-
-constexpr float kMargin = kContactMargin;
 
 // The direction from a to b that makes them part in the end.
 Vec3 apart_along(const Couple& couple, Random& random) {
