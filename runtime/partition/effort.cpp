@@ -10,10 +10,10 @@ namespace {
 
 // When an island takes more substeps than the world's. A soft column sags as h^2 and buckles under its own or a
 // heavy top's weight; a block of very unequal masses outruns the lag of its forces.
+constexpr float kUnderHeavy = 0.2f;        // stiffness for each weight on one: r of them sink in by r g h^2
 constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
-
-constexpr float kMostStiffness = 16;  // that more substeps give
+constexpr float kMostStiffness = 16;       // that more substeps give
 
 // How many times the substeps, in halves, for contacts so much stiffer: stiffness grows with the square of substeps.
 uint32_t halves_for(float stiffness) {
@@ -86,7 +86,7 @@ void Partition::choose_substeps(const PartitionRules& rules) {
             continue;
         }
         if (island.ratio >= kHeavyOnLight && !island.jointed)
-            halves = 8;
+            halves = std::max(halves, halves_for(kUnderHeavy * island.ratio));
         else if (island.levels > kSwayingLevels)
             island.sweeps = rules.fixed ? 1 : 2;
         island.substeps = rules.fixed ? rules.substeps : (rules.substeps * halves + 1) / 2;

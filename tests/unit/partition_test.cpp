@@ -256,7 +256,7 @@ TEST_F(PartitionTest, PilesWithoutWeightTakeNoMore) {
     EXPECT_EQ(substeps_of(columns[0][0]), 4u);
 }
 
-TEST_F(PartitionTest, HeavyOnLightIsABlockOrTakesFourTimesTheSubsteps) {
+TEST_F(PartitionTest, HeavyOnLightIsABlockOrTakesMoreSubsteps) {
     auto pile = [&](double below, double above, uint32_t beside) {
         std::vector<uint32_t> boxes = tower(1, below);
         boxes.push_back(add(NodeKind::dynamic, above));
@@ -268,11 +268,15 @@ TEST_F(PartitionTest, HeavyOnLightIsABlockOrTakesFourTimesTheSubsteps) {
         return boxes[0];
     };
     const uint32_t heavy = pile(1, 11, 0), wide = pile(1, 11, 60), not_so = pile(1, 9, 0), light = pile(100, 1, 0);
+    const uint32_t wider = pile(1, 19, 60), heavier = pile(1, 44, 60), heaviest = pile(1, 1000, 60);
     build();
     ASSERT_EQ(partition.blocks.size(), 1u);
     EXPECT_EQ(partition.blocks[0].nodes[0], heavy);
     EXPECT_EQ(substeps_of(heavy), 4u);
-    EXPECT_EQ(substeps_of(wide), 16u);
+    EXPECT_EQ(substeps_of(wide), 6u);
+    EXPECT_EQ(substeps_of(wider), 8u);
+    EXPECT_EQ(substeps_of(heavier), 12u);
+    EXPECT_EQ(substeps_of(heaviest), 16u);
     EXPECT_EQ(substeps_of(not_so), 4u);
     EXPECT_EQ(substeps_of(light), 4u);
     rules.fixed = true;
@@ -288,7 +292,7 @@ TEST_F(PartitionTest, LoadsCountOnlyOnASupport) {
     EXPECT_EQ(substeps_of(light), 4u);
 }
 
-TEST_F(PartitionTest, JointedIslandsDoNotTakeFourTimes) {
+TEST_F(PartitionTest, JointedIslandsTakeNoMore) {
     const std::vector<uint32_t> boxes = tower(1, 1);
     const uint32_t heavy = add(NodeKind::dynamic, 50);
     touch(boxes[0], heavy);
