@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kLowLevels = 2;    // no more hold, however small
+constexpr uint32_t kLowLevels = 2;    // so many hold, however small the bodies
 constexpr double kBuckling = 0.8;     // see below
 constexpr uint32_t kSlenderness = 4;  // bodies a level at most of an island that may be a column
 constexpr double kWallsHold = 1.5;    // times that: blocks of cubes fell from 1.9 on, walls of bricks from 2.5
@@ -44,8 +44,8 @@ void Partition::weigh(const Nodes& nodes) {
 // (Greenhill 1881) once
 //   b^2/t < g h^2 n^3 / 1.96
 // kBuckling takes the place of 1/1.96: with 0.6, cubes that start askew still leaned over at 1.07 times that.
-// Substeps that are shorter hold it as well and cost a quarter of a direct solve; that is left to what none of them
-// hold.
+// Shorter substeps hold it at a quarter of what a direct solve costs, which is left for what they do not hold: with all
+// columns of more than twelve levels solved directly, 2550 cubes that fell in 13 layers took up to 125 ms a step.
 void Partition::find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules) {
     const double h = rules.time_step / rules.substeps, sag = kBuckling * rules.gravity.norm() * h * h;
     bool any = false;
