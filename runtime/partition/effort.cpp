@@ -13,12 +13,13 @@ namespace {
 constexpr float kUnderHeavy = 0.2f;        // stiffness for each weight on one: r of them sink in by r g h^2
 constexpr uint32_t kSwayingLevels = 8;     // more, of broader ones, twice the sweeps: walls sway for long with one
 constexpr double kExtremeMassRatio = 3e4;  // within a block: twice the substeps
-constexpr float kMostStiffness = 16;       // that more substeps give
+constexpr uint32_t kMostHalves = 8;        // of the world's substeps, and
+constexpr float kMostStiffness = 16;       // the stiffness that they give
 
 // How many times the substeps, in halves, for contacts so much stiffer: stiffness grows with the square of substeps.
 uint32_t halves_for(float stiffness) {
     uint32_t halves = 2;
-    for (const uint32_t more : {3u, 4u, 6u, 8u})
+    for (const uint32_t more : {3u, 4u, 6u, kMostHalves})
         if (static_cast<float>(halves * halves) < 4 * stiffness) halves = more;
     return halves;
 }
@@ -85,10 +86,10 @@ void Partition::choose_substeps(const PartitionRules& rules) {
             island.substeps = rules.substeps;
             continue;
         }
-        if (island.ratio >= kHeavyOnLight && !island.jointed)
-            halves = std::max(halves, halves_for(kUnderHeavy * island.ratio));
-        else if (island.levels > kSwayingLevels)
-            island.sweeps = rules.fixed ? 1 : 2;
+        const bool under_heavy = island.ratio >= kHeavyOnLight && !island.jointed;
+        if (under_heavy) halves = std::max(halves, halves_for(kUnderHeavy * island.ratio));
+        const bool sways = island.levels > kSwayingLevels && !(under_heavy && halves == kMostHalves);
+        if (sways && !rules.fixed) island.sweeps = 2;
         island.substeps = rules.fixed ? rules.substeps : (rules.substeps * halves + 1) / 2;
     }
     if (rules.fixed) return;
