@@ -68,7 +68,7 @@ struct Broadphase::State {
         leaves[id].stale = true;
     }
     template <class Report>
-    void for_partners(uint32_t id, Report&& report) const;
+    void for_partners(std::span<const uint32_t> ids, Report&& report) const;
     void find(uint32_t begin, uint32_t end);
     void gather_fresh();
     void sort_by(const Array<uint64_t>& keys, int bit, Array<uint64_t>& sorted);
@@ -82,13 +82,14 @@ struct Broadphase::State {
     Array<uint32_t> stale;
     bool all_stale = false;                   // as in the first step
     static constexpr size_t kTogether = 256;  // keys
-    static constexpr uint32_t kNowhere = UINT32_MAX;
+    static constexpr uint32_t kAtOnce = 8;    // leaves whose boxes go down the tree together
+    static constexpr uint32_t kRoom = 8;
+    uint32_t room = kRoom;     // for keys of each stale leaf: half as many more than they had in the last step
+    Array<uint64_t> partners;  // keys, in the room of the stale leaves that are looked at together
     struct Found {
-        uint32_t first, count;  // kNowhere: there was no room for them
+        uint32_t count, next, end;  // keys; the first stale leaf that there was no room for; that after the last
     };
-    Array<uint32_t> partners;  // of stale leaves, with so much room for each of those that are looked at together
-    static constexpr uint32_t kRoom = 16;
-    Array<Found> found_of;     // in partners, of each stale leaf
+    Array<Found> found_of;     // by the first stale leaf of those that are looked at together
     Array<uint32_t> strays;    // those that are not any more are listed until the next step
     Array<uint64_t> pairs;     // sorted
     Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
@@ -96,52 +97,61 @@ struct Broadphase::State {
     Array<uint32_t> first_of;  // where in a sorted list the keys of an id begin
 };
 
-// Calls report(other) for each leaf whose fat box meets that of this one and which pairs with it; of two stale leaves
-// the smaller id reports. If all are stale, each only looks to its right in the tree and reports whom it meets there.
+// Calls report(key) for each leaf whose fat box meets that of one of some stale leaves, and which pairs with it; of two
+// stale leaves the smaller id reports. If all are stale, each only looks to its right in the tree and reports whom it
+// meets there.
 template <class Report>
-void Broadphase::State::for_partners(uint32_t id, Report&& report) const {
-    const Leaf& leaf = leaves[id];
-    if (!leaf.node) return;
-    const auto found = [&](uint32_t other) {
+void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& report) const {
+    const auto found = [&](uint32_t id, uint32_t other) {
         const bool reports = all_stale || !(leaves[other].stale && other < id);
-        if (reports && (leaves[other].moves || leaf.moves)) report(other);
+        if (reports && (leaves[other].moves || leaves[id].moves)) report(pair_key(id, other));
     };
-    Descent descent(leaf.node->volume, found);
-    for (const btDbvtNode* node = leaf.node; node->parent; node = node->parent) {
-        const bool is_right = node == node->parent->childs[1];
-        if (!is_right || !all_stale) descent.begin_at(node->parent->childs[!is_right]);
+    Descent descent(found);
+    for (const uint32_t id : ids) {
+        const btDbvtNode* const leaf = leaves[id].node;
+        for (const btDbvtNode* node = leaf; node && node->parent; node = node->parent) {
+            const bool is_right = node == node->parent->childs[1];
+            if (!is_right || !all_stale) descent.begin_at(node->parent->childs[!is_right], leaf);
+        }
     }
     descent.run();
 }
 
-// One after the other into the room of all; where there is none left, they are only counted.
+// Stops where there is no more room for what some find.
 void Broadphase::State::find(uint32_t begin, uint32_t end) {
-    const uint32_t room = end * kRoom;
-    uint32_t to = begin * kRoom;
-    for (uint32_t i = begin; i < end; ++i) {
-        const uint32_t first = to;
-        for_partners(stale[i], [&](uint32_t other) {
-            if (to < room) partners[to] = other;
-            ++to;
+    Found& found = found_of[begin] = {0, begin, end};
+    uint64_t* const to = partners.data() + size_t(begin) * room;
+    const uint32_t most = (end - begin) * room;
+    while (found.next < end) {
+        const auto some = std::span(stale).subspan(found.next, std::min(kAtOnce, end - found.next));
+        uint32_t count = found.count;
+        for_partners(some, [&](uint64_t key) {
+            if (count < most) to[count] = key;
+            ++count;
         });
-        found_of[i] = {to > room ? kNowhere : first, to - first};
-        to = std::min(to, room);
+        if (count > most) return;
+        found.count = count;
+        found.next += uint32_t(some.size());
     }
 }
 
-// What find() found, those anew that there was no room for; sorted.
+// What find() found, and that for which there was no room; sorted.
 void Broadphase::State::gather_fresh() {
-    size_t number = 0;
-    for (const Found& each : found_of) number += each.count;
+    const auto number = uint32_t(stale.size());
+    size_t keys = 0;
+    for (uint32_t i = 0; i < number; i = found_of[i].end) keys += found_of[i].count;
     fresh.clear();
-    reserve_more(fresh, number);
-    for (size_t i = 0; i < stale.size(); ++i) {
-        const auto add = [&](uint32_t other) { fresh.push_back(pair_key(stale[i], other)); };
-        if (found_of[i].first == kNowhere)
-            for_partners(stale[i], add);
-        else
-            std::for_each_n(partners.begin() + found_of[i].first, found_of[i].count, add);
+    reserve_more(fresh, keys);
+    for (uint32_t i = 0; i < number; i = found_of[i].end) {
+        const Found& found = found_of[i];
+        const uint64_t* const first = partners.data() + size_t(i) * room;
+        fresh.insert(fresh.end(), first, first + found.count);
+        for_partners(std::span(stale).subspan(found.next, found.end - found.next),
+                     [&](uint64_t key) { fresh.push_back(key); });
     }
+    room = std::max(kRoom, uint32_t(fresh.size() / number) * 3 / 2);
+    taut::let_go(partners);
+    taut::let_go(found_of);
     constexpr size_t kFew = 32;  // to as many leaves a key: less than what counting takes
     if (fresh.size() < leaves.size() / kFew) return std::sort(fresh.begin(), fresh.end());
     Array<uint64_t>& by_larger = gone;  // has no other use yet
@@ -243,7 +253,7 @@ void Broadphase::set_moves(uint32_t id, bool moves) {
 
 uint32_t Broadphase::start_refresh() {
     State& s = *state_;
-    s.partners.resize(s.stale.size() * State::kRoom);
+    s.partners.resize(s.stale.size() * s.room);
     s.found_of.resize(s.stale.size());
     const auto in_tree = [&](uint32_t id) { return s.leaves[id].node != nullptr; };
     s.all_stale = std::ranges::count_if(s.stale, in_tree) == s.tree.m_leaves;
@@ -279,8 +289,7 @@ bool Broadphase::refresh_pairs() {
 void Broadphase::let_go() {
     State& s = *state_;
     for (Array<uint64_t>* each : {&s.fresh, &s.gone}) taut::let_go(*each);
-    for (Array<uint32_t>* each : {&s.partners, &s.first_of}) taut::let_go(*each);
-    taut::let_go(s.found_of);
+    taut::let_go(s.first_of);
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }

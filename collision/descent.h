@@ -1,4 +1,4 @@
-// Which leaves of Bullet's tree of boxes meet a box.
+// Which leaves of Bullet's tree of boxes meet those of others.
 #pragma once
 
 #include <cstdint>
@@ -36,40 +36,43 @@ inline bool contains(const btDbvtVolume& whole, const btDbvtVolume& part) {
     return are_within(whole.Mins(), part.Mins(), part.Maxs(), whole.Maxs());
 }
 
-// Goes through what is below some nodes. Breadth first, so that processors work on several nodes at once; where more
-// wait than there is room for, one is gone through by itself.
+// Goes through what is below some nodes, for the boxes of several leaves at once. Breadth first, so that processors
+// work on several nodes at once; where more wait than there is room for, one is gone through by itself.
 template <class Found>
 class Descent {
 public:
-    Descent(const btDbvtVolume& volume, Found& found) : volume_(volume), found_(found) {}
+    explicit Descent(Found& found) : found_(found) {}
 
-    void begin_at(const btDbvtNode* node) {
+    // Looks for what is at or below a node and meets the box of the leaf that asks.
+    void begin_at(const btDbvtNode* node, const btDbvtNode* asks) {
         if (end_ - begin_ < kRoom) {
-            waiting_[end_ % kRoom] = node;
-            end_ += meet(node->volume, volume_);
-        } else if (meet(node->volume, volume_)) {
-            Descent apart(volume_, found_);
-            apart.begin_at(node);
+            waiting_[end_ % kRoom] = {node, asks};
+            end_ += meet(node->volume, asks->volume);
+        } else if (meet(node->volume, asks->volume)) {
+            Descent apart(found_);
+            apart.begin_at(node, asks);
             apart.run();
         }
     }
-    // Calls found(id) for each.
+    // Calls found(id that asks, id) for each.
     void run() {
         while (begin_ < end_) {
-            const btDbvtNode* const node = waiting_[begin_++ % kRoom];
+            const auto [node, asks] = waiting_[begin_++ % kRoom];
             if (node->isleaf())
-                found_(uint32_t(node->dataAsInt));
+                found_(uint32_t(asks->dataAsInt), uint32_t(node->dataAsInt));
             else
-                for (const btDbvtNode* const child : node->childs) begin_at(child);
+                for (const btDbvtNode* const child : node->childs) begin_at(child, asks);
         }
     }
 
 private:
-    static constexpr uint32_t kRoom = 128;
+    static constexpr uint32_t kRoom = 256;
+    struct Waiting {
+        const btDbvtNode *node, *asks;
+    };
 
-    const btDbvtVolume& volume_;
     Found& found_;
-    const btDbvtNode* waiting_[kRoom];  // a ring; whose boxes meet it
+    Waiting waiting_[kRoom];  // a ring; whose boxes meet
     uint32_t begin_ = 0, end_ = 0;
 };
 
