@@ -1,6 +1,7 @@
 // A shape on its way: a plane that parts it from a convex shape by s holds it off for s / (-n . v) of the way v, so
 // that steps of that size never pass the first contact (conservative advancement; Mirtich 1996). As near contact GJK's
 // normal is poor, it is taken with the shape lifted off along the last one, as least_push.cpp does: s cannot fall.
+#include <algorithm>
 #include <array>
 
 #include "collision/queries/couple.h"
@@ -23,10 +24,26 @@ Hit inside(const Couple& couple, const Distance& cores) {
     return {0, couple.surface_of_a(push.on_a, push.normal), couple.to_world(push.normal).normalized(), true, 0};
 }
 
+// Whether a face of a hull has a ball above it all along the way, which costs less to know than where they meet.
+bool stays_above_face(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
+                      const Placement& at, double limit) {
+    if (moving.kind != ShapeKind::sphere || !still.hull) return false;
+    const auto to_still = [&](const Vec3& p) {
+        return Vec3f(at.rotation.transpose() * (p - at.position).cast<float>());
+    };
+    const Vec3f start = to_still(from.position), end = to_still(from.position + limit * along);
+    const float height = moving.size.x() + float(kContact) * still.hull->inner_radius;
+    const auto is_above = [&](const PlanePack& faces) {
+        return (heights_over(faces, start).min(heights_over(faces, end)) > height).any();
+    };
+    return std::ranges::any_of(still.hull->planes, is_above);
+}
+
 }  // namespace
 
 bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
                     const Placement& at, double limit, Hit& out) {
+    if (stays_above_face(moving, from, along, still, at, limit)) return false;
     const Couple couple(still, at, moving, from);
     const Distance start = couple.distance(Vec3::Zero(), couple.hint());
     double separation = start.separation - couple.radii();

@@ -1,6 +1,12 @@
-// Bodies under way that turn as well: two shapes apart by s along n need at least s / (n . (v_a - v_b) + |w_a x n| r_a
-// + |w_b x n| r_b) to meet, r the reach of a core about the centre that it turns about (conservative advancement;
-// Mirtich 1996).
+// Bodies under way that turn as well, by conservative advancement (Mirtich 1996): two shapes that a plane across n
+// keeps apart by s now need at least s / (n . (v_a - v_b) + |w_a x n| r_a + |w_b x n| r_b) to meet, r the reach of a
+// core about the centre that it turns about. And a point that turns about it has an acceleration of |w|^2 r at most, so
+// that the plane, which goes along, keeps them apart by
+//
+//   s(t) >= s(0) (1 - t / T) + s(T) t / T - (|w_a|^2 r_a + |w_b|^2 r_b) t (T - t) / 2
+//
+// at each t until T: what the reach of one point along n falls short of the chord between its ends, and so what that of
+// the furthest one does.
 #include <array>
 #include <limits>
 
@@ -18,21 +24,50 @@ constexpr int kMaxSteps = 64;
 // Whether a meeting goes deep is looked at no more often.
 constexpr int kMaxLooks = 64;
 
-// How fast two shapes can come nearer [m/s].
-class Approach {
+// Two convex shapes at a moment of their ways.
+class Moment {
 public:
-    Approach(const Motion& a, const Motion& b)
-        : velocity_(a.velocity - b.velocity), turn_a_(a.reach * a.spin), turn_b_(b.reach * b.spin) {}
-    // Across a plane with the normal n, from a to b: n . (v + w x r) <= n . v + |w x n| |r| for each point.
-    double along(const Vec3& normal) const {
-        return normal.dot(velocity_) + turn_a_.cross(normal).norm() + turn_b_.cross(normal).norm();
+    Moment(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double time)
+        : motion_a_(motion_a),
+          motion_b_(motion_b),
+          time_(time),
+          at_a_(motion_a.after(time)),
+          at_b_(motion_b.after(time)),
+          couple_(a, at_a_, b, at_b_) {}
+
+    const Couple& couple() const { return couple_; }
+    // How far a plane across a unit vector in world axes keeps the two apart [m].
+    double apart(const Vec3& normal) const {
+        return couple_.proven(Vec3::Zero(), couple_.to_a(normal)) - couple_.radii();
     }
-    double fastest() const { return velocity_.norm() + turn_a_.norm() + turn_b_.norm(); }
+    // How long such a plane, which keeps them apart by a gap now, keeps them apart by least [m]: up to an end [s].
+    double time_apart(const Vec3& normal, double gap, double least, const Moment& end) const;
 
 private:
-    Vec3 velocity_;
-    Vec3 turn_a_, turn_b_;  // spins times reaches
+    // How fast points of the two come nearer to each other along n at most [m/s], and how fast that may change [m/s^2].
+    double speed(const Vec3& n) const {
+        return n.dot(motion_a_.velocity - motion_b_.velocity) + motion_a_.reach * motion_a_.spin.cross(n).norm() +
+               motion_b_.reach * motion_b_.spin.cross(n).norm();
+    }
+    double acceleration() const {
+        return motion_a_.reach * motion_a_.spin.squaredNorm() + motion_b_.reach * motion_b_.spin.squaredNorm();
+    }
+
+    const Motion &motion_a_, &motion_b_;
+    double time_;
+    Placement at_a_, at_b_;
+    Couple couple_;
 };
+
+// In parts x of the time to the end, with what is left of the gap now and then: now (1 - x) + then x - bend x (1 - x).
+double Moment::time_apart(const Vec3& normal, double gap, double least, const Moment& end) const {
+    const double time = end.time_ - time_, now = gap - least, closing = speed(normal) * time;
+    if (closing <= now) return time;
+    const double then = end.apart(normal) - least, bend = 0.5 * acceleration() * time * time;
+    const double slope = now + bend - then, root = slope * slope - 4 * bend * now;
+    if (slope <= 0 || root < 0) return time;
+    return time * std::min(1.0, std::max(now / closing, 2 * now / (slope + std::sqrt(root))));
+}
 
 // b is the plane, which may move but, being endless, not turn much: its turning is left out.
 double plane_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
@@ -60,19 +95,6 @@ constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_m
                                                         convex_meeting, convex_meeting, convex_meeting,
                                                         convex_meeting, convex_meeting, surface_meeting};
 
-// No more than the gap between two shapes [m], and less than -depth just where they are deeper in each other.
-struct Clear {
-    double gap;
-    Vec3 normal;  // of a plane that keeps them as far apart, from a to b, world axes; 0: of none
-};
-Clear least_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double depth) {
-    if (!is_convex(b)) return {find_gap(a, at_a, b, at_b).distance, Vec3::Zero()};
-    const Couple couple(a, at_a, b, at_b);
-    if (const auto plane = couple.bound(depth)) return {plane->apart, couple.to_world(plane->normal)};
-    const Gap gap = find_gap(a, at_a, b, at_b);
-    return {gap.distance, gap.normal};
-}
-
 // When the centres are nearest to each other, from one moment to another [s].
 double nearest_moment(const Motion& a, const Motion& b, double from, double to) {
     const Vec3 apart = b.centre - a.centre, velocity = b.velocity - a.velocity;
@@ -80,24 +102,43 @@ double nearest_moment(const Motion& a, const Motion& b, double from, double to) 
     return squared > 0 ? std::clamp(-apart.dot(velocity) / squared, from, to) : from;
 }
 
-// Whether the ways lead deeper than depth from the moment met on, where they are apart by reach. In doubt they do. Most
-// that do are as deep where the centres pass each other.
-bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
-                 double reach, double depth, double until) {
-    const auto clear_at = [&](double t) { return least_gap(a, motion_a.after(t), b, motion_b.after(t), depth); };
-    if (is_convex(b) && clear_at(nearest_moment(motion_a, motion_b, met, until)).gap < -depth) return true;
-    const Approach approach(motion_a, motion_b);
-    const double least = 0.5 * depth / approach.fastest();  // of the time from look to look
-    Clear clear = {reach, Vec3::Zero()};
-    double t = met;
-    for (int look = 0; look < kMaxLooks && t <= until; ++look) {
-        const double speed = clear.normal == Vec3::Zero() ? approach.fastest() : approach.along(clear.normal);
-        if (!(speed > 0)) return false;
-        t += std::max((clear.gap + depth) / speed, least);
-        clear = clear_at(t);
-        if (clear.gap < -depth) return true;
+// How fast points of two shapes come nearer to each other at most [m/s].
+double fastest(const Motion& a, const Motion& b) {
+    return (a.velocity - b.velocity).norm() + a.reach * a.spin.norm() + b.reach * b.spin.norm();
+}
+
+// Whether two shapes are deeper in each other than depth at a moment, else how long they are not after it.
+struct Depth {
+    bool deep;
+    double clear;  // [s]
+};
+Depth depth_at(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double moment,
+               double depth, double until) {
+    if (!is_convex(b)) {
+        const double gap = find_gap(a, motion_a.after(moment), b, motion_b.after(moment)).distance;
+        return {gap < -depth, (gap + depth) / fastest(motion_a, motion_b)};
     }
-    return t <= until;
+    const Moment now(a, motion_a, b, motion_b, moment);
+    const auto plane = now.couple().bound(depth);
+    if (!plane || plane->apart < -depth) return {true, 0};  // without a plane, in doubt
+    const Moment end(a, motion_a, b, motion_b, until);
+    return {false, now.time_apart(now.couple().to_world(plane->normal), plane->apart, -depth, end)};
+}
+
+// Whether the ways lead deeper than depth from the moment met on. In doubt they do. Most that do are as deep where the
+// centres pass each other.
+bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
+                 double depth, double until) {
+    const auto look_at = [&](double t) { return depth_at(a, motion_a, b, motion_b, t, depth, until); };
+    if (is_convex(b) && look_at(nearest_moment(motion_a, motion_b, met, until)).deep) return true;
+    const double least = 0.5 * depth / fastest(motion_a, motion_b);  // from look to look [s]
+    double t = met;
+    for (int look = 0; look < kMaxLooks && t < until; ++look) {
+        const Depth found = look_at(t);
+        if (found.deep) return true;
+        t += std::max(found.clear, least);
+    }
+    return t < until;
 }
 
 // From one centre to the other where they are nearest.
@@ -109,16 +150,6 @@ Vec3 nearest_way(const Motion& a, const Motion& b, double limit) {
 bool balls_meet(const Vec3& nearest, const Motion& a, const Motion& b, double radii, double reach) {
     const double touch = a.reach + b.reach + radii + reach;
     return nearest.squaredNorm() <= touch * touch;
-}
-
-// Whether a plane across the way between the centres where they are nearest keeps the shapes apart by reach all the
-// time to the limit. Of those that do not meet most pass so: along it the centres hardly come nearer.
-bool pass_by(const Vec3& nearest, const Couple& couple, const Approach& approach, double reach, double limit) {
-    const double length = nearest.norm();
-    if (!(length > 0)) return false;
-    const Vec3 normal = nearest / length;
-    const double apart = couple.proven(Vec3::Zero(), couple.to_a(normal)) - couple.radii();
-    return apart - std::max(approach.along(normal), 0.0) * limit > reach;
 }
 
 }  // namespace
@@ -164,26 +195,23 @@ double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, co
                       double limit) {
     const Vec3 nearest = nearest_way(motion_a, motion_b, limit);
     if (!balls_meet(nearest, motion_a, motion_b, core_radius(a) + core_radius(b), reach)) return limit;
-    const Approach approach(motion_a, motion_b);
-    if (pass_by(nearest, {a, motion_a.at, b, motion_b.at}, approach, reach, limit)) return limit;
     double t = 0;
-    std::optional<Vec3> normal;  // of the step before
+    // Most that do not meet pass by each other: along the way between the centres where they are nearest, these hardly
+    // come nearer.
+    Vec3 normal = nearest.norm() > 0 ? nearest.normalized() : Vec3::UnitY();  // then of the step before
+    const Moment end(a, motion_a, b, motion_b, limit);
     for (int step = 0; step < kMaxSteps; ++step) {
-        const Placement at_a = motion_a.after(t), at_b = motion_b.after(t);
-        const Couple couple(a, at_a, b, at_b);
-        if (!normal) normal = couple.hint();
-        const auto held = [&] { return couple.proven(Vec3::Zero(), *normal) - couple.radii(); };
-        double separation = held();
+        const Moment now(a, motion_a, b, motion_b, t);
+        double separation = now.apart(normal);
         if (separation <= reach) {  // the last normal parts them no more, for which one support point was asked
-            const Distance cores = couple.distance(Vec3::Zero(), *normal, kBoundGap);
+            const Couple& couple = now.couple();
+            const Distance cores = couple.distance(Vec3::Zero(), couple.to_a(normal), kBoundGap);
             if (!cores.apart) return t;
-            normal = cores.normal;
-            separation = held();
+            normal = couple.to_world(cores.normal);
+            separation = now.apart(normal);
             if (separation <= reach) return t;
         }
-        const double speed = approach.along(couple.to_world(*normal));
-        if (!(speed > 0)) return limit;
-        t += (separation - 0.5 * reach) / speed;
+        t += now.time_apart(normal, separation, 0.5 * reach, end);
         if (!(t < limit)) return limit;
     }
     return t;
@@ -196,7 +224,7 @@ double find_impact(const Shape& a, const Motion& motion_a, const Shape& b, const
     const double met = kMeetings[size_t(b.kind)](a, motion_a, b, motion_b, reach, horizon);
     if (met == 0) return 0;
     if (!(met < horizon)) return kNever;
-    return passes_deep(a, motion_a, b, motion_b, met, reach, depth, 2 * horizon) ? met : kNever;
+    return passes_deep(a, motion_a, b, motion_b, met, depth, 2 * horizon) ? met : kNever;
 }
 
 }  // namespace taut::collision
