@@ -260,7 +260,9 @@ uint32_t Broadphase::start_refresh() {
     return uint32_t(s.stale.size());
 }
 
-void Broadphase::find_pairs(uint32_t begin, uint32_t end) { state_->find(begin, end); }
+void Broadphase::find_pairs(uint32_t begin, uint32_t end) {
+    if (begin < end) state_->find(begin, end);
+}
 
 bool Broadphase::finish_refresh() {
     State& s = *state_;
