@@ -14,6 +14,8 @@ namespace {
 constexpr double kContact = 1e-5;
 // How far it is lifted, in the same parts.
 constexpr double kLift = 0.25;
+// Of heights over faces, in parts of how far from the shape the ends of the way are.
+constexpr float kRounding = 1e-6f;
 // A few as a rule; where the way grazes the surface each halves the distance.
 constexpr int kMaxSteps = 64;
 
@@ -32,7 +34,8 @@ bool stays_above_face(const Shape& moving, const Placement& from, const Vec3& al
         return Vec3f(at.rotation.transpose() * (p - at.position).cast<float>());
     };
     const Vec3f start = to_still(from.position), end = to_still(from.position + limit * along);
-    const float height = moving.size.x() + float(kContact) * still.hull->inner_radius;
+    const float rounding = kRounding * (start.norm() + end.norm());
+    const float height = moving.size.x() + float(kContact) * still.hull->inner_radius + rounding;
     const auto is_above = [&](const PlanePack& faces) {
         return (heights_over(faces, start).min(heights_over(faces, end)) > height).any();
     };

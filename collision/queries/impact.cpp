@@ -5,8 +5,8 @@
 //
 //   s(t) >= s(0) (1 - t / T) + s(T) t / T - (|w_a|^2 r_a + |w_b|^2 r_b) t (T - t) / 2
 //
-// at each t until T: by no more than that does the reach of a point along n exceed the chord between now and then, and so
-// that of the furthest one.
+// at each t until T: by no more than that does the reach of a point along n exceed the chord between now and then, and
+// so that of the furthest one.
 #include <array>
 #include <limits>
 

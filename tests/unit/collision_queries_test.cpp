@@ -292,6 +292,48 @@ TEST(Cast, BallMeetsBallWhereTheQuadraticSays) {
     }
 }
 
+// Beside a look at many places of the way: what overlaps at one of them is met no later, what is met is touched there.
+TEST(Cast, BallMeetsAHullWhereTheyFirstOverlap) {
+    Random random(12);
+    int met = 0, missed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Shape stone = random_shape(ShapeKind::hull, random), ball = random_shape(ShapeKind::sphere, random);
+        const Cast cast = random_ray(random, Vec3(0, 1e4, 0));
+        const auto overlap_at = [&](double t) {
+            return overlap(ball, {cast.from + t * cast.along, Mat3f::Identity()}, stone, cast.at);
+        };
+        int first = 0;
+        while (first <= 100 && !overlap_at(0.01 * first)) ++first;
+        Hit hit;
+        const bool found = cast_shape(ball, {cast.from, Mat3f::Identity()}, cast.along, stone, cast.at, 1, hit);
+        if (first <= 100) {
+            ASSERT_TRUE(found) << i;
+            EXPECT_LE(hit.fraction, 0.01 * first) << i;
+        }
+        if (!found) {
+            ++missed;
+            continue;
+        }
+        ++met;
+        const Placement there = {cast.from + hit.fraction * cast.along, Mat3f::Identity()};
+        EXPECT_LT(find_gap(ball, there, stone, cast.at).distance, 1e-4) << i;
+    }
+    EXPECT_GT(met, 300);
+    EXPECT_GT(missed, 100);
+}
+
+// To a millimetre from ten kilometres away.
+TEST(Cast, BallFromAfarMeetsAHullThatItJustReaches) {
+    std::vector<Vec3f> corners;
+    for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f);
+    const Shape cube = oracle::hull(corners), ball = sphere(0.25f);
+    const Placement at = {Vec3::Zero(), Mat3f::Identity()}, from = {Vec3(1e4, 0.1, -0.2), Mat3f::Identity()};
+    for (const double depth : {1e-3, -1e-3}) {
+        Hit hit;
+        EXPECT_EQ(cast_shape(ball, from, Vec3(0.75 - depth - 1e4, 0, 0), cube, at, 1, hit), depth > 0);
+    }
+}
+
 TEST(Cast, WhatTouchesAndLeavesIsNotMet) {
     const Shape crate = box(0.5f, 0.5f, 0.5f);
     const Placement below = {Vec3::Zero(), Mat3f::Identity()}, above = {Vec3(0, 1 + 1e-7, 0), Mat3f::Identity()};
