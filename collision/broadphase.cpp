@@ -84,7 +84,8 @@ struct Broadphase::State {
     static constexpr size_t kTogether = 256;  // keys
     static constexpr uint32_t kAtOnce = 8;    // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8;
-    uint32_t room = kRoom;     // for keys of each stale leaf: half as many more than they had in the last step
+    static constexpr size_t kMany = 2048;  // keys: more are not kept from step to step, for fewer room stays as it is
+    uint32_t room = kRoom;     // for keys of each stale leaf: of many half as many more than they had in the last step
     Array<uint64_t> partners;  // keys, in the room of the stale leaves that are looked at together
     struct Found {
         uint32_t count, next, end;  // keys; the first stale leaf that there was no room for; that after the last
@@ -149,9 +150,7 @@ void Broadphase::State::gather_fresh() {
         for_partners(std::span(stale).subspan(found.next, found.end - found.next),
                      [&](uint64_t key) { fresh.push_back(key); });
     }
-    room = std::max(kRoom, uint32_t(fresh.size() / number) * 3 / 2);
-    taut::let_go(partners);
-    taut::let_go(found_of);
+    room = fresh.size() < kMany ? kRoom : std::max(kRoom, uint32_t(fresh.size() / number) * 3 / 2);
     constexpr size_t kFew = 32;  // to as many leaves a key: less than what counting takes
     if (fresh.size() < leaves.size() / kFew) return std::sort(fresh.begin(), fresh.end());
     Array<uint64_t>& by_larger = gone;  // has no other use yet
@@ -290,8 +289,9 @@ bool Broadphase::refresh_pairs() {
 
 void Broadphase::let_go() {
     State& s = *state_;
-    for (Array<uint64_t>* each : {&s.fresh, &s.gone}) taut::let_go(*each);
+    for (Array<uint64_t>* each : {&s.fresh, &s.gone, &s.partners}) taut::let_go(*each);
     taut::let_go(s.first_of);
+    taut::let_go(s.found_of);
 }
 
 std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }
