@@ -83,9 +83,10 @@ struct Broadphase::State {
     bool all_stale = false;                   // as in the first step
     static constexpr size_t kTogether = 256;  // keys
     static constexpr uint32_t kAtOnce = 8;    // leaves whose boxes go down the tree together
-    static constexpr uint32_t kRoom = 8;
+    static constexpr uint32_t kRoom = 8, kMostRoom = 64;
     static constexpr size_t kMany = 2048;  // keys: more are not kept from step to step, for fewer room stays as it is
-    uint32_t room = kRoom;     // for keys of each stale leaf: of many half as many more than they had in the last step
+    size_t found_before = 0;               // keys in the last step
+    uint32_t room = kRoom;     // for keys of each stale leaf: where there were many, for half as many more than those
     Array<uint64_t> partners;  // keys, in the room of the stale leaves that are looked at together
     struct Found {
         uint32_t count, next, end;  // keys; the first stale leaf that there was no room for; that after the last
@@ -150,7 +151,7 @@ void Broadphase::State::gather_fresh() {
         for_partners(std::span(stale).subspan(found.next, found.end - found.next),
                      [&](uint64_t key) { fresh.push_back(key); });
     }
-    room = fresh.size() < kMany ? kRoom : std::max(kRoom, uint32_t(fresh.size() / number) * 3 / 2);
+    found_before = fresh.size();
     constexpr size_t kFew = 32;  // to as many leaves a key: less than what counting takes
     if (fresh.size() < leaves.size() / kFew) return std::sort(fresh.begin(), fresh.end());
     Array<uint64_t>& by_larger = gone;  // has no other use yet
@@ -252,6 +253,8 @@ void Broadphase::set_moves(uint32_t id, bool moves) {
 
 uint32_t Broadphase::start_refresh() {
     State& s = *state_;
+    const size_t wanted = s.found_before < State::kMany ? 0 : 3 * s.found_before / (2 * s.stale.size() + 1);
+    s.room = uint32_t(std::clamp(wanted, size_t(State::kRoom), size_t(State::kMostRoom)));
     s.partners.resize(s.stale.size() * s.room);
     s.found_of.resize(s.stale.size());
     const auto in_tree = [&](uint32_t id) { return s.leaves[id].node != nullptr; };

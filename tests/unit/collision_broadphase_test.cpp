@@ -190,6 +190,29 @@ TEST(CollisionBroadphase, StaticBodiesNeverPairUntilTheyMove) {
     EXPECT_TRUE(broadphase.pairs().empty());
 }
 
+// What one leaf that meets thousands was given in a step is not given to thousands in the next.
+TEST(CollisionBroadphase, OneThatMeetsAllTakesNoRoomForEach) {
+    constexpr uint32_t kMany = 3000;
+    Memory memory(taut_hooks{});
+    Broadphase broadphase(memory);
+    const auto box_of = [](uint32_t i, float x) {
+        const Vec3f low(float(i), x, 0);
+        return Box{low, low + Vec3f::Constant(0.5f)};
+    };
+    const auto sweeper = [](float x) { return Box{Vec3f(-1, x, -1), Vec3f(float(kMany + 1), x + 3, 1)}; };
+    for (uint32_t i = 1; i <= kMany; ++i) broadphase.add(i, box_of(i, 0), true);
+    broadphase.add(0, sweeper(-1), true);
+    broadphase.refresh_pairs();
+    broadphase.update(0, sweeper(-0.5f), Vec3f::Zero());
+    broadphase.refresh_pairs();
+    const uint64_t before = memory.bytes();
+    for (uint32_t i = 1; i <= kMany; ++i) broadphase.update(i, box_of(i, 0.2f), Vec3f::Zero());
+    broadphase.find_pairs(0, broadphase.start_refresh());
+    EXPECT_LT(memory.bytes(), before + 1000 * kMany);
+    broadphase.finish_refresh();
+    EXPECT_EQ(broadphase.pairs().size(), kMany);
+}
+
 TEST(CollisionBroadphase, RemovedIdsLeaveAndMayComeBack) {
     Memory memory(taut_hooks{});
     {
