@@ -33,24 +33,28 @@ bool solved(const Nodes& nodes, const Collider& collider) {
 
 // Whether a collider's middle went elsewhere than its speed told before the step, further from there than a part of its
 // thickness; one that spans two nodes, which is thin, than what stays within the contact margin.
-bool went_astray(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Vec3f& ahead,
-                 double thickness) {
-    if (!solved(nodes, collider)) return false;
+bool went_astray(const Collider& collider, const Vec3& along, const Vec3f& ahead, double thickness) {
     double stride = kStride * thickness;
     if (collider.node_b != kNone) stride = std::max(stride, 0.4 * static_cast<double>(kContactMargin));
-    const Vec3 off = way_along(nodes, collider, shapes) - ahead.cast<double>();
-    return off.squaredNorm() > stride * stride;
+    return (along - ahead.cast<double>()).squaredNorm() > stride * stride;
 }
 
 struct Astray {
     bool any = false, newly = false;  // newly: some that did not before the last round
 };
 
-// Of all colliders, after the first round of what the last one put back. Whether any of these went astray.
+const Course& find_course(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c,
+                          Pairs& pairs) {
+    return pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
+}
+
+// Of all colliders, after the first round of what the last one put back; with their courses, if these are asked for.
+// Whether any went astray.
 Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
-                  Pairs& pairs) {
+                  bool with_courses, Pairs& pairs) {
     std::atomic<bool> any = false, newly = false;
     pairs.marks.resize(colliders.record.size());
+    if (with_courses) pairs.courses.resize(colliders.record.size());
     team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
@@ -61,17 +65,16 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
             const bool was_astray = mark & kAstray;
             mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
             if (collider.asks & (kAsksOneWay | kAsksPreSolve)) mark |= kIgnorable;
-            if (!went_astray(nodes, collider, shapes, pairs.reach[c].ahead, pairs.pace[c].thickness)) continue;
+            const Course* const course = with_courses ? &find_course(nodes, colliders, shapes, c, pairs) : nullptr;
+            if (!solved(nodes, collider)) continue;
+            const Vec3 along = course ? course->along : way_along(nodes, collider, shapes);
+            if (!went_astray(collider, along, pairs.reach[c].ahead, pairs.pace[c].thickness)) continue;
             mark |= kAstray;
             any.store(true, std::memory_order_relaxed);
             if (!was_astray) newly.store(true, std::memory_order_relaxed);
         }
     });
     return {any.load(std::memory_order_relaxed), newly.load(std::memory_order_relaxed)};
-}
-
-void find_course(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c, Pairs& pairs) {
-    pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
 }
 
 void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
@@ -267,13 +270,14 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
     mechanisms.any_drives = false;
     bool again = true;
     for (uint8_t round = 1; again && round <= (mechanisms.any_drives ? kMostRounds : kRounds); ++round) {
-        const Astray astray = find_marks(team, nodes, colliders, shapes, round, pairs);
-        if (round == 1 && !astray.any && !pairs.any_fast) {
+        const bool asks_some = round > 1 || pairs.any_fast;
+        const Astray astray = find_marks(team, nodes, colliders, shapes, round, asks_some, pairs);
+        if (!asks_some && !astray.any) {
             let_go(pairs.courses);
             let_go(pairs.asked);
             break;
         }
-        find_courses(team, nodes, colliders, shapes, pairs);
+        if (!asks_some) find_courses(team, nodes, colliders, shapes, pairs);
         const size_t late = pairs.late.size();
         if (astray.any) find_late(team, nodes, colliders, shapes, pairs, broadphase);
         if (round == 1 || astray.newly || pairs.late.size() > late) ask_pairs(team, pairs);
