@@ -91,13 +91,40 @@ struct HostAllocator {
 template <class T>
 using Array = std::vector<T, HostAllocator<T>>;
 
+// An array whose new elements hold whatever was there before: for large ones that are filled at once, each part by the
+// thread that goes on with it.
+template <class T>
+struct UnsetAllocator : HostAllocator<T> {
+    using HostAllocator<T>::HostAllocator;
+    template <class U>
+    struct rebind {
+        using other = UnsetAllocator<U>;
+    };
+    template <class U>
+    void construct(U* element) {
+        ::new (static_cast<void*>(element)) U;
+    }
+    template <class U, class... From>
+    void construct(U* element, From&&... from) {
+        ::new (static_cast<void*>(element)) U(std::forward<From>(from)...);
+    }
+};
+template <class T>
+using UnsetArray = std::vector<T, UnsetAllocator<T>>;
+
 // Room for more elements. By an eighth, not by doubling: large arrays make up a world's memory.
 constexpr size_t with_slack(size_t needed) { return needed + needed / 8; }
 
+// How many elements a piece of memory holds that is asked for with so many.
 template <class T>
-void reserve_more(Array<T>& array, size_t more) {
+size_t held_with(size_t count) {
+    return Memory::whole(count * sizeof(T), HostAllocator<T>::alignment()) / sizeof(T);
+}
+
+template <class T, class Allocator>
+void reserve_more(std::vector<T, Allocator>& array, size_t more) {
     const size_t needed = array.size() + more;
-    if (needed > array.capacity()) array.reserve(with_slack(needed));
+    if (needed > array.capacity()) array.reserve(held_with<T>(with_slack(needed)));
 }
 
 // As many elements, if there are fewer: each is written, so that the step that uses it meets no new memory. Grows into
@@ -106,17 +133,17 @@ template <class T>
 void grow_to(Array<T>& array, size_t size) {
     if (array.size() >= size) return;
     if (size > array.capacity()) {
-        const size_t bytes = size * sizeof(T), whole = Memory::whole(bytes, HostAllocator<T>::alignment());
-        array.reserve(whole > bytes ? whole / sizeof(T) : size + size / 16);
+        const size_t held = held_with<T>(size);
+        array.reserve(held > size ? held : size + size / 16);
     }
     array.resize(size);
 }
 
 // Empties an array that few steps use, and leaves its memory, if that is much, to whatever asks next.
-template <class T>
-void let_go(Array<T>& array) {
+template <class T, class Allocator>
+void let_go(std::vector<T, Allocator>& array) {
     array.clear();
-    if (array.capacity() * sizeof(T) >= Memory::kLarge) Array<T>(array.get_allocator()).swap(array);
+    if (array.capacity() * sizeof(T) >= Memory::kLarge) std::vector<T, Allocator>(array.get_allocator()).swap(array);
 }
 
 }  // namespace taut

@@ -85,27 +85,6 @@ struct LaneView {
     uint32_t movers = 0;  // of groups that threads share: seats 1 to here move, and another core may hold them; else 0
 };
 
-// An array whose new elements hold whatever was there before: for large ones that are filled at once, each part by the
-// thread that goes on with it.
-template <class T>
-struct UnsetAllocator : HostAllocator<T> {
-    using HostAllocator<T>::HostAllocator;
-    template <class U>
-    struct rebind {
-        using other = UnsetAllocator<U>;
-    };
-    template <class U>
-    void construct(U* element) {
-        ::new (static_cast<void*>(element)) U;
-    }
-    template <class U, class... From>
-    void construct(U* element, From&&... from) {
-        ::new (static_cast<void*>(element)) U(std::forward<From>(from)...);
-    }
-};
-template <class T>
-using UnsetArray = std::vector<T, UnsetAllocator<T>>;
-
 // Points of lane groups, in pieces that stay where they are: one array would be new memory throughout whenever it
 // grows, which takes the system longer to hand out than it takes to fill, and that in the frames that do the most.
 class LanePoints {

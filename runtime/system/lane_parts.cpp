@@ -159,7 +159,7 @@ void share_out(Team& team, System& system, Pairs& pairs, const Group& group) {
     const Cut cut(group, pairs, lanes.parts);
     for (uint32_t c = 0; c < kMaxColours; ++c) add_colour(lanes, group, c, cut);
     const size_t groups = lanes.part.back().end;
-    if (groups > lanes.group.capacity()) lanes.group.reserve(with_slack(groups));
+    reserve_more(lanes.group, groups);
     lanes.group.resize(groups);
     Meetings meetings(system);
     const auto choose = [&](uint32_t part) {
