@@ -111,53 +111,94 @@ void break_circle(const ClipPoint* points, int (&index)[4]) {
         std::swap(index[2], index[3]);
 }
 
-}  // namespace
+// (x, y, z, 0): an id would be a subnormal number, with which processors are slow.
+#if defined(__SSE2__)
+Eigen::Array4f place_of(const ClipPoint& point) {
+    const __m128 three = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
+    Eigen::Array4f place;
+    _mm_store_ps(place.data(), _mm_and_ps(_mm_loadu_ps(&point.x), three));
+    return place;
+}
+#else
+Eigen::Array4f place_of(const ClipPoint& point) { return {point.x, point.y, point.z, 0}; }
+#endif
 
-// Sutherland-Hodgman, side by side. A crossing is cut on the side itself. Each end and each crossing is written, and
-// counted where there is one: branches would be mispredicted.
-void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
-    Polygon spare;
-    Polygon* in = &polygon;
-    Polygon* out = &spare;
-    for (size_t s = 0; s < sides.size() && in->count > 0; ++s) {
-        const Side& side = sides[s];
-        float outside[kMaxClip];
-        bool any = false;
-        for (int i = 0; i < in->count; ++i) {
-            outside[i] = side.x * in->points[i].x + side.y * in->points[i].y - side.offset;
+// A polygon while it is cut: its corners, and the lines from each to the next.
+struct Outline {
+    int count = 0;
+    Eigen::Array4f corner[kMaxClip + 1];  // one is room for the first once more
+    uint32_t line[kMaxClip];
+
+    explicit Outline(const Polygon& polygon) : count(polygon.count) {
+        for (int i = 0; i < count; ++i) {
+            corner[i] = place_of(polygon.points[i]);
+            line[i] = polygon.points[i].id;
+        }
+    }
+    Outline() {}
+};
+
+// Where a side cuts an outline.
+struct Cuts {
+    using Four = Eigen::Map<Eigen::Array4f>;
+
+    alignas(16) float outside[kMaxClip + 4];  // how far each corner is, and once more the first [m]
+    alignas(16) float crossing[kMaxClip];     // on the line from it to the next, in parts of that from the inner end
+    bool any = false;                         // is further than slack
+
+    Cuts(const Outline& outline, const Side& side, float slack) {
+        for (int i = 0; i < outline.count; ++i) {
+            outside[i] = side.x * outline.corner[i].x() + side.y * outline.corner[i].y() - side.offset;
             any |= outside[i] > slack;
         }
-        if (!any) continue;
-        out->count = 0;
-        const uint32_t line = kSideLine + uint32_t(s);
-        for (int i = 0; i < in->count && out->count + 2 <= kMaxClip; ++i) {
-            const int j = i + 1 == in->count ? 0 : i + 1;
-            const ClipPoint& from = in->points[i];
-            const ClipPoint& to = in->points[j];
-            const bool from_in = outside[i] <= slack;
-            const bool to_in = outside[j] <= slack;
-            out->points[out->count] = from;
-            out->count += from_in;
-            const float inner = std::min(0.0f, std::min(outside[i], outside[j]));
-            const float outer = std::max(outside[i], outside[j]);
-            const float t = inner / (inner - outer);  // from the inner end, of a crossing
-            const ClipPoint& a = from_in ? from : to;
-            const ClipPoint& b = from_in ? to : from;
-            out->points[out->count] = {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t,
-                                       from_in ? line : from.id};
-            out->count += from_in != to_in;
+    }
+    void find_crossings(int count) {
+        outside[count] = outside[0];
+        for (int i = 0; i < count; i += 4) {
+            const Eigen::Array4f from = Four(outside + i), to = Four(outside + i + 1);
+            const Eigen::Array4f inner = from.min(to).min(0.0f);
+            Four(crossing + i) = inner / (inner - from.max(to));
         }
+    }
+};
+
+// Sutherland-Hodgman, one side. A crossing is cut on the side itself. Each end and each crossing is written, and
+// counted where there is one: branches would be mispredicted.
+void cut(Outline& in, const Cuts& cuts, uint32_t side, float slack, Outline& out) {
+    in.corner[in.count] = in.corner[0];
+    int made = 0;
+    for (int i = 0; i < in.count && made + 2 <= kMaxClip; ++i) {
+        const int from_in = cuts.outside[i] <= slack, to_in = cuts.outside[i + 1] <= slack;  // 0 or 1
+        const uint32_t line = in.line[i];
+        out.corner[made] = in.corner[i];
+        out.line[made] = line;
+        made += from_in;
+        const Eigen::Array4f &inner = in.corner[i + 1 - from_in], &outer = in.corner[i + from_in];
+        out.corner[made] = inner + (outer - inner) * cuts.crossing[i];
+        out.line[made] = line ^ ((line ^ side) & uint32_t(-from_in));  // the side, where it leaves
+        made += from_in ^ to_in;
+    }
+    out.count = made;
+}
+
+}  // namespace
+
+void clip(Polygon& polygon, std::span<const Side> sides, float slack) {
+    Outline outline(polygon), spare;
+    Outline *in = &outline, *out = &spare;
+    for (size_t s = 0; s < sides.size() && in->count > 0; ++s) {
+        Cuts cuts(*in, sides[s], slack);
+        if (!cuts.any) continue;
+        cuts.find_crossings(in->count);
+        cut(*in, cuts, kSideLine + uint32_t(s), slack, *out);
         std::swap(in, out);
     }
-    if (in != &polygon) {
-        polygon.count = in->count;
-        std::copy(in->points, in->points + in->count, polygon.points);
-    }
-    uint32_t previous = polygon.count > 0 ? polygon.points[polygon.count - 1].id : 0;
-    for (int i = 0; i < polygon.count; ++i) {
-        const uint32_t line = polygon.points[i].id;
-        polygon.points[i].id = previous << 7 | line;
-        previous = line;
+    polygon.count = in->count;
+    uint32_t previous = in->count > 0 ? in->line[in->count - 1] : 0;
+    for (int i = 0; i < in->count; ++i) {
+        const Eigen::Array4f& p = in->corner[i];
+        polygon.points[i] = {p.x(), p.y(), p.z(), previous << 7 | in->line[i]};
+        previous = in->line[i];
     }
 }
 
