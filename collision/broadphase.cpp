@@ -2,6 +2,7 @@
 // asked again, and pairs are sorted, so that nothing depends on the tree's shape. The tree's nodes are Bullet's memory.
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -39,12 +40,36 @@ btDbvtVolume fat_volume(const Box& box, const Vec3f& ahead) {
     return volume;
 }
 
+// A leaf whose box changes keeps its place in the tree, which is a third of the work, this often, while the box about
+// it and its sibling is no longer than the two; those above may drift apart as well.
+constexpr uint8_t kMostStays = 3;
+float length_of(const btDbvtVolume& volume) {
+    const btVector3 sides = volume.Lengths();
+    return sides.x() + sides.y() + sides.z();
+}
+bool may_stay(const btDbvtNode& leaf, const btDbvtVolume& volume) {
+    if (!leaf.parent) return false;
+    const btDbvtVolume& sibling = leaf.parent->childs[leaf.parent->childs[0] == &leaf]->volume;
+    btDbvtVolume both;
+    Merge(volume, sibling, both);
+    return length_of(both) <= length_of(volume) + length_of(sibling);
+}
+void set_in_place(btDbvtNode& leaf, const btDbvtVolume& volume) {
+    leaf.volume = volume;
+    for (btDbvtNode* above = leaf.parent; above; above = above->parent) {
+        const btDbvtVolume before = above->volume;
+        Merge(above->childs[0]->volume, above->childs[1]->volume, above->volume);
+        if (!NotEqual(before, above->volume)) return;
+    }
+}
+
 uint64_t pair_key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 32 | std::max(i, j); }
 
 struct Leaf {
     btDbvtNode* node = nullptr;  // null: no such id
     bool moves = false;
     bool stale = false;  // its pairs must be found again; listed in State::stale
+    uint8_t stays = 0;   // how often its box changed since it got its place in the tree
     bool stray = false;  // may be outside its fat box; listed in State::strays
 };
 
@@ -67,6 +92,11 @@ struct Broadphase::State {
         stale.push_back(id);
         leaves[id].stale = true;
     }
+    // From one on those that go down the tree together, before an end.
+    std::span<const uint32_t> some_stale(uint32_t next, uint32_t end) const {
+        return std::span(stale).subspan(next, std::min(kAtOnce, end - next));
+    }
+    void order_stale();
     template <class Report>
     void for_partners(std::span<const uint32_t> ids, Report&& report) const;
     void find(uint32_t begin, uint32_t end);
@@ -80,14 +110,13 @@ struct Broadphase::State {
     btDbvt tree;
     Array<Leaf> leaves;  // by id
     Array<uint32_t> stale;
-    bool all_stale = false;                   // as in the first step
-    static constexpr size_t kTogether = 256;  // keys
-    static constexpr uint32_t kAtOnce = 8;    // leaves whose boxes go down the tree together
+    static constexpr size_t kTogether = 256;     // keys
+    static constexpr uint32_t kAtOnce = kLanes;  // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8, kMostRoom = 64;
     static constexpr size_t kMany = 2048;  // keys: more are not kept from step to step, for fewer room stays as it is
     size_t found_before = 0;               // keys in the last step
-    uint32_t room = kRoom;     // for keys of each stale leaf: where there were many, for half as many more than those
-    Array<uint64_t> partners;  // keys, in the room of the stale leaves that are looked at together
+    uint32_t room = kRoom;  // for keys of each stale leaf: where there were many, for half as many more than those
+    UnsetArray<uint64_t> partners;  // keys, in the room of the stale leaves that are looked at together
     struct Found {
         uint32_t count, next, end;  // keys; the first stale leaf that there was no room for; that after the last
     };
@@ -99,23 +128,55 @@ struct Broadphase::State {
     Array<uint32_t> first_of;  // where in a sorted list the keys of an id begin
 };
 
-// Calls report(key) for each leaf whose fat box meets that of one of some stale leaves, and which pairs with it; of two
-// stale leaves the smaller id reports. If all are stale, each only looks to its right in the tree and reports whom it
-// meets there.
+// Those that lie near each other one after the other, so that those that go down the tree together meet the same nodes:
+// by cells of a grid about them all, in Morton order.
+void Broadphase::State::order_stale() {
+    constexpr uint32_t kCells = 8;                                      // along each axis
+    constexpr uint32_t kSpread[kCells] = {0, 1, 8, 9, 64, 65, 72, 73};  // a number's bits, two zeros between them
+    const auto middle = [&](uint32_t id) {
+        const btDbvtNode* const leaf = leaves[id].node;
+        return leaf ? btVector3(0.5f * (leaf->volume.Mins() + leaf->volume.Maxs())) : btVector3(0, 0, 0);
+    };
+    btVector3 lo = middle(stale.front()), hi = lo;
+    for (const uint32_t id : stale) lo.setMin(middle(id)), hi.setMax(middle(id));
+    first_of.assign(kCells * kCells * kCells + 1, 0);
+    for (size_t k = 0; k < stale.size(); ++k) {
+        uint32_t cell = 0;
+        for (int i = 0; i < 3; ++i) {
+            const float along = float(kCells) * (middle(stale[k])[i] - lo[i]) / (hi[i] - lo[i]);
+            cell |= kSpread[along > 0 ? uint32_t(std::min(along, float(kCells - 1))) : 0] << i;  // not-a-number: 0
+        }
+        partners[k] = uint64_t(cell) << 32 | stale[k];
+        ++first_of[cell + 1];
+    }
+    std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
+    for (size_t k = 0, count = stale.size(); k < count; ++k)
+        stale[first_of[partners[k] >> 32]++] = uint32_t(partners[k]);
+}
+
+// Calls report(key) for each leaf whose fat box meets that of one of some stale leaves, at most kAtOnce, and which
+// pairs with it; of two stale leaves the smaller id reports.
 template <class Report>
 void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& report) const {
-    const auto found = [&](uint32_t id, uint32_t other) {
-        const bool reports = all_stale || !(leaves[other].stale && other < id);
-        if (reports && (leaves[other].moves || leaves[id].moves)) report(pair_key(id, other));
-    };
-    Descent descent(found);
-    for (const uint32_t id : ids) {
-        const btDbvtNode* const leaf = leaves[id].node;
-        for (const btDbvtNode* node = leaf; node && node->parent; node = node->parent) {
-            const bool is_right = node == node->parent->childs[1];
-            if (!is_right || !all_stale) descent.begin_at(node->parent->childs[!is_right], leaf);
+    BoxLanes boxes;
+    unsigned asking = 0;
+    for (size_t k = 0; k < kAtOnce; ++k) {
+        const btDbvtNode* const leaf = k < ids.size() ? leaves[ids[k]].node : nullptr;
+        asking |= unsigned(leaf != nullptr) << k;
+        for (int i = 0; i < 3; ++i) {
+            boxes.lo[i][k] = leaf ? leaf->volume.Mins()[i] : std::numeric_limits<float>::infinity();
+            boxes.hi[i][k] = leaf ? leaf->volume.Maxs()[i] : -std::numeric_limits<float>::infinity();
         }
     }
+    const auto found = [&](unsigned met, uint32_t other) {
+        for (; met != 0; met &= met - 1) {
+            const uint32_t id = ids[size_t(std::countr_zero(met))];
+            const bool reports = other != id && !(leaves[other].stale && other < id);
+            if (reports && (leaves[other].moves || leaves[id].moves)) report(pair_key(id, other));
+        }
+    };
+    Descent descent(boxes, found);
+    if (asking != 0) descent.begin_at(tree.m_root, asking);
     descent.run();
 }
 
@@ -125,7 +186,7 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
     uint64_t* const to = partners.data() + size_t(begin) * room;
     const uint32_t most = (end - begin) * room;
     while (found.next < end) {
-        const auto some = std::span(stale).subspan(found.next, std::min(kAtOnce, end - found.next));
+        const auto some = some_stale(found.next, end);
         uint32_t count = found.count;
         for_partners(some, [&](uint64_t key) {
             if (count < most) to[count] = key;
@@ -148,8 +209,8 @@ void Broadphase::State::gather_fresh() {
         const Found& found = found_of[i];
         const uint64_t* const first = partners.data() + size_t(i) * room;
         fresh.insert(fresh.end(), first, first + found.count);
-        for_partners(std::span(stale).subspan(found.next, found.end - found.next),
-                     [&](uint64_t key) { fresh.push_back(key); });
+        for (uint32_t next = found.next; next < found.end; next += kAtOnce)
+            for_partners(some_stale(next, found.end), [&](uint64_t key) { fresh.push_back(key); });
     }
     found_before = fresh.size();
     constexpr size_t kFew = 32;  // to as many leaves a key: less than what counting takes
@@ -237,7 +298,13 @@ void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement
     if (holds(id, tight)) return;
     s.mark(id);
     btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
-    s.tree.update(s.leaves[id].node, volume);
+    Leaf& leaf = s.leaves[id];
+    if (leaf.stays < kMostStays && may_stay(*leaf.node, volume)) {
+        ++leaf.stays;
+        return set_in_place(*leaf.node, volume);
+    }
+    leaf.stays = 0;
+    s.tree.update(leaf.node, volume);
 }
 
 bool Broadphase::holds(uint32_t id, const Box& tight) const {
@@ -257,8 +324,7 @@ uint32_t Broadphase::start_refresh() {
     s.room = uint32_t(std::clamp(wanted, size_t(State::kRoom), size_t(State::kMostRoom)));
     s.partners.resize(s.stale.size() * s.room);
     s.found_of.resize(s.stale.size());
-    const auto in_tree = [&](uint32_t id) { return s.leaves[id].node != nullptr; };
-    s.all_stale = std::ranges::count_if(s.stale, in_tree) == s.tree.m_leaves;
+    if (s.stale.size() > State::kAtOnce) s.order_stale();
     return uint32_t(s.stale.size());
 }
 
@@ -292,7 +358,8 @@ bool Broadphase::refresh_pairs() {
 
 void Broadphase::let_go() {
     State& s = *state_;
-    for (Array<uint64_t>* each : {&s.fresh, &s.gone, &s.partners}) taut::let_go(*each);
+    for (Array<uint64_t>* each : {&s.fresh, &s.gone}) taut::let_go(*each);
+    taut::let_go(s.partners);
     taut::let_go(s.first_of);
     taut::let_go(s.found_of);
 }

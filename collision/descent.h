@@ -5,6 +5,8 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
+#include "collision/lane_kernels.h"
+
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
@@ -29,50 +31,51 @@ inline bool are_within(const btVector3& p, const btVector3& p_most, const btVect
 }
 #endif
 
-inline bool meet(const btDbvtVolume& a, const btDbvtVolume& b) {
-    return are_within(a.Mins(), b.Maxs(), b.Mins(), a.Maxs());
-}
 inline bool contains(const btDbvtVolume& whole, const btDbvtVolume& part) {
     return are_within(whole.Mins(), part.Mins(), part.Maxs(), whole.Maxs());
 }
 
-// Goes through what is below some nodes, for the boxes of several leaves at once. Breadth first, so that processors
-// work on several nodes at once; where more wait than there is room for, one is gone through by itself.
+// Goes through a tree for the boxes of several leaves at once. Breadth first, so that processors work on several nodes
+// at once; where more wait than there is room for, one is gone through by itself.
 template <class Found>
 class Descent {
 public:
-    explicit Descent(Found& found) : found_(found) {}
+    Descent(const BoxLanes& boxes, Found& found) : boxes_(boxes), found_(found), meeting_(lane_kernels().meeting) {}
 
-    // Looks for what is at or below a node and meets the box of the leaf that asks.
-    void begin_at(const btDbvtNode* node, const btDbvtNode* asks) {
+    // Looks at or below a node for what meets some of the boxes, a bit each.
+    void begin_at(const btDbvtNode* node, unsigned boxes) {
+        const unsigned met = boxes & meeting_(boxes_, node->volume.Mins().m_floats, node->volume.Maxs().m_floats);
         if (end_ - begin_ < kRoom) {
-            waiting_[end_ % kRoom] = {node, asks};
-            end_ += meet(node->volume, asks->volume);
-        } else if (meet(node->volume, asks->volume)) {
-            Descent apart(found_);
-            apart.begin_at(node, asks);
+            waiting_[end_ % kRoom] = {node, met};
+            end_ += met != 0;
+        } else if (met != 0) {
+            Descent apart(boxes_, found_);
+            apart.begin_at(node, met);
             apart.run();
         }
     }
-    // Calls found(id that asks, id) for each.
+    // Calls found(boxes, id) for each leaf that some meet.
     void run() {
         while (begin_ < end_) {
-            const auto [node, asks] = waiting_[begin_++ % kRoom];
+            const auto [node, boxes] = waiting_[begin_++ % kRoom];
             if (node->isleaf())
-                found_(uint32_t(asks->dataAsInt), uint32_t(node->dataAsInt));
+                found_(boxes, uint32_t(node->dataAsInt));
             else
-                for (const btDbvtNode* const child : node->childs) begin_at(child, asks);
+                for (const btDbvtNode* const child : node->childs) begin_at(child, boxes);
         }
     }
 
 private:
     static constexpr uint32_t kRoom = 256;
     struct Waiting {
-        const btDbvtNode *node, *asks;
+        const btDbvtNode* node;
+        unsigned boxes;  // that meet it
     };
 
+    const BoxLanes& boxes_;
     Found& found_;
-    Waiting waiting_[kRoom];  // a ring; whose boxes meet
+    unsigned (*const meeting_)(const BoxLanes&, const float*, const float*);
+    Waiting waiting_[kRoom];  // a ring
     uint32_t begin_ = 0, end_ = 0;
 };
 

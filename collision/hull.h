@@ -10,24 +10,20 @@ namespace taut::collision {
 
 struct Hull {
     std::vector<Vec3f> vertices;  // sorted by x, then y, then z [m]
-    std::vector<VertexPack> packs;
-    std::vector<Face> faces;  // sorted by their loops, each loop from its smallest vertex on
-    std::vector<PlanePack> planes;
+    std::vector<Face> faces;      // sorted by their loops, each loop from its smallest vertex on
     std::vector<uint8_t> loops;
     std::vector<Side> sides;
     std::vector<Edge> edges;  // sorted by (from, to), from < to
     std::vector<Fan> fans;
     std::vector<uint8_t> around;
-    Vec3f centre = Vec3f::Zero();  // mean of the vertices [m]
+    std::vector<FloatLanes> corners, planes;  // columns of the vertices and faces
+    Vec3f centre = Vec3f::Zero();             // mean of the vertices [m]
     float inner_radius = 0;
     float outer_radius = 0;
 
     Polytope polytope;  // all of the above in one view, as it was when last laid out
 
-    void lay_out() {
-        polytope = {vertices, packs, faces,  planes, loops,        sides,
-                    edges,    fans,  around, centre, inner_radius, outer_radius};
-    }
+    void lay_out();
     const Polytope& view() const { return polytope; }
 };
 

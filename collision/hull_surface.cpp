@@ -143,17 +143,6 @@ void add_vertices(const std::vector<Vec3f>& points, Loops& loops, Hull& hull) {
     for (auto& loop : loops) {
         for (int& corner : loop) corner = index[size_t(corner)];
     }
-    const size_t last = hull.vertices.size() - 1;
-    for (size_t i = 0; i <= last; i += 4) {
-        VertexPack pack;
-        for (size_t lane = 0; lane < 4; ++lane) {
-            const Vec3f& v = hull.vertices[std::min(i + lane, last)];
-            pack.x[Eigen::Index(lane)] = v.x();
-            pack.y[Eigen::Index(lane)] = v.y();
-            pack.z[Eigen::Index(lane)] = v.z();
-        }
-        hull.packs.push_back(pack);
-    }
     Vec3 sum = Vec3::Zero();
     for (const Vec3f& v : hull.vertices) sum += v.cast<double>();
     hull.centre = (sum / double(hull.vertices.size())).cast<float>();
@@ -182,19 +171,15 @@ void add_face(const std::vector<int>& loop, Hull& hull) {
     hull.faces.push_back(face);
 }
 
-void pack_planes(Hull& hull) {
-    const size_t last = hull.faces.size() - 1;
-    for (size_t i = 0; i <= last; i += 4) {
-        PlanePack pack;
-        for (size_t lane = 0; lane < 4; ++lane) {
-            const Face& face = hull.faces[std::min(i + lane, last)];
-            pack.x[Eigen::Index(lane)] = face.normal.x();
-            pack.y[Eigen::Index(lane)] = face.normal.y();
-            pack.z[Eigen::Index(lane)] = face.normal.z();
-            pack.offset[Eigen::Index(lane)] = face.offset;
-        }
-        hull.planes.push_back(pack);
-    }
+// So many numbers of each thing, which number(thing, column) tells.
+template <class Number>
+Columns fill_columns(size_t things, uint32_t numbers, std::vector<FloatLanes>& lanes, Number&& number) {
+    const uint32_t length = column_length(things), each = length / kLanes;
+    lanes.resize(numbers * each);
+    for (uint32_t c = 0; c < numbers; ++c)
+        for (uint32_t i = 0; i < length; ++i)
+            lanes[c * each + i / kLanes].of[i % kLanes] = number(std::min(size_t(i), things - 1), int(c));
+    return things > 0 ? Columns{lanes[0].of, length} : Columns{};
 }
 
 bool add_edges(const Loops& loops, Hull& hull) {
@@ -213,6 +198,23 @@ bool add_edges(const Loops& loops, Hull& hull) {
 
 }  // namespace
 
+void Hull::lay_out() {
+    const auto coordinate = [&](size_t vertex, int i) { return vertices[vertex][i]; };
+    const auto of_plane = [&](size_t face, int i) { return i < 3 ? faces[face].normal[i] : faces[face].offset; };
+    polytope = {vertices,
+                faces,
+                loops,
+                sides,
+                edges,
+                fans,
+                around,
+                fill_columns(vertices.size(), 3, corners, coordinate),
+                fill_columns(faces.size(), 4, planes, of_plane),
+                centre,
+                inner_radius,
+                outer_radius};
+}
+
 std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, const Loops& surface, double tolerance) {
     const Adjacency adjacency(points.size(), surface);
     int groups = 0;
@@ -222,7 +224,6 @@ std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, co
     auto hull = std::make_shared<Hull>();
     add_vertices(points, loops, *hull);
     for (const auto& loop : loops) add_face(loop, *hull);
-    pack_planes(*hull);
     if (!add_edges(loops, *hull)) return nullptr;
     hull->fans.resize(hull->vertices.size());
     hull->around.resize(2 * hull->edges.size());

@@ -104,9 +104,16 @@ BoxPolytope::BoxPolytope(const Vec3f& half) : faces_(kFaces) {
     const float hx = half.x(), hy = half.y(), hz = half.z();
     vertices_ = {Vec3f(-hx, -hy, -hz), Vec3f(hx, -hy, -hz), Vec3f(-hx, hy, -hz), Vec3f(hx, hy, -hz),
                  Vec3f(-hx, -hy, hz),  Vec3f(hx, -hy, hz),  Vec3f(-hx, hy, hz),  Vec3f(hx, hy, hz)};
-    const Eigen::Array4f x(-hx, hx, -hx, hx);
-    const Eigen::Array4f y(-hy, -hy, hy, hy);
-    packs_ = {VertexPack{x, y, Eigen::Array4f::Constant(-hz)}, VertexPack{x, y, Eigen::Array4f::Constant(hz)}};
+    using Pack = Eigen::Array4f;
+    const Pack x(-hx, hx, -hx, hx), y(-hy, -hy, hy, hy), z = Pack::Constant(hz);
+    const auto put = [](FloatLanes& lanes, const Pack& first, const Pack& second, float last) {
+        const Pack rest = Pack::Constant(last);
+        const Pack* const packs[kLanes / 4] = {&first, &second, &rest, &rest};
+        for (int k = 0; k < kLanes / 4; ++k) Eigen::Map<Pack, Eigen::Aligned16>{lanes.of + 4 * k} = *packs[k];
+    };
+    put(corners_[0], x, x, hx);
+    put(corners_[1], y, y, hy);
+    put(corners_[2], -z, z, hz);
     for (int axis = 0; axis < 3; ++axis) {
         const float p = half[(axis + 1) % 3];
         const float q = half[(axis + 2) % 3];
@@ -122,11 +129,23 @@ BoxPolytope::BoxPolytope(const Vec3f& half) : faces_(kFaces) {
         plus[2] = {0, 1, q};
         plus[3] = {-1, 0, p};
     }
-    const Eigen::Array4f zero = Eigen::Array4f::Zero();
-    planes_ = {PlanePack{{-1, 1, 0, 0}, {0, 0, -1, 1}, zero, {hx, hx, hy, hy}},
-               PlanePack{zero, zero, {-1, 1, 1, 1}, Eigen::Array4f::Constant(hz)}};
-    view_ = {vertices_, packs_,     faces_,       planes_,       kLoops,          sides_,
-             kEdges,    kFans.fans, kFans.around, Vec3f::Zero(), half.minCoeff(), half.norm()};
+    const Pack zero = Pack::Zero();
+    put(planes_[0], {-1, 1, 0, 0}, zero, 0);
+    put(planes_[1], {0, 0, -1, 1}, zero, 0);
+    put(planes_[2], zero, {-1, 1, 1, 1}, 1);
+    put(planes_[3], {hx, hx, hy, hy}, z, hz);
+    view_ = {vertices_,
+             faces_,
+             kLoops,
+             sides_,
+             kEdges,
+             kFans.fans,
+             kFans.around,
+             {corners_[0].of, kLanes},
+             {planes_[0].of, kLanes},
+             Vec3f::Zero(),
+             half.minCoeff(),
+             half.norm()};
 }
 
 }  // namespace taut::collision

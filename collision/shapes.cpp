@@ -170,20 +170,12 @@ Box tapered_capsule_bounds(const Shape& shape, const Placement& at) {
 }
 
 Box hull_bounds(const Shape& shape, const Placement& at) {
-    const Polytope& polytope = shape.hull->view();
-    Vec3 lo, hi;
-    for (int i = 0; i < 3; ++i) {
-        const Vec3f axis = at.rotation.row(i);
-        Eigen::Array4f least = heights(polytope.packs[0], axis), most = least;
-        for (const VertexPack& pack : polytope.packs.subspan(1)) {
-            const Eigen::Array4f four = heights(pack, axis);
-            least = least.min(four);
-            most = most.max(four);
-        }
-        lo[i] = double(least.minCoeff());
-        hi[i] = double(most.maxCoeff());
-    }
-    return rounded(at.position, lo, hi);
+    const Mat3f by_row = at.rotation.transpose();  // of a matrix that is stored by column
+    float rows[3][3];
+    std::copy_n(by_row.data(), 9, rows[0]);
+    Vec3f lo, hi;
+    lane_kernels().extent(shape.hull->view().corners, rows, lo.data(), hi.data());
+    return rounded(at.position, lo.cast<double>(), hi.cast<double>());
 }
 
 // The box of the turned and scaled local box.

@@ -76,76 +76,34 @@ FaceBeside face_beside(const PolytopePair& pair, Axis axis, const Vec3f& normal)
 
 namespace {
 
-// How far every face separates at most, as the other polytope is known so far: no face separates by more than its
-// distance from a point of the other.
-class FaceBounds {
-public:
-    // The other holds a ball.
-    FaceBounds(const Polytope& one, const Vec3f& centre, float radius) : one_(one) {
-        Eigen::Array4f most = Eigen::Array4f::Constant(kAsked);
-        for (size_t k = 0; k < one.planes.size(); ++k) {
-            pack(k) = heights_over(one.planes[k], centre) - radius;
-            most = most.max(pack(k));
-        }
-        largest_ = most.maxCoeff();
-        std::fill(most_ + one.faces.size(), most_ + 4 * one.planes.size(), kAsked);
-    }
-    float largest() const { return largest_; }
-    // The face with the largest bound, which is asked no more.
-    size_t take_largest() {
-        const int face = first_equal(most_, int(one_.faces.size()), largest_);
-        most_[face] = kAsked;
-        return size_t(face);
-    }
-    // The other holds a point.
-    void lower(const Vec3f& point) {
-        Eigen::Array4f most = Eigen::Array4f::Constant(kAsked);
-        for (size_t k = 0; k < one_.planes.size(); ++k) {
-            pack(k) = pack(k).min(heights_over(one_.planes[k], point));
-            most = most.max(pack(k));
-        }
-        largest_ = most.maxCoeff();
-    }
-
-private:
-    static constexpr float kAsked = -1e30f;
-
-    Eigen::Map<Eigen::Array4f, Eigen::Aligned16> pack(size_t k) {
-        return Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{most_ + 4 * k};
-    }
-
-    const Polytope& one_;
-    float largest_;
-    alignas(16) float most_[4 * kMaxPlanePacks];
-};
-
 // The face of one that separates most from the other, which lies at a pose; those with the largest bounds first.
-Separation best_face(const Polytope& one, const Polytope& other, const Pose& pose, float least, float margin,
-                     AxisKind kind) {
-    FaceBounds bounds(one, pose * other.centre, other.inner_radius);
-    Separation best;
-    while (bounds.largest() > std::max(best.distance, least)) {
-        const size_t i = bounds.take_largest();
-        const Face& face = one.faces[i];
-        const int vertex = support(other, pose.rotation.transpose() * -face.normal);
-        const Vec3f nearest = pose * other.vertices[size_t(vertex)];
-        const float distance = face.normal.dot(nearest) - face.offset;
-        if (distance > best.distance)
-            best = {kind == AxisKind::face_a ? Axis{kind, uint8_t(i), 0} : Axis{kind, 0, uint8_t(i)}, distance, vertex};
-        if (distance > margin) break;
-        bounds.lower(nearest);
+FaceFound best_face(const Polytope& one, const Polytope& other, const Pose& pose, float least, float margin) {
+    FaceSearch search;
+    search.planes = one.planes;
+    search.faces = uint32_t(one.faces.size());
+    search.corners = other.corners;
+    const Vec3f centre = pose * other.centre;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) search.rotation[i][j] = pose.rotation(i, j);
+        search.position[i] = pose.position[i];
+        search.centre[i] = centre[i];
     }
-    return best;
+    search.radius = other.inner_radius;
+    search.least = least;
+    search.margin = margin;
+    return lane_kernels().best_face(search);
 }
 
 }  // namespace
 
 Separation best_face_a(const PolytopePair& pair, float margin) {
-    return best_face(pair.a, pair.b, pair.b_in_a, -1e30f, margin, AxisKind::face_a);
+    const FaceFound found = best_face(pair.a, pair.b, pair.b_in_a, -1e30f, margin);
+    return {{AxisKind::face_a, uint8_t(found.face), 0}, found.distance, int(found.corner)};
 }
 
 Separation best_face_b(const PolytopePair& pair, float least, float margin) {
-    return best_face(pair.b, pair.a, pair.a_in_b, least, margin, AxisKind::face_b);
+    const FaceFound found = best_face(pair.b, pair.a, pair.a_in_b, least, margin);
+    return {{AxisKind::face_b, 0, uint8_t(found.face)}, found.distance, int(found.corner)};
 }
 
 }  // namespace taut::collision

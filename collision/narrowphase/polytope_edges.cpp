@@ -1,5 +1,11 @@
 // The sweep over all pairs of edges of two polytopes.
+#include <algorithm>
+#include <bit>
 #include <cmath>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "collision/narrowphase/polytope_axes.h"
 
@@ -8,22 +14,22 @@ namespace {
 
 // The vertices of one polytope along a direction of its frame.
 struct Heights {
-    alignas(16) float of[kMaxVertices];
+    alignas(64) float of[kMaxVertices];
     float top;
 
-    Heights(const Polytope& polytope, const Vec3f& direction) : top(find_heights(polytope, direction, of)) {}
+    Heights(const Polytope& polytope, const Vec3f& direction)
+        : top(lane_kernels().heights(polytope.corners, direction.data(), of)) {}
     const Vec3f& highest(const Polytope& polytope) const {
-        return polytope.vertices[size_t(first_equal(of, int(polytope.vertices.size()), top))];
+        return polytope.vertices[size_t(std::find(of, of + polytope.vertices.size() - 1, top) - of)];
     }
 };
 
 // How high a point lies over the faces of a polytope.
 struct HeightsOver {
-    alignas(16) float of[4 * kMaxPlanePacks];
+    alignas(64) float of[column_length(kMaxFaces)];
 
     HeightsOver(const Polytope& polytope, const Vec3f& point) {
-        for (size_t k = 0; k < polytope.planes.size(); ++k)
-            Eigen::Map<Eigen::Array4f, Eigen::Aligned16>{of + 4 * k} = heights_over(polytope.planes[k], point);
+        lane_kernels().heights_over(polytope.planes, point.data(), of);
     }
 };
 

@@ -29,17 +29,14 @@ Hit inside(const Couple& couple, const Distance& cores) {
 // Whether a face of a hull has a ball above it all along the way, which costs less to know than where they meet.
 bool stays_above_face(const Shape& moving, const Placement& from, const Vec3& along, const Shape& still,
                       const Placement& at, double limit) {
-    if (moving.kind != ShapeKind::sphere || !still.hull) return false;
+    if (moving.kind != ShapeKind::sphere || !still.hull || still.hull->faces.empty()) return false;  // of a triangle
     const auto to_still = [&](const Vec3& p) {
         return Vec3f(at.rotation.transpose() * (p - at.position).cast<float>());
     };
     const Vec3f start = to_still(from.position), end = to_still(from.position + limit * along);
     const float rounding = kRounding * (start.norm() + end.norm());
     const float height = moving.size.x() + float(kContact) * still.hull->inner_radius + rounding;
-    const auto is_above = [&](const PlanePack& faces) {
-        return (heights_over(faces, start).min(heights_over(faces, end)) > height).any();
-    };
-    return std::ranges::any_of(still.hull->planes, is_above);
+    return lane_kernels().way_outside(still.hull->view().planes, start.data(), end.data()) > height;
 }
 
 }  // namespace

@@ -124,14 +124,7 @@ public:
         const std::array<Vec3, 3> corner = triangles.corners(number);
         const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3;
         hull.vertices.resize(3);
-        hull.packs.resize(1);
-        for (int i = 0; i < 4; ++i) {
-            const Vec3f p = (corner[size_t(i % 3)] - middle).cast<float>();
-            if (i < 3) hull.vertices[size_t(i)] = p;
-            hull.packs[0].x[i] = p.x();
-            hull.packs[0].y[i] = p.y();
-            hull.packs[0].z[i] = p.z();
-        }
+        for (size_t i = 0; i < 3; ++i) hull.vertices[i] = (corner[i] - middle).cast<float>();
         hull.inner_radius = inner;
         hull.lay_out();
         shape_.kind = ShapeKind::hull;

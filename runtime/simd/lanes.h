@@ -66,6 +66,11 @@ struct ScalarLanes {
         for (int i = 0; i < kLanes; ++i) bits |= static_cast<unsigned>(a.f[i] > b.f[i]) << i;
         return bits;
     }
+    static float largest(const ScalarLanes& a) {
+        float most = a.f[0];
+        for (int i = 1; i < kLanes; ++i) most = a.f[i] > most ? a.f[i] : most;
+        return most;
+    }
     // Whether any lane of any of them is not 0.
     template <class... Lanes>
     static bool any(const Lanes&... lanes) {
@@ -105,6 +110,7 @@ struct Twice {
     static Twice if_greater(Twice a, Twice b, Twice yes, Twice no) {
         return {R::if_greater(a.lo, b.lo, yes.lo, no.lo), R::if_greater(a.hi, b.hi, yes.hi, no.hi)};
     }
+    static float largest(Twice a) { return R::largest(R::max(a.lo, a.hi)); }
     static unsigned greater(Twice a, Twice b) { return R::greater(a.lo, b.lo) | R::greater(a.hi, b.hi) << R::kWidth; }
     template <class... Lanes>
     static bool any(Lanes... lanes) {
@@ -146,6 +152,10 @@ struct Sse2Register {
     }
     static unsigned greater(Sse2Register a, Sse2Register b) {
         return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(a.f, b.f)));
+    }
+    static float largest(Sse2Register a) {
+        const __m128 two = _mm_max_ps(a.f, _mm_movehl_ps(a.f, a.f));
+        return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
     }
     // All bits together are 0 or -0 only where each is.
     template <class... More>
@@ -203,6 +213,11 @@ struct Avx2Register {
     }
     static unsigned greater(Avx2Register a, Avx2Register b) {
         return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.f, b.f, _CMP_GT_OQ)));
+    }
+    static float largest(Avx2Register a) {
+        const __m128 four = _mm_max_ps(_mm256_castps256_ps128(a.f), _mm256_extractf128_ps(a.f, 1));
+        const __m128 two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+        return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
     }
     template <class... More>
     static bool any(Avx2Register a, More... more) {
@@ -266,6 +281,7 @@ struct Avx512Register {
         return {_mm512_mask_blend_ps(_mm512_cmp_ps_mask(a.f, b.f, _CMP_GT_OQ), no.f, yes.f)};
     }
     static unsigned greater(Avx512Register a, Avx512Register b) { return _mm512_cmp_ps_mask(a.f, b.f, _CMP_GT_OQ); }
+    static float largest(Avx512Register a) { return _mm512_reduce_max_ps(a.f); }
     template <class... More>
     static bool any(Avx512Register a, More... more) {
         ((a.f = _mm512_or_ps(a.f, more.f)), ...);

@@ -1,6 +1,7 @@
 // How wide the kernels work that are built several times with the same bits.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 namespace taut {
@@ -10,8 +11,11 @@ constexpr uint32_t kAllLanes = (1u << kLanes) - 1;  // a bit for each
 
 enum class Width : uint8_t { scalar, sse2, avx2, avx512 };
 
-Width widest();        // that this processor runs
-Width kernel_width();  // that kernels use: the widest, unless a test asked for less
+Width widest();  // that this processor runs
+
+extern std::atomic<Width> chosen_width;
+// That kernels use: the widest, unless a test asked for less.
+inline Width kernel_width() { return chosen_width.load(std::memory_order_relaxed); }
 // For tests that compare builds; at most widest(), and in effect from the next step of any world on.
 void set_kernel_width(Width width);
 

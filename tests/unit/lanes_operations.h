@@ -5,7 +5,7 @@
 
 namespace taut::test {
 
-constexpr std::size_t kWide = kLanes, kOperations = 7;
+constexpr std::size_t kWide = kLanes, kOperations = 8;
 
 // a, b, c, d: kLanes numbers each, aligned to 64; out: kOperations times kLanes.
 template <class F>
@@ -18,6 +18,7 @@ void run_operations(const float* a, const float* b, const float* c, const float*
     F::max(x, y).store(out + 4 * kWide);
     F::sqrt(F::max(x, F::all(0))).store(out + 5 * kWide);
     F::if_greater(x, y, F::load(c), F::load(d)).store(out + 6 * kWide);
+    F::all(F::largest(x) + 0.0f).store(out + 7 * kWide);  // of zeros either may be found
 }
 
 // rows: kLanes rows of eight at a stride. columns: what lane k of component c holds; back: the rows again.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -88,6 +89,7 @@ TEST(ScalarLanes, ComputeWhatEachNumberDoes) {
             expected[4 * kWide + k] = a.f[k] > b.f[k] ? a.f[k] : b.f[k];
             expected[5 * kWide + k] = std::sqrt(a.f[k] > 0 ? a.f[k] : 0.0f);
             expected[6 * kWide + k] = a.f[k] > b.f[k] ? c.f[k] : d.f[k];
+            expected[7 * kWide + k] = *std::max_element(a.f, a.f + kWide) + 0.0f;
         }
         expect_same(expected, out, kWide * kOperations);
     }
