@@ -63,10 +63,16 @@ void set_in_place(btDbvtNode& leaf, const btDbvtVolume& volume) {
     }
 }
 
+Box box_of(const btDbvtVolume& volume) {
+    return {{volume.Mins().x(), volume.Mins().y(), volume.Mins().z()},
+            {volume.Maxs().x(), volume.Maxs().y(), volume.Maxs().z()}};
+}
+
 uint64_t pair_key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 32 | std::max(i, j); }
 
 struct Leaf {
     btDbvtNode* node = nullptr;  // null: no such id
+    Box fat;                     // the node's, which lies somewhere else
     bool moves = false;
     bool stale = false;  // its pairs must be found again; listed in State::stale
     uint8_t stays = 0;   // how often its box changed since it got its place in the tree
@@ -279,8 +285,10 @@ void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     s.strays.reserve(s.leaves.capacity());  // a step takes no memory for them
     s.stale.reserve(s.leaves.capacity());
     s.mark(id);
-    s.leaves[id].node = s.tree.insert(fat_volume(tight, Vec3f::Zero()), nullptr);
+    const btDbvtVolume volume = fat_volume(tight, Vec3f::Zero());
+    s.leaves[id].node = s.tree.insert(volume, nullptr);
     s.leaves[id].node->dataAsInt = int(id);
+    s.leaves[id].fat = box_of(volume);
     s.leaves[id].moves = moves;
 }
 
@@ -299,6 +307,7 @@ void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement
     s.mark(id);
     btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
     Leaf& leaf = s.leaves[id];
+    leaf.fat = box_of(volume);
     if (leaf.stays < kMostStays && may_stay(*leaf.node, volume)) {
         ++leaf.stays;
         return set_in_place(*leaf.node, volume);
@@ -308,7 +317,10 @@ void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement
 }
 
 bool Broadphase::holds(uint32_t id, const Box& tight) const {
-    return contains(state_->leaves[id].node->volume, tight_volume(tight));
+    const Box& fat = state_->leaves[id].fat;
+    bool inside = true;  // without branches: of what moves fast every other one is not
+    for (int i = 0; i < 3; ++i) inside &= (fat.lo[i] <= tight.lo[i]) & (tight.hi[i] <= fat.hi[i]);
+    return inside;
 }
 
 void Broadphase::set_moves(uint32_t id, bool moves) {

@@ -7,33 +7,7 @@
 
 #include "collision/lane_kernels.h"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 namespace taut::collision {
-
-// Whether no coordinate of p or of q is above that of its bound. Without branches: of the boxes that a descent asks,
-// every other one is met.
-#if defined(__SSE2__)
-inline bool are_within(const btVector3& p, const btVector3& p_most, const btVector3& q, const btVector3& q_most) {
-    const auto within = [](const btVector3& one, const btVector3& most) {
-        return _mm_cmple_ps(_mm_loadu_ps(one.m_floats), _mm_loadu_ps(most.m_floats));
-    };
-    constexpr int kAll = 0b111;  // the fourth number means nothing
-    return (_mm_movemask_ps(_mm_and_ps(within(p, p_most), within(q, q_most))) & kAll) == kAll;
-}
-#else
-inline bool are_within(const btVector3& p, const btVector3& p_most, const btVector3& q, const btVector3& q_most) {
-    int all = 1;
-    for (int i = 0; i < 3; ++i) all &= int(p[i] <= p_most[i]) & int(q[i] <= q_most[i]);
-    return all != 0;
-}
-#endif
-
-inline bool contains(const btDbvtVolume& whole, const btDbvtVolume& part) {
-    return are_within(whole.Mins(), part.Mins(), part.Maxs(), whole.Maxs());
-}
 
 // Goes through a tree for the boxes of several leaves at once. Breadth first, so that processors work on several nodes
 // at once; where more wait than there is room for, one is gone through by itself.
