@@ -318,9 +318,9 @@ void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement
 
 bool Broadphase::holds(uint32_t id, const Box& tight) const {
     const Box& fat = state_->leaves[id].fat;
-    bool inside = true;  // without branches: of what moves fast every other one is not
-    for (int i = 0; i < 3; ++i) inside &= (fat.lo[i] <= tight.lo[i]) & (tight.hi[i] <= fat.hi[i]);
-    return inside;
+    int inside = 1;  // without branches: of what moves fast every other one is not
+    for (int i = 0; i < 3; ++i) inside &= int(fat.lo[i] <= tight.lo[i]) & int(tight.hi[i] <= fat.hi[i]);
+    return inside != 0;
 }
 
 void Broadphase::set_moves(uint32_t id, bool moves) {
