@@ -289,6 +289,7 @@ void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     s.leaves[id].node = s.tree.insert(volume, nullptr);
     s.leaves[id].node->dataAsInt = int(id);
     s.leaves[id].fat = box_of(volume);
+    s.leaves[id].stays = 0;
     s.leaves[id].moves = moves;
 }
 

@@ -174,12 +174,15 @@ void add_face(const std::vector<int>& loop, Hull& hull) {
 // So many numbers of each thing, which number(thing, column) tells.
 template <class Number>
 Columns fill_columns(size_t things, uint32_t numbers, std::vector<FloatLanes>& lanes, Number&& number) {
-    const uint32_t length = column_length(things), each = length / kLanes;
-    lanes.resize(numbers * each);
-    for (uint32_t c = 0; c < numbers; ++c)
-        for (uint32_t i = 0; i < length; ++i)
-            lanes[c * each + i / kLanes].of[i % kLanes] = number(std::min(size_t(i), things - 1), int(c));
-    return things > 0 ? Columns{lanes[0].of, length} : Columns{};
+    if (things == 0) return {};
+    const uint32_t length = column_length(things);
+    lanes.resize(numbers * length / kLanes);
+    for (uint32_t c = 0; c < numbers; ++c) {
+        float* const column = lanes[0].of + c * length;
+        for (size_t i = 0; i < things; ++i) column[i] = number(i, int(c));
+        std::fill(column + things, column + length, column[things - 1]);
+    }
+    return {lanes[0].of, length};
 }
 
 bool add_edges(const Loops& loops, Hull& hull) {

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 namespace taut::collision {
 namespace {
 
@@ -141,6 +145,7 @@ struct Outline {
 // Where a side cuts an outline.
 struct Cuts {
     using Four = Eigen::Map<Eigen::Array4f>;
+    static_assert(kMaxClip % 4 == 0);
 
     alignas(16) float outside[kMaxClip + 4];  // how far each corner is, and once more the first [m]
     alignas(16) float crossing[kMaxClip];     // on the line from it to the next, in parts of that from the inner end
