@@ -175,12 +175,13 @@ void add_face(const std::vector<int>& loop, Hull& hull) {
 template <class Number>
 Columns fill_columns(size_t things, uint32_t numbers, std::vector<FloatLanes>& lanes, Number&& number) {
     if (things == 0) return {};
-    const uint32_t length = column_length(things);
-    lanes.resize(numbers * length / kLanes);
+    const uint32_t length = column_length(things), blocks = length / kLanes;
+    lanes.resize(numbers * blocks);
     for (uint32_t c = 0; c < numbers; ++c) {
-        float* const column = lanes[0].of + c * length;
-        for (size_t i = 0; i < things; ++i) column[i] = number(i, int(c));
-        std::fill(column + things, column + length, column[things - 1]);
+        for (uint32_t i = 0; i < length; ++i) {
+            const size_t thing = std::min(size_t(i), things - 1);
+            lanes[c * blocks + i / kLanes].of[i % kLanes] = number(thing, int(c));
+        }
     }
     return {lanes[0].of, length};
 }
