@@ -41,10 +41,10 @@ struct MassProperties {
     Sym3 inertia;                // about the centre, body axes [kg m^2]
 };
 
-// Builds the hull of points [m]: at most max_vertices of them (never more than 64), coplanar faces merged,
-// vertices and faces in an order that depends on the points alone. Faces may lie off the points by 2e-4 of their
-// extent. Returns null and a reason (static text) for fewer than 4 points, non-finite points, or points thinner
-// than thickness [m].
+// Builds the hull of points [m]: at most max_vertices of them (never more than 64), coplanar faces merged as long as
+// they stay convex, vertices and faces in an order that depends on the points alone. Faces may lie off the points by
+// 2e-4 of their extent. Returns null and a reason (static text) for fewer than 4 points, non-finite points, or points
+// thinner than thickness [m].
 std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> points, int max_vertices, float thickness,
                                        const char** reason);
 // The hull with its points multiplied, axis by axis; negative factors mirror it. Faces and their corners stay the same.

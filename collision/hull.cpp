@@ -2,51 +2,21 @@
 #include "collision/hull.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include <LinearMath/btConvexHullComputer.h>
-
 #include "collision/collide.h"
+#include "collision/quickhull.h"
 
 namespace taut::collision {
 namespace {
 
-// btConvexHullComputer rounds to 1/10216 of the points' extent on each axis: faces closer to one plane than that
-// (with some room) are one face, and points closer to the surface than that are on it.
+// Faces closer to one plane than this part of the points' extent are one face, and points half as close to the surface
+// are on it.
 constexpr double kRelativeTolerance = 2e-4;
 
 bool before(const Vec3f& a, const Vec3f& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
-// Corner loops over chosen's indices into points.
-Loops surface_of(const std::vector<Vec3f>& points, const std::vector<int>& chosen) {
-    std::vector<Vec3f> input;
-    for (const int i : chosen) input.push_back(points[size_t(i)]);
-    btConvexHullComputer computer;
-    computer.compute(input[0].data(), int(sizeof(Vec3f)), int(input.size()), 0, 0);
-    Loops loops;
-    for (int f = 0; f < computer.faces.size(); ++f) {
-        const auto* first = &computer.edges[computer.faces[f]];
-        const auto* edge = first;
-        std::vector<int> loop;
-        do {
-            loop.push_back(chosen[size_t(computer.original_vertex_index[edge->getSourceVertex()])]);
-            edge = edge->getNextEdgeOfFace();
-        } while (edge != first);
-        std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-        loops.push_back(std::move(loop));
-    }
-    std::sort(loops.begin(), loops.end());
-    return loops;
-}
-
-std::vector<int> corners_of(const Loops& loops) {
-    std::vector<int> corners;
-    for (const auto& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    return corners;
 }
 
 // The point where measure is largest, the first of equals.
@@ -65,7 +35,7 @@ int furthest(const std::vector<Vec3f>& points, Measure measure) {
 }
 
 struct Simplex {
-    std::vector<int> corners;
+    std::array<int, 4> corners;
     double height = 0;  // of the fourth corner above the first three [m]
 };
 
@@ -90,48 +60,26 @@ const char* find_simplex(const std::vector<Vec3f>& points, double thickness, Sim
     return nullptr;
 }
 
-// How far p lies outside the surface.
-double height_above(const std::vector<std::pair<Vec3, double>>& planes, const Vec3& p) {
-    double most = -1e30;
-    for (const auto& [normal, offset] : planes) most = std::max(most, normal.dot(p) - offset);
-    return most;
+// The points that are corners, in their order; the loops name those from then on.
+std::vector<Vec3f> keep_corners(const std::vector<Vec3f>& points, Loops& loops) {
+    std::vector<int> corners;
+    for (const auto& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    for (auto& loop : loops) {
+        for (int& corner : loop)
+            corner = int(std::lower_bound(corners.begin(), corners.end(), corner) - corners.begin());
+    }
+    std::vector<Vec3f> kept;
+    for (const int corner : corners) kept.push_back(points[size_t(corner)]);
+    return kept;
 }
 
-// Adds the point furthest outside until max_vertices are chosen or the rest lies within tolerance.
-Loops reduce(const std::vector<Vec3f>& points, const std::vector<int>& corners, std::vector<int> chosen,
-             size_t max_vertices, double tolerance) {
-    while (true) {
-        Loops surface = surface_of(points, chosen);
-        if (chosen.size() >= max_vertices) return surface;
-        std::vector<std::pair<Vec3, double>> planes;
-        for (const auto& loop : surface) {
-            const Vec3 a = points[size_t(loop[0])].cast<double>();
-            const Vec3 normal = (points[size_t(loop[1])].cast<double>() - a)
-                                    .cross(points[size_t(loop[2])].cast<double>() - a)
-                                    .normalized();
-            planes.emplace_back(normal, normal.dot(a));
-        }
-        int best = -1;
-        double most = tolerance;
-        for (const int i : corners) {
-            const double height = height_above(planes, points[size_t(i)].cast<double>());
-            if (height > most && !std::binary_search(chosen.begin(), chosen.end(), i)) {
-                most = height;
-                best = i;
-            }
-        }
-        if (best < 0) return surface;
-        chosen.insert(std::lower_bound(chosen.begin(), chosen.end(), best), best);
-    }
-}
-
-// Least extent along a face normal [m].
-double thickness_of(const Hull& hull) {
-    double least = 1e30;
-    for (const Face& face : hull.faces) {
-        least = std::min(least, double(face.offset + highest(hull.view(), -face.normal)));
-    }
-    return least;
+// Whether its extent along each face normal is at least thickness [m], and a ball fits in by more than rounding.
+bool is_thick(const Hull& hull, float thickness) {
+    return hull.inner_radius > 0 && std::all_of(hull.faces.begin(), hull.faces.end(), [&](const Face& face) {
+               return face.offset + highest(hull.view(), -face.normal) >= thickness;
+           });
 }
 
 }  // namespace
@@ -161,33 +109,20 @@ std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_ver
         lo = lo.cwiseMin(p);
         hi = hi.cwiseMax(p);
     }
-    const double tolerance = kRelativeTolerance * double((hi - lo).maxCoeff());
-
-    std::vector<int> all(points.size());
-    for (size_t i = 0; i < all.size(); ++i) all[i] = int(i);
-    Loops surface = surface_of(points, all);
-    std::vector<int> corners = corners_of(surface);
+    // Flat hulls merge less, lest a rim vanish: a hull is thicker than 1/24 of the simplex' height.
+    const double extent = double((hi - lo).maxCoeff());
+    const double tolerance = std::min(kRelativeTolerance * extent, 0.02 * simplex.height);
     const size_t most = size_t(std::min(max_vertices, kMaxVertices));
-    if (corners.size() > most) {
-        surface = reduce(points, corners, simplex.corners, most, tolerance);
-        corners = corners_of(surface);
-    }
-    std::vector<Vec3f> kept;
-    for (const int corner : corners) kept.push_back(points[size_t(corner)]);
-    for (auto& loop : surface) {
-        for (int& corner : loop) {
-            corner = int(std::lower_bound(corners.begin(), corners.end(), corner) - corners.begin());
-        }
-    }
+    Loops surface = quickhull(points, simplex.corners, most, 0.5 * tolerance);
+    const std::vector<Vec3f> corners = keep_corners(points, surface);
     std::shared_ptr<const Hull> hull;
-    // Flat hulls merge less, lest a rim vanish: a hull is thicker than 1/24 of the simplex' height. A merge that does
-    // not close is undone: every polygon is a face then.
-    for (const double merge : {std::min(tolerance, 0.02 * simplex.height), -1.0}) {
-        hull = hull_of_surface(kept, surface, merge);
+    // A merge that does not close is undone: every triangle is a face then.
+    for (const double merge : {tolerance, -1.0}) {
+        hull = hull_of_surface(corners, surface, merge);
         if (hull) break;
     }
     if (!hull) return refuse("points are too close to one another for their size");
-    if (!(thickness_of(*hull) >= double(thickness))) return refuse("hull is thinner than allowed");
+    if (!is_thick(*hull, thickness)) return refuse("hull is thinner than allowed");
     return hull;
 }
 
@@ -221,7 +156,7 @@ std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, f
     std::sort(loops.begin(), loops.end());
     auto scaled = hull_of_surface(sorted, loops, -1.0);  // no merging: flat faces stay flat
     if (!scaled) return refuse("points are too close to one another for their size");
-    if (!(thickness_of(*scaled) >= double(thickness))) return refuse("hull is thinner than allowed");
+    if (!is_thick(*scaled, thickness)) return refuse("hull is thinner than allowed");
     return scaled;
 }
 

@@ -49,84 +49,142 @@ private:
     std::vector<int> face_;
 };
 
-// Grows groups from the largest faces outwards over neighbours that lie in the first face's plane, so that
-// errors do not add up along the way. Slivers between two faces go with the larger, whatever their normals are.
-// Returns the group of each face.
-std::vector<int> group_coplanar(const std::vector<Vec3f>& points, const Loops& loops, const Adjacency& adjacency,
-                                double tolerance, int& groups) {
-    std::vector<Plane> planes;
-    for (const auto& loop : loops) planes.push_back(plane_of(points, loop));
-    std::vector<int> order(loops.size());
+// Polygons that become one face.
+struct Group {
+    std::vector<int> members;
+    std::vector<int> outline;
+    double flatness = 0;  // furthest corner off the first polygon's plane [m]
+};
+
+// Gathers polygons to faces, from the largest outwards over neighbours that lie in the first one's plane, so that
+// errors do not add up along the way. Slivers between two faces go with either, whatever their normals are. A face is
+// convex, within the tolerance that its polygons lie in its plane: what would make it otherwise stays out.
+class Merging {
+public:
+    Merging(const std::vector<Vec3f>& points, const Loops& loops, double tolerance)
+        : points_(points), loops_(loops), adjacency_(points.size(), loops), tolerance_(tolerance) {
+        for (const auto& loop : loops) planes_.push_back(plane_of(points, loop));
+    }
+    // The outline of each face; false if one is not a single ring or the surface is not closed.
+    bool run(Loops& outlines);
+
+private:
+    std::vector<int> largest_first() const;
+    double off(int polygon, const Plane& plane) const;
+    Group grow(int seed, double tolerance) const;
+    bool find_outline(Group& group) const;
+    bool is_convex(const Group& group) const;
+
+    const std::vector<Vec3f>& points_;
+    const Loops& loops_;
+    const Adjacency adjacency_;
+    const double tolerance_;
+    std::vector<Plane> planes_;
+    std::vector<char> taken_;
+};
+
+std::vector<int> Merging::largest_first() const {
+    std::vector<int> order(loops_.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](int i, int j) {
-        const double a = planes[size_t(i)].area;
-        const double b = planes[size_t(j)].area;
-        return a != b ? a > b : loops[size_t(i)] < loops[size_t(j)];
+        const double a = planes_[size_t(i)].area;
+        const double b = planes_[size_t(j)].area;
+        return a != b ? a > b : loops_[size_t(i)] < loops_[size_t(j)];
     });
-    std::vector<int> group(loops.size(), -1);
-    groups = 0;
-    for (const int seed : order) {
-        if (group[size_t(seed)] >= 0) continue;
-        const Plane& plane = planes[size_t(seed)];
-        group[size_t(seed)] = groups;
-        std::vector<int> open = {seed};
-        while (!open.empty()) {
-            const auto& loop = loops[size_t(open.back())];
-            open.pop_back();
-            for (size_t i = 0; i < loop.size(); ++i) {
-                const int next = adjacency.face(loop[(i + 1) % loop.size()], loop[i]);
-                if (next < 0 || group[size_t(next)] >= 0) continue;
-                const auto in_plane = [&](int corner) {
-                    const Vec3 p = points[size_t(corner)].cast<double>();
-                    return std::fabs(plane.normal.dot(p) - plane.offset) <= tolerance;
-                };
-                if (!std::all_of(loops[size_t(next)].begin(), loops[size_t(next)].end(), in_plane)) continue;
-                group[size_t(next)] = groups;
-                open.push_back(next);
-            }
+    return order;
+}
+
+// How far a corner of the polygon lies off the plane at most [m].
+double Merging::off(int polygon, const Plane& plane) const {
+    double most = 0;
+    for (const int corner : loops_[size_t(polygon)])
+        most = std::max(most, std::fabs(plane.normal.dot(points_[size_t(corner)].cast<double>()) - plane.offset));
+    return most;
+}
+
+// Of polygons that are free, those around the seed that lie off its plane by less than tolerance [m].
+Group Merging::grow(int seed, double tolerance) const {
+    Group group;
+    group.members = {seed};
+    for (size_t next = 0; next < group.members.size(); ++next) {
+        const auto& loop = loops_[size_t(group.members[next])];
+        for (size_t i = 0; i < loop.size(); ++i) {
+            const int other = adjacency_.face(loop[(i + 1) % loop.size()], loop[i]);
+            if (other < 0 || taken_[size_t(other)]) continue;
+            if (std::find(group.members.begin(), group.members.end(), other) != group.members.end()) continue;
+            const double distance = off(other, planes_[size_t(seed)]);
+            if (!(distance < tolerance)) continue;
+            group.flatness = std::max(group.flatness, distance);
+            group.members.push_back(other);
         }
-        ++groups;
     }
     return group;
 }
 
-// The outline of each group; false if one is not a single ring or the result is not closed.
-bool outlines(const Loops& loops, const Adjacency& adjacency, const std::vector<int>& group, int groups,
-              size_t point_count, Loops& merged) {
-    std::vector<std::vector<std::pair<int, int>>> border{size_t(groups)};  // edges from -> to of each group
-    for (size_t f = 0; f < loops.size(); ++f) {
-        const auto& loop = loops[f];
+// False if it is not a single ring.
+bool Merging::find_outline(Group& group) const {
+    std::vector<std::pair<int, int>> border;  // edges from -> to
+    for (const int member : group.members) {
+        const auto& loop = loops_[size_t(member)];
         for (size_t i = 0; i < loop.size(); ++i) {
-            const int from = loop[i];
-            const int to = loop[(i + 1) % loop.size()];
-            const int twin = adjacency.face(to, from);
+            const int from = loop[i], to = loop[(i + 1) % loop.size()];
+            const int twin = adjacency_.face(to, from);
             if (twin < 0) return false;
-            if (group[size_t(twin)] != group[f]) border[size_t(group[f])].push_back({from, to});
+            if (std::find(group.members.begin(), group.members.end(), twin) == group.members.end())
+                border.push_back({from, to});
         }
     }
-    merged.assign(size_t(groups), {});
-    std::vector<int> faces_at(point_count, 0);
-    for (size_t g = 0; g < border.size(); ++g) {
-        auto& ring = border[g];
-        std::sort(ring.begin(), ring.end());
-        if (ring.empty()) return false;
-        int at = ring.front().first;
-        do {
-            const auto edge = std::lower_bound(ring.begin(), ring.end(), std::make_pair(at, -1));
-            if (edge == ring.end() || edge->first != at || merged[g].size() >= ring.size()) return false;
-            merged[g].push_back(at);
-            at = edge->second;
-        } while (at != ring.front().first);
-        if (merged[g].size() != ring.size()) return false;
-        for (const int corner : merged[g]) ++faces_at[size_t(corner)];
+    if (border.empty()) return false;
+    std::sort(border.begin(), border.end());
+    group.outline.clear();
+    int at = border.front().first;
+    do {
+        const auto edge = std::lower_bound(border.begin(), border.end(), std::make_pair(at, -1));
+        if (edge == border.end() || edge->first != at || group.outline.size() >= border.size()) return false;
+        group.outline.push_back(at);
+        at = edge->second;
+    } while (at != border.front().first);
+    return group.outline.size() == border.size();
+}
+
+// Whether each corner lies inside of each side, but for the tolerance.
+bool Merging::is_convex(const Group& group) const {
+    const Vec3& normal = planes_[size_t(group.members[0])].normal;
+    const auto& ring = group.outline;
+    for (size_t i = 0; i < ring.size(); ++i) {
+        const Vec3 from = points_[size_t(ring[i])].cast<double>();
+        const Vec3 step = points_[size_t(ring[(i + 1) % ring.size()])].cast<double>() - from;
+        const Vec3 out = step.cross(normal).normalized();
+        for (const int corner : ring)
+            if (out.dot(points_[size_t(corner)].cast<double>() - from) > tolerance_) return false;
     }
+    return true;
+}
+
+bool Merging::run(Loops& outlines) {
+    taken_.assign(loops_.size(), 0);
+    outlines.clear();
+    for (const int seed : largest_first()) {
+        if (taken_[size_t(seed)]) continue;
+        Group group = grow(seed, tolerance_);
+        while (!find_outline(group) || !is_convex(group)) {
+            if (group.members.size() == 1) break;
+            group = grow(seed, group.flatness);  // without what is furthest off
+        }
+        if (group.outline.empty()) return false;
+        for (const int member : group.members) taken_[size_t(member)] = 1;
+        outlines.push_back(group.outline);
+    }
+    std::vector<int> faces_at(points_.size(), 0);
+    for (const auto& loop : outlines)
+        for (const int corner : loop) ++faces_at[size_t(corner)];
     // A corner of two faces only lies on the straight edge between them.
-    for (auto& loop : merged) {
+    for (auto& loop : outlines) {
         std::erase_if(loop, [&](int corner) { return faces_at[size_t(corner)] < 3; });
         if (loop.size() < 3) return false;
         std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     }
-    std::sort(merged.begin(), merged.end());
+    std::sort(outlines.begin(), outlines.end());
     return true;
 }
 
@@ -186,6 +244,14 @@ Columns fill_columns(size_t things, uint32_t numbers, std::vector<FloatLanes>& l
     return {lanes[0].of, length};
 }
 
+// Whether each face looks away from the middle.
+bool looks_outward(const Loops& loops, const Hull& hull) {
+    return std::all_of(loops.begin(), loops.end(), [&](const std::vector<int>& loop) {
+        const Plane plane = plane_of(hull.vertices, loop);
+        return plane.offset > plane.normal.dot(hull.centre.cast<double>());
+    });
+}
+
 bool add_edges(const Loops& loops, Hull& hull) {
     const Adjacency adjacency(hull.vertices.size(), loops);
     const int count = int(hull.vertices.size());
@@ -220,13 +286,11 @@ void Hull::lay_out() {
 }
 
 std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, const Loops& surface, double tolerance) {
-    const Adjacency adjacency(points.size(), surface);
-    int groups = 0;
-    const std::vector<int> group = group_coplanar(points, surface, adjacency, tolerance, groups);
     Loops loops;
-    if (!outlines(surface, adjacency, group, groups, points.size(), loops)) return nullptr;
+    if (!Merging(points, surface, tolerance).run(loops)) return nullptr;
     auto hull = std::make_shared<Hull>();
     add_vertices(points, loops, *hull);
+    if (!looks_outward(loops, *hull)) return nullptr;
     for (const auto& loop : loops) add_face(loop, *hull);
     if (!add_edges(loops, *hull)) return nullptr;
     hull->fans.resize(hull->vertices.size());

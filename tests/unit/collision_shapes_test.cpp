@@ -299,6 +299,33 @@ TEST(CollisionHull, FlatHullsKeepTheirRim) {
     }
 }
 
+// From thin to the thinnest that is a hull, as wide as single precision allows and wider.
+TEST(CollisionHull, ThinWideHullsAreNotInsideOut) {
+    Random random(kSeed + 8);
+    int made = 0;
+    for (int run = 0; run < 3000; ++run) {
+        const double wide = std::pow(10, random.uniform(-2, 4)), thick = random.uniform(1e-3, 2e-3);
+        const double narrow = run % 3 ? wide : 0.01 * wide;
+        const Mat3f turn = random.rotation();
+        std::vector<Vec3f> points;
+        for (int count = int(random.uniform(4, 20)); count > 0; --count) {
+            const float x = float(random.uniform(-wide, wide)), y = float(random.uniform(-0.7, 0.7) * thick);
+            points.push_back(turn * Vec3f(x, y, float(random.uniform(-narrow, narrow))));
+        }
+        const Shape shape = oracle::hull(points);
+        if (!shape.hull) continue;
+        ++made;
+        const MassProperties mass = mass_properties(shape, 1000);
+        const Sym3& i = mass.inertia;
+        EXPECT_GT(shape.hull->inner_radius, 0) << run;
+        EXPECT_GT(mass.mass, 0) << run;
+        EXPECT_GT(i.xx, 0) << run;
+        EXPECT_GT(i.xx * i.yy - i.xy * i.xy, 0) << run;
+        EXPECT_GT(i.matrix().determinant(), 0) << run;
+    }
+    EXPECT_GT(made, 1000);
+}
+
 TEST(CollisionHull, RefusesWhatHasNoVolume) {
     Random random(kSeed + 7);
     const auto refused = [](const std::vector<Vec3f>& points) {
