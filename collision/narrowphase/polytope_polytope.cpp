@@ -1,14 +1,17 @@
-// Box or hull against box or hull: the axis that separated or touched last frame, else all axes; then face
-// clipping, or one point between two edges.
+// Box or hull against box or hull: the axis that separated or touched last frame, else all axes; then face clipping, or
+// one point between two edges. What these do not tell of an overlap, GJK does.
 #include <algorithm>
 
 #include "collision/narrowphase/core.h"
+#include "collision/narrowphase/least_push.h"
 #include "collision/narrowphase/polytope_cache.h"
 
 namespace taut::collision {
 namespace {
 
 constexpr float kUnknown = 1e30f;
+// The id of the one point of what no pair of features bears.
+constexpr uint32_t kPushed = (3u << 30) | 1;
 
 // A face of the reference polytope and the other polytope over it, all in the reference's frame.
 class FaceView {
@@ -224,6 +227,68 @@ Separation best_face(const PolytopePair& pair, const Kept& kept, float margin) {
     return face_b.distance > least ? face_b : face_a;
 }
 
+// How far an axis separates the two by all of their corners.
+float separation(const PolytopePair& pair, const Vec3f& normal) {
+    const Vec3f against = pair.b_in_a.rotation.transpose() * -normal;
+    return normal.dot(pair.b_in_a.position) - highest(pair.b, against) - highest(pair.a, normal);
+}
+
+// Whether points tell how deep the two overlap along an axis that separates by distance, negative.
+bool tells(const Manifold& points, float distance, const Preference& preference) {
+    return deepest(points) <= 0.9f * distance + preference.slop;
+}
+
+// The face of either that looks most along a normal.
+Axis facing(const PolytopePair& pair, const Vec3f& normal) {
+    const auto most_along = [](const Polytope& polytope, const Vec3f& direction) {
+        const auto less = [&](const Face& one, const Face& other) {
+            return one.normal.dot(direction) < other.normal.dot(direction);
+        };
+        return int(std::max_element(polytope.faces.begin(), polytope.faces.end(), less) - polytope.faces.begin());
+    };
+    const Vec3f against = pair.b_in_a.rotation.transpose() * -normal;
+    const int i = most_along(pair.a, normal), j = most_along(pair.b, against);
+    const bool on_b = pair.b.faces[size_t(j)].normal.dot(against) > pair.a.faces[size_t(i)].normal.dot(normal);
+    return on_b ? Axis{AxisKind::face_b, 0, uint8_t(j)} : Axis{AxisKind::face_a, uint8_t(i), 0};
+}
+
+// Where no face's points and no pair of edges tell the overlap, as rounding has it among faces that are slivers: the
+// direction of least push by GJK, with the points of the face along it or one between the deepest points. An overlap
+// always gets a point.
+float touch_by_push(const Pair& shapes, const PolytopePair& pair, Manifold& out) {
+    const Push push = least_push(Solid(shapes.a), Solid(shapes.b), shapes, Vec3::Zero(), double(shapes.wanted.margin));
+    const float distance = float(push.separation);
+    shapes.cache = {};
+    out.count = 0;
+    if (distance > shapes.wanted.margin) return distance;
+    const Vec3f normal = push.normal.cast<float>();
+    Axis axis = facing(pair, normal);
+    Polygon clipped;
+    Manifold face;
+    face_points(pair, view_of(pair, axis), axis, false, shapes.wanted, clipped, face);
+    if (face.count > 0 && face.normal.dot(normal) > kSamePlane && tells(face, distance, Preference(pair.size()))) {
+        out = face;
+        return 0;
+    }
+    out.normal = normal;
+    out.count = 1;
+    const Vec3 middle = push.on_a + 0.5 * push.separation * push.normal;
+    out.points[0] = {middle.cast<float>(), distance, kPushed};
+    add_beside(face, out);
+    return 0;
+}
+
+// The axis chosen, and its points, if they tell the overlap.
+float conclude(const Pair& shapes, const PolytopePair& pair, const Separation& chosen, Manifold& out) {
+    const Preference preference(pair.size());
+    const bool edges = chosen.axis.kind == AxisKind::edges;
+    const float distance = edges ? separation(pair, pair.normal(chosen.axis)) : chosen.distance;
+    if ((chosen.distance - distance > preference.slop) || (distance <= 0 && !tells(out, distance, preference)))
+        return touch_by_push(shapes, pair, out);
+    write_touching(chosen.axis, pair, shapes.cache);
+    return 0;
+}
+
 }  // namespace
 
 float polytope_polytope(const Pair& shapes, Manifold& out) {
@@ -252,8 +317,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const float ask = preference.ask(was_edge);
     if (!other_way && (std::max(most, 0.0f) <= face.distance + view.slack() ||
                        view.most_apart(clipped) <= face.distance + ask || view.decides(ask))) {
-        write_touching(face.axis, pair, shapes.cache);
-        return 0;
+        return conclude(shapes, pair, face, out);
     }
     // Edges that separate by slop less may bear what the face misses.
     const float apart = std::min({margin, most + view.slack(), view.most_apart() + preference.slop});
@@ -261,6 +325,7 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
     const float least = face.distance - preference.slop;  // less bears nothing
     const Separation edges = best_edges(pair, pair.normal(face.axis), depth, least);
     if (edges.distance > margin) {
+        if (!(separation(pair, pair.normal(edges.axis)) > margin)) return touch_by_push(shapes, pair, out);
         out.count = 0;
         write_apart(edges.axis, shapes.cache);
         return edges.distance;
@@ -270,12 +335,11 @@ float polytope_polytope(const Pair& shapes, Manifold& out) {
         edges_bear(pair, edges, face, last, preference)) {
         const FacePoints of_face = {face_alone, out};
         out.count = 0;
-        face.axis = edges.axis;
+        face = edges;
         edge_point(pair, edges.axis, margin, out);
         add_face_beside(pair, edges.axis, of_face, shapes.wanted, out);
     }
-    write_touching(face.axis, pair, shapes.cache);
-    return 0;
+    return conclude(shapes, pair, face, out);
 }
 
 }  // namespace taut::collision
