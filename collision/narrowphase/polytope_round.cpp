@@ -110,7 +110,7 @@ Nearest nearest_outside(const Polytope& polytope, const Segment& axis, const Fac
 }
 
 // Inside, the least push is along a face, or across the axis and an edge whose arc of normals the axis' plane of
-// normals crosses.
+// normals crosses. What is across a nearly parallel edge rounding decides: all corners are asked before it is believed.
 Nearest nearest_inside(const Polytope& polytope, const Segment& axis, const Faces& faces) {
     const size_t best = size_t(faces.best);
     // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): as above
@@ -123,7 +123,8 @@ Nearest nearest_inside(const Polytope& polytope, const Segment& axis, const Face
         if (normal.dot(left.normal + right.normal) < 0) normal = -normal;
         normal.normalize();
         const float separation = normal.dot(axis.from - polytope.vertices[edge.from]);
-        if (separation > nearest.separation + 1e-4f) {
+        if (separation > nearest.separation + 1e-4f &&
+            normal.dot(axis.from) - highest(polytope, normal) > nearest.separation + 1e-4f) {
             const Segment line = {polytope.vertices[edge.from], polytope.direction(edge)};
             nearest = {separation, nearest_points(line, axis).t, normal};
         }

@@ -139,7 +139,7 @@ Core core(const Shape& shape, const Placement& at) {
         add(0, -h.y(), 0);
         add(0, h.y(), 0);
         out.radius = h.x();
-        out.edges.push_back((out.points[1] - out.points[0]).normalized());
+        out.edges.push_back({out.points[0], out.points[1] - out.points[0]});
     } else if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone) {
         const Vec3 axis = at.rotation.col(1).cast<double>().normalized();
         out.discs.push_back({at.position - h.y() * axis, axis, h.x()});
@@ -159,7 +159,8 @@ Core core(const Shape& shape, const Placement& at) {
             const Vec3 axis = at.rotation.col(k).cast<double>();
             out.normals.push_back(axis);
             out.normals.push_back(-axis);
-            out.edges.push_back(axis);
+            for (size_t i = 0; i < 8; ++i)
+                if (!(i >> k & 1)) out.edges.push_back({out.points[i], out.points[i | size_t(1) << k] - out.points[i]});
         }
     } else {
         for (const Vec3f& v : hull_vertices(*shape.hull)) add(v.x(), v.y(), v.z());
@@ -170,7 +171,7 @@ Core core(const Shape& shape, const Placement& at) {
             out.normals.push_back((p[1] - p[0]).cross(p[2] - p[0]).normalized());
             for (int k = 0; k < 3; ++k) {
                 if (indices[i + size_t(k)] < indices[i + size_t((k + 1) % 3)])
-                    out.edges.push_back((p[(k + 1) % 3] - p[k]).normalized());
+                    out.edges.push_back({p[k], p[(k + 1) % 3] - p[k]});
             }
         }
     }
@@ -224,12 +225,14 @@ double by_all_axes(const Core& a, const Core& b) {
     const auto test = [&](const Vec3& n) { best = std::max(best, -b.reach(-n) - a.reach(n)); };
     for (const Vec3& n : a.normals) test(n);
     for (const Vec3& n : b.normals) test(-n);
-    for (const Vec3& p : a.edges) {
-        for (const Vec3& q : b.edges) {
-            const Vec3 cross = p.cross(q);
-            if (cross.norm() < 1e-6) continue;
-            test(cross.normalized());
-            test(-cross.normalized());
+    // No axis separates by more than two points are apart along it: most edges need no look at all corners.
+    for (const Core::Line& p : a.edges) {
+        for (const Core::Line& q : b.edges) {
+            const Vec3 cross = p.along.cross(q.along);
+            const double length = cross.norm(), apart = cross.dot(q.from - p.from);
+            if (length < 1e-6 * p.along.norm() * q.along.norm()) continue;
+            if (apart > best * length) test(cross / length);
+            if (-apart > best * length) test(-cross / length);
         }
     }
     return best;

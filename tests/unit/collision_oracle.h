@@ -49,7 +49,10 @@ struct Core {
     std::vector<Ball> balls;
     double radius = 0;
     std::vector<Vec3> normals;  // outward
-    std::vector<Vec3> edges;    // directions
+    struct Line {
+        Vec3 from, along;
+    };
+    std::vector<Line> edges;
     bool curved() const { return !discs.empty() || !balls.empty(); }
     Vec3 furthest(const Vec3& direction) const;  // point, without the radius
     double reach(const Vec3& direction) const;   // max direction . p over unit directions, without the radius
