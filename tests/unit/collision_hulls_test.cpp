@@ -8,6 +8,7 @@
 #include "collision/hull.h"
 #include "collision_oracle.h"
 #include "hull_points.h"
+#include "starts.h"
 
 namespace taut::collision {
 namespace {
@@ -71,7 +72,7 @@ TEST_P(HullsLike, MissNothingAmongThemselves) {
     hull_points::Maker maker(100 + uint32_t(GetParam()));
     Random random(200 + uint32_t(GetParam()));
     for (const Like other : hull_points::kAll) {
-        for (int run = 0; run < 150 && !HasFailure(); ++run) {
+        for (int run = 0; run < starts(150) && !HasFailure(); ++run) {
             SCOPED_TRACE(testing::Message() << hull_points::name(other) << " run " << run);
             const Shape a = hull_like(GetParam(), maker), b = hull_like(other, maker);
             expect_found(random_overlap(a, b, random));
@@ -84,7 +85,7 @@ TEST_P(HullsLike, MissNoBoxAndNoCapsule) {
     Random random(400 + uint32_t(GetParam()));
     const Shape others[] = {oracle::box(0.4f, 0.2f, 0.3f), oracle::box(0.4f, 0.002f, 0.3f), oracle::capsule(0.1f, 0.2f),
                             oracle::sphere(0.2f)};
-    for (int run = 0; run < 400 && !HasFailure(); ++run) {
+    for (int run = 0; run < starts(400) && !HasFailure(); ++run) {
         SCOPED_TRACE(testing::Message() << "run " << run);
         const Shape hull = hull_like(GetParam(), maker), &other = others[run % 4];
         expect_found(run % 3 ? random_overlap(hull, other, random) : random_overlap(other, hull, random));
@@ -94,7 +95,7 @@ TEST_P(HullsLike, MissNoBoxAndNoCapsule) {
 // The axis nearly along an edge between faces that are nearly one: of such edges rounding says what is across.
 TEST(HullAndCapsule, AlongAFlatRidge) {
     Random random(800);
-    for (int run = 0; run < 2000 && !testing::Test::HasFailure(); ++run) {
+    for (int run = 0; run < starts(2000) && !testing::Test::HasFailure(); ++run) {
         SCOPED_TRACE(testing::Message() << "run " << run);
         const float ridge = 0.1f + float(random.uniform(0.0005, 0.003));
         std::vector<Vec3f> points;
@@ -120,7 +121,7 @@ TEST(HullAndCapsule, AlongAFlatRidge) {
 TEST_P(HullsLike, MissNothingAlongAWay) {
     hull_points::Maker maker(500 + uint32_t(GetParam()));
     Random random(600 + uint32_t(GetParam()));
-    for (int run = 0; run < 10 && !HasFailure(); ++run) {
+    for (int run = 0; run < starts(10) && !HasFailure(); ++run) {
         const Shape a = hull_like(GetParam(), maker), b = hull_like(GetParam(), maker);
         Overlap pair = random_overlap(a, b, random);
         const Vec3 way = random.uniform(0.001, 0.01) * random.unit();
@@ -137,7 +138,7 @@ TEST_P(HullsLike, MissNothingAlongAWay) {
 // Faces are convex, and their corners in their planes, as far as merging went: 2e-4 of the extent.
 TEST_P(HullsLike, HaveConvexFaces) {
     hull_points::Maker maker(700 + uint32_t(GetParam()));
-    for (int run = 0; run < 200 && !HasFailure(); ++run) {
+    for (int run = 0; run < starts(200) && !HasFailure(); ++run) {
         SCOPED_TRACE(testing::Message() << "run " << run);
         const Shape shape = hull_like(GetParam(), maker);
         const Polytope& p = shape.hull->view();

@@ -7,6 +7,7 @@
 
 #include "collision/hull.h"
 #include "collision_oracle.h"
+#include "starts.h"
 
 namespace taut::collision {
 namespace {
@@ -303,7 +304,7 @@ TEST(CollisionHull, FlatHullsKeepTheirRim) {
 TEST(CollisionHull, ThinWideHullsAreNotInsideOut) {
     Random random(kSeed + 8);
     int made = 0;
-    for (int run = 0; run < 3000; ++run) {
+    for (int run = 0; run < starts(3000); ++run) {
         const double wide = std::pow(10, random.uniform(-2, 4)), thick = random.uniform(1e-3, 2e-3);
         const double narrow = run % 3 ? wide : 0.01 * wide;
         const Mat3f turn = random.rotation();
@@ -323,7 +324,7 @@ TEST(CollisionHull, ThinWideHullsAreNotInsideOut) {
         EXPECT_GT(i.xx * i.yy - i.xy * i.xy, 0) << run;
         EXPECT_GT(i.matrix().determinant(), 0) << run;
     }
-    EXPECT_GT(made, 1000);
+    EXPECT_GT(made, starts(1000));
 }
 
 TEST(CollisionHull, RefusesWhatHasNoVolume) {
