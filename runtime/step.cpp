@@ -187,8 +187,10 @@ void step(World& w) {
     w.profile = {};
     w.profile.struct_size = sizeof(taut_profile);
     w.frozen.clear();
+    begin_events(w);
     reel_cables(w);
     remember_poses(w.team, w.nodes);
+    w.last_step = w.def.time_step;
     detect(w, watch);
     watch_contacts(w.nodes, w.pairs, w.watch);
     const Solver& solver = *solvers()[w.def.solver];
@@ -202,7 +204,7 @@ void step(World& w) {
     solve(w, watch);
     hold_back(w.team, w.colliders, w.shapes, w.joints, w.pairs, w.broadphase, w.nodes);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
-    sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.sensors);
+    sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.window.steps, w.sensors);
     w.nodes.load.clear();
     publish_contacts(w);
     publish_motion(w, w.frozen);
@@ -210,6 +212,7 @@ void step(World& w) {
     break_joints(w);
     tell(w, {Stage::publish});
     update_sleep(w);
+    end_events(w);
     tell(w, {Stage::sleep});
     w.profile.publish_us = watch.lap();
     w.profile.allocations = w.memory.calls() - calls;

@@ -30,7 +30,9 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       broken(memory),
       fell_asleep(memory),
       woke(memory),
+      moved_before(memory),
       frozen(memory) {
+    last_step = def.time_step;
     pairs.world = id;
     pairs.asks = static_cast<uint8_t>(def.contact_events);
 }

@@ -7,6 +7,7 @@
 #include "detect/pre_solve.h"
 #include "partition/partition.h"
 #include "publish/contact_watch.h"
+#include "publish/event_window.h"
 #include "solvers/solver.h"
 #include "stages.h"
 #include "state/cables.h"
@@ -43,6 +44,7 @@ struct World {
     Sensors sensors;
     PreSolve pre_solve;
     double accumulator = 0;  // frame time not yet stepped [s]
+    double last_step = 0;    // length of the last step, or of the first one to come [s]
 
     // derived: rebuilt by each step from the state, kept for its memory and for what blocks remember
     Partition partition;
@@ -50,7 +52,8 @@ struct World {
     SolverScratch scratch;
     ContactWatch watch;
 
-    // results of the last step
+    // results of the steps since the host read them: events
+    EventWindow window;
     Array<taut_contact_event> contact_begin, contact_persist, contact_end;
     Array<taut_contact_point> contact_points;
     Array<taut_hit_event> hits;
@@ -58,6 +61,9 @@ struct World {
     Array<taut_quarantine_event> quarantined;
     Array<taut_joint_break_event> broken;
     Array<taut_sleep_event> fell_asleep, woke;
+    Array<uint8_t> moved_before;  // by node, scratch; publish_motion()
+
+    // results of the last step
     Array<uint32_t> frozen;  // nodes quarantined by the last step
     taut_profile profile{};
 

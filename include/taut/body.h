@@ -104,7 +104,7 @@ TAUT_API taut_result taut_body_set_contact_events(taut_body body, uint32_t conta
 TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose* out);
 /** Teleports. A particle ignores the rotation. Carried contact impulses of the body are dropped. */
 TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose* pose);
-/** Pose between the last two steps at the fraction left by taut_world_advance, for rendering. */
+/** Pose between the last two steps at the fraction left by taut_world_advance, for rendering: that of one step ago. */
 TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
 
 /**
@@ -123,8 +123,16 @@ TAUT_API taut_result taut_world_get_body_states(taut_world world, const taut_bod
 TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3* linear, taut_vec3* angular);
 /** Sets both; refused for a static body, and a non-zero angular velocity for a particle. */
 TAUT_API taut_result taut_body_set_velocity(taut_body body, taut_vec3 linear, taut_vec3 angular);
-/** Gives a kinematic body the velocity that brings it to the pose in one step; it keeps that velocity until changed. At
- * most 1e4 m/s and rad/s. */
+/**
+ * Sends a kinematic body to a pose, which it reaches by the end of the next call: of taut_world_step, or of the seconds
+ * of taut_world_advance. Frame time goes on where that call before ended, and steps find the body where it is by their
+ * own end: led on at a constant speed, by frames of whatever length, it has the same velocity in every step. It keeps
+ * the velocity of that call until changed. The next new target, taut_body_set_velocity or taut_world_step forgets a
+ * target; taut_world_advance by 0 s leaves it waiting.
+ * @param target at most 1e4 m/s and rad/s away, as one step goes.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_INVALID_ARGUMENT (range, not kinematic), TAUT_STALE_HANDLE, TAUT_LOCKED,
+ *         TAUT_OUT_OF_MEMORY.
+ */
 TAUT_API taut_result taut_body_move_kinematic(taut_body body, const taut_pose* target);
 
 /**
@@ -137,10 +145,15 @@ TAUT_API taut_result taut_body_set_continuous(taut_body body, uint32_t continuou
 /** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_body_get_continuous(taut_body body, uint32_t* out);
 
-/** Force [N] at the centre of mass and torque [N m], world axes, during the next step only; calls add up. Dynamic
- * bodies and (force) particles; each component within 1e24. */
+/**
+ * Force [N] at the centre of mass and torque [N m], world axes, over the time of the next call only: of one
+ * taut_world_step, or of the seconds of taut_world_advance. What no step takes of these yet waits for the next one;
+ * what is given up because of max_catch_up does not count. Applied before each frame of T seconds, F changes momentum
+ * by F T, however many steps the frame takes. Calls add up. Dynamic bodies and (force) particles; each component within
+ * 1e24.
+ */
 TAUT_API taut_result taut_body_apply_force(taut_body body, taut_vec3 force, taut_vec3 torque);
-/** Force [N] at a world point during the next step. */
+/** Force [N] at a world point, over the same time; its arm is as of now. */
 TAUT_API taut_result taut_body_apply_force_at(taut_body body, taut_vec3 force, taut_pos point);
 /** Impulse [N s] at the centre of mass and angular impulse [N m s], at once; refused where it would push the body past
  * 1e4 m/s or rad/s. */

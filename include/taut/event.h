@@ -1,8 +1,14 @@
 /**
  * @file event.h
- * What the last step did, as arrays: read them after the step. A view's pointer is valid until the next
- * step or the end of the world; handles inside may have become stale since. taut_world_advance may take several steps,
- * of which the last one's events remain, or none: who must miss nothing steps by taut_world_step.
+ * What the steps did since their events were read last, as arrays: a host that reads once a frame is told everything
+ * once, however many steps its frame took, and nothing where it took none. The first taut_world_step or
+ * taut_world_advance after a reading, whether it takes a step or not, forgets what was read; until then it can be read
+ * again, and a view's pointer is valid until then or the end of the world. Handles inside may have become stale since.
+ *
+ * Events that nobody reads wait: of the last TAUT_EVENT_STEPS steps at least (of the world's max_catch_up, where that
+ * is more), of twice as many at most. Older ones are dropped, and their steps counted in taut_events.dropped_steps: who
+ * follows what touches by begin and end then asks taut_world_get_contacts and taut_collider_get_overlaps anew. Moved
+ * bodies are not dropped.
  * Each function here: thread safety: any thread between steps while no other changes the world.
  */
 #ifndef TAUT_EVENT_H
@@ -16,8 +22,11 @@
 extern "C" {
 #endif
 
+/** Steps whose events wait at least until they are read. */
+#define TAUT_EVENT_STEPS 60
+
 /**
- * Two colliders began or stopped touching in the last step, or touch as they did before it. Who overlapped as the step
+ * Two colliders began or stopped touching in a step, or touch as they did before it. Who overlapped as the step
  * began touches in it, and who was pushed within it, be it off again by its end.
  */
 typedef struct taut_contact_event {
@@ -27,9 +36,11 @@ typedef struct taut_contact_event {
     taut_collider collider_b; /**< of body_b */
     uint32_t first_point;     /**< of its points in taut_events.points */
     uint32_t point_count;     /**< 0 where they end, and where nobody asks for points */
+    uint32_t step;            /**< that it happened in: 0 for the first of taut_events.steps, 1 for the next */
+    uint32_t reserved;        /**< zero */
 } taut_contact_event;
 
-/** A point of a contact event: where it was found before the bodies moved, and what the step did there. */
+/** A point of a contact event: where it was found before the bodies moved, and what its step did there. */
 typedef struct taut_contact_point {
     taut_pos position;      /**< midway between the two surfaces, carried along with body a [m] */
     taut_vec3 normal;       /**< unit, from a to b */
@@ -54,7 +65,7 @@ typedef struct taut_hit_event {
     taut_vec3 normal;     /**< unit, from a to b */
     float approach_speed; /**< along the normal before the step [m/s] */
     float normal_impulse; /**< of all points of the pair, sum over the substeps [N s] */
-    uint32_t reserved;    /**< zero */
+    uint32_t step;        /**< as of a contact event */
 } taut_hit_event;
 
 /** A collider came into a sensor or left it; see sensor.h. */
@@ -63,39 +74,49 @@ typedef struct taut_sensor_event {
     taut_collider visitor;
     taut_body sensor_body;
     taut_body visitor_body;
+    uint32_t step;     /**< as of a contact event */
+    uint32_t reserved; /**< zero */
 } taut_sensor_event;
 
-/** A dynamic, kinematic or particle body that the last step moved. */
+/** A dynamic, kinematic or particle body that a step moved, once with its newest pose. */
 typedef struct taut_moved_event {
     taut_body body;
     uint64_t user_data;
-    taut_pose pose;
+    taut_pose pose; /**< after the last step */
 } taut_moved_event;
 
 /** A body whose state became non-finite: it was put back to its last finite pose and made static. */
 typedef struct taut_quarantine_event {
     taut_body body;
     uint64_t user_data;
+    uint32_t step;     /**< as of a contact event */
+    uint32_t reserved; /**< zero */
 } taut_quarantine_event;
 
 /** A joint that ended a step with more force or torque than its def allows, and was removed then. */
 typedef struct taut_joint_break_event {
     taut_joint joint; /**< stale by now: good for comparing only */
     uint64_t user_data;
-    taut_vec3 force;  /**< on end b, as taut_joint_get_force would have said [N] */
-    taut_vec3 torque; /**< on end b about its anchor [N m] */
+    taut_vec3 force;   /**< on end b, as taut_joint_get_force would have said [N] */
+    taut_vec3 torque;  /**< on end b about its anchor [N m] */
+    uint32_t step;     /**< as of a contact event */
+    uint32_t reserved; /**< zero */
 } taut_joint_break_event;
 
 /** A body or particle that fell asleep or woke; see sleep.h. */
 typedef struct taut_sleep_event {
     taut_body body;
     uint64_t user_data;
+    uint32_t step;     /**< as of a contact event */
+    uint32_t reserved; /**< zero */
 } taut_sleep_event;
 
 /**
- * The events of the last step. Contacts and hits are sorted by collider_a and then collider_b, those of sensors by
- * sensor and then visitor, all in the order of their slots: that of creation as long as none is removed. Read ends
- * before beginnings, and leaves before enters: where a call changed a collider, both may come in one step.
+ * The events of the steps since they were read last. Each list goes step by step. Within a step contacts and hits are
+ * sorted by collider_a and then collider_b, those of sensors by sensor and then visitor, all in the order of their
+ * slots: that of creation as long as none is removed. What began and ended between two readings is in both lists: who
+ * follows what touches goes through both, step by step, and reads of a step the ends before the beginnings, and leaves
+ * before enters: where a call changed a collider, both may come in one step.
  */
 typedef struct taut_events {
     const taut_contact_event* begin;
@@ -108,7 +129,7 @@ typedef struct taut_events {
     uint32_t quarantined_count;
     const taut_joint_break_event* broken; /**< in the order of the joints' slots */
     uint32_t broken_count;
-    uint32_t reserved;                     /**< zero */
+    uint32_t steps;                        /**< that these are the events of */
     const taut_contact_event* persist;     /**< pairs that touched before and still do */
     const taut_hit_event* hit;             /**< of pairs that began or go on */
     const taut_contact_point* points;      /**< of begin and persist */
@@ -119,12 +140,12 @@ typedef struct taut_events {
     uint32_t point_count;
     uint32_t sensor_enter_count;
     uint32_t sensor_leave_count;
-    uint32_t reserved_events;            /**< zero */
-    const taut_sleep_event* fell_asleep; /**< asleep now, awake by the events before; in the order of the slots */
+    uint32_t dropped_steps;              /**< whose events waited too long to be read */
+    const taut_sleep_event* fell_asleep; /**< asleep after a step, awake by the events before; by slots */
     const taut_sleep_event* woke;        /**< the other way round */
     uint32_t fell_asleep_count;
     uint32_t woke_count;
-    uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved */
+    uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved; sum over the steps */
     uint32_t reserved_limits;  /**< zero */
 } taut_events;
 
@@ -141,6 +162,10 @@ typedef struct taut_contact {
     taut_collider collider_b;
 } taut_contact;
 
+/**
+ * The events of the steps since they were read last. The next taut_world_step or taut_world_advance forgets them.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
 TAUT_API taut_result taut_world_get_events(taut_world world, taut_events* out);
 /**
  * Copies the contact points of the last step, sorted by pair.

@@ -12,8 +12,9 @@
  * A sensor has no share in a mass taken from colliders, is solved with nobody and connects nobody. Queries pass it by
  * unless their filter has TAUT_QUERY_SENSOR.
  *
- * taut_events.sensor_enter and sensor_leave tell the changes. Each visit has one enter and then one leave, whatever
- * ends it: motion, removal of a collider or body, another filter, another shape, a sensor that is one no longer.
+ * taut_events.sensor_enter and sensor_leave tell the changes, step by step. Each visit has one enter and then one
+ * leave, be it in the same reading, whatever ends it: motion, removal of a collider or body, another filter, another
+ * shape, a sensor that is one no longer.
  */
 #ifndef TAUT_SENSOR_H
 #define TAUT_SENSOR_H

@@ -27,7 +27,7 @@ typedef struct taut_world_def {
     uint32_t struct_size;
     taut_solver solver;      /**< default TAUT_SOLVER_BLOCK_LDLT */
     taut_vec3 gravity;       /**< [m/s^2], each within 1e4. Default (0, -9.81, 0) */
-    float time_step;         /**< frame [s], [1e-4, 0.1]. Default 1/60 */
+    float time_step;         /**< step [s], [1e-4, 0.1]. Default 1/60 */
     uint32_t substeps;       /**< least substeps of a frame, [1, 64]; an island may take more: up to four times as many
                                   where walls are tall or what is heavy rests on what is light, and eight times while
                                   its joints whip about. Default 4 */
@@ -73,7 +73,7 @@ typedef struct taut_world_def {
 /** What taut_world_advance did. */
 typedef struct taut_advance {
     uint32_t steps; /**< steps taken */
-    float fraction; /**< time left over, in steps, [0, 1): weight of the newer pose when rendering */
+    float fraction; /**< time left over, in parts of the last step, [0, 1): weight of the newer pose when rendering */
     double dropped; /**< time given up because of max_catch_up [s] */
 } taut_advance;
 
@@ -90,16 +90,29 @@ TAUT_API taut_result taut_world_destroy(taut_world world);
 /** 1 if the handle names a live world, else 0. Thread safety: any thread. */
 TAUT_API int32_t taut_world_is_valid(taut_world world);
 
-/** Advances by one fixed time step. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY. */
+/** Advances by one time step, beside the time that taut_world_advance has left over.
+ * @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY. */
 TAUT_API taut_result taut_world_step(taut_world world);
 /**
- * Adds seconds [0, 1e3] of frame time to an accumulator and takes whole steps from it. out may be null.
+ * Adds seconds [0, 1e3] of frame time to an accumulator and takes whole steps from it, none or several. What the host
+ * does each frame means the same at any rate of frames: forces act over the frame's time (body.h), kinematic bodies
+ * reach their targets at its end, events are those of all steps since they were read (event.h). out may be null.
  * @return as taut_world_step; TAUT_INVALID_ARGUMENT.
  */
 TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
 
 /** The def as checked at creation, with what was set since. */
 TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
+/**
+ * Length of the steps from the next one on [s], [1e-4, 0.1]: for slow motion, or a display's own rate. What moves keeps
+ * its velocity, what rests stays: forces of joints and contacts go on as they were. Time left over by
+ * taut_world_advance is kept; steps that fit into it are made up for in the next call. A cable is reeled by at most
+ * half a segment a step.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_set_time_step(taut_world world, float time_step);
+/** Least substeps of a step from the next one on, [1, 64]. @return as taut_world_set_time_step. */
+TAUT_API taut_result taut_world_set_substeps(taut_world world, uint32_t substeps);
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
 /** Contact events of all pairs from the next step on: sum of TAUT_CONTACT_EVENTS_ bits. */

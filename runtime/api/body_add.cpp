@@ -6,7 +6,6 @@
 
 #include "api/access.h"
 #include "api/body_mass.h"
-#include "api/body_motion.h"
 #include "api/collider_def.h"
 #include "models/bodies.h"
 

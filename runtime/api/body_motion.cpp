@@ -1,11 +1,10 @@
 // Poses, velocities, forces and impulses of bodies.
-#include "api/body_motion.h"
-
 #include <taut/body.h>
 
 #include <algorithm>
 #include <cstdio>
 
+#include "advance.h"
 #include "api/access.h"
 #include "models/bodies.h"
 #include "sleep/wake.h"
@@ -45,22 +44,11 @@ void give_velocity(World& world, uint32_t node, const Vec3& v, const Vec3& w) {
     set_velocity(motion, v, w);
 }
 
-// Of the next step. Nothing does not wake a body.
+// Over the time of the host's next call. Nothing does not wake a body.
 void add_load(World& world, uint32_t node, const Vec3& force, const Vec3& torque) {
     if (force == Vec3::Zero() && torque == Vec3::Zero()) return;
     world.nodes.add_load(node, force, torque);
     wake(world, node);
-}
-
-// Rotation vector of q, at most pi long [rad]. By Newton's iteration on rotation_from_vector, whose bits no C
-// library decides: the remainder turns about the same axis by an angle e, and 2 sin(e/2) of it is taken off.
-Vec3 rotation_vector(const Quat& q) {
-    Vec3 theta = Vec3::Zero();
-    for (int i = 0; i < 6; ++i) {
-        const Quat left = q * rotation_from_vector(theta).conjugate();
-        theta += (left.w() < 0 ? -2.0 : 2.0) * left.vec();
-    }
-    return theta;
 }
 
 // Adds an impulse [N s] and an angular impulse [N m s] about the centre of mass.
@@ -109,6 +97,7 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
             throw;
         }
         world.nodes.before[node] = origin_pose(world, node);  // no streak while rendering between the two
+        restart_path(world, node);
         wake_about(world, node);
         for_pairs(world.pairs, [&](Pair& pair) {
             if (ends_on(node)(pair)) std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
@@ -122,7 +111,7 @@ taut_result taut_body_get_render_pose(taut_body handle, taut_pose* out) {
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
         const NodePose before = world.nodes.before[node], now = origin_pose(world, node);
-        const double t = std::clamp(world.accumulator / world.def.time_step, 0.0, 1.0);
+        const double t = render_weight(world);
         const Vec3 position = before.position + t * (now.position - before.position);
         // Linear and normalised, the short way round.
         const double sign = before.rotation.dot(now.rotation) < 0 ? -1 : 1;
@@ -182,6 +171,7 @@ taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3
         check.require(kind != NodeKind::fixed, "body is static: it has no velocity");
         if (kind == NodeKind::particle) check.zero("angular", angular, "for a particle");
         if (!check) return check.result();
+        forget_path(world.nodes, node);
         give_velocity(world, node, to_vec(linear), to_vec(angular));
         return TAUT_OK;
     });
@@ -195,14 +185,12 @@ taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) 
         if (!check.require(world.nodes.info[node].kind == NodeKind::kinematic, "body is not kinematic")) {
             return check.result();
         }
-        NodeMotion& motion = world.nodes.motion[node];
-        const double dt = world.def.time_step;
-        const Quat q = to_quat(target->rotation);
-        const Vec3 v = (to_vec(target->position) + q * world.nodes.mass[node].centre - motion.x) / dt;
-        const Vec3 w = rotation_vector(q * motion.q.conjugate()) / dt;
+        const NodePose to{to_vec(target->position), to_quat(target->rotation)};
+        const auto [v, w] = speed_between(world.nodes, node, origin_pose(world, node), to, world.def.time_step);
         check.require(v.norm() <= kSpeed.hi, "target.position asks for a speed beyond 1e4 m/s");
         check.require(w.norm() <= kSpeed.hi, "target.rotation asks for an angular speed beyond 1e4 rad/s");
         if (!check) return check.result();
+        lead_to(world, node, to);
         give_velocity(world, node, v, w);
         return TAUT_OK;
     });

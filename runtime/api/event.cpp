@@ -10,6 +10,7 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        world.window.read = true;
         const auto size = [](const auto& array) { return static_cast<uint32_t>(array.size()); };
         *out = {world.contact_begin.data(),
                 world.contact_end.data(),
@@ -21,7 +22,7 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 size(world.quarantined),
                 world.broken.data(),
                 size(world.broken),
-                0,
+                world.window.steps,
                 world.contact_persist.data(),
                 world.hits.data(),
                 world.contact_points.data(),
@@ -32,12 +33,12 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 size(world.contact_points),
                 size(world.sensors.enter),
                 size(world.sensors.leave),
-                0,
+                world.window.dropped_steps,
                 world.fell_asleep.data(),
                 world.woke.data(),
                 size(world.fell_asleep),
                 size(world.woke),
-                world.profile.dropped_contacts,
+                world.window.dropped_contacts,
                 0};
         return TAUT_OK;
     });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "advance.h"
 #include "api/access.h"
 #include "sleep/wake.h"
 
@@ -10,10 +11,8 @@ using namespace taut;
 
 namespace {
 
-// Share of a step by which advance may be early: a host that adds 1.0 / 60 to a step of 1 / 60 in single precision
-// gets a step each frame.
-constexpr double kEarly = 1e-3;
 constexpr uint32_t kMaxThreads = 64;
+constexpr uint32_t kMaxSubsteps = 64;
 constexpr Range kSleepSpeed{0, 10};  // [m/s]
 constexpr Range kSleepTime{0, 1e3};  // [s]
 
@@ -32,7 +31,7 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .choice("solver", def.solver, TAUT_SOLVER_ACCELERATED_JACOBI)
         .vector("gravity", def.gravity, kGravity)
         .number("time_step", def.time_step, kTimeStep)
-        .count("substeps", def.substeps, 1, 64)
+        .count("substeps", def.substeps, 1, kMaxSubsteps)
         .boolean("fixed_substeps", def.fixed_substeps)
         .count("sweeps", def.sweeps, 0, 1000)
         .boolean("geometric_stiffness", def.geometric_stiffness)
@@ -101,7 +100,7 @@ int32_t taut_world_is_valid(taut_world handle) { return world_lives(world_of(han
 
 taut_result taut_world_step(taut_world handle) {
     return with_world(__func__, handle, Use::write, [](World& world) {
-        step(world);
+        take_step(world);
         return TAUT_OK;
     });
 }
@@ -110,27 +109,10 @@ taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* 
     Check check(__func__);
     if (!check.number("seconds", seconds, kAdvance)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        const double dt = world.def.time_step, before = world.accumulator;
-        double due = std::floor((before + seconds) / dt + kEarly);
-        const double dropped = std::max(0.0, due - world.def.max_catch_up);
-        due -= dropped;
-        world.accumulator = before + seconds - dropped * dt;
-        uint32_t steps = 0;
-        for (; steps < due; ++steps) {
-            // A failed first step fails the call, which then has changed nothing. A later one only ends it: the time
-            // left stays in the accumulator, and the next call meets the failure.
-            try {
-                step(world);
-            } catch (...) {
-                if (steps > 0) break;
-                world.accumulator = before;
-                throw;
-            }
-            world.accumulator -= dt;
-        }
+        const Advance done = advance(world, seconds);
         if (out) {
-            const float fraction = static_cast<float>(world.accumulator / dt);
-            *out = {steps, std::clamp(fraction, 0.0f, std::nextafter(1.0f, 0.0f)), dropped * dt};
+            const float weight = static_cast<float>(render_weight(world));
+            *out = {done.steps, std::min(weight, std::nextafter(1.0f, 0.0f)), done.dropped};
         }
         return TAUT_OK;
     });
@@ -141,6 +123,24 @@ taut_result taut_world_get_def(taut_world handle, taut_world_def* out) {
     if (!check.pointer("out", out)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         *out = world.def;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_time_step(taut_world handle, float time_step) {
+    Check check(__func__);
+    if (!check.number("time_step", time_step, kTimeStep)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        change_time_step(world, time_step);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_substeps(taut_world handle, uint32_t substeps) {
+    Check check(__func__);
+    if (!check.count("substeps", substeps, 1, kMaxSubsteps)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        world.def.substeps = substeps;  // pairs know how many their impulses are for
         return TAUT_OK;
     });
 }

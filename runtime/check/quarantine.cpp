@@ -8,8 +8,6 @@ namespace taut {
 
 namespace {
 
-bool is_loaded(const NodeLoad& load) { return load.force != Vec3::Zero() || load.torque != Vec3::Zero(); }
-
 bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& load, double h) {
     NodeMotion after = m;
     after.v += h * mass.inv_mass * load.force;
@@ -20,7 +18,7 @@ bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& 
 bool is_bad(const Nodes& nodes, uint32_t node, double h) {
     const NodeMotion& m = nodes.motion[node];
     const NodeLoad& load = nodes.load_of(node);
-    return !sane(m) || (is_loaded(load) && pushed_too_hard(m, nodes.mass[node], load, h));
+    return !sane(m) || (load.any() && pushed_too_hard(m, nodes.mass[node], load, h));
 }
 
 constexpr uint32_t kGrain = 256;  // nodes that a thread takes at a time
@@ -33,7 +31,7 @@ Findings look_at(Team& team, const Nodes& nodes, const Array<uint32_t>& list, do
     std::atomic<bool> loaded{false}, bad{false};
     team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
-            if (is_loaded(nodes.load_of(list[i]))) loaded.store(true, std::memory_order_relaxed);
+            if (nodes.load_of(list[i]).any()) loaded.store(true, std::memory_order_relaxed);
             if (is_bad(nodes, list[i], h)) bad.store(true, std::memory_order_relaxed);
         }
     });

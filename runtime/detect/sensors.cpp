@@ -67,7 +67,9 @@ taut_sensor_event visit_of(const Nodes& nodes, const Colliders& colliders, uint3
     return {{bits(colliders.ids, sensor)},
             {bits(colliders.ids, visitor)},
             {bits(nodes.ids, colliders.record[sensor].node)},
-            {bits(nodes.ids, colliders.record[visitor].node)}};
+            {bits(nodes.ids, colliders.record[visitor].node)},
+            0,
+            0};
 }
 
 // The slot is in the upper bits of a handle.
@@ -75,12 +77,23 @@ bool earlier(const taut_sensor_event& a, const taut_sensor_event& b) {
     return a.sensor.bits != b.sensor.bits ? a.sensor.bits < b.sensor.bits : a.visitor.bits < b.visitor.bits;
 }
 
+// Throws std::bad_alloc with nothing changed.
+void append_difference(const Array<taut_sensor_event>& of, const Array<taut_sensor_event>& without, uint32_t step,
+                       Array<taut_sensor_event>& out) {
+    const size_t first = out.size();
+    try {
+        std::set_difference(of.begin(), of.end(), without.begin(), without.end(), std::back_inserter(out), earlier);
+    } catch (...) {
+        out.resize(first);
+        throw;
+    }
+    for (size_t i = first; i < out.size(); ++i) out[i].step = step;
+}
+
 }  // namespace
 
 void sense(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
-           const collision::Broadphase& broadphase, uint32_t world, Sensors& sensors) {
-    sensors.enter.clear();
-    sensors.leave.clear();
+           const collision::Broadphase& broadphase, uint32_t world, uint32_t step, Sensors& sensors) {
     if (colliders.sensors.empty() && sensors.inside.empty()) return;
     Array<uint64_t>& candidates = sensors.candidates;
     candidates.clear();
@@ -95,17 +108,19 @@ void sense(Team& team, const Nodes& nodes, const Colliders& colliders, const Sha
             sensors.meets[i] = meet(nodes, colliders, shapes, static_cast<uint32_t>(candidates[i] >> 32),
                                     static_cast<uint32_t>(candidates[i]));
     });
+    const size_t entered = sensors.enter.size();
     Array<taut_sensor_event>& found = sensors.before;  // those of the step before are told
     found.clear();
     for (size_t i = 0; i < candidates.size(); ++i)
         if (sensors.meets[i]) found.push_back(visit_of(nodes, colliders, world, candidates[i]));
-    const auto difference = [](const Array<taut_sensor_event>& of, const Array<taut_sensor_event>& without,
-                               Array<taut_sensor_event>& out) {
-        std::set_difference(of.begin(), of.end(), without.begin(), without.end(), std::back_inserter(out), earlier);
-    };
-    difference(found, sensors.inside, sensors.enter);
-    difference(sensors.inside, found, sensors.leave);
-    sensors.inside.swap(found);  // last, for memory may run out above
+    append_difference(found, sensors.inside, step, sensors.enter);
+    try {
+        append_difference(sensors.inside, found, step, sensors.leave);
+    } catch (...) {  // entered again by the next step
+        sensors.enter.resize(entered);
+        throw;
+    }
+    sensors.inside.swap(found);
 }
 
 }  // namespace taut

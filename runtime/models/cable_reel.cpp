@@ -11,7 +11,8 @@ namespace {
 
 // Of the nominal segment. Apart enough that a segment just cut or joined is far from the other threshold.
 constexpr double kDivide = 1.6, kJoin = 0.4;
-constexpr double kMostPaid = 0.5;  // in a step
+constexpr double kMostPaid = 0.5;  // in a step; the speed that asks for it may have been set for shorter ones
+constexpr double kRounding = 1e-6;  // by which a speed in the world's range may be above that
 constexpr double kMakeGood = 0.1;  // of what passes an end, towards what was lost
 
 template <class T>
@@ -73,6 +74,8 @@ Reel::Plan Reel::plan() const {
     Plan p{};
     p.speed = change > 0 ? std::clamp(end_.wanted_speed, end_.reel_speed - change, end_.reel_speed + change)
                          : end_.wanted_speed;
+    const double fastest = (1 + kRounding) * most / step();
+    p.speed = std::clamp(p.speed, -fastest, fastest);
     const double by_speed = p.speed * step();
     p.owed = std::clamp(end_.owed, std::min(0.0, -most - by_speed), std::max(0.0, most - by_speed));
     p.paid = by_speed + p.owed;

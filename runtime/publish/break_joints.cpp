@@ -17,7 +17,6 @@ bool overloaded(const Nodes& nodes, const Joint& joint) {
 
 // In ascending slot order, which also orders the events. What a break wakes may break in the next step.
 void break_joints(World& world) {
-    world.broken.clear();
     gather(world.team, static_cast<uint32_t>(world.joints.record.size()), world.pairs.picked,
            [&](uint32_t index) { return overloaded(world.nodes, world.joints.record[index]); });
     for (const uint32_t index : world.pairs.picked) {
@@ -28,7 +27,9 @@ void break_joints(World& world) {
         world.broken.push_back({world.joint_handle(index),
                                 joint.user_data,
                                 {force.x(), force.y(), force.z()},
-                                {torque.x(), torque.y(), torque.z()}});
+                                {torque.x(), torque.y(), torque.z()},
+                                world.window.steps,
+                                0});
         // The two bodies may collide from the next step on: a pair that was filtered is found anew, and touched nobody.
         if (!joint.collide_connected && joint.node[0] != kNone && joint.node[1] != kNone)
             forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(joint.node[0], joint.node[1]));

@@ -66,6 +66,8 @@ public:
                                  world_.collider_handle(pair.collider_a()),
                                  world_.collider_handle(pair.collider_b()),
                                  static_cast<uint32_t>(world_.contact_points.size()),
+                                 0,
+                                 world_.window.steps,
                                  0};
         Array<taut_contact_event>* list = nullptr;
         if (pair.touching != before && (asks & TAUT_CONTACT_EVENTS_BEGIN_END))
@@ -118,7 +120,7 @@ private:
     }
 
     void tell_hit(const Touch& touch, const taut_contact_event& event) {
-        taut_hit_event hit{event.body_a, event.body_b, event.collider_a, event.collider_b, {}, {}, 0, 0, 0};
+        taut_hit_event hit{event.body_a, event.body_b, event.collider_a, event.collider_b, {}, {}, 0, 0, event.step};
         hit.approach_speed = world_.def.hit_speed;
         for_points(touch, [&](const Pair& pair, const WatchedPair& watched, int k) {
             hit.normal_impulse += finite(watched.normal[k]);
@@ -136,21 +138,31 @@ private:
     World& world_;
 };
 
-void sort_by_slots(Array<taut_contact_event>& events) {
-    std::sort(events.begin(), events.end(), [](const taut_contact_event& a, const taut_contact_event& b) {
+// Those from `first` on.
+void sort_by_slots(Array<taut_contact_event>& events, size_t first) {
+    const auto begin = events.begin() + static_cast<ptrdiff_t>(first);
+    std::sort(begin, events.end(), [](const taut_contact_event& a, const taut_contact_event& b) {
         return a.collider_a.bits != b.collider_a.bits ? a.collider_a.bits < b.collider_a.bits
                                                       : a.collider_b.bits < b.collider_b.bits;
     });
 }
 
+// Ends of touching pairs that were forgotten since the step before. Throws std::bad_alloc with nothing changed.
+void take_ended(World& world) {
+    Array<taut_contact_event>& ended = world.pairs.ended;
+    reserve_more(world.contact_end, ended.size());
+    for (taut_contact_event& event : ended) {
+        event.step = world.window.steps;
+        world.contact_end.push_back(event);
+    }
+    ended.clear();
+}
+
 }  // namespace
 
 void publish_contacts(World& world) {
-    for (auto* events : {&world.contact_begin, &world.contact_persist}) events->clear();
-    world.contact_points.clear();
-    world.hits.clear();
-    world.contact_end.assign(world.pairs.ended.begin(), world.pairs.ended.end());
-    world.pairs.ended.clear();
+    const size_t ends_before = world.contact_end.size();
+    take_ended(world);
     Pairs& pairs = world.pairs;
     const auto has_news = [&](uint32_t i) {
         constexpr uint32_t kSoon = 4;
@@ -162,7 +174,7 @@ void publish_contacts(World& world) {
            [&](uint32_t i) { return pairs.homes(pairs.active[i].near); });
     Publisher publisher(world);
     for (const uint32_t i : world.pairs.picked) publisher.tell(Touch::from(pairs, i));
-    sort_by_slots(world.contact_end);
+    sort_by_slots(world.contact_end, ends_before);
 }
 
 }  // namespace taut

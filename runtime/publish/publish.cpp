@@ -64,11 +64,25 @@ bool has_moved(const Nodes& nodes, uint32_t node) {
     return nodes.motion[node].q.coeffs() != before.rotation.coeffs() || nodes.origin(node) != before.position;
 }
 
+// By node: 1 where a move of an earlier step waits to be read.
+const uint8_t* mark_moved(World& world) {
+    if (world.moved.empty()) return nullptr;
+    world.moved_before.assign(world.nodes.slots(), 0);
+    for (const taut_moved_event& event : world.moved) {
+        HandleBits bits{};
+        if (unpack_handle(event.body.bits, bits) && world.nodes.ids.live(bits.index, bits.generation))
+            world.moved_before[bits.index] = 1;
+    }
+    return world.moved_before.data();
+}
+
 }  // namespace
 
 void publish_motion(World& world, const Array<uint32_t>& frozen) {
     const Nodes& nodes = world.nodes;
-    gather(world.team, nodes.slots(), world.pairs.picked, [&](uint32_t node) { return has_moved(nodes, node); });
+    const uint8_t* const before = mark_moved(world);
+    gather(world.team, nodes.slots(), world.pairs.picked,
+           [&](uint32_t node) { return (before && before[node]) || has_moved(nodes, node); });
     write_list(
         world.team, static_cast<uint32_t>(world.pairs.picked.size()), world.moved, [](uint32_t) { return 1u; },
         [&](uint32_t i, taut_moved_event* to) {
@@ -76,8 +90,8 @@ void publish_motion(World& world, const Array<uint32_t>& frozen) {
             *to = {world.body_handle(node), nodes.info[node].user_data,
                    public_pose(nodes.origin(node), nodes.motion[node].q)};
         });
-    world.quarantined.clear();
-    for (uint32_t node : frozen) world.quarantined.push_back({world.body_handle(node), nodes.info[node].user_data});
+    for (uint32_t node : frozen)
+        world.quarantined.push_back({world.body_handle(node), nodes.info[node].user_data, world.window.steps, 0});
 }
 
 void publish_profile(World& world) {

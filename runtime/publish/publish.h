@@ -1,9 +1,15 @@
-// What a step leaves for the host: events and the profile's counts.
+// What steps leave for the host: events, until they are read, and the profile's counts of the last one.
 #pragma once
 
 #include "world.h"
 
 namespace taut {
+
+// A call of the host that steps or advances: forgets the events that were read.
+void begin_call(World& world);
+// Around a step: what it publishes comes after what waits to be read, of which the oldest may be dropped.
+void begin_events(World& world);
+void end_events(World& world);
 
 void publish_contacts(World& world);
 void publish_motion(World& world, const Array<uint32_t>& frozen);

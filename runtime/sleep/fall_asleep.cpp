@@ -169,14 +169,13 @@ void wake_pushed(World& world) {
 }
 
 void publish_sleep(World& world) {
-    world.fell_asleep.clear();
-    world.woke.clear();
     if (!world.sleep.changed) return;
     Nodes& nodes = world.nodes;
     for (uint32_t node = 0; node < nodes.slots(); ++node) {
         const bool now = nodes.sleeps(node);
         if (now == nodes.sleep[node].told_asleep) continue;
-        (now ? world.fell_asleep : world.woke).push_back({world.body_handle(node), nodes.info[node].user_data});
+        (now ? world.fell_asleep : world.woke)
+            .push_back({world.body_handle(node), nodes.info[node].user_data, world.window.steps, 0});
         nodes.sleep[node].told_asleep = now;
     }
     world.sleep.changed = false;

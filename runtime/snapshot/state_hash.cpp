@@ -16,8 +16,27 @@ void add_nodes(Hash& hash, const Nodes& nodes) {
         hash.add(nodes.mass[i].mass);
         hash.add(nodes.mass[i].gravity_scale);
         if (!nodes.info[i].continuous) hash.add(uint64_t{1});
-        hash.add(nodes.load_of(i).force);
-        hash.add(nodes.load_of(i).torque);
+        const NodeLoad none, &applied = nodes.applied.empty() ? none : nodes.applied[i];
+        hash.add(applied.force);
+        hash.add(applied.torque);
+    }
+}
+
+// Of hosts whose frames are not steps.
+void add_frames(Hash& hash, const Nodes& nodes) {
+    for (size_t i = 0; i < nodes.owed.size(); ++i) {
+        const NodeLoad& owed = nodes.owed[i];
+        if (!owed.any()) continue;
+        hash.add(static_cast<uint64_t>(i));
+        hash.add(owed.force);
+        hash.add(owed.torque);
+    }
+    for (const KinematicPath& path : nodes.paths) {
+        if (!path.follows) continue;
+        hash.add(static_cast<uint64_t>(path.node) << 1 | path.asked);
+        for (const Vec3* v : {&path.start.position, &path.speed.v, &path.speed.w, &path.target.position}) hash.add(*v);
+        hash.add(path.start.rotation);
+        hash.add(path.target.rotation);
     }
 }
 
@@ -168,8 +187,11 @@ void add_pairs(Hash& hash, const Pairs& pairs, uint32_t substeps) {
 uint64_t state_hash(const World& world) {
     Hash hash;
     for (float g : {world.def.gravity.x, world.def.gravity.y, world.def.gravity.z}) hash.add(g);
+    hash.add(world.def.time_step);
+    hash.add(uint64_t{world.def.substeps});
     hash.add(world.accumulator);
     add_nodes(hash, world.nodes);
+    add_frames(hash, world.nodes);
     if (world.def.sleeping) add_sleep(hash, world.nodes);
     add_colliders(hash, world.colliders);
     add_joints(hash, world.joints);

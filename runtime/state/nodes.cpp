@@ -18,13 +18,15 @@ uint32_t Nodes::add() {
         info.reserve(room);
     }
     mass.reserve_values(1);
-    if (!load.empty()) reserve_more(load, 1);
+    for (Array<NodeLoad>* list : loads())
+        if (!list->empty()) reserve_more(*list, 1);
     const uint32_t node = ids.create();
     if (node == info.size()) {
         info.emplace_back();
         motion.emplace_back();
         mass.add();
-        if (!load.empty()) load.emplace_back();
+        for (Array<NodeLoad>* list : loads())
+            if (!list->empty()) list->emplace_back();
         before.emplace_back();
         rest.emplace_back();
         sleep.emplace_back();
@@ -40,17 +42,32 @@ uint32_t Nodes::add() {
 }
 
 void Nodes::remove(uint32_t node) {
+    clear_load(node);
     info[node] = {};
     mass.set(node, {});
     rest[node] = {};
     sleep[node] = {};
+    if (const KinematicPath* path = find_path(node)) paths.erase(paths.begin() + (path - paths.data()));
     ids.destroy(node);
 }
 
 void Nodes::add_load(uint32_t node, const Vec3& force, const Vec3& torque) {
-    if (load.empty()) load.resize(slots());
-    load[node].force += force;
-    load[node].torque += torque;
+    if (applied.empty()) applied.resize(slots());
+    applied[node].force += force;
+    applied[node].torque += torque;
+}
+
+KinematicPath* Nodes::find_path(uint32_t node) {
+    const auto at = std::ranges::lower_bound(paths, node, {}, &KinematicPath::node);
+    return at != paths.end() && at->node == node ? &*at : nullptr;
+}
+
+KinematicPath& Nodes::path_of(uint32_t node) {
+    const auto at = std::ranges::lower_bound(paths, node, {}, &KinematicPath::node);
+    if (at != paths.end() && at->node == node) return *at;
+    KinematicPath path;
+    path.node = node;
+    return *paths.insert(at, path);
 }
 
 }  // namespace taut

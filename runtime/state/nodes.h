@@ -32,6 +32,12 @@ struct NodeMotion {
     Vec3 slow_w = Vec3::Zero();
 };
 
+// The velocities of its centre of mass [m/s, rad/s], and the low-passed ones, which start from them.
+inline void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
+    motion.v = motion.slow_v = v;
+    motion.w = motion.slow_w = w;
+}
+
 struct NodeMass {
     double mass = 0, inv_mass = 0;  // [kg]; 0 for fixed and kinematic nodes
     Sym3 inertia, inv_inertia;      // about the centre of mass, body axes [kg m^2]
@@ -50,8 +56,10 @@ struct NodeMass {
     }
 };
 
-struct NodeLoad {                                      // of the next step
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]
+struct NodeLoad {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]; times a time: [N s], [N m s]
+
+    bool any() const { return force != Vec3::Zero() || torque != Vec3::Zero(); }
 };
 
 struct NodeInfo {
@@ -74,13 +82,32 @@ struct NodePose {  // of the body's origin, for rendering
     Quat rotation = Quat::Identity();
 };
 
+struct Speed {
+    Vec3 v = Vec3::Zero(), w = Vec3::Zero();  // of the centre of mass [m/s], world axes [rad/s]
+};
+
+// Where the host leads a kinematic node, in the host's time: that of all its calls, of which the steps have yet to take
+// what is left in the accumulator.
+struct KinematicPath {
+    uint32_t node = kNone;
+    bool follows = false;         // else the node has a velocity, and this means nothing
+    bool asked = false;           // the target waits for the next call, whose end is its time
+    NodePose start;               // at the end of the last call
+    Speed speed;                  // since then
+    NodePose target;
+    Speed held;                   // the node's own, while a step tries another
+};
+
 struct Nodes {
     explicit Nodes(Memory& memory)
         : ids(memory),
           info(memory),
           motion(memory),
           mass(memory),
+          applied(memory),
+          owed(memory),
           load(memory),
+          paths(memory),
           before(memory),
           rest(memory),
           sleep(memory) {}
@@ -91,10 +118,18 @@ struct Nodes {
 
     uint32_t slots() const { return ids.slots(); }
     const NodeLoad& load_of(uint32_t node) const { return load.empty() ? kNoLoad : load[node]; }
-    // Throws std::bad_alloc before anything changes.
+    // Until the host's next call and over the time that it brings. Throws std::bad_alloc before anything changes.
     void add_load(uint32_t node, const Vec3& force, const Vec3& torque);
     void clear_load(uint32_t node) {
-        if (!load.empty()) load[node] = {};
+        for (Array<NodeLoad>* list : loads())
+            if (!list->empty()) (*list)[node] = {};
+    }
+    // Of a kinematic node; null: it never had a target.
+    KinematicPath* find_path(uint32_t node);
+    // Makes one where there is none; throws std::bad_alloc with nothing changed.
+    KinematicPath& path_of(uint32_t node);
+    Vec3 centre_at(uint32_t node, const NodePose& pose) const {
+        return pose.position + pose.rotation * mass[node].centre;
     }
     // Moved by forces, and not asleep.
     bool solved(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] == Rest::awake; }
@@ -105,12 +140,18 @@ struct Nodes {
     Array<NodeInfo> info;
     Array<NodeMotion> motion;
     SharedValues<NodeMass> mass;
-    Array<NodeLoad> load;    // of all, or of none while nothing was put on any
-    Array<NodePose> before;  // origin pose before the last step
+    // Of all, or of none while nothing was put on any.
+    Array<NodeLoad> applied;  // by the host, over the time of its next call [N]
+    Array<NodeLoad> owed;     // by its calls over what the accumulator holds of their time [N s]
+    Array<NodeLoad> load;     // in the step that is being taken [N]
+    Array<KinematicPath> paths;  // sorted by node
+    Array<NodePose> before;      // origin pose before the last step
     Array<Rest> rest;
     Array<NodeSleep> sleep;
 
 private:
+    std::array<Array<NodeLoad>*, 3> loads() { return {&applied, &owed, &load}; }
+
     static const NodeLoad kNoLoad;
 };
 

@@ -30,14 +30,17 @@ void forget_impulses(Pair& pair) {
     pair.spin_slip = -1;
 }
 
-void change_substeps(Pair& pair, uint32_t substeps) {
-    if (pair.substeps == substeps) return;
-    const float factor = static_cast<float>(pair.substeps) / static_cast<float>(substeps);
+void scale_impulses(Pair& pair, float factor) {
     const auto scale = [&](Impulse& impulse) {
         for (float* each : {&impulse.normal, &impulse.tangent1, &impulse.tangent2}) *each *= factor;
     };
     std::for_each_n(pair.impulse, pair.manifold.count, scale);
     scale(pair.turning);
+}
+
+void change_substeps(Pair& pair, uint32_t substeps) {
+    if (pair.substeps == substeps) return;
+    scale_impulses(pair, static_cast<float>(pair.substeps) / static_cast<float>(substeps));
     pair.substeps = static_cast<uint16_t>(substeps);
 }
 
@@ -104,6 +107,8 @@ void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, co
                            {bits(nodes.ids, ends.b)},
                            {bits(colliders.ids, ends.collider_a())},
                            {bits(colliders.ids, ends.collider_b())},
+                           0,
+                           0,
                            0,
                            0});
 }

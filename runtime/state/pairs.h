@@ -298,7 +298,9 @@ void give_slots(Pairs& pairs, NearPair& near);
 
 // As if the two had just met.
 void forget_impulses(Pair& pair);
-// Impulses push as hard as before in substeps of another length.
+// Impulses push as hard as before in substeps that are longer by a factor, ...
+void scale_impulses(Pair& pair, float factor);
+// ... or of which there are so many in a step.
 void change_substeps(Pair& pair, uint32_t substeps);
 // Of a pair that is swept from now on. A direct solve sets hundreds of times a light body's momentum against as much
 // from its other side, and sweeps that begin with what is left of that throw it out at kilometres a second.

@@ -13,7 +13,7 @@ struct Sensors {
 
     Array<taut_sensor_event> inside;        // after the last step; sorted by the slots of sensor and visitor
     Array<taut_sensor_event> before;        // the same of the step before
-    Array<taut_sensor_event> enter, leave;  // of the last step, sorted likewise
+    Array<taut_sensor_event> enter, leave;  // since the host read them; in each step sorted likewise
     Array<uint64_t> candidates;             // scratch: sensor << 32 | visitor whose boxes meet
     Array<uint8_t> meets;                   // scratch: whether their shapes do
 };

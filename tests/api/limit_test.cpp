@@ -211,6 +211,8 @@ TEST(LimitOfContacts, EndsATouchThatIsDropped) {
     add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 0, 0.499));
     taut_events events{};
     for (int i = 0; i < 5; ++i) ASSERT_OK(taut_world_step(world));
+    ASSERT_OK(taut_world_get_events(world, &events));
+    EXPECT_EQ(events.begin_count, 1u);
     const taut_body deep = add_body(world, body_def(TAUT_BODY_DYNAMIC, box, 5, 0.45));
     ASSERT_OK(taut_world_step(world));
     ASSERT_OK(taut_world_get_events(world, &events));

@@ -91,7 +91,7 @@ inline uint64_t hash_of(taut_world world) {
     return hash;
 }
 
-// Of the last step.
+// Of the steps since they were read last.
 inline taut_events events_of(taut_world world) {
     taut_events out;
     EXPECT_OK(taut_world_get_events(world, &out));

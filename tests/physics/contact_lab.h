@@ -13,7 +13,7 @@ inline taut_collider collider_of(taut_body body) {
     return out;
 }
 
-// Of the last step.
+// Of the steps since they were read last.
 inline taut_events events_of(taut_world world) {
     taut_events out{};
     ok(taut_world_get_events(world, &out));

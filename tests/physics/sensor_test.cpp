@@ -168,6 +168,7 @@ TEST(Sensor, IsSwitchedAtRunTime) {
     EXPECT_LT(velocity(ball).y, -0.5);
     ok(taut_collider_set_sensor(collider_of(floor), 0));
     EXPECT_TRUE(overlaps_of(collider_of(floor)).empty());
+    EXPECT_EQ(events_of(world).end_count, 1u);
     world.step();
     EXPECT_EQ(events_of(world).sensor_leave_count, 1u);
     EXPECT_EQ(events_of(world).begin_count, 1u);

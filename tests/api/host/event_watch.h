@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "host.h"
@@ -13,28 +14,17 @@ class EventWatch {
 public:
     using Broken = std::function<void(bool condition, const char* what)>;
 
-    // After one step, with the bodies that are known. whole: each pair has been asked for its beginnings and ends since
-    // the world was made.
+    // After any steps, with the bodies that are known. whole: each pair has been asked for its beginnings and ends
+    // since the world was made.
     void check(const taut_events& events, const std::vector<taut_body>& bodies, const std::vector<taut_collider>& known,
                bool whole, const Broken& expect) {
-        // Ends first: where a call changed a collider, a pair may end and begin in one step.
-        for (uint32_t i = 0; i < events.end_count; ++i)
-            expect(touching_.erase(pair(events.end[i])) == 1 || !whole || missed_, "a touch that ends and never began");
-        for (uint32_t i = 0; i < events.begin_count; ++i)
-            expect(touching_.insert(pair(events.begin[i])).second || !whole, "a touch that begins twice");
-        for (uint32_t i = 0; i < events.persist_count; ++i)
-            expect(touching_.count(pair(events.persist[i])) == 1 || !whole || missed_, "a touch that goes on unbegun");
-        check_visits(events, known, expect);
-        check_sleep(events, bodies, expect);
-    }
-    // Several steps at once: of all but the last the events are gone.
-    void miss(const std::vector<taut_body>& bodies) {
-        missed_ = true;
-        touching_.clear();
-        visits_.clear();
-        asleep_.clear();
+        expect(events.dropped_steps == 0, "events that were not waited for");
+        Lists left(events);
+        for (uint32_t step = 0; step < events.steps; ++step) check_step(step, left, whole, expect);
+        expect(left.none(), "events of no step");
+        check_visits(known, expect);
         for (taut_body body : bodies)
-            if (!awake(body)) asleep_.insert(body.bits);
+            if (taut_body_is_valid(body)) expect(awake(body) != (asleep_.count(body.bits) == 1), "who sleeps untold");
     }
 
 private:
@@ -47,16 +37,55 @@ private:
         uint32_t out = 1;
         return taut_body_is_awake(body, &out) != TAUT_OK || out == 1;
     }
-    void check_visits(const taut_events& events, const std::vector<taut_collider>& known, const Broken& expect) {
-        for (uint32_t i = 0; i < events.sensor_leave_count; ++i) {
-            const taut_sensor_event& event = events.sensor_leave[i];
-            expect(visits_.erase({event.sensor.bits, event.visitor.bits}) == 1 || missed_, "who leaves and never came");
+    // What is left of each list to go through.
+    struct Lists {
+        explicit Lists(const taut_events& e)
+            : end(e.end, e.end_count),
+              begin(e.begin, e.begin_count),
+              persist(e.persist, e.persist_count),
+              leave(e.sensor_leave, e.sensor_leave_count),
+              enter(e.sensor_enter, e.sensor_enter_count),
+              fell_asleep(e.fell_asleep, e.fell_asleep_count),
+              woke(e.woke, e.woke_count) {}
+        bool none() const {
+            return end.empty() && begin.empty() && persist.empty() && leave.empty() && enter.empty() &&
+                   fell_asleep.empty() && woke.empty();
         }
-        for (uint32_t i = 0; i < events.sensor_enter_count; ++i) {
-            const taut_sensor_event& event = events.sensor_enter[i];
-            expect(visits_.insert({event.sensor.bits, event.visitor.bits}).second || missed_, "who comes twice");
-        }
-        if (missed_) return;
+        std::span<const taut_contact_event> end, begin, persist;
+        std::span<const taut_sensor_event> leave, enter;
+        std::span<const taut_sleep_event> fell_asleep, woke;
+    };
+    // act(event) for those of a step, which leave the list.
+    template <class Event, class Act>
+    static void take(uint32_t step, std::span<const Event>& list, Act&& act) {
+        for (; !list.empty() && list.front().step == step; list = list.subspan(1)) act(list.front());
+    }
+
+    // Ends first: where a call changed a collider, a pair may end and begin in one step.
+    void check_step(uint32_t step, Lists& left, bool whole, const Broken& expect) {
+        take(step, left.end, [&](const taut_contact_event& e) {
+            expect(touching_.erase(pair(e)) == 1 || !whole, "a touch that ends and never began");
+        });
+        take(step, left.begin, [&](const taut_contact_event& e) {
+            expect(touching_.insert(pair(e)).second || !whole, "a touch that begins twice");
+        });
+        take(step, left.persist, [&](const taut_contact_event& e) {
+            expect(touching_.count(pair(e)) == 1 || !whole, "a touch that goes on unbegun");
+        });
+        take(step, left.leave, [&](const taut_sensor_event& e) {
+            expect(visits_.erase({e.sensor.bits, e.visitor.bits}) == 1, "who leaves and never came");
+        });
+        take(step, left.enter, [&](const taut_sensor_event& e) {
+            expect(visits_.insert({e.sensor.bits, e.visitor.bits}).second, "who comes twice");
+        });
+        take(step, left.woke, [&](const taut_sleep_event& e) {
+            expect(asleep_.erase(e.body.bits) == 1, "who wakes and never slept");
+        });
+        take(step, left.fell_asleep, [&](const taut_sleep_event& e) {
+            expect(asleep_.insert(e.body.bits).second, "who falls asleep twice");
+        });
+    }
+    void check_visits(const std::vector<taut_collider>& known, const Broken& expect) const {
         for (taut_collider sensor : known) {
             uint32_t count = 0;
             const taut_result result = taut_collider_get_overlaps(sensor, nullptr, 0, &count);
@@ -66,19 +95,10 @@ private:
             expect(count == static_cast<uint32_t>(std::distance(first, last)), "overlaps that are not the visits told");
         }
     }
-    void check_sleep(const taut_events& events, const std::vector<taut_body>& bodies, const Broken& expect) {
-        for (uint32_t i = 0; i < events.fell_asleep_count; ++i)
-            expect(asleep_.insert(events.fell_asleep[i].body.bits).second, "who falls asleep twice");
-        for (uint32_t i = 0; i < events.woke_count; ++i)
-            expect(asleep_.erase(events.woke[i].body.bits) == 1 || missed_, "who wakes and never slept");
-        for (taut_body body : bodies)
-            if (taut_body_is_valid(body)) expect(awake(body) != (asleep_.count(body.bits) == 1), "who sleeps untold");
-    }
 
     std::set<Two> touching_;     // colliders, the smaller handle first
     std::set<Two> visits_;       // sensor and visitor
     std::set<uint64_t> asleep_;  // bodies
-    bool missed_ = false;
 };
 
 }  // namespace taut_test
