@@ -34,12 +34,12 @@ void remember_poses(Team& team, Nodes& nodes) {
 }
 
 // How old contacts, found once a frame, are on average over the substeps that they serve [s].
-double mean_age(const taut_world_def& def) {
-    return 0.5 * (1 - 1.0 / def.substeps) * static_cast<double>(def.time_step);
+double mean_age(const World& w) {
+    return 0.5 * (1 - 1.0 / w.least_substeps()) * static_cast<double>(w.def.time_step);
 }
 
 void detect(World& w, Stopwatch& watch) {
-    const double lead = mean_age(w.def);
+    const double lead = mean_age(w);
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     tell(w, {Stage::bounds});
@@ -157,6 +157,8 @@ void solve(World& w, Stopwatch& watch) {
                                   &joint_kernels(),
                                   w.def.adaptive_damping != 0};
     SolverReport report;
+    const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
+    w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
     begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) solve_group(w, i, solver, settings, report, watch);
@@ -197,8 +199,8 @@ void step(World& w) {
     note_loads(w.joints, w.nodes);
     const taut_vec3 g = w.def.gravity;
     w.partition.build(w.team, w.nodes, w.joints, w.pairs,
-                      {w.def.substeps, w.def.fixed_substeps != 0, solver.direct, w.def.time_step, Vec3(g.x, g.y, g.z),
-                       w.team.size() > 1});
+                      {w.least_substeps(), w.def.fixed_substeps != 0, solver.direct, w.def.time_step,
+                       Vec3(g.x, g.y, g.z), w.team.size() > 1, w.spring_substep});
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);

@@ -1,5 +1,8 @@
 #include "world.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace taut {
 
 World::World(const taut_world_def& checked_def, uint32_t world_id)
@@ -33,8 +36,16 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       moved_before(memory),
       frozen(memory) {
     last_step = def.time_step;
+    spring_substep = static_cast<double>(def.time_step) / def.substeps;
     pairs.world = id;
     pairs.asks = static_cast<uint8_t>(def.contact_events);
+}
+
+// As many as the def says, or as keep them as short as they were when the time step was another.
+uint32_t World::least_substeps() const {
+    constexpr double kRounding = 1e-6;
+    const double least = std::ceil((1 - kRounding) * static_cast<double>(def.time_step) / spring_substep);
+    return std::max(def.substeps, static_cast<uint32_t>(std::min<double>(least, kMaxSubsteps)));
 }
 
 taut_body World::body_handle(uint32_t node) const {

@@ -24,6 +24,8 @@
 
 namespace taut {
 
+constexpr uint32_t kMaxSubsteps = 64;  // of a step, by its def
+
 struct World {
     explicit World(const taut_world_def& checked_def, uint32_t world_id = 0);
 
@@ -68,6 +70,10 @@ struct World {
     taut_profile profile{};
 
     StageObserver* observer = nullptr;  // of tests; null: nobody looks on
+
+    // State too: the substep that soft rows keep the frequency of, whatever becomes of the time step [s]. None is longer.
+    double spring_substep = 0;
+    uint32_t least_substeps() const;
 
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;

@@ -107,11 +107,15 @@ TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
  * Length of the steps from the next one on [s], [1e-4, 0.1]: for slow motion, or a display's own rate. What moves keeps
  * its velocity, what rests stays: forces of joints and contacts go on as they were. Time left over by
  * taut_world_advance is kept; steps that fit into it are made up for in the next call. A cable is reeled by at most
- * half a segment a step.
+ * half a segment a step. Substeps get no longer than they were: a step k times as long takes k times the least number,
+ * of 64 at most; with longer ones what rests settles anew, by .4 h^2 of gravity for a contact of one body.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
 TAUT_API taut_result taut_world_set_time_step(taut_world world, float time_step);
-/** Least substeps of a step from the next one on, [1, 64]. @return as taut_world_set_time_step. */
+/**
+ * Least substeps of a step from the next one on, [1, 64]. What rests settles to what it would be in a world made so.
+ * @return as taut_world_set_time_step.
+ */
 TAUT_API taut_result taut_world_set_substeps(taut_world world, uint32_t substeps);
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);

@@ -12,7 +12,6 @@ using namespace taut;
 namespace {
 
 constexpr uint32_t kMaxThreads = 64;
-constexpr uint32_t kMaxSubsteps = 64;
 constexpr Range kSleepSpeed{0, 10};  // [m/s]
 constexpr Range kSleepTime{0, 1e3};  // [s]
 
@@ -141,6 +140,7 @@ taut_result taut_world_set_substeps(taut_world handle, uint32_t substeps) {
     if (!check.count("substeps", substeps, 1, kMaxSubsteps)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         world.def.substeps = substeps;  // pairs know how many their impulses are for
+        world.spring_substep = static_cast<double>(world.def.time_step) / substeps;
         return TAUT_OK;
     });
 }

@@ -19,7 +19,7 @@ void load_on(const LintContext& context, uint32_t j, const JointReading& reading
 
 void lost_compliance(const LintContext& context, uint32_t j, const JointReading& reading) {
     const Joint& joint = context.joints.record[j];
-    const double h = static_cast<double>(context.world.def.time_step) / context.world.def.substeps;
+    const double h = context.world.spring_substep;
     double least = kLeastCompliance;
     for (int row = 0; row < joint.type->rows; ++row) {
         if (!is_locked(joint, row)) continue;

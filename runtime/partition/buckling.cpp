@@ -47,7 +47,7 @@ void Partition::weigh(const Nodes& nodes) {
 // Shorter substeps hold it at a quarter of what a direct solve costs, which is left for what they do not hold: with all
 // columns of more than twelve levels solved directly, 2550 cubes that fell in 13 layers took up to 125 ms a step.
 void Partition::find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules) {
-    const double h = rules.time_step / rules.substeps, sag = kBuckling * rules.gravity.norm() * h * h;
+    const double h = rules.spring_substep, sag = kBuckling * rules.gravity.norm() * h * h;
     bool any = false;
     for (Island& island : island_) {
         const bool is_narrow = island.nodes <= kSlenderness * island.levels && !island.jointed;

@@ -99,6 +99,7 @@ struct PartitionRules {
     double time_step;   // of a frame [s]
     Vec3 gravity;       // [m/s^2]
     bool by_place;      // nodes of a group by place, for threads that take a stretch each; else ascending
+    double spring_substep = time_step / substeps;  // for which contacts are as soft as they are; World::spring_substep
 };
 
 class Partition {

@@ -189,6 +189,7 @@ uint64_t state_hash(const World& world) {
     for (float g : {world.def.gravity.x, world.def.gravity.y, world.def.gravity.z}) hash.add(g);
     hash.add(world.def.time_step);
     hash.add(uint64_t{world.def.substeps});
+    hash.add(world.spring_substep);
     hash.add(world.accumulator);
     add_nodes(hash, world.nodes);
     add_frames(hash, world.nodes);

@@ -33,7 +33,7 @@ public:
           previous_(s.scratch.previous),
           next_(s.scratch.next),
           axes_(s.scratch.axes),
-          soft_(contact_terms(sys_.h)) {
+          soft_(contact_terms(sys_.h, sys_.stretch)) {
         count_.assign(sys_.pose.size(), 0);
         inverse_.clear();
         softness_.clear();

@@ -35,11 +35,12 @@ public:
           nodes_(s_.system.sweep.data()),
           joint_(*s_.settings.joint_kernels),
           contact_(*s_.settings.kernels),
-          soft_(contact_terms(s_.system.h)) {}
+          soft_(contact_terms(s_.system.h, s_.system.stretch)) {}
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
         if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, nodes_);
-        if (is_biased(pass)) joint_.sweep_biased(joints_, begin, end, nodes_, joint_terms(s_.system.h));
+        if (is_biased(pass))
+            joint_.sweep_biased(joints_, begin, end, nodes_, joint_terms(s_.system.h, s_.system.stretch));
         if (pass == Pass::relaxed) joint_.sweep_relaxed(joints_, begin, end, nodes_);
     }
     void rows(Pass pass) const {

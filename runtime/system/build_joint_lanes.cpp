@@ -279,7 +279,7 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
         const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one joint at a time
         add_colour(system, first + group.joint_colour_begin[c], first + group.joint_colour_begin[c + 1], width);
     }
-    const Times times{system.h, frame, joint_terms(system.h)};
+    const Times times{system.h, frame, joint_terms(system.h, system.stretch)};
     team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) fill_group(system, lanes.group[i], times);
     });

@@ -25,8 +25,10 @@ inline SweepTerms soft_terms(double h, double cycles) {
     t.hit = kBounceSpeed;
     return t;
 }
-inline SweepTerms contact_terms(double h) { return soft_terms(h, 0.25); }
+// stretch: h over the substep for which f is meant. Where the host changes the time step f stays what it was: what rests
+// yields by .4 / f^2 of gravity, a length that does not depend on h, and so stays where it is.
+inline SweepTerms contact_terms(double h, double stretch = 1) { return soft_terms(h, 0.25 * stretch); }
 // A joint yields by .025 h^2 of the acceleration that its force gives its ends, a sixteenth of what a contact does.
-inline SweepTerms joint_terms(double h) { return soft_terms(h, 1); }
+inline SweepTerms joint_terms(double h, double stretch = 1) { return soft_terms(h, stretch); }
 
 }  // namespace taut

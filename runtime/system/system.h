@@ -150,6 +150,7 @@ struct System {
     // move some each would write to the same cache lines.
     Array<NodeMotion> motion;
     bool lent = false;
+    float stretch = 1;  // length of substeps over the one that soft rows keep the frequency of; soft_contact.h
 
     // by seat; of those for nodes in blocks all or, where no block ever was, none
     Array<Pose> pose;             // at the start of the substep; predict()
