@@ -113,7 +113,8 @@ TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
  */
 TAUT_API taut_result taut_world_set_time_step(taut_world world, float time_step);
 /**
- * Least substeps of a step from the next one on, [1, 64]. What rests settles to what it would be in a world made so.
+ * Least substeps of a step from the next one on, [1, 64]. What rests stays, but where substeps become longer than those
+ * of the world's def at creation, or were: there it settles anew.
  * @return as taut_world_set_time_step.
  */
 TAUT_API taut_result taut_world_set_substeps(taut_world world, uint32_t substeps);

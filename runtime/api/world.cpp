@@ -140,7 +140,7 @@ taut_result taut_world_set_substeps(taut_world handle, uint32_t substeps) {
     if (!check.count("substeps", substeps, 1, kMaxSubsteps)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         world.def.substeps = substeps;  // pairs know how many their impulses are for
-        world.spring_substep = static_cast<double>(world.def.time_step) / substeps;
+        world.spring_substep = std::max(world.first_substep, static_cast<double>(world.def.time_step) / substeps);
         return TAUT_OK;
     });
 }

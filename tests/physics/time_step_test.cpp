@@ -161,6 +161,45 @@ TEST_P(ChangedStep, ACableHangs) {
     expect_rest(loads, 120);
 }
 
+// So may their number: no fewer than before, or as many fewer as the steps are shorter.
+TEST(ChangedSubsteps, AStackRests) {
+    World world;
+    world.add_ground();
+    std::vector<taut_body> bodies;
+    for (int i = 0; i < 4; ++i)
+        bodies.push_back(world.add({.shape = world.box({0.2, 0.3, 0.25}), .position = {0, 0.3 + 0.6 * i, 0}}));
+    world.step(180);
+    std::vector<Vec> start;
+    for (taut_body body : bodies) start.push_back(position(body));
+    std::mt19937 random(3);
+    for (int i = 0; i < 200; ++i) {
+        const uint32_t shorter = 1 + random() % 4;
+        ok(taut_world_set_time_step(world.handle, 1.0f / 60 / static_cast<float>(shorter)));
+        ok(taut_world_set_substeps(world.handle, 4 / shorter + 1 + random() % 8));
+        world.step();
+        for (size_t k = 0; k < bodies.size(); ++k) {
+            ASSERT_LT(norm(position(bodies[k]) - start[k]), 1e-4) << i;
+            ASSERT_LT(norm(velocity(bodies[k])), 1e-3) << i;
+        }
+    }
+}
+
+// Fewer and longer ones let what rests settle, and as many as before bring it back.
+TEST(ChangedSubsteps, SettleAndComeBack) {
+    World world;
+    world.add_ground();
+    const taut_body box = world.add({.shape = world.box({0.2, 0.3, 0.25}), .position = {0, 0.3, 0}});
+    world.step(120);
+    const double before = position(box).y;
+    ok(taut_world_set_substeps(world.handle, 1));
+    world.step(240);
+    EXPECT_EQ(world.profile().substeps, 1u);
+    EXPECT_LT(position(box).y, before - 5e-4);
+    ok(taut_world_set_substeps(world.handle, 4));
+    world.step(240);
+    EXPECT_NEAR(position(box).y, before, 1e-5);
+}
+
 // What moves keeps its velocity, and arrives where it would have.
 TEST_P(ChangedStep, AFreeBodyFliesOn) {
     const taut_body ball =
