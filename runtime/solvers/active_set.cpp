@@ -61,10 +61,11 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
     return r;
 }
 
+// Whether a friction may hold at all: without a coefficient it has no bound to hold within, however little it slips.
 bool ActiveSet::loaded(const BoundedRow& lead) const {
     bool any = false;
     for (uint32_t k = 0; k < lead.loads; ++k) any = any || rows()[lead.load + kContactRows * k].on;
-    return any;
+    return any && lead.limit > 0;
 }
 
 // How fast the tangents of a lead miss what friction drives them to.
@@ -96,6 +97,7 @@ void ActiveSet::gather_tangents(BoundedRow& first, uint32_t width, uint32_t load
     first.width = width;
     first.load = load;
     first.loads = loads;
+    first.limit = limit;
     const bool on = loaded(first);
     for (BoundedRow* r = &first; r < &first + width; ++r) {
         r->on = on;
