@@ -175,10 +175,21 @@ void ActiveSet::aim_unbiased() {
 void ActiveSet::aim_relaxed() {
     for (BoundedRow& r : rows()) {
         r.goal = r.relaxed_target;
-        if (r.bounce > 0 && r.on && r.mu > 0) r.goal = r.bounce;
+        if (!r.on || !(r.mu > 0)) r.bounce = 0;
+        if (r.bounce > 0) r.goal = r.bounce;
         const bool slides = r.kind == Kind::tangent && r.c > r.least;
         if (r.on && r.bounce == 0 && !r.speculative && !r.physical && !slides) r.goal += r.c * r.mu;
     }
+}
+
+bool ActiveSet::bounces() const {
+    const auto all = rows();
+    return std::any_of(all.begin(), all.end(), [](const BoundedRow& r) { return r.bounce > 0; });
+}
+
+void ActiveSet::ease_bounces(double part) {
+    for (BoundedRow& r : rows())
+        if (r.bounce > 0) r.goal = r.relaxed_target + part * (r.bounce - r.relaxed_target);
 }
 
 void ActiveSet::take_impulses() {
@@ -284,6 +295,29 @@ void ActiveSet::store() {
 double ActiveSet::work() const {
     double sum = 0;
     for (const BoundedRow& r : rows()) sum += r.on ? 0.5 * r.mu * (speed(r, sys_.start) + speed(r, sys_.exact)) : 0.0;
+    return sum;
+}
+
+double ActiveSet::contact_work() const {
+    double sum = 0;
+    for (const BoundedRow& r : rows())
+        if (r.on && !r.force) sum += 0.5 * r.mu * (speed(r, sys_.free) + speed(r, sys_.exact));
+    return sum;
+}
+
+void ActiveSet::remember_contacts() {
+    for (BoundedRow& r : rows()) {
+        r.rate = speed(r, sys_.exact);
+        r.held = r.mu;
+    }
+}
+
+double ActiveSet::mean_contact_work() const {
+    double sum = 0;
+    for (const BoundedRow& r : rows()) {
+        if (!r.on || r.force) continue;
+        sum += 0.25 * (r.mu + r.held) * (speed(r, sys_.free) + 0.5 * (speed(r, sys_.exact) + r.rate));
+    }
     return sum;
 }
 

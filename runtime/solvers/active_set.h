@@ -41,6 +41,9 @@ public:
     void aim_unbiased();     // likewise without the push that undoes overlaps
     void ease(double part);  // leaves so much of that push, in this substep
     void aim_relaxed();      // of the one whose velocities are kept
+    bool bounces() const;    // after that: whether what was hit is to leave again
+    // Likewise with so much of these bounces.
+    void ease_bounces(double part);
     // Impulses of the rows that are on, from System::exact.
     void take_impulses();
     void begin_rounds();
@@ -57,6 +60,11 @@ public:
     void store();
     // Work on velocities that went from v0 to v1: mu . J (v0 + v1) / 2 [J].
     double work() const;
+    // Likewise of contacts alone, on what their ends do to each other from the velocities in System::free on.
+    double contact_work() const;
+    // For the mean of a solution with that and this one.
+    void remember_contacts();
+    double mean_contact_work() const;
 
     std::span<BoundedRow> rows() const { return {s_.scratch.bounded.data() + b_.first_bounded, b_.bounded_count}; }
     // J v of a row, all ends.

@@ -130,4 +130,24 @@ void BlockSolve::limit_push() {
     solve_known();
 }
 
+// Restitution says how fast each contact parts, whatever its neighbours, joints and friction make of that: together they
+// may leave with more energy than they met with. Velocities and impulses are linear in the part t of the bounces, and the
+// contacts' work is w(t) = w(0) + b t + a t^2: as much of them as makes it none, if there is any.
+void BlockSolve::limit_bounce() {
+    if (!set.bounces()) return;
+    const double whole = set.contact_work();
+    if (!(whole > 0)) return;
+    set.remember_contacts();
+    set.ease_bounces(0);
+    solve_known();
+    const double none = set.contact_work(), a = 2 * (whole + none - 2 * set.mean_contact_work()), b = whole - none - a;
+    double low = 0, high = 1;
+    for (int i = 0; i < 50 && none < 0; ++i) {
+        const double t = 0.5 * (low + high);
+        (none + t * (b + t * a) > 0 ? high : low) = t;
+    }
+    set.ease_bounces(low);
+    solve_known();
+}
+
 }  // namespace taut

@@ -263,6 +263,7 @@ void BlockSolve::solve_relaxed() {
     copy_velocities(sys_, b_, exact, sys_.kept);
     set.aim_relaxed();
     solve_known();
+    limit_bounce();
     for (uint32_t node : b_.nodes) std::swap(sys_.kept[sys_.at(node)], exact[sys_.at(node)]);
     relaxed_ = true;
 }

@@ -90,6 +90,7 @@ private:
     void limit_gain();
     double fastest_between(const Array<Velocity>& a, const Array<Velocity>& b) const;
     void limit_push();
+    void limit_bounce();
 
     size_t unknowns() const { return (nodes_ + joints()) * kDof; }
     // The second half of Block::solution: while rounds go on the iterate (active_set.h), then the iterate less the
