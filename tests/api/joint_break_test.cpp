@@ -83,6 +83,91 @@ TEST(Break, ManyAtOnce) {
     EXPECT_OK(taut_world_destroy(world));
 }
 
+// Links of 1 kg on threads that bear less than the weight at their end; with each the joint to the link before.
+struct Chain {
+    std::vector<taut_joint> joints;
+
+    Chain(taut_world world, double x, int links, float strength) {
+        taut_body last = {0};
+        for (int i = 0; i < links; ++i) {
+            taut_particle_def link;
+            taut_particle_def_init(&link);
+            link.position = {x, -0.5 * i, 0};
+            link.mass = i + 1 < links ? 1.0f : 10.0f;
+            taut_distance_joint_def def;
+            taut_distance_joint_def_init(&def);
+            def.body_a = last;
+            if (i == 0) def.anchor_a = {x, 0.5, 0};
+            EXPECT_OK(taut_world_add_particle(world, &link, &def.body_b));
+            def.break_force = strength;
+            def.user_data = static_cast<uint64_t>(i);
+            taut_joint joint;
+            EXPECT_OK(taut_world_add_distance_joint(world, &def, &joint));
+            joints.push_back(joint);
+            last = def.body_b;
+        }
+    }
+};
+
+// The uppermost carries most. With it the others are relieved: they fall as they are.
+TEST(Break, OnlyTheWorstOfThoseThatCarryOneForce) {
+    for (uint32_t solver = 0; solver <= TAUT_SOLVER_ACCELERATED_JACOBI; ++solver) {
+        taut_world_def world_def;
+        taut_world_def_init(&world_def);
+        world_def.solver = static_cast<taut_solver>(solver);
+        taut_world world = {0};
+        ASSERT_OK(taut_world_create(&world_def, &world));
+        const Chain chain(world, 0, 9, 0);
+        for (int i = 0; i < 120; ++i) ASSERT_OK(taut_world_step(world));
+        for (const taut_joint joint : chain.joints) ASSERT_OK(taut_joint_set_break(joint, 60, 0));
+        const taut_events events = step_for_events(world);
+        ASSERT_EQ(events.broken_count, 1u) << solver;
+        EXPECT_EQ(events.broken[0].user_data, 0u) << solver;
+        for (int i = 0; i < 30 && solver == TAUT_SOLVER_BLOCK_LDLT; ++i)
+            EXPECT_EQ(step_for_events(world).broken_count, 0u);
+        EXPECT_OK(taut_world_destroy(world));
+    }
+}
+
+// Each mechanism has a worst of its own, also where they hang from one body that does not move.
+TEST(Break, OneOfEachMechanism) {
+    const taut_world world = make_world();
+    std::vector<Chain> chains;
+    for (int i = 0; i < 5; ++i) chains.emplace_back(world, i, 4 + i, 60.0f);
+    const taut_events events = step_for_events(world);
+    ASSERT_EQ(events.broken_count, 5u);
+    for (uint32_t i = 0; i < 5; ++i) EXPECT_EQ(events.broken[i].joint.bits, chains[i].joints[0].bits);
+    EXPECT_OK(taut_world_destroy(world));
+}
+
+// Two threads side by side carry half each: the older one goes, wherever its slot is, and the other then has it all.
+TEST(Break, TheOldestOfLikeOnes) {
+    const taut_world world = make_world();
+    const taut_body weight = add_particle(world, 0, 0, 0);
+    const auto thread = [&](double x, uint64_t name) {
+        taut_distance_joint_def def;
+        taut_distance_joint_def_init(&def);
+        def.body_b = weight;
+        def.anchor_a = {x, 2, 0};
+        def.break_force = 5;
+        def.user_data = name;
+        taut_joint joint;
+        EXPECT_OK(taut_world_add_distance_joint(world, &def, &joint));
+        return joint;
+    };
+    const taut_joint first = thread(5, 0);
+    thread(1, 1);
+    ASSERT_OK(taut_joint_remove(first));
+    thread(-1, 2);
+    taut_events events = step_for_events(world);
+    ASSERT_EQ(events.broken_count, 1u);
+    EXPECT_EQ(events.broken[0].user_data, 1u);
+    events = step_for_events(world);
+    ASSERT_EQ(events.broken_count, 1u);
+    EXPECT_EQ(events.broken[0].user_data, 2u);
+    EXPECT_OK(taut_world_destroy(world));
+}
+
 // Two boxes that a joint kept from colliding do so once it broke.
 TEST(Break, LetsItsBodiesCollide) {
     const taut_world world = make_world();
