@@ -102,6 +102,8 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
         for_pairs(world.pairs, [&](Pair& pair) {
             if (ends_on(node)(pair)) std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
         });
+        for (Joint& joint : world.joints.record)
+            if (ends_on(joint, node)) forget_angles(joint);
         return TAUT_OK;
     });
 }

@@ -93,7 +93,7 @@ void add_axes(Hash& hash, const Joint& joint) {
         for (float x : {axis.lower, axis.upper, axis.limit_compliance, axis.limit_damping, axis.stiffness, axis.damping,
                         axis.target, axis.speed, axis.max_force, axis.friction})
             hash.add(x);
-        for (float x : {memory.lower, memory.upper, memory.drive, memory.friction}) hash.add(x);
+        for (float x : {memory.lower, memory.upper, memory.drive, memory.friction, memory.angle}) hash.add(x);
     }
 }
 

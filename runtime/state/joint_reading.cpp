@@ -7,7 +7,6 @@ namespace taut {
 namespace {
 
 constexpr double kLeast = 1e-9;  // share of an inverse mass that counts as nothing
-constexpr double kTurn = 2 * 3.14159265358979323846;
 
 const double* row_of(const Joint& joint, const JointReading& reading, int end, int row) {
     return reading.jacobian + (end * joint.type->rows + row) * kDof;
@@ -121,8 +120,7 @@ double overrun_of(const Joint& joint, const double* values, int row) {
     const Axis& axis = joint.axis[row];
     if (axis.mode != AxisMode::limited) return 0;
     double value = values[row];
-    const double centre = 0.5 * (static_cast<double>(axis.lower) + axis.upper);
-    if (is_angle(joint, row) && std::isfinite(centre)) value -= kTurn * std::round((value - centre) / kTurn);
+    if (is_angle(joint, row)) value = angle_between_stops(axis, joint.memory[row], value);
     return std::max({0.0, axis.lower - value, value - axis.upper});
 }
 

@@ -40,7 +40,7 @@ double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReadin
 // The same while the joint's locked rows hold: what is left of J W J^T when they are eliminated. Of a hinge's angle:
 // the inertia about the hinge, not that about the centre of mass.
 double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
-// How far a coordinate is beyond the stops of its row, an angle in the turn that is nearest to them; 0 within.
+// How far a coordinate is beyond the stops of its row, an angle in the turn that it came to; 0 within.
 double overrun_of(const Joint& joint, const double* value, int row);
 
 // Of locked rows their coordinates, of limited rows their overrun.

@@ -62,6 +62,11 @@ inline bool ends_on(const Joint& joint, uint32_t node) {
     return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
 }
 
+// Angles between stops are read anew: the joint's ends did not come to their poses by motion.
+inline void forget_angles(Joint& joint) {
+    for (AxisMemory& memory : joint.memory) memory.angle = AxisMemory{}.angle;
+}
+
 // Between nodes that sleep; worlds without sleeping have none.
 inline bool asleep(const Nodes& nodes, const Joint& joint) {
     const auto ends = joint.nodes();

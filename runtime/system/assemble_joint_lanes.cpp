@@ -40,7 +40,12 @@ void evaluate_group(System& system, const JointGroup& g) {
 void store_lane(const System& system, const JointGroup& g, int lane) {
     const JointLanes& lanes = system.joints;
     const RowBlock& block = system.rows.block[g.block[lane]];
-    for (uint32_t r = 0; r < g.rows; ++r) block.force[r] = lanes.row[g.first_row + r].impulse[lane] / system.h;
+    for (uint32_t r = 0; r < g.rows; ++r) {
+        block.force[r] = lanes.row[g.first_row + r].impulse[lane] / system.h;
+        if (!block.stops_angle(static_cast<int>(r))) continue;
+        const double c = lanes.coordinate[g.first_row + r].value[lane];
+        block.memory[r].angle = static_cast<float>(angle_between_stops(block.axis[r], block.memory[r], c));
+    }
     for (uint32_t a = g.first_axis; a < g.first_axis + g.axes; ++a) {
         const LaneAxis& axis = lanes.axis[a];
         if (axis.force[lane]) *axis.force[lane] = static_cast<float>(axis.impulse[lane] / system.h);

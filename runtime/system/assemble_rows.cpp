@@ -311,7 +311,11 @@ void evaluate_joint(System& system, const RowBlock& block, double frame_left, do
         system.rows.impulse[row] = system.h * block.force[r];
         // Damping acts on how fast C changes, drift included.
         const double damped = relaxation_of(block, r) / frame;
-        system.rows.error[row] += (damped - frame_left) * block.drift[r];
+        double& error = system.rows.error[row];
+        error += (damped - frame_left) * block.drift[r];
+        if (!block.stops_angle(r)) continue;
+        error = angle_between_stops(block.axis[r], block.memory[r], error);
+        block.memory[r].angle = static_cast<float>(error);
     }
 }
 

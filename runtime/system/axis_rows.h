@@ -24,16 +24,10 @@ struct AxisRow {
     double compliance;      // c [1/kg]; 0: rigid
     double limit;           // largest |mu| [N s]
     float* force;           // carried [N]
+    bool torque = false;    // limit and 1/c are of the torque, not of the coordinate: see gear()
 
     bool rubs() const { return part == kRubbing; }
 };
-
-// C in the turn that is nearest to `near`.
-inline double unwrapped(const RowBlock& block, int r, double c, double near) {
-    constexpr double kTurn = 2 * 3.14159265358979323846;
-    if (!block.angular(r) || !std::isfinite(near)) return c;
-    return c - kTurn * std::round((c - near) / kTurn);
-}
 
 inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, float* force) {
     AxisRow row{sign > 0 ? 0u : 1u, sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force};
@@ -46,31 +40,32 @@ inline AxisRow stop_row(double sign, double gap, const Axis& axis, double h, flo
     return row;
 }
 
-inline AxisRow drive_row(double c, const Axis& axis, double h, AxisMemory& memory) {
-    AxisRow row{2, 1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive};
+// off: C from its target.
+inline AxisRow drive_row(double off, const Axis& axis, double h, AxisMemory& memory) {
+    AxisRow row{2, 1, false, true, 0, axis.speed, axis.speed, 0, h * axis.max_force, &memory.drive, axis.around};
     if (!std::isfinite(axis.damping)) return row;
     const double rate = h * axis.stiffness + axis.damping;
     row.compliance = 1 / (h * rate);
-    row.target = row.relaxed_target = (double(axis.damping) * axis.speed - axis.stiffness * (c - axis.target)) / rate;
+    row.target = row.relaxed_target = (double(axis.damping) * axis.speed - axis.stiffness * off) / rate;
     return row;
 }
 
 inline bool is_driven(const Axis& axis) { return axis.max_force > 0 && (axis.stiffness > 0 || axis.damping > 0); }
 
-// Calls visit(AxisRow) for each scalar row on row r of a block with axes.
+// Calls visit(AxisRow) for each scalar row on row r of a block with axes. c: an angle with stops in its turn.
 template <class Visit>
 void for_each_axis_row(const RowBlock& block, int r, double c, double h, Visit visit) {
     const Axis& axis = block.axis[r];
     AxisMemory& memory = block.memory[r];
     if (axis.mode == AxisMode::limited) {
-        const double centre = 0.5 * (double(axis.lower) + axis.upper);
-        const double at = unwrapped(block, r, c, centre);
-        if (std::isfinite(axis.lower)) visit(stop_row(1, at - axis.lower, axis, h, &memory.lower));
-        if (std::isfinite(axis.upper)) visit(stop_row(-1, axis.upper - at, axis, h, &memory.upper));
+        if (std::isfinite(axis.lower)) visit(stop_row(1, c - axis.lower, axis, h, &memory.lower));
+        if (std::isfinite(axis.upper)) visit(stop_row(-1, axis.upper - c, axis, h, &memory.upper));
     }
     if (axis.mode == AxisMode::locked) return;
-    if (is_driven(axis)) visit(drive_row(unwrapped(block, r, c, axis.target), axis, h, memory));
-    if (axis.friction > 0) visit(AxisRow{kRubbing, 1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction});
+    if (is_driven(axis))
+        visit(drive_row(c - (block.angular(r) ? target_angle(axis, c) : axis.target), axis, h, memory));
+    if (axis.friction > 0)
+        visit(AxisRow{kRubbing, 1, false, false, 0, 0, 0, 0, h * axis.friction, &memory.friction, true});
 }
 
 }  // namespace taut

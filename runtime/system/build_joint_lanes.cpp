@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "constraints/joint_frames.h"
 #include "system/assemble.h"
@@ -38,7 +39,9 @@ void for_each_axis(const RowBlock& block, double h, Visit visit) {
     for (int r = 0; r < block.type->rows; ++r) {
         const auto row = static_cast<uint32_t>(r);
         if (!block.type->swept(row)) continue;
-        for_each_axis_row(block, r, block.axis[r].target, h, [&](const AxisRow& axis) { visit(row, axis); });
+        const Axis& along = block.axis[r];
+        const double target = block.angular(r) ? target_angle(along, along.target) : along.target;
+        for_each_axis_row(block, r, target, h, [&](const AxisRow& axis) { visit(row, axis); });
     }
 }
 
@@ -161,10 +164,11 @@ void fill_turn(LaneAxisLaw& law, int lane, bool angular, double near, double at)
     law.at[lane] = static_cast<float>(at - whole);
 }
 
-void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, bool angular, const Times& times) {
+void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, const AxisMemory& memory, bool angular,
+               const Times& times) {
     const double relaxation = double(axis.limit_compliance) * axis.limit_damping;
     const auto yielding = static_cast<float>(1 / (times.h + relaxation));
-    fill_turn(law, lane, angular, 0.5 * (double(axis.lower) + axis.upper), stop.sign > 0 ? axis.lower : axis.upper);
+    fill_turn(law, lane, angular, reading_middle(axis, memory), stop.sign > 0 ? axis.lower : axis.upper);
     law.open[lane] = times.soft.inv_h;
     law.closed[lane] = stop.physical ? yielding : times.soft.bias_rate;
     law.relaxed[lane] = stop.physical ? yielding : 0;
@@ -173,9 +177,12 @@ void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis
 }
 
 // A drive at its target, or friction.
-void fill_drive(LaneAxisLaw& law, int lane, const AxisRow& drive, const Axis& axis, bool angular, const Times& times) {
+void fill_drive(LaneAxisLaw& law, int lane, const AxisRow& drive, const Axis& axis, const AxisMemory& memory,
+                bool angular, const Times& times) {
     const auto rate = static_cast<float>(times.h * drive.compliance * axis.stiffness);
-    fill_turn(law, lane, angular, axis.target, axis.target);
+    const bool between = axis.mode == AxisMode::limited && std::isfinite(axis.lower) && std::isfinite(axis.upper);
+    const double target = between && angular ? target_angle(axis, axis.target) : axis.target;
+    fill_turn(law, lane, angular, between ? reading_middle(axis, memory) : target, target);
     law.base[lane] = static_cast<float>(drive.target);
     law.open[lane] = law.closed[lane] = law.relaxed[lane] = rate;
     law.push[lane] = law.reach[lane] = static_cast<float>(kMost);
@@ -198,8 +205,21 @@ void fill_axes(System& system, const JointGroup& g, int lane, const RowBlock& bl
         law.compliance[lane] = static_cast<float>(axis.compliance);
         law.friction[lane] = out.most[lane];
         const auto fill = axis.stop ? fill_stop : fill_drive;
-        fill(law, lane, axis, block.axis[r], block.angular(static_cast<int>(r)), times);
+        fill(law, lane, axis, block.axis[r], block.memory[r], block.angular(static_cast<int>(r)), times);
     });
+}
+
+// Angles with stops that were not read yet: lanes say which half of their range they are in once a frame.
+void read_angles(const System& system, const RowBlock& block) {
+    double value[kMaxRows];
+    bool is_read = false;
+    for (int r = 0; r < block.type->rows; ++r) {
+        if (!block.stops_angle(r) || std::isfinite(block.memory[r].angle)) continue;
+        Pose poses[kMaxNodes];
+        for (int n = 0; n < block.type->nodes; ++n) poses[n] = system.pose[block.node[n]];
+        if (!std::exchange(is_read, true)) block.type->evaluate(block.data, poses, value, nullptr);
+        block.memory[r].angle = static_cast<float>(angle_between_stops(block.axis[r], block.memory[r], value[r]));
+    }
 }
 
 bool stays(const System& system, uint32_t node) {
@@ -254,6 +274,7 @@ void fill_group(System& system, JointGroup& g, const Times& times) {
         if (g.block[lane] == kNoLanes) continue;
         const RowBlock& block = system.rows.block[g.block[lane]];
         for (uint32_t n = 0; n < g.nodes; ++n) g.node[n][lane] = block.node[n];
+        read_angles(system, block);
         fill_rows(system, g, lane, block, times);
         fill_axes(system, g, lane, block, times);
         if (g.first_frames != kNoLanes) fill_frames(system, lanes.frames[g.first_frames], lane, block);

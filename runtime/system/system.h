@@ -67,6 +67,7 @@ struct RowBlock {
         return rows;
     }
     bool locked(int r) const { return !axis || axis[r].mode == AxisMode::locked; }
+    bool stops_angle(int r) const { return axis && axis[r].mode == AxisMode::limited && angular(r); }
 };
 
 struct Rows {
