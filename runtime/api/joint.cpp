@@ -145,6 +145,7 @@ taut_result taut_joint_set_target(taut_joint handle, uint32_t axis, float target
     return with_axis(check, handle, axis, Use::write, [&](World& world, Joint& joint, const JointAxis& place) {
         Axis& held = joint.axis[place.row];
         check.number("target", target, is_angle(joint, place.row) ? kJointAngle : kJointPosition)
+            .require(!place.swing || is_swing(target), "target is no swing, expected [0, pi]")
             .require(has_drive(held), "the axis has no drive");
         if (!check) return check.result();
         if (target != held.target || speed != held.speed) wake_ends(world, joint);  // hosts say it every frame

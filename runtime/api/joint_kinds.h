@@ -12,8 +12,8 @@ namespace taut {
 
 struct JointAxis {
     int row;
-    bool swing = false;  // a coordinate that is never negative: has an upper stop alone, and no drive
-    int around = -1;     // of a swing: the row of its direction, which its friction holds too
+    bool swing = false;  // a coordinate that is never negative: has an upper stop alone
+    int around = -1;     // of a swing: the row of its direction, which its friction and damping hold too
 };
 
 struct JointKind {

@@ -117,7 +117,7 @@ Check& check_axis(Check& check, const JointKind& kind, const JointAxis& place, c
     if (!check) return check;
     if (place.swing) {
         check.require(def.mode != TAUT_AXIS_LOCKED, "mode is locked, expected free or limited for a swing")
-            .require(!drives(def.drive), "drive is set, which a swing does not take");
+            .require(!drives(def.drive) || is_swing(def.drive.target), "drive.target is no swing, expected [0, pi]");
     }
     return check.require(def.mode != TAUT_AXIS_LOCKED || (!drives(def.drive) && def.friction == 0),
                          "mode is locked, which takes no drive and no friction");
@@ -177,6 +177,9 @@ void change_axis(Joint& joint, const JointAxis& place, const Axis& axis) {
         Axis around;
         around.mode = AxisMode::free;
         around.friction = axis.friction;
+        around.damping = axis.damping;
+        around.max_force = axis.max_force;
+        around.around = true;
         change_row(joint, place.around, around);
     }
     joint.plain = true;

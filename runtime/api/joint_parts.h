@@ -55,6 +55,8 @@ void replace_joint(const Nodes& nodes, Joint& joint, const Joint& changed);
 // The axis of a joint, or a refusal.
 taut_result find_axis(const char* call, const Joint& joint, uint32_t axis, JointAxis& out);
 Check& check_drive(Check& check, const taut_drive& drive, bool angular);
+// An angle that a swing can have: from 0 to half a turn.
+inline bool is_swing(float angle) { return angle >= 0 && static_cast<double>(angle) <= kSwing.hi; }
 Check& check_axis(Check& check, const JointKind& kind, const JointAxis& place, const taut_axis_def& def);
 
 struct Spring {

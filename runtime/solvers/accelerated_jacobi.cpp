@@ -88,7 +88,7 @@ private:
                 double& sum = sys_.rows.impulse[at] = 0;
                 for_each_axis_row(block, r, sys_.rows.error[at], sys_.h, [&](const AxisRow& axis) {
                     axes_.push_back({axis, b, r, 0, sys_.h * static_cast<double>(*axis.force), 0});
-                    if (axis.rubs()) axes_.back().axis.limit /= gearing_of(sys_, block, r);
+                    gear(sys_, block, r, axes_.back().axis);
                     sum += axis.sign * axes_.back().impulse;
                 });
             }

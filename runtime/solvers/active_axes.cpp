@@ -47,13 +47,14 @@ void ActiveSet::gather_axes(uint32_t index) {
     if (nears_stops(block)) curving(sys_, block, curved);
     for (int row = 0; row < block.type->rows; ++row) {
         for_each_axis_row(
-            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h, [&](const AxisRow& axis) {
+            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h, [&](AxisRow axis) {
+                gear(sys_, block, row, axis);
                 BoundedRow& r = add(axis.stop ? Kind::push : Kind::box, index, row, axis.sign, kAxisSoftness);
                 r.least = r.c = std::max(r.least, axis.compliance);
                 r.physical = axis.physical;
                 r.target = axis.target;
                 r.relaxed_target = axis.relaxed_target;
-                r.limit = axis.rubs() ? axis.limit / gearing_of(sys_, block, row) : axis.limit;
+                r.limit = axis.limit;
                 r.force = axis.force;
                 r.mu = sys_.h * *axis.force;
                 if (axis.stop) {

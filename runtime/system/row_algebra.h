@@ -1,7 +1,7 @@
 // Small matrices of one row block, for solvers that work row block by row block.
 #pragma once
 
-#include "system/system.h"
+#include "system/axis_rows.h"
 
 namespace taut {
 
@@ -21,11 +21,18 @@ inline const double* row_of(const System& system, const RowBlock& block, int nod
     return &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((node * block.type->rows + row) * kDof)];
 }
 
-// |g| of a row that turns, 1 of others: how much faster than its bodies the coordinate turns. Friction is a torque, and
-// lambda as much less.
+// |g| of a row that turns, 1 of others: how much faster than its bodies the coordinate turns.
 inline double gearing_of(const System& system, const RowBlock& block, int row) {
     if (!block.angular(row)) return 1;
     return Eigen::Map<const Vec3>(row_of(system, block, block.type->nodes - 1, row) + 3).norm();
+}
+
+// Friction is a torque, and lambda as much less; against a damping torque the coordinate's rate counts as much more.
+inline void gear(const System& system, const RowBlock& block, int row, AxisRow& axis) {
+    if (!axis.torque) return;
+    const double g = gearing_of(system, block, row);
+    axis.limit /= g;
+    axis.compliance *= g * g;
 }
 
 inline RowVector impulse_of(const System& system, const RowBlock& block) {

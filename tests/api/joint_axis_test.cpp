@@ -72,10 +72,8 @@ TEST_P(EveryFramedKind, AxesReadAsTheyWereSet) {
     for (uint32_t i = 0; i < axes(); ++i) {
         taut_axis_def def = axis_def(TAUT_AXIS_LIMITED), read;
         const bool swing = kind().kind == TAUT_JOINT_CONE_TWIST && i == 0;
-        if (!swing) {
-            def.lower = -0.5f;
-            def.drive = {0.25f, 2, 30, 4, 0, 1, 60};
-        }
+        if (!swing) def.lower = -0.5f;
+        def.drive = {0.25f, 2, 30, 4, 0, 1, 60};
         def.upper = 0.75f;
         def.stop_compliance = 1e-3f;
         def.stop_damping = 7;
@@ -83,13 +81,13 @@ TEST_P(EveryFramedKind, AxesReadAsTheyWereSet) {
         ASSERT_OK(taut_joint_set_axis(joint, i, &def));
         ASSERT_OK(taut_joint_get_axis(joint, i, &read));
         EXPECT_TRUE(same(def, read)) << i;
-        if (!swing) {
-            ASSERT_OK(taut_joint_set_target(joint, i, -0.125f, 1));
-            ASSERT_OK(taut_joint_get_axis(joint, i, &read));
-            EXPECT_EQ(read.drive.target, -0.125f);
-            EXPECT_EQ(read.drive.speed, 1);
-            EXPECT_EQ(read.drive.stiffness, 30);
-        }
+        const float target = swing ? 0.125f : -0.125f;
+        EXPECT_EQ(taut_joint_set_target(joint, i, -target, 1), swing ? TAUT_INVALID_ARGUMENT : TAUT_OK);
+        ASSERT_OK(taut_joint_set_target(joint, i, target, 1));
+        ASSERT_OK(taut_joint_get_axis(joint, i, &read));
+        EXPECT_EQ(read.drive.target, target);
+        EXPECT_EQ(read.drive.speed, 1);
+        EXPECT_EQ(read.drive.stiffness, 30);
         def = axis_def(TAUT_AXIS_FREE);
         ASSERT_OK(taut_joint_set_axis(joint, i, &def));
         EXPECT_EQ(taut_joint_set_target(joint, i, 0, 0), TAUT_INVALID_ARGUMENT);

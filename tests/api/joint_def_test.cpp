@@ -107,12 +107,13 @@ std::vector<Field> axis_fields(const char* name, size_t at, double far, bool swi
                                  AXIS_FIELD(drive.target, -far, far),
                                  AXIS_FIELD(drive.speed, -1e4, 1e4),
                                  AXIS_FIELD(drive.damping_ratio, 0, 1000),
-                                 AXIS_FIELD(drive.max_force, 0, 1e24, Field::or_infinite)};
+                                 AXIS_FIELD(drive.max_force, 0, 1e24, Field::or_infinite),
+                                 AXIS_FIELD(drive.stiffness, 0, 1e24),
+                                 AXIS_FIELD(drive.damping, 0, 1e24, Field::or_infinite),
+                                 AXIS_FIELD(drive.frequency, 1e-3, 1e3)};
     if (swing) return fields;
-    const std::vector<Field> more = {
-        AXIS_FIELD(lower, -far, far, Field::or_minus_infinite), AXIS_FIELD(upper, -far, far, Field::or_infinite),
-        AXIS_FIELD(drive.stiffness, 0, 1e24), AXIS_FIELD(drive.damping, 0, 1e24, Field::or_infinite),
-        AXIS_FIELD(drive.frequency, 1e-3, 1e3)};
+    const std::vector<Field> more = {AXIS_FIELD(lower, -far, far, Field::or_minus_infinite),
+                                     AXIS_FIELD(upper, -far, far, Field::or_infinite)};
     fields.insert(fields.end(), more.begin(), more.end());
     return fields;
 #undef AXIS_FIELD
@@ -179,7 +180,10 @@ void hold_against(Populated& p, const char* name, void (*init)(Def*),
                [&](Def& d) { axis_of(d, at).drive.damping = INFINITY, axis_of(d, at).drive.stiffness = 1; });
         if (at.swing) {
             refuse(axis + ".mode is locked", invalid, [&](Def& d) { axis_of(d, at).mode = TAUT_AXIS_LOCKED; });
-            refuse(axis + ".drive is set", invalid, [&](Def& d) { axis_of(d, at).drive.stiffness = 1; });
+            refuse(axis + ".drive.target is no swing", invalid,
+                   [&](Def& d) { axis_of(d, at).drive.stiffness = 1, axis_of(d, at).drive.target = -0.1f; });
+            refuse(axis + ".drive.target is no swing", invalid,
+                   [&](Def& d) { axis_of(d, at).drive.damping = 1, axis_of(d, at).drive.target = 3.2f; });
             refuse(axis + ".upper", invalid, [&](Def& d) { axis_of(d, at).upper = 0; });
             refuse(axis + ".upper", invalid, [&](Def& d) { axis_of(d, at).upper = 3.2f; });
             refuse(axis + ".upper", invalid, [&](Def& d) { axis_of(d, at).upper = NAN; });
