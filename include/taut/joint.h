@@ -18,8 +18,15 @@
  *   cone_twist   position                           0: swing, between the x axes, [0, pi]; 1: twist about x [rad]
  *   six_dof      what its axes lock                 0 to 2: position in frame a [m], 3 to 5: Cardan angles [rad]
  *
- * An angle is read in (-pi, pi]; a stop or target is taken in the turn that is nearest. "[N]" of an axis that is an
- * angle reads "[N m]", "[m]" "[rad]", and so on.
+ * An angle is read in (-pi, pi]. Between two stops it is held in the turn that it came to, up to a whole turn apart; from
+ * a single stop it may turn away as often as it likes, and comes back as often. A target between two stops is reached
+ * between them, any other in the turn that is nearest. Where the host places an end (taut_body_set_pose) or changes the
+ * stops the angle is taken in a turn that is between them. "[N]" of an axis that is an angle reads "[N m]", "[m]"
+ * "[rad]", and so on.
+ *
+ * A step that ends with a joint above its break_force or break_torque removes it; of several such joints in one
+ * mechanism, bodies that joints tie together, the one that is furthest above, of like ones the oldest: what the others
+ * carry without it is known after the next step.
  *
  * Each function here: thread safety: one thread at a time per world, not inside a step.
  */
@@ -268,8 +275,9 @@ typedef struct taut_cone_twist_joint_def {
     float break_torque;
     taut_joint_solve solve;
     uint32_t reserved;
-    taut_axis_def swing; /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at; no drive.
-                              Its friction acts around the cone too, but where the joint is swept */
+    taut_axis_def swing; /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at. A drive's
+                              target is a swing, [0, pi], towards whichever side the joint leans. Its damping and
+                              friction act around the cone too, but where the joint is swept */
     taut_axis_def twist; /**< default free */
     uint64_t user_data;
 } taut_cone_twist_joint_def;
