@@ -18,8 +18,8 @@
  *   cone_twist   position                           0: swing, between the x axes, [0, pi]; 1: twist about x [rad]
  *   six_dof      what its axes lock                 0 to 2: position in frame a [m], 3 to 5: Cardan angles [rad]
  *
- * An angle is read in (-pi, pi]. Between two stops it is held in the turn that it came to, up to a whole turn apart; from
- * a single stop it may turn away as often as it likes, and comes back as often. A target between two stops is reached
+ * An angle is read in (-pi, pi]. Two stops, up to a whole turn apart, hold it in the turn that it came to; from a
+ * single stop it may turn away as often as it likes, and comes back as often. A target between two stops is reached
  * between them, any other in the turn that is nearest. Where the host places an end (taut_body_set_pose) or changes the
  * stops the angle is taken in a turn that is between them. "[N]" of an axis that is an angle reads "[N m]", "[m]"
  * "[rad]", and so on.

@@ -130,9 +130,9 @@ void BlockSolve::limit_push() {
     solve_known();
 }
 
-// Restitution says how fast each contact parts, whatever its neighbours, joints and friction make of that: together they
-// may leave with more energy than they met with. Velocities and impulses are linear in the part t of the bounces, and the
-// contacts' work is w(t) = w(0) + b t + a t^2: as much of them as makes it none, if there is any.
+// Restitution says how fast each contact parts, whatever its neighbours, joints and friction make of that: together
+// they may leave with more energy than they met with. Velocities and impulses are linear in the part t of the bounces,
+// and the contacts' work is w(t) = w(0) + b t + a t^2 [J]: the largest part that makes it none.
 void BlockSolve::limit_bounce() {
     if (!set.bounces()) return;
     const double whole = set.contact_work();

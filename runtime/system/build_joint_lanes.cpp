@@ -164,8 +164,8 @@ void fill_turn(LaneAxisLaw& law, int lane, bool angular, double near, double at)
     law.at[lane] = static_cast<float>(at - whole);
 }
 
-void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, const AxisMemory& memory, bool angular,
-               const Times& times) {
+void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, const AxisMemory& memory,
+               bool angular, const Times& times) {
     const double relaxation = double(axis.limit_compliance) * axis.limit_damping;
     const auto yielding = static_cast<float>(1 / (times.h + relaxation));
     fill_turn(law, lane, angular, reading_middle(axis, memory), stop.sign > 0 ? axis.lower : axis.upper);

@@ -34,8 +34,7 @@ taut_joint framed(const World& world, void (*init)(Def*), taut_result (*add)(tau
 inline taut_joint join(const World& w, uint32_t kind, taut_body a, taut_body b, const Vec& pivot, const Vec& axis) {
     const BodyState sa = state(a), sb = state(b);
     const auto inside = [&](const BodyState& s) { return s.rotation.rotate_back(pivot - s.position); };
-#define TAUT_TEST_FRAMED(name) \
-    framed(w, taut_##name##_joint_def_init, taut_world_add_##name##_joint, a, b, pivot, axis)
+#define TAUT_TEST_FRAMED(name) framed(w, taut_##name##_joint_def_init, taut_world_add_##name##_joint, a, b, pivot, axis)
     if (kind == TAUT_JOINT_BALL) return w.ball(a, inside(sa), b, inside(sb));
     if (kind == TAUT_JOINT_DISTANCE) return w.rod(a, {}, b, {}, norm(sb.position - sa.position));
     if (kind == TAUT_JOINT_FIXED) return TAUT_TEST_FRAMED(fixed);

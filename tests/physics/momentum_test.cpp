@@ -75,8 +75,8 @@ TEST(HangingRow, KeepsMomentumAndEnergyInAnElasticBlow) {
     for (const uint32_t substeps : {1u, 2u, 4u, 8u, 16u})
         for (const int count : {2, 3, 4, 6})
             for (const double gap : {0.0, 2e-3}) {
-                const RowPlan plan{.count = count, .hinged = count > 3, .gap = gap, .restitution = 1,
-                                   .substeps = substeps};
+                const RowPlan plan{
+                    .count = count, .hinged = count > 3, .gap = gap, .restitution = 1, .substeps = substeps};
                 const std::vector<double> speeds = speeds_of(plan);
                 double sum = 0, energy = 0;
                 for (const double speed : speeds) sum += speed, energy += speed * speed;

@@ -122,7 +122,8 @@ TEST(SwingSpring, IsNoStrongerThanItsForce) {
         ok(taut_body_apply_force(top.body, {0, 0, 0}, (2 * top.axis).narrow()));
         top.world.step();
     }
-    EXPECT_NEAR(dot(state(top.body).spin, top.axis), 0.5 * 1 / kInertia, 0.02);  // what is left of 2 N m in half a second
+    EXPECT_NEAR(dot(state(top.body).spin, top.axis), 0.5 * 1 / kInertia,
+                0.02);  // what is left of 2 N m in half a second
 }
 
 // A stop that gives way by its compliance, and rocks on it as on a spring.

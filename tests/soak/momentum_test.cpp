@@ -7,8 +7,8 @@ using namespace lab;
 
 class HitMechanism : public testing::TestWithParam<double> {};
 
-// In 1 to 16 substeps, with friction and without. Plastic blows never gain energy; of elastic ones, in the substep after,
-// joints that a blow opened may.
+// In 1 to 16 substeps, with friction and without. Plastic blows never gain energy; of elastic ones, in the substep
+// after, joints that a blow opened may.
 TEST_P(HitMechanism, KeepsMomentumAndGainsNoEnergy) {
     const double restitution = GetParam();
     constexpr uint32_t kStarts = 20;
