@@ -170,7 +170,10 @@ bool PolytopeSurface::try_edges(const Facet& facet, const SurfaceView::Triangle&
         if (body_.faces[own.left].normal.cross(inward).dot(direction) < 0) continue;
         if (inward.cross(body_.faces[own.right].normal).dot(direction) < 0) continue;
         const Segment body_edge = {body_.vertices[own.from], direction}, surface_edge = {from, along};
-        const float separation = outward.dot(body_edge.from - from);
+        // Of the whole triangle: edges that count as level may rise by the contact margin and more over a large one.
+        float top = outward.dot(from);
+        for (const Vec3f& corner : triangle.at) top = std::max(top, outward.dot(corner));
+        const float separation = outward.dot(body_edge.from) - top;
         if (separation <= best.separation || outward.dot(facet.normal) < kFront) continue;
         if (!view_.is_top_edge(triangle, edge, outward)) continue;
         if (separation > meeting_.margin) return false;
