@@ -7,6 +7,7 @@
 #include "detect/contact_limit.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
+#include "detect/internal_faces.h"
 #include "detect/sensors.h"
 #include "integrate/integrate.h"
 #include "integrate/substeps.h"
@@ -55,6 +56,7 @@ void detect(World& w, Stopwatch& watch) {
     const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
     if (refused > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
+    open_internal_faces({w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead});
     w.profile.dropped_contacts = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
     if (const uint32_t dropped = w.profile.dropped_contacts; dropped > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u contacts dropped: max_contacts is %u", dropped, w.def.max_contacts);

@@ -6,6 +6,7 @@
 #include "detect/carry.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
+#include "detect/internal_faces.h"
 #include "detect/manifolds.h"
 #include "detect/reuse.h"
 #include "threads/gather.h"
@@ -213,6 +214,7 @@ void find_contacts_again(const Nodes& nodes, const Colliders& colliders, const S
         }
         active.points = static_cast<uint8_t>(pair.manifold.count);
     }
+    open_internal_faces_again(of, active_pairs);
 }
 
 void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,

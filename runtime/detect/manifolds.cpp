@@ -226,8 +226,19 @@ void Shaped::find_parts(collision::Parts& parts) const {
     if (std::isfinite(then_)) collision::collide_parts(a_, *at_a_, b_, *at_b_, margin_, parts);
 }
 
+void Shaped::find_open_points(bool solid_is_b, const collision::Footing& contact, const collision::Cover& cover,
+                              collision::Manifold& manifold) const {
+    if (solid_is_b)
+        collision::collide_open(a_, *at_a_, b_, *at_b_, contact, cover, true, margin_, manifold);
+    else
+        collision::collide_open(b_, *at_b_, a_, *at_a_, contact, cover, false, margin_, manifold);
+}
+
 Finding::Finding(const Detection& of, bool fast, NearPair& near, Pair& pair)
-    : near_(near), pair_(pair), old_(pair.manifold), shaped_(of, pair, fast, fast ? 0 : lead_of(of, pair)) {
+    : Finding(of, fast, fast ? 0 : lead_of(of, pair), near, pair) {}
+
+Finding::Finding(const Detection& of, bool fast, double lead, NearPair& near, Pair& pair)
+    : near_(near), pair_(pair), old_(pair.manifold), shaped_(of, pair, fast, lead) {
     collision::PairCache cache;
     std::ranges::copy(pair.cache, std::ranges::copy(near.cache, cache.words).out);
     const float gap = shaped_.find_points(cache, pair.manifold);
@@ -298,6 +309,22 @@ bool refresh_part(const Shaped& shaped, const Detection& of, Pair& pair) {
     for (const collision::PartManifold& found : of.pairs.parts.found)
         if (found.part == pair.part) pair.manifold = found.manifold;
     return pair.manifold.count > 0 && adopt(shaped, of, is_known(old, pair), old, pair, pair);
+}
+
+Vec3 origin_of_points(const Detection& of, const Pair& pair) {
+    if (pair.a2 != kNone) return of.nodes.motion[pair.a].x;
+    const uint32_t a = pair.collider_a();
+    return of.pairs.placement[a].position - of.pairs.stance[a].from_node.cast<double>();
+}
+
+void find_open_points(const Detection& of, bool solid_is_b, const collision::Footing& contact,
+                      const collision::Cover& cover, Pair& pair) {
+    const Shaped shaped(of, pair, Shaped::Met{pair.then});
+    shaped.find_open_points(solid_is_b, contact, cover, pair.manifold);
+    const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
+    for (int k = 0; k < pair.manifold.count; ++k) pair.manifold.points[k].position += from_a;
+    shaped.bring_to_present(pair);
+    forget_impulses(pair);
 }
 
 bool reuse(const Detection& of, const NearPair& near, Pair& pair) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "collision/internal_face.h"
 #include "detect/impact.h"
 #include "state/colliders.h"
 #include "state/nodes.h"
@@ -48,6 +49,8 @@ public:
     // Returns, if it finds no points, how far apart the two are at least [m]; 0: not known.
     float find_points(collision::PairCache& cache, collision::Manifold& manifold) const;
     void find_parts(collision::Parts& parts) const;
+    void find_open_points(bool solid_is_b, const collision::Footing& contact, const collision::Cover& cover,
+                          collision::Manifold& manifold) const;
 
     float then() const { return then_; }
     double lead() const { return lead_; }
@@ -100,6 +103,7 @@ private:
 class Finding {
 public:
     Finding(const Detection& of, bool fast, NearPair& near, Pair& pair);
+    Finding(const Detection& of, bool fast, double lead, NearPair& near, Pair& pair);
     Finding(const Finding&) = delete;
     Finding& operator=(const Finding&) = delete;
 
@@ -147,6 +151,12 @@ void admit(const Detection& of, NearPair& near, Pair& pair);
 void find_parts(const Detection& of, NearPair& near);
 // A part of a pair whose parts were just found again: one that is not among them loses its points. Whether it is kept.
 bool refresh_part(const Shaped& shaped, const Detection& of, Pair& pair);
+
+// Where a pair's points are counted from: the origin of node a's body, at the placement of its collider.
+Vec3 origin_of_points(const Detection& of, const Pair& pair);
+// Points on open faces in place of those on internal ones, without impulses, or none; detect/internal_faces.h.
+void find_open_points(const Detection& of, bool solid_is_b, const collision::Footing& contact,
+                      const collision::Cover& cover, Pair& pair);
 
 // Brings a manifold that NearPair::kept holds to the present; false if it is to be found again.
 bool reuse(const Detection& of, const NearPair& near, Pair& pair);
