@@ -26,7 +26,8 @@ void publish(Substep& s, uint32_t begin, uint32_t end) {
 // What the kernels work on, and one pass over a piece of it.
 class Kernels {
 public:
-    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed, restitute };  // the first measures the gaps
+    // The first of the biased ones measures the gaps.
+    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed, restitute, correct, take_back };
 
     explicit Kernels(Substep& substep)
         : s_(substep),
@@ -39,9 +40,9 @@ public:
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
         if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, nodes_);
-        if (is_biased(pass))
-            joint_.sweep_biased(joints_, begin, end, nodes_, joint_terms(s_.system.h, s_.system.stretch));
-        if (pass == Pass::relaxed) joint_.sweep_relaxed(joints_, begin, end, nodes_);
+        if (is_biased(pass) || pass == Pass::relaxed) joint_.sweep(joints_, begin, end, nodes_);
+        if (pass == Pass::correct) joint_.correct(joints_, begin, end, nodes_);
+        if (pass == Pass::take_back) joint_.take_back(joints_, begin, end, nodes_);
     }
     void rows(Pass pass) const {
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
@@ -85,8 +86,14 @@ public:
 
     // Joints, rows, then contacts, colour by colour, backward if asked.
     void add(Pass pass, bool backward = false) {
-        if (!s_.system.joints.group.empty())
-            for (uint32_t c = 0; c < kMaxColours; ++c) add_joints(pass, c);
+        add_joints(pass);
+        add_rows_and_contacts(pass, backward);
+    }
+    void add_joints(Pass pass) {
+        if (s_.system.joints.group.empty()) return;
+        for (uint32_t c = 0; c < kMaxColours; ++c) add_joints(pass, c);
+    }
+    void add_rows_and_contacts(Pass pass, bool backward) {
         add_rows(pass);
         add_contacts(pass, backward);
     }
@@ -198,7 +205,7 @@ private:
     }
     uint32_t begin_of(uint32_t part, uint32_t count) const { return begin_of_part(part, s_.team.size(), count); }
 
-    static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (3 * kMaxColours + 1) + 1;
+    static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (3 * kMaxColours + 1) + kMaxColours + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;
@@ -222,14 +229,18 @@ void warm_start_sweeps(Substep& s) {
 void sweep_biased(Substep& s) {
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
     for (uint32_t i = 0; i < sweeps; ++i) {
+        const auto pass = i == 0 ? Kernels::Pass::first_biased : Kernels::Pass::biased;
         Program program(s);
-        program.add(i == 0 ? Kernels::Pass::first_biased : Kernels::Pass::biased, s.corrects_backward);
+        program.add_joints(pass);
+        if (i + 1 == sweeps) program.add_joints(Kernels::Pass::correct);
+        program.add_rows_and_contacts(pass, s.corrects_backward);
         program.run(i + 1 == sweeps);
     }
 }
 
 void sweep_relaxed(Substep& s) {
     Program program(s);
+    program.add_joints(Kernels::Pass::take_back);
     for (uint32_t i = 0; i < kRelaxSweeps; ++i) program.add(Kernels::Pass::relaxed, s.relaxes_backward);
     program.add_restitution();
     program.run(true);
