@@ -37,6 +37,7 @@ struct Mechanism {
         system.pose.resize(1 + kMaxNodes * kJoints);
         system.sweep_pose.resize(1 + kMaxNodes * kJoints);
         system.found.resize(1 + kMaxNodes * kJoints);
+        system.filtered.resize(1 + kMaxNodes * kJoints);
         group.joint_colour_begin.assign(kMaxColours + 1, kJoints);
         group.joint_colour_begin[0] = 0;
         std::vector<const ConstraintType*> types;
