@@ -13,6 +13,7 @@
 #include "integrate/substeps.h"
 #include "models/cable.h"
 #include "publish/publish.h"
+#include "solvers/restitution.h"
 #include "sleep/sleep.h"
 #include "system/assemble.h"
 #include "world.h"
@@ -119,8 +120,11 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         w.profile.assemble_us += watch.lap();
         Substep substep{w.team, system,    group,       w.partition.blocks, w.nodes,    settings,
                         report, w.scratch, part.last(), i % 2 == 0,         i % 2 == 1, part.most_turn()};
+        substep.impacts = &w.impacts;
+        restitute(substep);
         solver.solve(substep);
         if (substep.is_too_long()) {
+            drop_strikes(system, w.impacts);
             part.halve();
             w.profile.sweep_us += watch.lap();
             continue;
@@ -128,6 +132,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         if (substep.last) report.residual = std::max(report.residual, row_residual(system, *settings.joint_kernels));
         tell(w, {Stage::solve, index, i});
         w.profile.sweep_us += watch.lap();
+        commit_strikes(system, w.impacts, w.nodes);
         commit(w.team, system, group, w.nodes);
         shift_kinematic(system, w.nodes, part.end());
         if (solver.settle) {
@@ -140,7 +145,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         w.profile.sweep_us += watch.lap();
         sane = store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
         store_contact_rows(system);
-        gather_impulses(system, w.pairs, w.watch);
+        gather_impulses(system, w.impacts, w.pairs, w.watch);
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
         as_long = part.per_frame();
@@ -164,7 +169,8 @@ void solve(World& w, Stopwatch& watch) {
                                   double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
                                   &contact_kernels(),
                                   &joint_kernels(),
-                                  w.def.adaptive_damping != 0};
+                                  w.def.adaptive_damping != 0,
+                                  w.def.restitution_threshold};
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));

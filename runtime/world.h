@@ -73,8 +73,8 @@ struct World {
 
     // State too: the substep that soft rows keep the frequency of, whatever becomes of the time step [s]. None is longer.
     double spring_substep = 0;
-    double first_substep = 0;  // that of the def at creation
     uint32_t least_substeps() const;
+    Impacts impacts;  // derived
 
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;

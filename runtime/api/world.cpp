@@ -14,6 +14,7 @@ namespace {
 constexpr uint32_t kMaxThreads = 64;
 constexpr Range kSleepSpeed{0, 10};  // [m/s]
 constexpr Range kSleepTime{0, 1e3};  // [s]
+constexpr Range kRestitutionThreshold{0, 1e4};  // [m/s]
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
     check.require(!hooks.allocate == !hooks.free,
@@ -43,7 +44,8 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .count("contact_events", def.contact_events, 0, TAUT_CONTACT_EVENTS_ALL)
         .number("hit_speed", def.hit_speed, kHitSpeed)
         .boolean("continuous", def.continuous)
-        .boolean("adaptive_damping", def.adaptive_damping);
+        .boolean("adaptive_damping", def.adaptive_damping)
+        .number("restitution_threshold", def.restitution_threshold, kRestitutionThreshold);
     return check_hooks(check, def.hooks);
 }
 
@@ -181,6 +183,15 @@ taut_result taut_world_set_hit_speed(taut_world handle, float hit_speed) {
     if (!check.number("hit_speed", hit_speed, kHitSpeed)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         world.def.hit_speed = hit_speed;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_restitution_threshold(taut_world handle, float restitution_threshold) {
+    Check check(__func__);
+    if (!check.number("restitution_threshold", restitution_threshold, kRestitutionThreshold)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        world.def.restitution_threshold = restitution_threshold;
         return TAUT_OK;
     });
 }

@@ -31,6 +31,11 @@ struct alignas(32) SweepShift {        // since the contacts were found
     float dq[4] = {0, 0, 0, 1};        // rotation x, y, z, w
 };
 
+struct alignas(32) SweepFlight {           // of the substep, where something may bounce
+    float gained[3] = {0, 0, 0}, pad0 = 0;  // velocity that forces give the body [m/s]
+    float moved[3] = {0, 0, 0}, pad1 = 0;   // by what impacts have moved where its path begins [m]
+};
+
 constexpr uint32_t kNoLanes = UINT32_MAX;
 
 struct LanePoint;
@@ -41,11 +46,10 @@ struct alignas(64) LaneGroup {
     float normal[3][kLanes], tangent[3][kLanes];
     float friction[kLanes];
     float round[2][kLanes];           // of a and b: how far from their surfaces what turns ends [m]; is_round
-    float turns[kLanes];              // 1: a body has turned its levers in this frame, so that it bounces as it is hit
     LanePoint* point;                 // one for each of `points`
     uint32_t points;                  // most points of a lane
     uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no surface of a lane moves
-    uint32_t any_turns = 0;           // 1: some turns is 1
+    uint32_t bounces = 0;             // 1: some pair has restitution
     uint32_t is_round = 0;            // 1: some round is not 0
     uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has rolling or spinning friction
     uint8_t rolls[2][kLanes];         // of a and b, 1: levers stay as they are while the body turns
@@ -169,6 +173,11 @@ struct SweepTerms {
     float hit;            // [m/s], approaches that are faster are stopped without softness
 };
 
+struct ImpactTerms {
+    float inv_h;      // [1/s]
+    float threshold;  // [m/s], slower impacts do not bounce
+};
+
 // Of bodies a and b of a group's lanes, 1 or 0.
 struct alignas(64) LaneTurns {
     float turned[2][kLanes];   // it turned
@@ -190,8 +199,10 @@ struct ContactKernels {
     void (*sweep_biased)(LaneView, uint32_t begin, uint32_t end, SweepNode*, const SweepShift*, const SweepTerms&);
     // Same rows without bias or softness: removes the push from the velocity that is kept.
     void (*sweep_relaxed)(LaneView, uint32_t begin, uint32_t end, SweepNode*, const SweepTerms&);
-    // Points that closed faster than threshold [m/s] leave with restitution times that speed.
-    void (*restitute)(LaneView, uint32_t begin, uint32_t end, SweepNode*, float threshold, bool last);
+    // Impacts of the substep: for each of four points of a group a bit for each lane whose point closes
+    // faster than the threshold and gets to the surface. See solvers/restitution.h.
+    void (*find_impacts)(LaneView, uint32_t begin, uint32_t end, const SweepNode*, const SweepShift*,
+                         const SweepFlight*, const ImpactTerms&, uint16_t* found);
 };
 
 extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2, kContactKernelsAvx512;

@@ -374,48 +374,51 @@ struct ContactSweep {
         }
     }
 
-    // Once the frame is over; what turns has left the pose in which it was hit by then, and bounces at once. A point
-    // gets no more than its restitution of what stopped it (Poisson's hypothesis), lest one that the other end's hit
-    // has stopped already bounces by a speed that it had before: rods left walls with up to 29 times their energy. In
-    // this frame that is twice its largest impulse at most, as what hits reaches the surface in one substep and is
-    // stopped in the next, and what is left to stop.
-    static void restitute(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes, float threshold,
-                          bool last) {
-        const F zero = F::all(0), one = F::all(1), slow = F::all(-threshold);
+    struct FlightLanes {
+        V gained, moved;
+        FlightLanes(const uint32_t node[kLanes], const SweepFlight* flights) {
+            const float* row[kLanes];
+            F s[8];
+            for (int i = 0; i < kLanes; ++i) row[i] = flights[node[i]].gained;
+            F::transpose(row, s);
+            gained = {s[0], s[1], s[2]};
+            moved = {s[4], s[5], s[6]};
+        }
+    };
+
+    // Along the normal a point flies c + u t + a t^2 / 2 within the substep; u = v - h a / 2 of the velocity v at its end
+    // (solvers/restitution.h). It arrives where c + h v < 0, at the speed sqrt(u^2 - 2 a c).
+    static void find_impacts(LaneView contacts, uint32_t begin, uint32_t end, const SweepNode* nodes,
+                             const SweepShift* shifts, const SweepFlight* flights, const ImpactTerms& terms,
+                             uint16_t* found) {
+        const F zero = F::all(0), half = F::all(0.5f), inv_h = F::all(terms.inv_h);
+        const F slow = F::all(terms.threshold * terms.threshold);
         for (uint32_t i = begin; i < end; ++i) {
             const LaneGroup& g = contacts.group[i];
-            if (!last && !g.any_turns) continue;
+            uint16_t* const hits = found + 4 * static_cast<size_t>(i);
+            for (int k = 0; k < 4; ++k) hits[k] = 0;
+            if (!g.bounces) continue;
             const Frame f(g);
             Side a, b;
             a.gather(g.a, nodes);
             b.gather(g.b, nodes);
-            const F due = last ? one : F::load(g.turns);
+            measure_gaps(g, f, shifts);
+            const FlightLanes of_a(g.a, flights), of_b(g.b, flights);
+            const F gained = dot(of_b.gained - of_a.gained, f.n), moved = dot(of_b.moved - of_a.moved, f.n);
+            const F least = F::max(slow, gained * gained);
             for (uint32_t k = 0; k < g.points; ++k) {
-                LanePoint& p = g.point[k];
-                const F approach = F::load(p.approach);
-                // bounces: closed fast, and was pushed during the frame
-                const F wanted = F::if_greater(slow, approach, F::load(p.restitution) * approach, zero);
-                const F active = F::if_greater(F::load(p.peak), zero, F::if_greater(zero, wanted, due, zero), zero);
-                const V ra = load(p.ra), rb = load(p.rb);
-                const F old = F::load(p.impulse[0]);
-                const F mass = F::load(p.normal_mass), vn = dot(b.at(rb) - a.at(ra), f.n);
-                const F asked = normal_row(mass, old, vn, {wanted, active, zero});
-                const F stop = mass * F::max(zero - vn, zero);
-                const F peak = F::load(p.peak), most = old + stop + F::load(p.restitution) * (peak + peak + stop);
-                const F next = F::max(F::if_greater(asked, most, most, asked), zero);
-                keep_normal(p, next);
-                const V push = (next - old) * f.n;
-                b.add(push, rb);
-                a.subtract(push, ra);
-                F::if_greater(active, zero, zero, approach).store(p.approach);  // once
+                const LanePoint& p = g.point[k];
+                const F gap = F::load(p.gap) + moved, vn = dot(b.at(load(p.rb)) - a.at(load(p.ra)), f.n);
+                const F u = vn - half * gained, closing = zero - F::if_greater(gap, zero, gap * inv_h + vn, u);
+                const F squared = u * u - (gained + gained) * inv_h * F::max(gap, zero);
+                const F bounces = F::if_greater(closing, zero, F::load(p.restitution), zero);
+                hits[k] = static_cast<uint16_t>(F::greater(F::if_greater(bounces, zero, squared, zero), least));
             }
-            a.scatter(g.a, nodes);
-            b.scatter(g.b, nodes);
         }
     }
 
     static constexpr ContactKernels table(const char* name) {
-        return {name, prepare, turn, warm_start, sweep_biased, sweep_relaxed, restitute};
+        return {name, prepare, turn, warm_start, sweep_biased, sweep_relaxed, find_impacts};
     }
 };
 

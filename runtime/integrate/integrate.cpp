@@ -251,6 +251,21 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     });
 }
 
+void commit_strikes(System& system, const Impacts& impacts, Nodes& nodes) {
+    for (const Impacts::Struck& struck : impacts.struck) {
+        const uint32_t at = system.at(struck.node);
+        NodeMotion& m = motions_of(system, nodes)[system.lent ? at : struck.node];
+        for (int i = 0; i < 3; ++i) m.x[i] += static_cast<double>(impacts.flight[at].moved[i]);
+    }
+}
+
+void drop_strikes(System& system, const Impacts& impacts) {
+    for (const Impacts::Struck& struck : impacts.struck) {
+        float(&dx)[3] = system.shift[system.at(struck.node)].dx;
+        std::copy(std::begin(struck.dx), std::end(struck.dx), dx);
+    }
+}
+
 void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "partition/partition.h"
-#include "system/system.h"
+#include "system/impacts.h"
 #include "threads/team.h"
 
 namespace taut {
@@ -33,6 +33,10 @@ private:
 
 // v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity);
+
+// Of nodes whose paths impacts moved: x to where they begin, or shifts as they were.
+void commit_strikes(System& system, const Impacts& impacts, Nodes& nodes);
+void drop_strikes(System& system, const Impacts& impacts);
 
 // x += h v, q = exp(h w) q; what the contacts' anchors need to follow.
 void commit(Team& team, System& system, const Group& group, Nodes& nodes);

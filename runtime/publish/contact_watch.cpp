@@ -80,7 +80,7 @@ void watch_group(const Group& group, const System& system, const Pairs& pairs, C
     }
 }
 
-void gather_impulses(const System& system, const Pairs& pairs, ContactWatch& watch) {
+void gather_impulses(const System& system, const Impacts& impacts, const Pairs& pairs, ContactWatch& watch) {
     for (const uint32_t index : watch.current) {
         WatchedPair& watched = watch.pairs[index];
         const Pair& pair = pairs.list[watched.pair];
@@ -91,6 +91,13 @@ void gather_impulses(const System& system, const Pairs& pairs, ContactWatch& wat
             watched.normal[k] += impulse.normal;
             watched.friction[k] += impulse.tangent1 * t1 + impulse.tangent2 * t2;
         }
+    }
+    for (const Impacts::Strike& strike : impacts.strikes) {
+        WatchedPair* watched = find_watched(watch, strike.pair);
+        if (!watched) continue;
+        const Vec3f n = pairs.list[strike.pair].manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+        watched->normal[strike.point] += strike.impulse[0];
+        watched->friction[strike.point] += strike.impulse[1] * t1 + strike.impulse[2] * t2;
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include "detect/approach.h"
 #include "partition/partition.h"
-#include "system/system.h"
+#include "system/impacts.h"
 
 namespace taut {
 
@@ -37,7 +37,7 @@ void watch_contacts(const Nodes& nodes, const Pairs& pairs, ContactWatch& watch)
 // Once a step and group, when its lanes are built.
 void watch_group(const Group& group, const System& system, const Pairs& pairs, ContactWatch& watch);
 // After each substep: adds the impulses of the group's pairs.
-void gather_impulses(const System& system, const Pairs& pairs, ContactWatch& watch);
+void gather_impulses(const System& system, const Impacts& impacts, const Pairs& pairs, ContactWatch& watch);
 // The watched pair of an index into Pairs::list, or null.
 WatchedPair* find_watched(ContactWatch& watch, uint32_t pair);
 

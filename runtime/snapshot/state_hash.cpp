@@ -191,6 +191,7 @@ uint64_t state_hash(const World& world) {
     hash.add(uint64_t{world.def.substeps});
     hash.add(world.spring_substep);
     hash.add(world.accumulator);
+    hash.add(world.def.restitution_threshold);
     add_nodes(hash, world.nodes);
     add_frames(hash, world.nodes);
     if (world.def.sleeping) add_sleep(hash, world.nodes);

@@ -21,8 +21,8 @@ namespace {
 
 constexpr uint32_t kDefaultIterations = 30;
 
-// biased: position errors are removed, softly; relaxed: not; bouncing: contacts that were hit part again.
-enum class Phase { biased, relaxed, bouncing };
+// biased: position errors are removed, softly; relaxed: not.
+enum class Phase { biased, relaxed };
 
 class Iteration {
 public:
@@ -244,9 +244,7 @@ private:
             const double gap = error[0];
             r[1] -= block.drive[0];
             r[2] -= block.drive[1];
-            if (phase == Phase::bouncing && block.bounce > 0 && mu[0] > 0)
-                r[0] -= block.bounce;
-            else if (gap > 0)
+            if (gap > 0)
                 r[0] += gap * soft_.inv_h;
             else if (phase == Phase::biased)
                 r[0] += std::max<double>(soft_.bias_rate * gap, -soft_.push) + softness(0, 0) * mu[0];
@@ -289,7 +287,6 @@ void relax(Substep& s) {
     Iteration iteration(s);
     iteration.take_back();
     iteration.run(iterations(s), Phase::relaxed);
-    if (s.last) iteration.run(iterations(s), Phase::bouncing);
     iteration.store_forces();
 }
 

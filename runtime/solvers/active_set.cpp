@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/restitution.h"
 #include "system/axis_rows.h"
 
 namespace taut {
@@ -110,6 +111,16 @@ void ActiveSet::gather_tangents(BoundedRow& first, uint32_t width, uint32_t load
 
 double ActiveSet::softness() const { return std::min(kSoftness, kSoftnessByRatio / b_.mass_ratio); }
 
+double ActiveSet::rebound_of(const BoundedRow& push, const RowBlock& block) const {
+    if (!(block.restitution > 0)) return 0;
+    double gained = 0;
+    for (int n = 0; n < push.nodes; ++n) {
+        const float(&of)[3] = s_.impacts->flight[block.node[n]].gained;
+        gained += Vec3::Map(push.jacobian + static_cast<size_t>(n) * push.stride).dot(Vec3(of[0], of[1], of[2]));
+    }
+    return rebound(s_, block.restitution, push.gap, speed(push, sys_.exact), gained);
+}
+
 void ActiveSet::gather_contact(uint32_t index) {
     const RowBlock& block = sys_.rows.block[index];
     const uint32_t first = b_.bounded_count;
@@ -123,7 +134,7 @@ void ActiveSet::gather_contact(uint32_t index) {
     r[0].speculative = r[0].gap > (r[0].mu > 0 ? kSpeculative : 0);
     r[0].target = r[0].speculative ? -r[0].gap / sys_.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.h);
     r[0].relaxed_target = r[0].speculative ? r[0].target : 0;
-    r[0].bounce = block.bounce;
+    r[0].bounce = rebound_of(r[0], block);
     r[0].on = r[0].gap < 0 || r[0].mu > 0;
     gather_tangents(r[1], 2, first, 1, block.friction, block.contact->slip);
 }

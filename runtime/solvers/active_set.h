@@ -77,6 +77,7 @@ private:
     void gather_stop(BoundedRow& row, const AxisRow& axis, double curved);
     void gather_axes(uint32_t block);
     double softness() const;
+    double rebound_of(const BoundedRow& push, const RowBlock& block) const;
     void gather_contact(uint32_t block);
     BoundedRow& add(BoundedRow::Kind kind, uint32_t index, int row, double sign, double softness);
     void gather_rolling(uint32_t block);

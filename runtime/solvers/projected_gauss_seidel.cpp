@@ -27,7 +27,7 @@ void publish(Substep& s, uint32_t begin, uint32_t end) {
 class Kernels {
 public:
     // The first of the biased ones measures the gaps.
-    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed, restitute, correct, take_back };
+    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed, correct, take_back };
 
     explicit Kernels(Substep& substep)
         : s_(substep),
@@ -48,7 +48,6 @@ public:
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
         if (pass == Pass::warm_start) warm_start_rows(s_, first, count);
         if (is_biased(pass) || pass == Pass::relaxed) sweep_rows(s_, first, count, is_biased(pass));
-        if (pass == Pass::restitute) bounce_rows(s_, first, count);
     }
     // shared: with nodes that other threads' groups move too.
     void contacts(Pass pass, uint32_t begin, uint32_t end, bool shared) const {
@@ -58,7 +57,6 @@ public:
         if (pass == Pass::warm_start) contact_.warm_start(contacts, begin, end, nodes_);
         if (is_biased(pass)) contact_.sweep_biased(contacts, begin, end, nodes_, shifts, soft_);
         if (pass == Pass::relaxed) contact_.sweep_relaxed(contacts, begin, end, nodes_, soft_);
-        if (pass == Pass::restitute) contact_.restitute(contacts, begin, end, nodes_, kBounceSpeed, s_.last);
     }
 
 private:
@@ -92,10 +90,6 @@ public:
     void add_rows_and_contacts(Pass pass, bool backward = false) {
         add_rows(pass);
         add_contacts(pass, backward);
-    }
-    void add_restitution() {
-        if (s_.system.contacts.bounces) add_contacts(Pass::restitute, false);
-        if (s_.last) add_rows(Pass::restitute);
     }
     // publishes: moves what was swept to the solution after all of it.
     void run(bool publishes) {
@@ -201,7 +195,8 @@ private:
     }
     uint32_t begin_of(uint32_t part, uint32_t count) const { return begin_of_part(part, s_.team.size(), count); }
 
-    static constexpr uint32_t kMostPasses = 3, kMost = kMostPasses * (3 * kMaxColours + 1) + kMaxColours + 1;
+    static constexpr uint32_t kMostPasses = kRelaxSweeps;
+    static constexpr uint32_t kMost = kMostPasses * (3 * kMaxColours + 1) + kMaxColours + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;
@@ -250,7 +245,6 @@ void sweep_relaxed(Substep& s) {
         if (i == 0 || backward) program.add_joints(Kernels::Pass::relaxed, backward);
         program.add_rows_and_contacts(Kernels::Pass::relaxed, s.relaxes_backward);
     }
-    program.add_restitution();
     program.run(true);
 }
 

@@ -72,14 +72,6 @@ public:
         move_to(p);
     }
 
-    // What was hit leaves at the speed that its restitution asks for; as in the fused sweep.
-    void bounce() {
-        RowVector p = impulse();
-        if (!(block_.bounce > 0 && p[0] > 0)) return;
-        p[0] = std::max(0.0, p[0] + (block_.bounce - velocity()[0]) / effective()(0, 0));
-        move_to(p);
-    }
-
     // Spinning first, then rolling on its circle.
     void solve_load() {
         const RowMatrix s = effective();
@@ -136,13 +128,6 @@ void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
             row.solve_cone(soft, biased);
         else
             row.solve_load();
-    }
-}
-
-void bounce_rows(Substep& s, uint32_t first, uint32_t count) {
-    for (uint32_t i = first; i < first + count; ++i) {
-        const RowBlock& block = s.system.rows.block[i];
-        if (block.type->bound == Bound::cone) RowSweep(s.system, block).bounce();
     }
 }
 

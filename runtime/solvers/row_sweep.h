@@ -9,7 +9,5 @@ namespace taut {
 void warm_start_rows(Substep& s, uint32_t first, uint32_t count);
 // Contacts and their rolling friction; biased: with the soft push out of overlaps.
 void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased);
-// What was hit leaves at the speed that its restitution asks for.
-void bounce_rows(Substep& s, uint32_t first, uint32_t count);
 
 }  // namespace taut

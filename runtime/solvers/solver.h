@@ -2,13 +2,16 @@
 // constraint type. Adding one is its file and one line in list.cpp.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <span>
 
 #include "partition/partition.h"
 #include "solvers/bounded_row.h"
 #include "system/axis_rows.h"
+#include "system/impacts.h"
 #include "system/system.h"
 #include "threads/team.h"
 
@@ -21,7 +24,8 @@ struct SolverSettings {
     double gravity_squared;  // |g|^2 [m^2/s^4], scale of the energy guard
     const ContactKernels* kernels;
     const JointKernels* joint_kernels;
-    bool adaptive_damping = false;  // |K| in the place of K; see adaptive_damping.h
+    bool adaptive_damping = false;     // |K| in the place of K; see adaptive_damping.h
+    double restitution_threshold = 0;  // [m/s]
 };
 
 struct SolverReport {
@@ -67,15 +71,20 @@ struct Substep {
     const SolverSettings& settings;
     SolverReport& report;
     SolverScratch& scratch;
-    bool last;  // of the frame: bounces happen now
+    bool last;  // of the frame
     // Sweeps that correct, and those that relax, take the colours of contacts from the last to the first. In turns,
     // each against the other: in one order alone a wall of ten rows or more kept swaying.
     bool corrects_backward = false, relaxes_backward = false;
     // Of the levers and lines of joints [rad]: by how much they may turn, and do.
     double most_turn = std::numeric_limits<double>::infinity(), turn = 0;
+    Impacts* impacts = nullptr;
 
     // What was solved is not kept: the step tries a shorter one.
     bool is_too_long() const { return turn > most_turn; }
+    // Slower impacts do not bounce [m/s]; see restitution.h.
+    double least_impact() const {
+        return std::max(settings.restitution_threshold, std::sqrt(settings.gravity_squared) * system.h);
+    }
 };
 
 struct Solver {

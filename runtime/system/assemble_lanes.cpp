@@ -60,7 +60,6 @@ Movement movement_of(const Nodes& nodes, uint32_t node) {
 void fill_pair(LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.friction[lane] = pair.friction;
-    g.turns[lane] = 0;
     g.rolls[0][lane] = pair.rolls_a;
     g.rolls[1][lane] = pair.rolls_b;
     g.round[0][lane] = pair.round_a;
@@ -78,7 +77,7 @@ void fill_pair(LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
 
 void clear_pair(LaneGroup& g, int lane) {
     g.rolls[0][lane] = g.rolls[1][lane] = 0;
-    g.friction[lane] = g.turns[lane] = g.round[0][lane] = g.round[1][lane] = 0;
+    g.friction[lane] = g.round[0][lane] = g.round[1][lane] = 0;
     for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
 }
 
@@ -119,6 +118,7 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& p
         for (uint32_t k = filled; k < g.points; ++k) clear_lane(g.point[k], lane);
     }
     g.is_round = round;
+    g.bounces = bounces;
     g.first_drive = driven ? 0 : kNoLanes;
     g.rolling = turns ? 0 : kNoLanes;
     return bounces;
@@ -183,7 +183,7 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
 namespace {
 
 // Notes which lanes turned; false: none.
-bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
+bool note_turns(const LaneGroup& g, const System& system, LaneTurns& turns) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const bool a = system.turned[g.a[lane]] != 0, b = system.turned[g.b[lane]] != 0;
@@ -191,10 +191,8 @@ bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
         turns.turned[1][lane] = b;
         turns.follows[0][lane] = a && !g.rolls[0][lane];
         turns.follows[1][lane] = b && !g.rolls[1][lane];
-        if (a || b) g.turns[lane] = 1;
         any = any || a || b;
     }
-    if (any) g.any_turns = 1;
     return any;
 }
 

@@ -129,10 +129,8 @@ Vec3 velocity_at(const System& system, uint32_t node, const Vec3& anchor) {
 }
 
 // How a point was approached before the frame's forces; apart: velocity of b's point against a's.
-void note_approach(const Vec3& apart, const Vec3& normal, double restitution, RowBlock& block) {
-    const double approach = -apart.dot(normal);
-    block.hits = approach > kBounceSpeed;
-    block.bounce = block.hits ? restitution * approach : 0.0;
+void note_approach(const Vec3& apart, const Vec3& normal, RowBlock& block) {
+    block.hits = -apart.dot(normal) > kHardSpeed;
 }
 
 // What a block of rows carries over.
@@ -150,7 +148,7 @@ RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
     block.node[1] = system.at(pair.b);
     const Vec3 apart =
         velocity_at(system, block.node[1], data.anchor_b) - velocity_at(system, block.node[0], data.anchor_a);
-    note_approach(apart, data.basis.row(0), pair.restitution, block);
+    note_approach(apart, data.basis.row(0), block);
     return block;
 }
 
@@ -163,7 +161,7 @@ RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& dat
         block.node[n] = system.at(nodes[n]);
         apart += data.weight[n] * velocity_at(system, block.node[n], data.anchor[n]);
     }
-    note_approach(apart, data.basis.row(0), pair.restitution, block);
+    note_approach(apart, data.basis.row(0), block);
     return block;
 }
 
@@ -204,6 +202,9 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
                     ? add_point(system, pair, rows.span_data.emplace_back(span_contact_data(system, nodes, pair, k)))
                     : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pair, k)));
             block.friction = pair.friction;
+            block.restitution = pair.restitution;
+            block.pair = pairs.active[p].pair;
+            block.point = static_cast<uint8_t>(k);
             set_drive(pair, k, block);
             block.pushed = &pair.pushed;
             carry(system, block, pair.impulse[k]);

@@ -9,7 +9,7 @@
 
 namespace taut {
 
-constexpr float kBounceSpeed = 1.0f;  // slower approaches do not bounce, and are stopped softly [m/s]
+constexpr float kHardSpeed = 1.0f;  // slower approaches are stopped softly [m/s]
 
 // cycles: f h.
 inline SweepTerms soft_terms(double h, double cycles) {
@@ -22,7 +22,7 @@ inline SweepTerms soft_terms(double h, double cycles) {
     t.push = static_cast<float>(kPush);
     t.mass_scale = static_cast<float>(a2 / (1 + a2));
     t.impulse_scale = static_cast<float>(1 / (1 + a2));
-    t.hit = kBounceSpeed;
+    t.hit = kHardSpeed;
     return t;
 }
 // stretch: h over the substep for which f is meant. Where the host changes the time step f stays what it was: what rests

@@ -52,10 +52,12 @@ struct RowBlock {
     double arm[2];                   // of a load: spinning, rolling [m]
     uint32_t loaded, loads;          // of a load: first row of its contact points, each of three; how many there are
     float* spin_slip;                // of a load: what spinning carries on; rolling is in contact
-    double bounce;                   // separation speed wanted at the end of the frame, 0: none [m/s]
-    bool hits;                       // of a cone: approached faster than kBounceSpeed before the frame's forces
+    double restitution;              // of a cone
+    bool hits;                       // of a cone: approached faster than kHardSpeed before the frame's forces
     bool fresh;                      // lambda of the last substep means nothing yet
     bool in_lanes;                   // a swept joint: bias, targets and impulses are in System::joints
+    uint8_t point;                   // of a cone: which point
+    uint32_t pair;                   // of which pair, an index into Pairs::list
 
     bool angular(int r) const { return (type->angular >> r & 1) != 0; }
     bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }

@@ -62,6 +62,8 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
         {"taut_world_set_substeps", [](taut_world w) { return taut_world_set_substeps(w, 3); }},
         {"taut_world_set_contact_events", [](taut_world w) { return taut_world_set_contact_events(w, 1); }},
         {"taut_world_set_hit_speed", [](taut_world w) { return taut_world_set_hit_speed(w, 2); }},
+        {"taut_world_set_restitution_threshold",
+         [](taut_world w) { return taut_world_set_restitution_threshold(w, 0.5f); }},
         {"taut_world_set_pre_solve", [](taut_world w) { return taut_world_set_pre_solve(w, nullptr, nullptr); }},
         {"taut_world_get_contacts",
          [](taut_world w) {

@@ -236,7 +236,7 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
 
     const Field fields[] = {FIELD3(Def, gravity, -1e4, 1e4), FIELD(Def, time_step, 1e-4, 0.1),
                             FIELD(Def, velocity_filter, 0, 1), FIELD(Def, sleep_speed, 0, 10),
-                            FIELD(Def, sleep_time, 0, 1e3)};
+                            FIELD(Def, sleep_time, 0, 1e3), FIELD(Def, restitution_threshold, 0, 1e4)};
     for (const Field& field : fields) {
         for (double value : {std::nan(""), HUGE_VAL, -HUGE_VAL, below(field, field.lo), above(field, field.hi)}) {
             const Def def = with(good, field, value);

@@ -27,9 +27,11 @@ struct Data {
     std::vector<SweepNode> node;
     std::vector<SweepShift> shift;
     std::vector<LaneTurns> turns;
+    std::vector<SweepFlight> flight;
+    std::vector<uint16_t> impacts;
 
     // bearing: the share of points that carry an impulse; the others are far apart.
-    explicit Data(uint64_t seed, double bearing = 1) : node(kNodes), shift(kNodes), turns(kGroups) {
+    explicit Data(uint64_t seed, double bearing = 1) : node(kNodes), shift(kNodes), turns(kGroups), flight(kNodes), impacts(4 * kGroups) {
         std::mt19937_64 engine(seed);
         std::uniform_real_distribution<double> number(-1, 1);
         auto any = [&] { return static_cast<float>(number(engine)); };
@@ -40,6 +42,8 @@ struct Data {
                 velocity.v[k] = 3 * any();
                 velocity.w[k] = 3 * any();
                 shift[i].dx[k] = 0.01f * any();
+                flight[i].gained[k] = 0.1f * any();
+                flight[i].moved[k] = 0.01f * any();
             }
             const Quat q = rotation_from_vector(0.02 * Vec3(number(engine), number(engine), number(engine)));
             for (int k = 0; k < 4; ++k) shift[i].dq[k] = static_cast<float>(q.coeffs()[k]);
@@ -51,6 +55,7 @@ struct Data {
         for (uint32_t i = 0; i < kGroups; ++i) {
             std::shuffle(order.begin(), order.end(), engine);
             LaneGroup g{};
+            g.bounces = i % 5 != 3;
             g.points = 1 + static_cast<uint32_t>(engine() % 4);
             for (int lane = 0; lane < kLanes; ++lane) {
                 const bool empty = engine() % 8 == 0;
@@ -129,7 +134,7 @@ struct Data {
                 for (uint32_t g = begin; g < end; ++g) kernels.turn(view, g, turns[g], shift.data(), node.data());
         }
         for (int i = 0; i < 2; ++i) kernels.sweep_relaxed(view, begin, end, node.data(), terms);
-        kernels.restitute(view, begin, end, node.data(), 1.0f, true);
+        kernels.find_impacts(view, begin, end, node.data(), shift.data(), flight.data(), {240, 0.04f}, impacts.data());
     }
     void slow_down(uint32_t g, int lane, float scale) {
         for (const uint32_t at : {group[g].a[lane], group[g].b[lane]})
@@ -173,6 +178,8 @@ void expect_same_bits(const ContactKernels& kernels) {
         ASSERT_TRUE(std::isfinite(sum));
         ASSERT_TRUE(same_bits(scalar.node, other.node));
         ASSERT_TRUE(same_bits(scalar.point, other.point));
+        ASSERT_TRUE(same_bits(scalar.impacts, other.impacts));
+        ASSERT_TRUE(std::any_of(scalar.impacts.begin(), scalar.impacts.end(), [](uint16_t lanes) { return lanes != 0; }));
         ASSERT_FALSE(scalar.rolling.empty());
         ASSERT_TRUE(same_bits(scalar.rolling, other.rolling));
     }

@@ -46,6 +46,9 @@ protected:
         run("taut_world_set_substeps", [&] { return taut_world_set_substeps(world, substeps); });
         const float speed = real(0, 10);
         run("taut_world_set_hit_speed", [&] { return taut_world_set_hit_speed(world, speed); });
+        const float slowest = one_in(2) ? 0 : real(0, 2);
+        run("taut_world_set_restitution_threshold",
+            [&] { return taut_world_set_restitution_threshold(world, slowest); });
         const taut_pre_solve_fn filter = one_in(2) ? judge : nullptr;
         run("taut_world_set_pre_solve", [&] { return taut_world_set_pre_solve(world, filter, this); });
     }
