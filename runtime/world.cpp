@@ -37,7 +37,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       frozen(memory),
       impacts(memory) {
     last_step = def.time_step;
-    spring_substep = static_cast<double>(def.time_step) / def.substeps;
+    spring_substep = first_substep = static_cast<double>(def.time_step) / def.substeps;
     pairs.world = id;
     pairs.asks = static_cast<uint8_t>(def.contact_events);
 }

@@ -73,6 +73,7 @@ struct World {
 
     // State too: the substep that soft rows keep the frequency of, whatever becomes of the time step [s]. None is longer.
     double spring_substep = 0;
+    double first_substep = 0;  // that of the def at creation
     uint32_t least_substeps() const;
     Impacts impacts;  // derived
 
