@@ -32,7 +32,6 @@ struct Shape {
     Vec3f size = Vec3f::Zero();
     std::shared_ptr<const Hull> hull;                   // hull only
     std::shared_ptr<const Surface> surface = nullptr;   // surface only; size: its scale along x, y, z, none of them 0
-    std::shared_ptr<const Hull> on_surfaces = nullptr;  // see stand_in()
 };
 
 struct MassProperties {
@@ -77,10 +76,6 @@ std::shared_ptr<const Surface> build_height_field(const HeightGrid& grid);
 SurfaceCounts surface_counts(const Shape& shape);
 // Three points a triangle, outward counter-clockwise, in the frame of a shape that is a surface.
 void surface_triangles(const Shape& shape, std::vector<Vec3f>& points);
-
-// What surfaces meet in place of a cylinder, cone or tapered capsule: a polytope of 24 sides (of a ball: 10). Null for
-// other kinds.
-std::shared_ptr<const Hull> stand_in(const Shape& shape);
 
 // Exact for each kind, by polyhedral integration for hulls. A plane and a surface have no mass.
 MassProperties mass_properties(const Shape& shape, double density);
@@ -267,8 +262,8 @@ double spin_radius(const Shape& shape, double lever);
 // Radius of the ball that grows the core to the shape [m]: what of the shape does not turn with it.
 double ball_radius(const Shape& shape);
 
-// Whether contacts stay in place while the shape rolls about its y axis, and are no longer of its core: of cylinders
-// and cones.
+// Whether the shape has circles about its y axis, on which contacts stay in place while it rolls: of cylinders, cones
+// and tapered capsules.
 bool rolls(const Shape& shape);
 // About where that ball, and the one inside the shape, have their middle, in the shape's frame.
 Vec3 middle(const Shape& shape);

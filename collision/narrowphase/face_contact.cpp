@@ -10,7 +10,7 @@ namespace taut::collision {
 namespace {
 
 // Ids of points, below 1 << 14: corners of the polygon by number; then
-constexpr uint32_t kCrossing = 64;  // + 2 * side + (0 where it enters the disc, 1 where it leaves)
+constexpr uint32_t kCrossing = kFaceCorners;  // + 2 * side + (0 where it enters the disc, 1 where it leaves)
 constexpr uint32_t kRim = 256;      // + quarter of the incident disc's rim, from the deepest point on
 constexpr uint32_t kOwnRim = 264;   // + quarter of the face's own rim
 constexpr uint32_t kDeepest = 272;  // + 0 at the incident shape's -y end, 1 at +y; also the ends of its line
@@ -240,28 +240,32 @@ void disc_on_disc(const FlatFace& face, const Disc& disc, uint32_t deepest, floa
 
 }  // namespace
 
+uint32_t common_points(const FlatFace& face, const Solid& other, const Pose& pose, float slack, Polygon& out) {
+    const Feature feature = other.feature_along(pose.rotation.transpose() * -face.normal);
+    if (feature.face < 0) {
+        line_on_face(face, {pose * feature.line.from, pose.rotation * feature.line.step}, slack, out);
+        return 0;
+    }
+    const FlatFace incident = other.face(feature.face);
+    if (!incident.is_disc()) {
+        polygon_on_disc(face, incident, pose, slack, out);
+        return uint32_t(feature.face) << 14;
+    }
+    const Disc disc = {pose * (incident.normal * incident.offset), pose.rotation * incident.u,
+                       pose.rotation * incident.v, incident.radius};
+    const uint32_t deepest = kDeepest + uint32_t(feature.face);
+    if (face.is_disc()) {
+        disc_on_disc(face, disc, deepest, slack, out);
+    } else {
+        disc_on_polygon(face, disc, deepest, slack, out);
+    }
+    return 0;
+}
+
 void face_contact(const FlatFace& face, const Solid& other, const Pose& pose, uint32_t base, float slack,
                   const Wanted& wanted, Manifold& out) {
-    const Feature feature = other.feature_along(pose.rotation.transpose() * -face.normal);
     Polygon points;
-    if (feature.face < 0) {
-        line_on_face(face, {pose * feature.line.from, pose.rotation * feature.line.step}, slack, points);
-    } else {
-        const FlatFace incident = other.face(feature.face);
-        if (incident.is_disc()) {
-            const Disc disc = {pose * (incident.normal * incident.offset), pose.rotation * incident.u,
-                               pose.rotation * incident.v, incident.radius};
-            const uint32_t deepest = kDeepest + uint32_t(feature.face);
-            if (face.is_disc()) {
-                disc_on_disc(face, disc, deepest, slack, points);
-            } else {
-                disc_on_polygon(face, disc, deepest, slack, points);
-            }
-        } else {
-            polygon_on_disc(face, incident, pose, slack, points);
-            base |= uint32_t(feature.face) << 14;
-        }
-    }
+    base |= common_points(face, other, pose, slack, points);
     out.normal = face.normal;
     add_points(points, {face.u, face.v, face.normal, face.offset}, base, wanted, out);
 }

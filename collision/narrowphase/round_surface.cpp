@@ -4,7 +4,7 @@
 
 #include "collision/narrowphase/core.h"
 #include "collision/narrowphase/rounds.h"
-#include "collision/narrowphase/surface.h"
+#include "collision/narrowphase/stretch.h"
 
 namespace taut::collision {
 namespace {
@@ -22,30 +22,6 @@ struct Round {
         return std::min(direction.dot(axis.from), direction.dot(axis.at(1))) - radius;
     }
 };
-
-// The stretch of the axis over a facet, joined over its triangles; empty: enter > leave.
-struct Stretch {
-    float enter = 2, leave = -1;
-};
-
-// Cuts the axis by the planes through the triangle's edges along the normal.
-void join_stretch(const Round& round, const Facet& facet, const SurfaceView::Triangle& triangle, Stretch& stretch) {
-    const Vec3f end = round.axis.at(1);
-    float enter = 0, leave = 1;
-    for (int e = 0; e < 3; ++e) {
-        const Vec3f& corner = triangle.at[e];
-        Vec3f outward = (triangle.at[next_corner(e)] - corner).cross(facet.normal).normalized();
-        if (facet.flipped) outward = -outward;
-        const float from = outward.dot(round.axis.from - corner) - kSeam * round.radius;
-        const float to = outward.dot(end - corner) - kSeam * round.radius;
-        if (from > 0 && to > 0) return;
-        if (from > 0) enter = std::max(enter, from / (from - to));
-        if (to > 0) leave = std::min(leave, from / (from - to));
-    }
-    if (enter > leave) return;
-    stretch.enter = std::min(stretch.enter, enter);
-    stretch.leave = std::max(stretch.leave, leave);
-}
 
 // Midway between plane and surface below the axis' point t.
 void add_point(const Round& round, const Facet& facet, float t, float margin, uint32_t feature, Manifold& out) {
@@ -101,12 +77,12 @@ void round_surface(const Meeting& meeting) {
         Stretch stretch;
         for (const uint64_t key : facet.triangles) {
             const SurfaceView::Triangle triangle = meeting.view.triangle(uint32_t(key));
-            join_stretch(round, facet, triangle, stretch);
+            stretch.join(round.axis, kSeam * round.radius, facet, triangle);
             for (int e = 0; e < 3; ++e) {
                 if (triangle.sharp >> e & 1) touch_edge(round, facet, triangle, e, meeting);
             }
         }
-        if (stretch.enter <= stretch.leave) touch_face(round, facet, stretch, meeting);
+        if (!stretch.is_empty()) touch_face(round, facet, stretch, meeting);
     });
 }
 

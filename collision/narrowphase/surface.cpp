@@ -12,13 +12,10 @@ constexpr float kClearly = 0.0025f;
 // Faces are wall and floor to one another if they meet at more than 45 degrees: cosine between the normals.
 constexpr float kWall = 0.7f;
 
-// By the body's kind; planes meet no surface, and kinds with a stand-in meet it as hulls.
-constexpr SurfaceKernel kKernels[kShapeKinds] = {nullptr, polytope_surface, round_surface, round_surface,
-                                                 polytope_surface};
-
-Shape standing_in(const Shape& body) {
-    return body.on_surfaces ? Shape{ShapeKind::hull, Vec3f::Zero(), body.on_surfaces} : body;
-}
+// By the body's kind; planes and surfaces meet no surface.
+constexpr SurfaceKernel kKernels[kShapeKinds] = {nullptr,          polytope_surface, round_surface,
+                                                 round_surface,    polytope_surface, revolved_surface,
+                                                 revolved_surface, revolved_surface};
 
 // The triangles that the body's box, grown by the margin, meets; by facet.
 void find_near(const SurfaceView& view, const Shape& body, float margin, Parts& parts) {
@@ -123,7 +120,7 @@ void collide_parts(const Shape& a, const Placement& at_a, const Shape& b, const 
     parts.found.clear();
     const bool first = has_parts(a);
     const Shape& shape = first ? a : b;
-    const Shape body = standing_in(first ? b : a);
+    const Shape& body = first ? b : a;
     const Placement &at = first ? at_a : at_b, &at_body = first ? at_b : at_a;
     const SurfaceKernel kernel = kKernels[size_t(body.kind)];
     if (!kernel) return;

@@ -26,6 +26,12 @@ public:
     Vec3f scale() const { return scale_; }
     Vec3f vertex(uint32_t i) const;
     Triangle triangle(uint32_t number) const;
+    // Of a triangle that may lie far from the body; in double, lest a facet tilts and sinks with its distance.
+    struct Plane {
+        Vec3f normal;  // outward, unit
+        float offset;  // [m]
+    };
+    Plane plane(uint32_t triangle) const;
 
     // Whether nothing of the surface around an edge of the triangle, or around a vertex at a place, reaches further
     // along the unit direction than that itself.
@@ -95,6 +101,7 @@ using SurfaceKernel = void (*)(const Meeting& meeting);
 
 void polytope_surface(const Meeting& meeting);  // box or hull
 void round_surface(const Meeting& meeting);     // sphere or capsule
+void revolved_surface(const Meeting& meeting);  // cylinder, cone or tapered capsule
 
 // Calls act(facet) for each facet that the body meets from the front and within the margin. lowest(direction): the
 // least of direction . p over the body; centre: its middle.
@@ -106,11 +113,10 @@ void for_facets(const Meeting& meeting, const Vec3f& centre, Lowest&& lowest, Ac
         facet.number = uint32_t(meeting.order[begin] >> 32);
         while (end < meeting.order.size() && uint32_t(meeting.order[end] >> 32) == facet.number) ++end;
         facet.triangles = meeting.order.subspan(begin, end - begin);
-        const SurfaceView::Triangle seed = meeting.view.triangle(surface.seed_of[facet.number]);
-        const Vec3f normal = (seed.at[1] - seed.at[0]).cross(seed.at[2] - seed.at[0]).normalized();
-        facet.flipped = surface.two_sided && normal.dot(centre - seed.at[0]) < 0;
-        facet.normal = facet.flipped ? Vec3f(-normal) : normal;
-        facet.offset = facet.normal.dot(seed.at[0]);
+        const SurfaceView::Plane plane = meeting.view.plane(surface.seed_of[facet.number]);
+        facet.flipped = surface.two_sided && plane.normal.dot(centre) < plane.offset;
+        facet.normal = facet.flipped ? Vec3f(-plane.normal) : plane.normal;
+        facet.offset = facet.flipped ? -plane.offset : plane.offset;
         facet.height = lowest(facet.normal) - facet.offset;
         if (facet.height > meeting.margin) continue;
         // By more than half of the body's reach behind it, whatever counts as the middle: a cone's is next to its base.

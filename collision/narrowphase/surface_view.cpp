@@ -37,6 +37,14 @@ SurfaceView::Triangle SurfaceView::triangle(uint32_t number) const {
     return triangle;
 }
 
+SurfaceView::Plane SurfaceView::plane(uint32_t number) const {
+    const Corners corner = surface_.corners(number);
+    Vec3 at[3];
+    for (size_t i = 0; i < 3; ++i) at[i] = surface_.vertex(corner[i]).cwiseProduct(scale_).cast<double>();
+    const Vec3 cross = (at[1] - at[0]).cross(at[2] - at[0]) * (mirrored_ ? -1.0 : 1.0), normal = cross.normalized();
+    return {(to_body_.cast<double>() * normal).cast<float>(), float(normal.dot(at[0] - body_.position))};
+}
+
 bool SurfaceView::is_top_edge(const Triangle& triangle, int edge, const Vec3f& direction) const {
     const size_t from = size_t(edge), to = size_t(next_corner(edge)), opposite = size_t(next_corner(int(to)));
     if (rises(triangle.at[opposite] - triangle.at[from], direction)) return false;

@@ -115,10 +115,9 @@ typedef enum taut_shape_kind {
 
 /**
  * Surface of triangles, in the body's frame. Static and kinematic bodies only; it collides with all convex shapes but
- * planes; cylinders, cones and tapered capsules meet it as polytopes of 24 sides. A triangle looks to the side from
- * which its corners run counter-clockwise, and is met from that side alone: a body whose centre is behind it by more
- * than half of the body's reach passes. Edges at which the surface is flat or hollow catch nothing, whatever the
- * triangulation. Coordinates that differ by less than 5e-7 of the largest become equal, and vertices at the same place
+ * planes, round ones exactly. A triangle looks to the side from which its corners run counter-clockwise, and is met
+ * from that side alone: a body whose centre is behind it by more than half of the body's reach passes. Edges at which
+ * the surface is flat or hollow catch nothing, whatever the triangulation. Coordinates that differ by less than 5e-7 of the largest become equal, and vertices at the same place
  * one. Left out and counted in taut_mesh_info: triangles thinner than 1e-5 of their longest edge, and second copies of
  * a triangle. Refused: no triangle left, an index out of range, a coordinate that is not finite or beyond
  * TAUT_SHAPE_MAX_SIZE.

@@ -9,14 +9,6 @@ namespace {
 // A plane's normal shorter than this has no direction worth keeping [1].
 constexpr double kLeastNormal = 1e-6;
 
-// A shape with what surfaces meet in its place.
-taut_result add_standing_in(const Check& check, taut_world world, collision::Shape shape, taut_shape* out) {
-    return contain(check.call(), [&] {
-        shape.on_surfaces = collision::stand_in(shape);
-        return add_shape(check, world, std::move(shape), out);
-    });
-}
-
 // Capsule, cylinder and cone: a radius and half a length along y.
 template <class Def>
 taut_result add_round(const char* call, collision::ShapeKind kind, taut_world world, const Def* def, taut_shape* out) {
@@ -24,7 +16,7 @@ taut_result add_round(const char* call, collision::ShapeKind kind, taut_world wo
     if (!check_shape_def(check, def, out)) return check.result();
     check.number("radius", def->radius, kShapeSize).number("half_length", def->half_length, kShapeSize);
     if (!check) return check.result();
-    return add_standing_in(check, world, {kind, Vec3f(def->radius, def->half_length, 0), nullptr}, out);
+    return add_shape(check, world, {kind, Vec3f(def->radius, def->half_length, 0), nullptr}, out);
 }
 
 }  // namespace
@@ -84,7 +76,7 @@ taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_
                   "bottom_radius and top_radius differ by 2 half_length or more: one ball is inside the other");
     if (!check) return check.result();
     const Vec3f size(def->bottom_radius, def->half_length, def->top_radius);
-    return add_standing_in(check, world, {collision::ShapeKind::tapered_capsule, size, nullptr}, out);
+    return add_shape(check, world, {collision::ShapeKind::tapered_capsule, size, nullptr}, out);
 }
 
 taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {

@@ -110,6 +110,69 @@ TEST_F(Surfaces, MeetASphereAtAConvexEdgeAlongTheLineOfCentres) {
     }
 }
 
+// The sides of a box as triangles against the box itself: the deepest part is as far away, and looks the same way.
+TEST_F(Surfaces, MeetRoundShapesAsABoxOfThatFormDoes) {
+    const Vec3f half(0.7f, 0.4f, 0.5f);
+    Soup soup;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float side : {-1.0f, 1.0f}) {
+            const int j = (axis + 1) % 3, k = (axis + 2) % 3;
+            const auto corner = [&](float u, float v) {
+                Vec3f p = half;
+                p[axis] *= side, p[j] *= u * side, p[k] *= v;
+                return p;
+            };
+            soup.add_quad(corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1));
+        }
+    const Shape surface = soup.shape(), box = oracle::box(half.x(), half.y(), half.z());
+    const Shape bodies[] = {oracle::cylinder(0.3f, 0.2f), oracle::cylinder(0.1f, 0.5f), oracle::cone(0.3f, 0.3f),
+                            oracle::tapered_capsule(0.3f, 0.2f, 0.15f)};
+    Random random(17);
+    int met = 0;
+    double worst = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Shape& body = bodies[i % 4];
+        const Mat3f turn = random.rotation();
+        const Vec3 at(1.1 * random.uniform(-1, 1), 0.8 * random.uniform(-1, 1), 0.9 * random.uniform(-1, 1));
+        const Placement still{Vec3::Zero(), Mat3f::Identity()};
+        PairCache cache;
+        Manifold expected;
+        collide(box, still, body, {at, turn}, 0.02f, cache, expected);
+        float want = 1;
+        for (int k = 0; k < expected.count; ++k) want = std::min(want, expected.points[k].separation);
+        if (expected.count == 0 || want < -0.004f) continue;
+        float least = 1;
+        for (const PartManifold& part : touch(body, at, surface, 0.02f, turn))
+            for (int k = 0; k < part.manifold.count; ++k)
+                least = std::min(least, part.manifold.points[k].separation);
+        worst = std::max(worst, std::abs(double(least - want)));
+        ++met;
+    }
+    EXPECT_GT(met, 100);
+    EXPECT_LT(worst, 1e-3);
+    RecordProperty("worst_mm", std::to_string(1000 * worst));
+}
+
+// However far the triangle is that gives a facet its plane.
+TEST_F(Surfaces, AreFlatFarAway) {
+    Soup soup;
+    for (int i = 0; i < 1500; ++i) {
+        const float x = float(i) - 750;
+        soup.add_quad({x, 0, -0.5f}, {x, 0, 0.5f}, {x + 1, 0, 0.5f}, {x + 1, 0, -0.5f});
+    }
+    const Shape surface = soup.shape();
+    const Mat3f turn = rotation_from_vector(Vec3(0.3, 1.1, -0.7)).toRotationMatrix().cast<float>();
+    for (const double x : {-748.3, -3.2, 512.7, 747.6}) {
+        for (const Shape& body : {oracle::sphere(0.25f), oracle::box(0.25f, 0.25f, 0.25f)}) {
+            const bool round = body.kind == ShapeKind::sphere;
+            const auto& found = touch(body, {x, 0.24, 0.01}, surface, 0.02f, round ? turn : Mat3f(Mat3f::Identity()));
+            ASSERT_EQ(found.size(), 1u) << x;
+            EXPECT_NEAR(found[0].manifold.points[0].separation, -0.01, 2e-6) << x;
+            EXPECT_NEAR(found[0].manifold.normal.y(), 1, 1e-6) << x;
+        }
+    }
+}
+
 // A random triangle alone, met from its front: spheres by the exact distance, box and hull by the separation from a
 // tetrahedron that lies thinly behind it.
 TEST_F(Surfaces, AgreeWithAThinTetrahedron) {
