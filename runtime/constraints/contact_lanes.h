@@ -51,8 +51,9 @@ struct alignas(64) LaneGroup {
     uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no surface of a lane moves
     uint32_t bounces = 0;             // 1: some pair has restitution
     uint32_t is_round = 0;            // 1: some round is not 0
-    uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has rolling or spinning friction
-    uint8_t rolls[2][kLanes];         // of a and b, 1: levers stay as they are while the body turns
+    uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has friction torques or an axis
+    uint32_t has_axes = 0;            // 1: some lane has a shape of revolution
+    uint32_t arcs = 0;                // bit by lane: a body turns so far in the frame that gaps follow its arc
 };
 
 struct alignas(64) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move
@@ -65,6 +66,10 @@ struct alignas(64) LaneRolling {   // about normal, tangent 1, tangent 2; lanes 
     float roll_mass[3][kLanes];    // inverse of the 2x2 block about the tangents: 11, 22, 12 [kg m^2]
     float isotropic_mass[kLanes];  // 1 / its larger eigenvalue [kg m^2]
     float impulse[3][kLanes];      // [N m s]
+    // Of a and b, whose points lie on circles about axes; see state/levers.h.
+    float axis[2][3][kLanes];    // unit, world axes, as their levers; 0: none
+    float across[2][3][kLanes];  // the unit vector across it that is nearest to the outward normal
+    float rim[4][2][kLanes];     // of each point, the circle's radius [m]
 };
 
 struct alignas(64) LanePoint {           // empty places have zero masses
@@ -79,6 +84,7 @@ struct alignas(64) LanePoint {           // empty places have zero masses
     float peak[kLanes];                  // largest normal impulse of the frame [N s]
     float approach[kLanes];              // normal velocity before the frame's forces [m/s], negative when closing
     float restitution[kLanes];
+    float bend[kLanes];  // how fast the bodies' arcs close the gap beside their velocities, where LaneGroup::arcs [m/s]
 };
 
 // What the kernels see: plain pointers, so that no inline function is shared between builds.
@@ -113,7 +119,7 @@ public:
     }
 
 private:
-    static constexpr uint32_t kPiece = 24;  // 32 KiB, of which Memory wastes little
+    static constexpr uint32_t kPiece = 22;  // 32 KiB, of which Memory wastes little
 
     void begin_piece() {
         if (next_piece_ == piece_.size()) {
@@ -178,10 +184,9 @@ struct ImpactTerms {
     float threshold;  // [m/s], slower impacts do not bounce
 };
 
-// Of bodies a and b of a group's lanes, 1 or 0.
+// Of bodies a and b of a group's lanes, 1 where it turned, else 0.
 struct alignas(64) LaneTurns {
-    float turned[2][kLanes];   // it turned
-    float follows[2][kLanes];  // it turned, and levers follow it: it does not roll
+    float turned[2][kLanes];
 };
 
 // The fused sweep of contacts: evaluate and solve in one pass over lanes [begin, end) of groups.

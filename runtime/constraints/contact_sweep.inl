@@ -235,33 +235,65 @@ struct ContactSweep {
     // cylinders that hit a wall at 100 m/s one in four gained energy, up to 6 times).
     static constexpr float kOtherMass = 0.2f;
 
-    // Levers of one side, which end at its core; skin: from there to the surface.
-    static void turn_levers(float (&r)[3][kLanes], const V& skin, const V& change, const float (&follows)[kLanes]) {
-        const F zero = F::all(0), chosen = F::load(follows);
-        const V old = load(r), turned = old - skin + change + skin;
-        F::if_greater(chosen, zero, turned.x, old.x).store(r[0]);
-        F::if_greater(chosen, zero, turned.y, old.y).store(r[1]);
-        F::if_greater(chosen, zero, turned.z, old.z).store(r[2]);
+    // How the axes of one side turn with its bodies, and with them where circles reach furthest along the outward normal;
+    // gain: how much further a circle of radius 1 reaches. See state/levers.h.
+    struct AxleTurn {
+        V axis, across;
+        F gain;
+
+        template <class Turn>
+        AxleTurn(const LaneRolling& axles, int side, const V& outward, const Turn& at) {
+            const V old_axis = ContactSweep::load(axles.axis[side]), old_across = ContactSweep::load(axles.across[side]);
+            axis = old_axis + at.turning(old_axis);
+            const V beside = outward - dot(axis, outward) * axis;
+            const F least = F::all(0.05f), sine = F::sqrt(dot(beside, beside));
+            across = (F::all(1) / F::max(sine, least)) * beside;
+            gain = dot(across - old_across, outward);
+        }
+    };
+
+    static void choose(const F& chosen, const V& value, float (&to)[3][kLanes]) {
+        const F zero = F::all(0);
+        F::if_greater(chosen, zero, value.x, F::load(to[0])).store(to[0]);
+        F::if_greater(chosen, zero, value.y, F::load(to[1])).store(to[1]);
+        F::if_greater(chosen, zero, value.z, F::load(to[2])).store(to[2]);
     }
 
-    static void turn_group(const LaneGroup& g, const LaneTurns& turns, const SweepShift* shifts) {
-        const F zero = F::all(0), turned_a = F::load(turns.turned[0]), turned_b = F::load(turns.turned[1]);
-        const V n = load(g.normal), skin_a = F::load(g.round[0]) * n, skin_b = (zero - F::load(g.round[1])) * n;
-        const ShiftLanes of_a(g.a, shifts), of_b(g.b, shifts);
+    // Cores of one side's levers turn with its bodies. before(k), after(k): the skin of a point.
+    template <class Before, class After>
+    static void turn_points(const LaneGroup& g, int side, const V& outward, const F& turned, const ShiftLanes& at,
+                            const Before& before, const After& after) {
+        const F zero = F::all(0);
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
-            const V change_a = of_a.turning(load(p.ra) - skin_a), change_b = of_b.turning(load(p.rb) - skin_b);
-            turn_levers(p.ra, skin_a, change_a, turns.follows[0]);
-            turn_levers(p.rb, skin_b, change_b, turns.follows[1]);
-            const F gap_a = F::if_greater(turned_a, zero, dot(n, change_a), zero);
-            const F gap_b = F::if_greater(turned_b, zero, dot(n, change_b), zero);
-            (F::load(p.gap0) + gap_b - gap_a).store(p.gap0);
+            float(&lever)[3][kLanes] = side == 0 ? p.ra : p.rb;
+            const V core = load(lever) - before(k), change = at.turning(core);
+            choose(turned, core + change + after(k), lever);
+            const F gain = dot(outward, change) + dot(outward, after(k) - before(k));
+            (F::load(p.gap0) - F::if_greater(turned, zero, gain, zero)).store(p.gap0);
         }
+    }
+    static void turn_side(LaneView contacts, const LaneGroup& g, int side, const V& outward, const F& turned,
+                          const ShiftLanes& at) {
+        const V ball = F::load(g.round[side]) * outward;
+        const auto same = [&](uint32_t) { return ball; };
+        if (!g.has_axes) return turn_points(g, side, outward, turned, at, same, same);
+        LaneRolling& axles = contacts.rolling[g.rolling];
+        const AxleTurn now(axles, side, outward, at);
+        const V was = load(axles.across[side]);
+        turn_points(
+            g, side, outward, turned, at, [&](uint32_t k) { return ball + F::load(axles.rim[k][side]) * was; },
+            [&](uint32_t k) { return ball + F::load(axles.rim[k][side]) * now.across; });
+        choose(turned, now.axis, axles.axis[side]);
+        choose(turned, now.across, axles.across[side]);
     }
 
     static void turn(LaneView contacts, uint32_t group, const LaneTurns& turns, const SweepShift* shifts,
                      const SweepNode* nodes) {
-        turn_group(contacts.group[group], turns, shifts);
+        const LaneGroup& g = contacts.group[group];
+        const V n = load(g.normal);
+        turn_side(contacts, g, 1, F::all(-1) * n, F::load(turns.turned[1]), ShiftLanes(g.b, shifts));
+        turn_side(contacts, g, 0, n, F::load(turns.turned[0]), ShiftLanes(g.a, shifts));
         const F zero = F::all(0), part = F::all(kOtherMass);
         const F chosen = F::max(F::load(turns.turned[0]), F::load(turns.turned[1]));
         const auto put = [&](const F& value, float* to) { F::if_greater(chosen, zero, value, F::load(to)).store(to); };
@@ -328,7 +360,8 @@ struct ContactSweep {
     }
 
     // Gaps of a group's points at the start of the substep.
-    static void measure_gaps(const LaneGroup& g, const Frame& f, const SweepShift* shifts) {
+    static void measure_gaps(LaneView contacts, const LaneGroup& g, const Frame& f, const SweepShift* shifts) {
+        if (g.has_axes) return measure_round_gaps(contacts.rolling[g.rolling], g, f, shifts);
         const ShiftLanes at_a(g.a, shifts), at_b(g.b, shifts);
         const V round_a = F::load(g.round[0]) * f.n, round_b = F::load(g.round[1]) * f.n;
         for (uint32_t k = 0; k < g.points; ++k) {
@@ -336,6 +369,82 @@ struct ContactSweep {
             V core_a = load(p.ra), core_b = load(p.rb);
             if (g.is_round) core_a = core_a - round_a, core_b = core_b + round_b;
             (F::load(p.gap0) + dot(at_b.motion(core_b) - at_a.motion(core_a), f.n)).store(p.gap);
+        }
+    }
+    // The same with circles about axes.
+    [[gnu::noinline]] static void measure_round_gaps(const LaneRolling& axles, const LaneGroup& g, const Frame& f,
+                                                     const SweepShift* shifts) {
+        const ShiftLanes at_a(g.a, shifts), at_b(g.b, shifts);
+        const V back = F::all(-1) * f.n, round_a = F::load(g.round[0]) * f.n, round_b = F::load(g.round[1]) * back;
+        const AxleTurn axle_a(axles, 0, f.n, at_a), axle_b(axles, 1, back, at_b);
+        const V across_a = load(axles.across[0]), across_b = load(axles.across[1]);
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LanePoint& p = g.point[k];
+            const F rim_a = F::load(axles.rim[k][0]), rim_b = F::load(axles.rim[k][1]);
+            const V core_a = load(p.ra) - round_a - rim_a * across_a, core_b = load(p.rb) - round_b - rim_b * across_b;
+            const F cores = dot(at_b.motion(core_b) - at_a.motion(core_a), f.n);
+            (F::load(p.gap0) + cores - rim_a * axle_a.gain - rim_b * axle_b.gain).store(p.gap);
+        }
+    }
+
+    // Bodies that go on turning at their velocities for a substep: theta = h w, x = |theta|,
+    //   R r - r = sin x / x theta x r + (1 - cos x) / x^2 theta x (theta x r).
+    struct Spin {
+        V theta;
+        F sine, cosine;  // these factors, the first less 1; good to 2e-3 up to x = 3, which stands for more
+
+        Spin(const Side& side, const F& h) : theta(h * side.spin()) {
+            const F squared = dot(theta, theta), most = F::all(9);
+            const F x2 = F::if_greater(squared, most, most, squared);
+            const auto c = [](double of) { return F::all(static_cast<float>(of)); };
+            sine = x2 * (c(-1.0 / 6) + x2 * (c(1.0 / 120) + x2 * (c(-1.0 / 5040) + x2 * c(1.0 / 362880))));
+            cosine = c(0.5) + x2 * (c(-1.0 / 24) + x2 * (c(1.0 / 720) + x2 * (c(-1.0 / 40320) + x2 * c(1.0 / 3628800))));
+        }
+        // What velocity and lever do not tell of the way of the point at r.
+        V bend(const V& r) const {
+            const V t = cross(theta, r);
+            return sine * t + cosine * cross(theta, t);
+        }
+        V turning(const V& r) const { return cross(theta, r) + bend(r); }
+    };
+
+    // How much further than its velocity tells one side gets along its outward normal in a substep, at a point.
+    struct Bend {
+        const Spin& spin;
+        V outward, ball, across;
+        F gain;
+
+        Bend(const LaneView& contacts, const LaneGroup& g, int side, const V& o, const Spin& its_spin)
+            : spin(its_spin), outward(o), ball(F::load(g.round[side]) * o), across(F::all(0) * o), gain(F::all(0)) {
+            if (!g.has_axes) return;
+            const LaneRolling& axles = contacts.rolling[g.rolling];
+            across = load(axles.across[side]);
+            gain = AxleTurn(axles, side, o, spin).gain - dot(o, cross(spin.theta, across));
+        }
+        F of(const V& lever, const F& rim) const {
+            return dot(outward, spin.bend(lever - ball - rim * across)) + rim * gain;
+        }
+    };
+
+    // How fast bends of the ways of points close gaps. A rod that spins about its length and swings about its end goes
+    // w v h^2 / 2 aside in a substep, more than rows bring back that see the gap when it is there.
+    [[gnu::noinline]] static void measure_bends(LaneView contacts, const LaneGroup& g, const Frame& f,
+                                                const SweepNode* nodes, const F& h, const F& inv_h) {
+        float chosen[kLanes];
+        for (int lane = 0; lane < kLanes; ++lane) chosen[lane] = g.arcs >> lane & 1 ? 1.0f : 0.0f;
+        const F zero = F::all(0), bends = F::load(chosen);
+        Side a, b;
+        a.gather(g.a, nodes);
+        b.gather(g.b, nodes);
+        const Spin spin_a(a, h), spin_b(b, h);
+        const Bend bend_a(contacts, g, 0, f.n, spin_a), bend_b(contacts, g, 1, F::all(-1) * f.n, spin_b);
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LanePoint& p = g.point[k];
+            const auto rim = [&](int side) {
+                return g.has_axes ? F::load(contacts.rolling[g.rolling].rim[k][side]) : zero;
+            };
+            const F less = bend_a.of(load(p.ra), rim(0)) + bend_b.of(load(p.rb), rim(1));
+            F::if_greater(bends, zero, inv_h * less, zero).store(p.bend);
         }
     }
 
@@ -346,17 +455,20 @@ struct ContactSweep {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
         const F least = F::all(-terms.push), slow = F::all(-terms.hit);
         const F soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
+        const F h = F::all(1 / terms.inv_h);
         prefetch(contacts, begin, end, nodes, shifts);
         for (uint32_t i = begin; i < end; ++i) {
             prefetch(contacts, i + 1, end, nodes, shifts);
             const LaneGroup& g = contacts.group[i];
-            if (shifts) measure_gaps(g, Frame(g), shifts);
+            if (shifts) measure_gaps(contacts, g, Frame(g), shifts);
+            if (shifts && g.arcs) measure_bends(contacts, g, Frame(g), nodes, h, inv_h);
             sweep_group(contacts, g, nodes, [&](const LanePoint& p) {
                 const F gap = F::load(p.gap), hit = slow - F::load(p.approach), rigid = F::max(gap, hit);
-                return HitTerms{
-                    {F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
-                     F::if_greater(rigid, zero, one, soft_mass), F::if_greater(rigid, zero, zero, soft_impulse)},
-                    F::if_greater(hit, zero, one, zero)};
+                const F scale = F::if_greater(rigid, zero, one, soft_mass);
+                F bias = F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least));
+                if (g.arcs) bias = bias - F::load(p.bend) / scale;
+                return HitTerms{{bias, scale, F::if_greater(rigid, zero, zero, soft_impulse)},
+                                F::if_greater(hit, zero, one, zero)};
             });
         }
     }
@@ -402,7 +514,7 @@ struct ContactSweep {
             Side a, b;
             a.gather(g.a, nodes);
             b.gather(g.b, nodes);
-            measure_gaps(g, f, shifts);
+            measure_gaps(contacts, g, f, shifts);
             const FlightLanes of_a(g.a, flights), of_b(g.b, flights);
             const F gained = dot(of_b.gained - of_a.gained, f.n), moved = dot(of_b.moved - of_a.moved, f.n);
             const F least = F::max(slow, gained * gained);

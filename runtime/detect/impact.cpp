@@ -116,10 +116,15 @@ double Encounter::meeting(double time) const {
 void Encounter::bring_to_present(Pair& pair) const {
     const Movement a = {motion_a_.centre, motion_a_.velocity, motion_a_.spin},
                    b = {motion_b_.centre, motion_b_.velocity, motion_b_.spin};
+    const auto axle = [](const collision::Shape& shape, const collision::Motion& motion) {
+        if (!collision::rolls(shape)) return Axle{};
+        return Axle{motion.at.rotation.col(1).cast<double>(), motion.at.position - motion.centre};
+    };
+    const Axles axles = {axle(a_, motion_a_), axle(b_, motion_b_)};
     for (int k = 0; k < pair.manifold.count; ++k) {
         float& separation = pair.manifold.points[k].separation;
-        const Levers levers = levers_of(pair, k, static_cast<double>(separation), arm_a_, a, b);
-        separation -= static_cast<float>(growth_of(pair, levers, a, b));
+        const Levers levers = levers_of(pair, k, static_cast<double>(separation), arm_a_, axles, a, b);
+        separation -= static_cast<float>(growth_of(pair, levers, axles, a, b));
     }
 }
 

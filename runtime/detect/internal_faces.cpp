@@ -40,8 +40,9 @@ struct Side {
         const Nodes& nodes = of.nodes;
         const Movement a = movement_of(nodes, pair.a, pair.a2), b = movement_of(nodes, pair.b, pair.b2);
         if (pair.then > 0) {
-            const Levers levers = levers_of(pair, k, a.x - origin_of_points(of, pair), a, b);
-            return solid_is_b ? Vec3(b.x + levers.b) : Vec3(a.x + levers.a);
+            const Vec3 arm_a = a.x - origin_of_points(of, pair), arm_b = b.x - nodes.origin(pair.b);
+            const Levers levers = levers_of(pair, k, arm_a, axles_of(of.pairs, pair, arm_a, arm_b), a, b);
+            return solid_is_b ? Vec3(b.x + levers.b.at) : Vec3(a.x + levers.a.at);
         }
         const collision::ContactPoint& point = pair.manifold.points[k];
         const Vec3 normal = pair.manifold.normal.cast<double>();

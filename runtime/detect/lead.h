@@ -13,10 +13,10 @@ float patch_of(const Pairs& pairs, const PairEnds& pair);
 // frame, unless it moves so little in that time that it may as well be kept.
 double lead_of(const Detection& of, const Pair& pair);
 
-// Points found where the two will be in a lead time, from a's origin then to a's node, told at the present poses: with
-// the levers of then, of the lighter node exactly, and less the growth of the gap until then,
-//   gap now = gap then - T n . ((v_b + w_b x r_b) - (v_a + w_a x r_a)),
-// to first order, for a point that rolls stays where it touches while one of the body would rise.
+// Points found where the two will be in a lead time, from a's origin then to a's node, told at the present poses: less
+// the growth of the gap until then, and with the levers of then, of the lighter node exactly,
+//   gap now = gap then - T n . ((v_b + w_b x r_b) - (v_a + w_a x r_a)).
+// A body that turns so far that its levers follow it within the frame has those of now, and the growth along its arc.
 void bring_back(const Detection& of, double lead, const Vec3f& from_a, Pair& pair);
 
 }  // namespace taut

@@ -95,12 +95,12 @@ void note_shapes(const Pairs& pairs, Pair& pair) {
 bool adopt(const Shaped& shaped, const Detection& of, bool known, const collision::Manifold& old, const Pair& before,
            Pair& pair) {
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
+    if (!known) note_shapes(of.pairs, pair);
     if (shaped.lead() > 0)
         bring_back(of, shaped.lead(), from_a, pair);
     else
         for (int k = 0; k < pair.manifold.count && from_a != Vec3f::Zero(); ++k)
             pair.manifold.points[k].position += from_a;
-    if (!known) note_shapes(of.pairs, pair);
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
     if (!known) meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);

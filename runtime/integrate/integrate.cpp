@@ -9,6 +9,7 @@
 #include "check/quarantine.h"
 #include "integrate/gyroscopic.h"
 #include "integrate/motion_kernels.h"
+#include "state/levers.h"
 
 namespace taut {
 namespace {
@@ -34,9 +35,6 @@ void set_sweep_pose(System& system, uint32_t at, const Vec3& dx, const Quat& q) 
     for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
 }
 
-// Contacts, found once a frame, turn their levers and masses with bodies that turned by more than this since they last
-// did [rad]. With levers of the frame's beginning and masses of now thin bodies gain energy without bound.
-constexpr double kTurn = 0.05;
 // Kinematic bodies do not yield: what they seem to move at beside their way is forced on what they carry.
 constexpr double kKinematicTurn = 1e-3;
 
@@ -232,7 +230,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
     const NodeMotion* const motion = motions_of(system, nodes);
-    const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kTurn, gyroscopic_euler};
+    const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kLeverTurn, gyroscopic_euler};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const MassRow* mass[kBodies];
         for (int i = 0; i < kBodies; ++i) mass[i] = rows_of<const MassRow>(&nodes.mass[batch.node[i]]);
@@ -291,7 +289,8 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         const Bodies slow = which(batch.seat, [&](uint32_t at) { return system.filtered[at] != 0; }) | in_block;
-        if (kernels.store(rows, batch, system.h, kTurn, turning & ~in_block, velocity_filter, slow, kMaxSpeed) != kAll)
+        if (kernels.store(rows, batch, system.h, kLeverTurn, turning & ~in_block, velocity_filter, slow, kMaxSpeed) !=
+            kAll)
             all_sane.store(false, std::memory_order_relaxed);
     });
     return all_sane.load(std::memory_order_relaxed);

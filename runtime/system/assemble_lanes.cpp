@@ -18,8 +18,8 @@ void clear_lane(LanePoint& p, int lane) {
 void fill_lane(LanePoint& p, int lane, const Levers& levers, float separation, const Impulse& impulse,
                float restitution) {
     for (int i = 0; i < 3; ++i) {
-        p.ra[i][lane] = static_cast<float>(levers.a[i]);
-        p.rb[i][lane] = static_cast<float>(levers.b[i]);
+        p.ra[i][lane] = static_cast<float>(levers.a.at[i]);
+        p.rb[i][lane] = static_cast<float>(levers.b.at[i]);
     }
     p.gap0[lane] = p.gap[lane] = separation;
     p.normal_mass[lane] = 1;  // in use; the kernel puts the mass here
@@ -56,27 +56,56 @@ Movement movement_of(const Nodes& nodes, uint32_t node) {
     return {m.x, m.v, m.w};
 }
 
+// How the two sides of a pair stand and move.
+struct PairMovement {
+    Movement a, b;
+    Vec3 arm_a;
+    Axles axles;
+
+    PairMovement(const Pairs& pairs, const Pair& pair, const Nodes& nodes)
+        : a(movement_of(nodes, pair.a)), b(movement_of(nodes, pair.b)), arm_a(a.x - nodes.origin(pair.a)) {
+        if (pair.rolls_a || pair.rolls_b) axles = axles_of(pairs, pair, arm_a, b.x - nodes.origin(pair.b));
+    }
+    Levers levers(const Pair& pair, int k) const { return levers_of(pair, k, arm_a, axles, a, b); }
+};
+
 // One pair into one lane of a group; its points into the group's first points.
-void fill_pair(LaneGroup& g, int lane, const Pair& pair, const Nodes& nodes) {
+void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes, double frame) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.friction[lane] = pair.friction;
-    g.rolls[0][lane] = pair.rolls_a;
-    g.rolls[1][lane] = pair.rolls_b;
     g.round[0][lane] = pair.round_a;
     g.round[1][lane] = pair.round_b;
     for (int i = 0; i < 3; ++i) {
         g.normal[i][lane] = n[i];
         g.tangent[i][lane] = t1[i];
     }
-    const Movement a = movement_of(nodes, pair.a), b = movement_of(nodes, pair.b);
-    const Vec3 arm_a = a.x - nodes.origin(pair.a);
+    const PairMovement moves(pairs, pair, nodes);
+    const double turn = frame * frame * std::max(moves.a.w.squaredNorm(), moves.b.w.squaredNorm());
+    if (turn > kLeverTurn * kLeverTurn) g.arcs |= 1u << lane;
     for (int k = 0; k < pair.manifold.count; ++k)
-        fill_lane(g.point[k], lane, levers_of(pair, k, arm_a, a, b), pair.manifold.points[k].separation,
-                  pair.impulse[k], pair.restitution);
+        fill_lane(g.point[k], lane, moves.levers(pair, k), pair.manifold.points[k].separation, pair.impulse[k],
+                  pair.restitution);
+}
+
+void fill_axes(LaneRolling& to, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes) {
+    const PairMovement moves(pairs, pair, nodes);
+    const Vec3 n = pair.manifold.normal.cast<double>();
+    const Vec3 axes[2] = {moves.axles.a.axis, moves.axles.b.axis};
+    for (int side = 0; side < 2; ++side) {
+        const Vec3 beside = across(axes[side], side == 0 ? n : Vec3(-n));
+        for (int i = 0; i < 3; ++i) {
+            to.axis[side][i][lane] = static_cast<float>(axes[side][i]);
+            to.across[side][i][lane] = static_cast<float>(beside[i]);
+        }
+    }
+    for (int k = 0; k < pair.manifold.count; ++k) {
+        const Levers levers = moves.levers(pair, k);
+        to.rim[k][0][lane] = static_cast<float>(levers.a.rim);
+        to.rim[k][1][lane] = static_cast<float>(levers.b.rim);
+    }
 }
 
 void clear_pair(LaneGroup& g, int lane) {
-    g.rolls[0][lane] = g.rolls[1][lane] = 0;
     g.friction[lane] = g.round[0][lane] = g.round[1][lane] = 0;
     for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
 }
@@ -97,8 +126,10 @@ void prefetch_pair(const LaneGroup& g, const LaneGroup* next, int lane, const Pa
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
-bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& pairs, const Nodes& nodes) {
-    bool bounces = false, driven = false, turns = false, round = false;
+bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, double frame, Pairs& pairs,
+                const Nodes& nodes) {
+    bool bounces = false, driven = false, turns = false, round = false, rolls = false;
+    g.arcs = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
         prefetch_pair(g, next, lane, pairs);
         uint32_t filled = 0;
@@ -106,12 +137,13 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& p
             Pair& pair = pairs.list[g.pair[lane]];
             leave_block(pair);
             change_substeps(pair, substeps);
-            fill_pair(g, lane, pair, nodes);
+            fill_pair(g, lane, pairs, pair, nodes, frame);
             filled = static_cast<uint32_t>(pair.manifold.count);
             bounces = bounces || pair.restitution > 0;
             driven = driven || pair.driven;
             turns = turns || pair.twists();
             round = round || pair.round_a > 0 || pair.round_b > 0;
+            rolls = rolls || pair.rolls_a || pair.rolls_b;
         } else {
             clear_pair(g, lane);
         }
@@ -120,11 +152,12 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& p
     g.is_round = round;
     g.bounces = bounces;
     g.first_drive = driven ? 0 : kNoLanes;
-    g.rolling = turns ? 0 : kNoLanes;
+    g.rolling = turns || rolls ? 0 : kNoLanes;
+    g.has_axes = rolls;
     return bounces;
 }
 
-// Room for what moving surfaces and friction torques of the pairs of a group need.
+// Room for what moving surfaces, friction torques and shapes of revolution of the pairs of a group need.
 void make_special_room(ContactLanes& lanes, LaneGroup& g) {
     if (g.first_drive != kNoLanes) {
         g.first_drive = static_cast<uint32_t>(lanes.drive.size());
@@ -136,11 +169,12 @@ void make_special_room(ContactLanes& lanes, LaneGroup& g) {
     }
 }
 
-void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs) {
+void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs, const Nodes& nodes) {
     for (int lane = 0; lane < kLanes; ++lane) {
         const Pair* pair = pair_of(g, lane, pairs);
         if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair);
         if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair);
+        if (g.has_axes && pair) fill_axes(lanes.rolling[g.rolling], lane, pairs, *pair, nodes);
     }
 }
 
@@ -156,11 +190,12 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
     share_out(team, system, pairs, group);
     const auto prepare = [&](uint32_t g) { kernels.prepare(lanes.view(), g, g + 1, system.sweep.data()); };
     std::atomic<bool> bounces{false}, special{false};
+    const double frame = system.h * group.substeps;  // [s]
     for_lane_parts(team, lanes, [&](uint32_t part) {
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
             LaneGroup& g = lanes.group[i];
-            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, group.substeps, pairs, nodes))
+            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, group.substeps, frame, pairs, nodes))
                 bounces.store(true, std::memory_order_relaxed);
             if (is_special(g))
                 special.store(true, std::memory_order_relaxed);
@@ -174,7 +209,7 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
     for_lane_parts(team, lanes, [&](uint32_t part) {
         for (uint32_t i = lanes.part[part].begin; i < lanes.part[part].end; ++i) {
             if (!is_special(lanes.group[i])) continue;
-            fill_special(lanes, lanes.group[i], pairs);
+            fill_special(lanes, lanes.group[i], pairs, nodes);
             prepare(i);
         }
     });
@@ -189,8 +224,7 @@ bool note_turns(const LaneGroup& g, const System& system, LaneTurns& turns) {
         const bool a = system.turned[g.a[lane]] != 0, b = system.turned[g.b[lane]] != 0;
         turns.turned[0][lane] = a;
         turns.turned[1][lane] = b;
-        turns.follows[0][lane] = a && !g.rolls[0][lane];
-        turns.follows[1][lane] = b && !g.rolls[1][lane];
+        if (a || b) g.arcs |= 1u << lane;
         any = any || a || b;
     }
     return any;

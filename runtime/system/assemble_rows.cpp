@@ -56,19 +56,20 @@ Mat3 basis_of(const Pair& pair) {
 }
 
 // Effective anchors and offset of a contact point, so that C is the gap and zero slip at the present poses.
-ContactData contact_data(const System& system, const Nodes& nodes, const Pair& pair, int k) {
+ContactData contact_data(const System& system, const Nodes& nodes, const Pairs& pairs, const Pair& pair, int k) {
     const Pose& a = system.pose[system.at(pair.a)];
     const Pose& b = system.pose[system.at(pair.b)];
     const NodeMotion &ma = nodes.motion[pair.a], &mb = nodes.motion[pair.b];
-    const Levers levers = levers_of(pair, k, a.R * nodes.mass[pair.a].centre, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w});
-    const Levers cores = cores_of(pair, levers);
+    const Vec3 arm_a = a.R * nodes.mass[pair.a].centre, arm_b = b.R * nodes.mass[pair.b].centre;
+    const Axles axles = axles_of(pairs, pair, arm_a, arm_b);
+    const Levers levers = levers_of(pair, k, arm_a, axles, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w});
     ContactData data;
-    data.anchor_a = a.R.transpose() * cores.a;
-    data.anchor_b = b.R.transpose() * cores.b;
-    data.skin_a = levers.a - cores.a;
-    data.skin_b = levers.b - cores.b;
+    data.anchor_a = a.R.transpose() * levers.a.core();
+    data.anchor_b = b.R.transpose() * levers.b.core();
+    data.skin_a = levers.a.skin;
+    data.skin_b = levers.b.skin;
     data.basis = basis_of(pair);
-    const Vec3 apart = b.x + levers.b - a.x - levers.a;  // of the point on b against that on a
+    const Vec3 apart = b.x + levers.b.at - a.x - levers.a.at;  // of the point on b against that on a
     data.offset = Vec3(pair.manifold.points[k].separation, 0, 0) - data.basis * apart;
     return data;
 }
@@ -89,9 +90,9 @@ void find_meeting_points(const System& system, const Nodes& nodes, const Pair& p
     const Movement a = side(pair.a, pair.a2), b = side(pair.b, pair.b2);
     const Pose& first = system.pose[system.at(pair.a)];
     const Vec3 arm = pair.a2 == kNone ? Vec3(first.R * nodes.mass[pair.a].centre) : Vec3(a.x - first.x);
-    const Levers levers = levers_of(pair, k, arm, a, b);
-    point[0] = a.x + levers.a;
-    point[1] = b.x + levers.b;
+    const Levers levers = levers_of(pair, k, arm, {}, a, b);
+    point[0] = a.x + levers.a.at;
+    point[1] = b.x + levers.b.at;
 }
 
 // The same where a side spans two nodes: particles, whose points are on the line between them.
@@ -123,9 +124,10 @@ SpanContactData span_contact_data(const System& system, const Nodes& nodes, cons
     return data;
 }
 
-Vec3 velocity_at(const System& system, uint32_t node, const Vec3& anchor) {
+// lever: from its centre of mass, world axes [m].
+Vec3 velocity_at(const System& system, uint32_t node, const Vec3& lever) {
     const Velocity& u = system.exact[node];
-    return u.v + u.w.cross(system.pose[node].R * anchor);
+    return u.v + u.w.cross(lever);
 }
 
 // How a point was approached before the frame's forces; apart: velocity of b's point against a's.
@@ -146,8 +148,9 @@ RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
     block.data = &data;
     block.node[0] = system.at(pair.a);
     block.node[1] = system.at(pair.b);
-    const Vec3 apart =
-        velocity_at(system, block.node[1], data.anchor_b) - velocity_at(system, block.node[0], data.anchor_a);
+    const Pose &a = system.pose[block.node[0]], &b = system.pose[block.node[1]];
+    const Vec3 apart = velocity_at(system, block.node[1], b.R * data.anchor_b + data.skin_b) -
+                       velocity_at(system, block.node[0], a.R * data.anchor_a + data.skin_a);
     note_approach(apart, data.basis.row(0), block);
     return block;
 }
@@ -159,7 +162,7 @@ RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& dat
     Vec3 apart = Vec3::Zero();
     for (int n = 0; n < kMaxNodes; ++n) {
         block.node[n] = system.at(nodes[n]);
-        apart += data.weight[n] * velocity_at(system, block.node[n], data.anchor[n]);
+        apart += data.weight[n] * velocity_at(system, block.node[n], system.pose[block.node[n]].R * data.anchor[n]);
     }
     note_approach(apart, data.basis.row(0), block);
     return block;
@@ -200,7 +203,7 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
             RowBlock& block =
                 pairs.active[p].spans()
                     ? add_point(system, pair, rows.span_data.emplace_back(span_contact_data(system, nodes, pair, k)))
-                    : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pair, k)));
+                    : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pairs, pair, k)));
             block.friction = pair.friction;
             block.restitution = pair.restitution;
             block.pair = pairs.active[p].pair;

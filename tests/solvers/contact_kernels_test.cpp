@@ -24,6 +24,7 @@ struct Data {
     std::vector<LanePoint> point;
     std::vector<LaneDrive> drive;
     std::vector<LaneRolling> rolling;
+    std::vector<LaneAxles> axles;
     std::vector<SweepNode> node;
     std::vector<SweepShift> shift;
     std::vector<LaneTurns> turns;
@@ -71,6 +72,7 @@ struct Data {
             }
             if (i % 3 == 1) add_drive(g, any);
             if (i % 4 == 2) add_rolling(g, any);
+            if (i % 5 == 3) add_axles(g, any);
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint p{};
                 for (int lane = 0; lane < kLanes; ++lane) {
@@ -96,7 +98,6 @@ struct Data {
             for (int lane = 0; lane < kLanes; ++lane)
                 for (int side = 0; side < 2; ++side) {
                     of.turned[side][lane] = engine() % 3 == 0;
-                    of.follows[side][lane] = of.turned[side][lane] > 0 && engine() % 4 > 0;
                 }
         LanePoint* next = point.data();
         for (LaneGroup& g : group) g.point = std::exchange(next, next + g.points);
@@ -122,9 +123,27 @@ struct Data {
         }
     }
 
+    template <class Any>
+    void add_axles(LaneGroup& g, Any& any) {
+        g.axles = static_cast<uint32_t>(axles.size());
+        LaneAxles& of = axles.emplace_back(LaneAxles{});
+        for (int lane = 0; lane < kLanes; ++lane)
+            for (int side = 0; side < 2; ++side) {
+                if (g.pair[lane] == kNone || any() < 0) continue;
+                const Vec3f axis = Vec3f(any(), any(), any()).normalized();
+                const Vec3f n(g.normal[0][lane], g.normal[1][lane], g.normal[2][lane]);
+                const Vec3f outward = side == 0 ? n : Vec3f(-n), beside = outward - axis.dot(outward) * axis;
+                for (int i = 0; i < 3; ++i) {
+                    of.axis[side][i][lane] = axis[i];
+                    of.across[side][i][lane] = beside[i] / beside.norm();
+                }
+                for (uint32_t k = 0; k < g.points; ++k) of.rim[k][side][lane] = std::abs(any());
+            }
+    }
+
     // Everything that a step calls, over and over, of some groups.
     void run(const ContactKernels& kernels, uint32_t begin = 0, uint32_t end = kGroups) {
-        const LaneView view{group.data(), drive.data(), rolling.data()};
+        const LaneView view{group.data(), drive.data(), rolling.data(), axles.data()};
         const SweepTerms terms = contact_terms(1.0 / 240);
         kernels.prepare(view, begin, end, node.data());
         kernels.warm_start(view, begin, end, node.data());
