@@ -52,9 +52,16 @@ struct Shift {
     float angle_squared() const { return 4 * axis.squaredNorm(); }
 };
 
+// Whether only a is round: the normal, which lies in a's frame as long as a manifold is kept, is b's then, and does not
+// turn as a rolls.
+bool normal_is_of_b(const Pair& pair) {
+    return (pair.round_a > 0 || pair.rolls_a) && !(pair.round_b > 0 || pair.rolls_b);
+}
+
 }  // namespace
 
 bool keep_manifold(const Pairs& pairs, double time, Pair& pair) {
+    if (normal_is_of_b(pair)) return false;
     const View view(pairs, pair);
     if (!view.is_calm(pair.manifold.points[0].position - view.a.from_node, time)) return false;
     FoundManifold& found = pair.found;

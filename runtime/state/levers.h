@@ -96,6 +96,35 @@ inline Vec3 way_of(const Lever& lever, const Vec3& outward, const Axle& axle, co
     return way + lever.rim * (across(then, outward) - across(axle.axis, outward));
 }
 
+// From a core's point to the nearest one of the line that a collider's ball runs along, across the normal; core: from
+// the node's centre of mass, world axes [m].
+inline Vec3 to_ball_path(const Pairs& pairs, const Nodes& nodes, uint32_t collider, uint32_t node, const Vec3& normal,
+                         const Vec3& core) {
+    const Stance& stance = pairs.stance[collider];
+    const Vec3 middle = stance.from_node.cast<double>() - (nodes.motion[node].x - nodes.origin(node));
+    const auto half = static_cast<double>(stance.reach);  // of the core: of the line, 0 of a ball
+    const Vec3 along = (stance.turn * Vec3f::UnitY()).cast<double>();
+    const Vec3 way = middle + std::clamp(along.dot(core - middle), -half, half) * along - core;
+    return way - normal.dot(way) * normal;
+}
+
+// Levers of a pair found at the present, those of balls and capsules ending exactly at their radius from the line of
+// centres. A point that lags behind the centre of a ball by d, as rounding or a contact that is reused leave it, turns
+// it on by the torque d N, so that it begins to roll by itself:
+//   (m r^2 + I) d'' = r N d,  with I = 2/5 m r^2, N = m g:  d ~ exp(t sqrt(g / 1.4 r)).
+// Both levers shift by the same, so that the two forces stay on one line; but of two round sides each has its own.
+inline Levers on_ball_paths(const Pairs& pairs, const Nodes& nodes, const Pair& pair, Levers levers) {
+    const bool a = pair.round_a > 0 && !pair.rolls_a, b = pair.round_b > 0 && !pair.rolls_b;
+    if (pair.then > 0 || !(a || b)) return levers;
+    const Vec3 n = pair.manifold.normal.cast<double>();
+    const Vec3 none = Vec3::Zero();
+    const Vec3 way_a = a ? to_ball_path(pairs, nodes, pair.collider_a(), pair.a, n, levers.a.core()) : none;
+    const Vec3 way_b = b ? to_ball_path(pairs, nodes, pair.collider_b(), pair.b, n, levers.b.core()) : way_a;
+    levers.a.at += a ? way_a : way_b;
+    levers.b.at += way_b;
+    return levers;
+}
+
 // How the gap at a point grows until Pair::then [m].
 inline double growth_of(const Pair& pair, const Levers& levers, const Axles& axles, const Movement& a,
                         const Movement& b) {

@@ -83,8 +83,8 @@ void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, con
     const double turn = frame * frame * std::max(moves.a.w.squaredNorm(), moves.b.w.squaredNorm());
     if (turn > kLeverTurn * kLeverTurn) g.arcs |= 1u << lane;
     for (int k = 0; k < pair.manifold.count; ++k)
-        fill_lane(g.point[k], lane, moves.levers(pair, k), pair.manifold.points[k].separation, pair.impulse[k],
-                  pair.restitution);
+        fill_lane(g.point[k], lane, on_ball_paths(pairs, nodes, pair, moves.levers(pair, k)),
+                  pair.manifold.points[k].separation, pair.impulse[k], pair.restitution);
 }
 
 void fill_axes(LaneRolling& to, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes) {

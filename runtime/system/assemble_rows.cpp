@@ -62,7 +62,8 @@ ContactData contact_data(const System& system, const Nodes& nodes, const Pairs& 
     const NodeMotion &ma = nodes.motion[pair.a], &mb = nodes.motion[pair.b];
     const Vec3 arm_a = a.R * nodes.mass[pair.a].centre, arm_b = b.R * nodes.mass[pair.b].centre;
     const Axles axles = axles_of(pairs, pair, arm_a, arm_b);
-    const Levers levers = levers_of(pair, k, arm_a, axles, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w});
+    const Levers levers = on_ball_paths(pairs, nodes, pair,
+                                        levers_of(pair, k, arm_a, axles, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w}));
     ContactData data;
     data.anchor_a = a.R.transpose() * levers.a.core();
     data.anchor_b = b.R.transpose() * levers.b.core();
