@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "base/prefetch.h"
+#include "detect/carried.h"
 #include "detect/carry.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
@@ -234,6 +235,7 @@ void find_contacts(Team& team, const Nodes& nodes, const Colliders& colliders, c
     order_slots(pairs);
     list_active(team, pairs);
     forget_unheld(pairs);
+    hold_carried(nodes, pairs, time_step);
 }
 
 }  // namespace taut

@@ -206,6 +206,15 @@ struct ActivePair {
     std::array<uint32_t, 4> nodes() const { return {a, b, a2, b2}; }
 };
 
+// Where a body lies that a kinematic one carries: its pose as seen from there when friction last did not hold it;
+// detect/carried.h.
+struct Carried {
+    uint64_t key;   // of the pair
+    uint32_t part;  // as of the pair
+    Vec3 x;         // of centres of mass, axes of a [m]
+    Quat q;
+};
+
 struct Pairs {
     explicit Pairs(Memory& memory)
         : near(memory),
@@ -232,6 +241,8 @@ struct Pairs {
           arriving(memory),
           unheld(memory),
           homes(memory),
+          carried(memory),
+          carried_before(memory),
           parts(memory) {}
 
     // In what update_bounds() fills, for so many colliders: as they come, not in the step that sees them first.
@@ -279,6 +290,8 @@ struct Pairs {
     Array<uint8_t> unheld;                  // by node: 1 where others pushed against one that is gone; find_contacts()
     uint8_t any_unheld = 0;                 // 1 where there is one
     Homes homes;                            // of near; share_out()
+    Array<Carried> carried;                 // in the order of active; hold_carried()
+    Array<Carried> carried_before;          // those of the step before; hold_carried()
     collision::Parts parts;                 // of the pair looked at last
 };
 
