@@ -25,4 +25,18 @@ TEST(RestitutionThreshold, IsTheFastestImpactThatDoesNotBounce) {
     }
 }
 
+TEST(RestitutionThreshold, RefusesWhatIsNoSpeed) {
+    World world;
+    taut_world_def def;
+    for (const float bad : {NAN, INFINITY, -1.0f, 1.0001e4f}) {
+        EXPECT_EQ(taut_world_set_restitution_threshold(world.handle, bad), TAUT_INVALID_ARGUMENT);
+        EXPECT_NE(std::string(taut_last_error()).find("restitution_threshold"), std::string::npos);
+    }
+    ok(taut_world_get_def(world.handle, &def));
+    EXPECT_EQ(def.restitution_threshold, 0);
+    ok(taut_world_set_restitution_threshold(world.handle, 3));
+    ok(taut_world_get_def(world.handle, &def));
+    EXPECT_EQ(def.restitution_threshold, 3);
+}
+
 }  // namespace
