@@ -13,8 +13,8 @@
 #include "integrate/substeps.h"
 #include "models/cable.h"
 #include "publish/publish.h"
-#include "solvers/restitution.h"
 #include "sleep/sleep.h"
+#include "solvers/restitution.h"
 #include "system/assemble.h"
 #include "world.h"
 

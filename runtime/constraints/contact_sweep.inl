@@ -498,8 +498,8 @@ struct ContactSweep {
         }
     };
 
-    // Along the normal a point flies c + u t + a t^2 / 2 within the substep; u = v - h a / 2 of the velocity v at its end
-    // (solvers/restitution.h). It arrives where c + h v < 0, at the speed sqrt(u^2 - 2 a c).
+    // Along the normal a point flies c + u t + a t^2 / 2 within the substep; u = v - h a / 2 of the velocity v at its
+    // end (solvers/restitution.h). It arrives where c + h v < 0, at the speed sqrt(u^2 - 2 a c).
     static void find_impacts(LaneView contacts, uint32_t begin, uint32_t end, const SweepNode* nodes,
                              const SweepShift* shifts, const SweepFlight* flights, const ImpactTerms& terms,
                              uint16_t* found) {

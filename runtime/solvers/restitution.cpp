@@ -287,10 +287,11 @@ private:
         if (!moves && fall.gap > 0) impact.restitution = restitution_above(impact, fall.gained / sys_.h * fall.gap);
     }
 
-    // Of what leaves above the surface: so that it has e^2 of its energy there. work: of the forces on the way [m^2/s^2].
+    // Of what leaves above the surface: so that it has e^2 of its energy there. work: of forces on the way [m^2/s^2].
     static double restitution_above(const Impact& impact, double work) {
         const double e = impact.restitution, squared = impact.approach * impact.approach;
-        return std::min(1.0, std::sqrt(std::max(0.0, e * e * (squared - 2 * work) + 2 * work) / std::max(squared, 1e-30)));
+        const double after = std::max(0.0, e * e * (squared - 2 * work) + 2 * work);
+        return std::min(1.0, std::sqrt(after / std::max(squared, 1e-30)));
     }
 
     void add_side(Impact& impact, Impact::Side& side, int r, Mat3& k) const {

@@ -1,4 +1,4 @@
-// Impacts of a substep, as restitution finds and solves them (solvers/restitution.h); for their memory kept in the world.
+// Impacts of a substep, as restitution finds and solves them (solvers/restitution.h).
 #pragma once
 
 #include "system/system.h"

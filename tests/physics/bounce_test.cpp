@@ -32,9 +32,9 @@ auto at_rate(const Rate& rate, double gravity = kG) {
 
 class Bounces : public testing::TestWithParam<Rate> {};
 
-// To e^2 of the height, whatever that is, as long as it hits faster than gravity makes it within a substep. Dropped from
-// rest it hits as from g h^2 / 8 higher up: the first substep falls by the whole of its speed. Contacts are looked for as
-// far as a body comes without falling any faster: at 30 Hz it may go in by half a millimetre before it is seen.
+// To e^2 of the height, whatever that is, as long as it hits faster than gravity makes it within a substep. Dropped
+// from rest it hits as from g h^2 / 8 higher up: the first substep falls by the whole of its speed. Contacts are looked
+// for as far as a body comes without falling any faster: at 30 Hz it may go in by half a millimetre before it is seen.
 TEST_P(Bounces, ToTheSquareOfRestitution) {
     const Rate rate = GetParam();
     for (const double gravity : {kG, 1.62})
@@ -44,8 +44,10 @@ TEST_P(Bounces, ToTheSquareOfRestitution) {
                 add_floor(world, Floor::plane, 0);
                 const double radius = std::min(0.2, 2 * drop), h = world.frame() / rate.substeps;
                 const double fall = drop + gravity * h * h / 8, least = std::pow(gravity * h, 2) / (2 * gravity);
-                const taut_body ball = world.add(
-                    {.shape = world.sphere(radius), .position = {0, radius + drop, 0}, .friction = 0, .restitution = e});
+                const taut_body ball = world.add({.shape = world.sphere(radius),
+                                                  .position = {0, radius + drop, 0},
+                                                  .friction = 0,
+                                                  .restitution = e});
                 const auto tops = peaks(world, ball, radius, 2, 12);
                 for (size_t i = 0; i < 2; ++i) {
                     const double from = fall * std::pow(e, 2.0 * static_cast<double>(i));
@@ -125,7 +127,8 @@ TEST_P(Bounces, LeaveAHeavierBallAsElasticImpactsSay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, Bounces,
-                         testing::Values(Rate{30, 4}, Rate{60, 1}, Rate{60, 4}, Rate{60, 16}, Rate{120, 2}, Rate{240, 4}),
+                         testing::Values(Rate{30, 4}, Rate{60, 1}, Rate{60, 4}, Rate{60, 16}, Rate{120, 2},
+                                         Rate{240, 4}),
                          [](const auto& tested) {
                              return std::to_string(tested.param.hz) + "_Hz_" + std::to_string(tested.param.substeps) +
                                     "_substeps";
