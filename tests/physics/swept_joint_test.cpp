@@ -1,5 +1,5 @@
 // Swept joints gain no energy, come to rest, and close the more the finer their steps: random mechanisms of every joint
-// type. The many starts are in the soak (swept_joints_test.cpp).
+// type.
 #include "physics/swept_lab.h"
 
 namespace {
