@@ -24,7 +24,6 @@ struct Data {
     std::vector<LanePoint> point;
     std::vector<LaneDrive> drive;
     std::vector<LaneRolling> rolling;
-    std::vector<LaneAxles> axles;
     std::vector<SweepNode> node;
     std::vector<SweepShift> shift;
     std::vector<LaneTurns> turns;
@@ -73,7 +72,8 @@ struct Data {
             }
             if (i % 3 == 1) add_drive(g, any);
             if (i % 4 == 2) add_rolling(g, any);
-            if (i % 5 == 3) add_axles(g, any);
+            if (i % 5 == 3) add_axes(g, any);
+            if (i % 2 == 1) g.arcs = static_cast<uint32_t>(engine()) & kAllLanes;
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint p{};
                 for (int lane = 0; lane < kLanes; ++lane) {
@@ -125,9 +125,13 @@ struct Data {
     }
 
     template <class Any>
-    void add_axles(LaneGroup& g, Any& any) {
-        g.axles = static_cast<uint32_t>(axles.size());
-        LaneAxles& of = axles.emplace_back(LaneAxles{});
+    void add_axes(LaneGroup& g, Any& any) {
+        if (g.rolling == kNoLanes) {
+            g.rolling = static_cast<uint32_t>(rolling.size());
+            rolling.emplace_back();
+        }
+        g.has_axes = 1;
+        LaneRolling& of = rolling[g.rolling];
         for (int lane = 0; lane < kLanes; ++lane)
             for (int side = 0; side < 2; ++side) {
                 if (g.pair[lane] == kNone || any() < 0) continue;
@@ -144,7 +148,7 @@ struct Data {
 
     // Everything that a step calls, over and over, of some groups.
     void run(const ContactKernels& kernels, uint32_t begin = 0, uint32_t end = kGroups) {
-        const LaneView view{group.data(), drive.data(), rolling.data(), axles.data()};
+        const LaneView view{group.data(), drive.data(), rolling.data()};
         const SweepTerms terms = contact_terms(1.0 / 240);
         kernels.prepare(view, begin, end, node.data());
         kernels.warm_start(view, begin, end, node.data());
