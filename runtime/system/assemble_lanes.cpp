@@ -218,7 +218,7 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
 namespace {
 
 // Notes which lanes turned; false: none.
-bool note_turns(const LaneGroup& g, const System& system, LaneTurns& turns) {
+bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const bool a = system.turned[g.a[lane]] != 0, b = system.turned[g.b[lane]] != 0;

@@ -22,11 +22,11 @@ public:
 
     template <class Def>
     void hold(void (*init)(Def*), taut_result (*add)(taut_world, const Def*, taut_joint*), uint32_t axis,
-              const taut_axis_def& angle, taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT) {
+              const taut_axis_def& stops, taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT) {
         Def def = at(world, init, {}, body, {}, kAxis);
         def.solve = solve;
         ok(add(world.handle, &def, &joint));
-        ok(taut_joint_set_axis(joint, axis, &angle));
+        ok(taut_joint_set_axis(joint, axis, &stops));
     }
     void turn(double torque, double time) {
         for (int frame = 0; frame < static_cast<int>(time / world.frame()); ++frame) {

@@ -48,7 +48,7 @@ std::string text_of(const RowPlan& plan, const std::vector<double>& speeds) {
     std::string text = std::to_string(plan.count) + (plan.hinged ? " on hinges" : " on ball joints") + ", gap " +
                        std::to_string(plan.gap) + ", friction " + std::to_string(plan.friction) + ", " +
                        std::to_string(plan.substeps) + " substeps at " + std::to_string(plan.rate) + " Hz:";
-    for (const double speed : speeds) text += " " + std::to_string(speed);
+    for (const double speed : speeds) text.append(" ").append(std::to_string(speed));
     return text;
 }
 

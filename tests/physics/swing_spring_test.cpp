@@ -23,7 +23,7 @@ struct Top {
         def.swing = swing;
         def.solve = solve;
         ok(taut_world_add_cone_twist_joint(world.handle, &def, &joint));
-        const taut_pose pose{{0, 0, 0}, Quat::turn(axis, tilt).narrow()};
+        const taut_pose pose{{0, 0, 0}, Quat::turn(axis, tilt).narrow(), {}};
         ok(taut_body_set_pose(body, &pose));
     }
     void spin(const Vec& w) const { ok(taut_body_set_velocity(body, {0, 0, 0}, w.narrow())); }
