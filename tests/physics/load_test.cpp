@@ -102,12 +102,12 @@ TEST(ByLoad, HoldsDirectlyWhatSweepsWouldNot) {
     const taut_profile light = pull(900, 120);
     EXPECT_EQ(light.solves, 0u);
     EXPECT_LE(light.joint_error, 1e-3f);
-    EXPECT_LE(fastest, 4);  // until the impulses have grown to what holds
+    EXPECT_LE(fastest, 2);  // as it stretches to hold
     fastest = 0;
     const taut_profile heavy = pull(3000, 120);
     EXPECT_GT(heavy.solves, 0u);
     EXPECT_LE(heavy.joint_error, 5e-5f);
-    EXPECT_LE(fastest, 9);
+    EXPECT_LE(fastest, 5);
     fastest = 0;
     const taut_profile after = pull(0, 120);
     EXPECT_EQ(after.solves, 0u);
@@ -144,8 +144,8 @@ TEST(ByLoad, ChangesToAndFroWithoutAKick) {
             fastest = std::max(fastest, norm(state(before).velocity));
             widest = std::max(widest, static_cast<double>(profile.joint_error));
         }
-        EXPECT_LE(fastest, 0.3);
-        EXPECT_LE(widest, 0.02);
+        EXPECT_LE(fastest, 0.1);
+        EXPECT_LE(widest, 0.004);
     }
     EXPECT_GE(changes, 20);
 }
