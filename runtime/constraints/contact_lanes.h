@@ -18,7 +18,7 @@ struct alignas(32) SweepVelocity {  // [m/s, rad/s]; no component is -0: what be
 struct alignas(32) SweepMass {
     float inv_mass = 0;
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
-    float joint_share = 1;                        // of inv_inertia, what it is to swept joints; stiffen_joints()
+    float pad = 0;
 };
 // By seat (system/system.h). A cache line each: who gathers fetches one, and threads that write to neighbours do not
 // meet.

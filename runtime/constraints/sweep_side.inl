@@ -32,7 +32,7 @@ struct SweepSide {
     using V = Vec3Lanes<F>;
 
     F velocity[8];  // v xyz, pad, w xyz, pad
-    F inv_mass, xx, yy, zz, xy, xz, yz, joint_share;
+    F inv_mass, xx, yy, zz, xy, xz, yz;
 
     void gather(const uint32_t node[kLanes], const SweepNode* nodes) {
         gather_masses(node, nodes);
@@ -47,11 +47,6 @@ struct SweepSide {
         F::transpose(row, mass);
         inv_mass = mass[0];
         xx = mass[1], yy = mass[2], zz = mass[3], xy = mass[4], xz = mass[5], yz = mass[6];
-        joint_share = mass[7];
-    }
-    void take_joint_share() {
-        xx = joint_share * xx, yy = joint_share * yy, zz = joint_share * zz;
-        xy = joint_share * xy, xz = joint_share * xz, yz = joint_share * yz;
     }
     // Asks for what gather() will read and scatter() write soon: another core may have changed it last. Whether a node
     // moves its seat tells (0, the world, wraps round); a look at its mass would wait for the line, and fetch it twice.

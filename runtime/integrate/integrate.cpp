@@ -122,7 +122,7 @@ void rotate(const double theta[3], double q[4]) {
 // What the last frame left at a seat.
 void forget(System& system, uint32_t at) {
     system.shift[at] = {};
-    system.turned[at] = system.in_block[at] = system.filtered[at] = 0;
+    system.turned[at] = system.in_block[at] = 0;
     system.place[at] = kNone;
 }
 
@@ -132,7 +132,6 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     system.found[at] = {m.x, m.q};
     set_sweep_pose(system, at, Vec3::Zero(), m.q);
     system.exact[at] = {m.v, m.w};
-    system.sweep[at].mass.joint_share = 1;
     set_inverse_mass(system.sweep[at].mass, nodes.mass[node], system.pose[at].R);
     if (nodes.sleeps(node)) system.sweep[at].mass = {};  // what comes near stops at it until it wakes
     set_sweep_velocity(system.sweep[at].velocity, {m.v, m.w});
@@ -288,8 +287,8 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
-        const Bodies slow = which(batch.seat, [&](uint32_t at) { return system.filtered[at] != 0; }) | in_block;
-        if (kernels.store(rows, batch, system.h, kLeverTurn, turning & ~in_block, velocity_filter, slow, kMaxSpeed) !=
+        if (kernels.store(rows, batch, system.h, kLeverTurn, turning & ~in_block, velocity_filter, in_block,
+                          kMaxSpeed) !=
             kAll)
             all_sane.store(false, std::memory_order_relaxed);
     });

@@ -6,8 +6,7 @@
 // splitting bound, under which the plain iteration (omega = 1) cannot diverge. The momentum restarts where it
 // points against the descent. Rows that friction bounds take steps of their own: a matrix that couples them would let
 // the speed at which a contact slides into the equation of its normal. Stops, drives and friction of a joint's axis are
-// scalar rows of their own beside the block of what is locked. What closes the gaps of rigid rows moves the positions
-// and is taken back, as in the sweeps (constraints/joint_sweep.inl).
+// scalar rows of their own beside the block of what is locked.
 #include <Eigen/LU>
 #include <algorithm>
 #include <utility>
@@ -33,7 +32,6 @@ public:
           softness_(s.scratch.softness),
           previous_(s.scratch.previous),
           next_(s.scratch.next),
-          kept_(s.scratch.kept),
           axes_(s.scratch.axes),
           soft_(contact_terms(sys_.h, sys_.stretch)) {
         count_.assign(sys_.pose.size(), 0);
@@ -63,19 +61,6 @@ public:
             beta = theta * (1 - theta) / (theta * theta + after);
             theta = after;
             if (uphill) theta = 1, beta = 0;
-        }
-    }
-
-    // What rigid rows start from, and the way back to it.
-    void keep() { kept_ = sys_.rows.impulse; }
-    void take_back() {
-        for (const RowBlock& block : sys_.rows.block) {
-            if (block.type->bound != Bound::free || block.elastic(0)) continue;
-            RowVector next = impulse_of(sys_, block);
-            for (int r = 0; r < block.type->rows; ++r)
-                if (block.locked(r)) next[r] = kept_[block.row + static_cast<uint32_t>(r)];
-            push(block, next - impulse_of(sys_, block));
-            Eigen::Map<RowVector>(&sys_.rows.impulse[block.row], block.type->rows) = next;
         }
     }
 
@@ -129,12 +114,13 @@ private:
             own += s;
             split += count_[block.node[n]] * s;
         }
-        RowMatrix softness = RowMatrix::Zero(rows, rows);
+        RowMatrix softness = soft_.impulse_scale / soft_.mass_scale * own;
         if (block.elastic(0)) softness = compliance_of(block, sys_.h);
         if (block.type->bound != Bound::free) {
             split = uncoupled(split);
-            if (block.type->bound == Bound::cone && !block.hits)
-                softness(0, 0) = soft_.impulse_scale / soft_.mass_scale * own(0, 0);
+            const double of_normal = block.type->bound == Bound::cone && !block.hits ? softness(0, 0) : 0.0;
+            softness.setZero();
+            softness(0, 0) = of_normal;
         }
         split.diagonal().array() += 1e-12 * split.trace();
         for (int r = 0; r < rows; ++r) {  // rows that are not locked stay out
@@ -251,7 +237,7 @@ private:
             return r;
         }
         if (block.elastic(0)) return r + error_rate_of(sys_, block) + softness * mu;
-        if (phase == Phase::biased) return r + soft_.bias_rate * error;
+        if (phase == Phase::biased) return r + soft_.bias_rate * error + softness * mu;
         return r;
     }
 
@@ -268,7 +254,6 @@ private:
     Array<uint32_t>& count_;             // row blocks on each node
     Array<double>&inverse_, &softness_;  // rows x rows a block
     Array<double>&previous_, &next_;     // impulses
-    Array<double>& kept_;                // likewise, before gaps are closed
     Array<AxisIterate>& axes_;
     SweepTerms soft_;
 };
@@ -278,16 +263,14 @@ uint32_t iterations(const Substep& s) { return s.settings.sweeps ? s.settings.sw
 void solve(Substep& s) {
     Iteration iteration(s);
     iteration.apply_all();
-    iteration.keep();
     iteration.run(iterations(s), Phase::biased);
-    iteration.store_axes();
+    iteration.store_forces();
 }
 
 void relax(Substep& s) {
     Iteration iteration(s);
-    iteration.take_back();
     iteration.run(iterations(s), Phase::relaxed);
-    iteration.store_forces();
+    iteration.store_axes();
 }
 
 }  // namespace

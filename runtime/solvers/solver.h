@@ -51,12 +51,11 @@ struct SolverScratch {
           softness(memory),
           previous(memory),
           next(memory),
-          kept(memory),
           bounded(memory),
           axes(memory) {}
 
     Array<uint32_t> count;
-    Array<double> inverse, softness, previous, next, kept;
+    Array<double> inverse, softness, previous, next;
     Array<BoundedRow> bounded;  // of the group's blocks
     Array<AxisIterate> axes;
 };
