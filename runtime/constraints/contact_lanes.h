@@ -53,7 +53,6 @@ struct alignas(64) LaneGroup {
     uint32_t is_round = 0;            // 1: some round is not 0
     uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has friction torques or an axis
     uint32_t has_axes = 0;            // 1: some lane has a shape of revolution
-    uint32_t arcs = 0;                // bit by lane: a body turns so far in the frame that gaps follow its arc
 };
 
 struct alignas(64) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move
@@ -84,7 +83,6 @@ struct alignas(64) LanePoint {           // empty places have zero masses
     float peak[kLanes];                  // largest normal impulse of the frame [N s]
     float approach[kLanes];              // normal velocity before the frame's forces [m/s], negative when closing
     float restitution[kLanes];
-    float bend[kLanes];  // how fast the bodies' arcs close the gap beside their velocities, where LaneGroup::arcs [m/s]
 };
 
 // What the kernels see: plain pointers, so that no inline function is shared between builds.
@@ -119,7 +117,7 @@ public:
     }
 
 private:
-    static constexpr uint32_t kPiece = 22;  // 32 KiB, of which Memory wastes little
+    static constexpr uint32_t kPiece = 24;  // 32 KiB, of which Memory wastes little
 
     void begin_piece() {
         if (next_piece_ == piece_.size()) {

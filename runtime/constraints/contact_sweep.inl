@@ -241,8 +241,7 @@ struct ContactSweep {
         V axis, across;
         F gain;
 
-        template <class Turn>
-        AxleTurn(const LaneRolling& axles, int side, const V& outward, const Turn& at) {
+        AxleTurn(const LaneRolling& axles, int side, const V& outward, const ShiftLanes& at) {
             const V old_axis = ContactSweep::load(axles.axis[side]), old_across = ContactSweep::load(axles.across[side]);
             axis = old_axis + at.turning(old_axis);
             const V beside = outward - dot(axis, outward) * axis;
@@ -387,67 +386,6 @@ struct ContactSweep {
         }
     }
 
-    // Bodies that go on turning at their velocities for a substep: theta = h w, x = |theta|,
-    //   R r - r = sin x / x theta x r + (1 - cos x) / x^2 theta x (theta x r).
-    struct Spin {
-        V theta;
-        F sine, cosine;  // these factors, the first less 1; good to 2e-3 up to x = 3, which stands for more
-
-        Spin(const Side& side, const F& h) : theta(h * side.spin()) {
-            const F squared = dot(theta, theta), most = F::all(9);
-            const F x2 = F::if_greater(squared, most, most, squared);
-            const auto c = [](double of) { return F::all(static_cast<float>(of)); };
-            sine = x2 * (c(-1.0 / 6) + x2 * (c(1.0 / 120) + x2 * (c(-1.0 / 5040) + x2 * c(1.0 / 362880))));
-            cosine = c(0.5) + x2 * (c(-1.0 / 24) + x2 * (c(1.0 / 720) + x2 * (c(-1.0 / 40320) + x2 * c(1.0 / 3628800))));
-        }
-        // What velocity and lever do not tell of the way of the point at r.
-        V bend(const V& r) const {
-            const V t = cross(theta, r);
-            return sine * t + cosine * cross(theta, t);
-        }
-        V turning(const V& r) const { return cross(theta, r) + bend(r); }
-    };
-
-    // How much further than its velocity tells one side gets along its outward normal in a substep, at a point.
-    struct Bend {
-        const Spin& spin;
-        V outward, ball, across;
-        F gain;
-
-        Bend(const LaneView& contacts, const LaneGroup& g, int side, const V& o, const Spin& its_spin)
-            : spin(its_spin), outward(o), ball(F::load(g.round[side]) * o), across(F::all(0) * o), gain(F::all(0)) {
-            if (!g.has_axes) return;
-            const LaneRolling& axles = contacts.rolling[g.rolling];
-            across = load(axles.across[side]);
-            gain = AxleTurn(axles, side, o, spin).gain - dot(o, cross(spin.theta, across));
-        }
-        F of(const V& lever, const F& rim) const {
-            return dot(outward, spin.bend(lever - ball - rim * across)) + rim * gain;
-        }
-    };
-
-    // How fast bends of the ways of points close gaps. A rod that spins about its length and swings about its end goes
-    // w v h^2 / 2 aside in a substep, more than rows bring back that see the gap when it is there.
-    [[gnu::noinline]] static void measure_bends(LaneView contacts, const LaneGroup& g, const Frame& f,
-                                                const SweepNode* nodes, const F& h, const F& inv_h) {
-        float chosen[kLanes];
-        for (int lane = 0; lane < kLanes; ++lane) chosen[lane] = g.arcs >> lane & 1 ? 1.0f : 0.0f;
-        const F zero = F::all(0), bends = F::load(chosen);
-        Side a, b;
-        a.gather(g.a, nodes);
-        b.gather(g.b, nodes);
-        const Spin spin_a(a, h), spin_b(b, h);
-        const Bend bend_a(contacts, g, 0, f.n, spin_a), bend_b(contacts, g, 1, F::all(-1) * f.n, spin_b);
-        for (uint32_t k = 0; k < g.points; ++k) {
-            LanePoint& p = g.point[k];
-            const auto rim = [&](int side) {
-                return g.has_axes ? F::load(contacts.rolling[g.rolling].rim[k][side]) : zero;
-            };
-            const F less = bend_a.of(load(p.ra), rim(0)) + bend_b.of(load(p.rb), rim(1));
-            F::if_greater(bends, zero, inv_h * less, zero).store(p.bend);
-        }
-    }
-
     // Open: reach the surface within the substep, no sooner; overlapping: soft push. What hits is stopped at once: a
     // soft row leaves it impulse_scale of its speed, and a bullet as much of its way through the wall.
     static void sweep_biased(LaneView contacts, uint32_t begin, uint32_t end, SweepNode* nodes,
@@ -455,18 +393,15 @@ struct ContactSweep {
         const F zero = F::all(0), one = F::all(1), inv_h = F::all(terms.inv_h), rate = F::all(terms.bias_rate);
         const F least = F::all(-terms.push), slow = F::all(-terms.hit);
         const F soft_mass = F::all(terms.mass_scale), soft_impulse = F::all(terms.impulse_scale);
-        const F h = F::all(1 / terms.inv_h);
         prefetch(contacts, begin, end, nodes, shifts);
         for (uint32_t i = begin; i < end; ++i) {
             prefetch(contacts, i + 1, end, nodes, shifts);
             const LaneGroup& g = contacts.group[i];
             if (shifts) measure_gaps(contacts, g, Frame(g), shifts);
-            if (shifts && g.arcs) measure_bends(contacts, g, Frame(g), nodes, h, inv_h);
             sweep_group(contacts, g, nodes, [&](const LanePoint& p) {
                 const F gap = F::load(p.gap), hit = slow - F::load(p.approach), rigid = F::max(gap, hit);
                 const F scale = F::if_greater(rigid, zero, one, soft_mass);
-                F bias = F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least));
-                if (g.arcs) bias = bias - F::load(p.bend) / scale;
+                const F bias = F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least));
                 return HitTerms{{bias, scale, F::if_greater(rigid, zero, zero, soft_impulse)},
                                 F::if_greater(hit, zero, one, zero)};
             });

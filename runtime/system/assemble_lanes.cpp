@@ -70,7 +70,7 @@ struct PairMovement {
 };
 
 // One pair into one lane of a group; its points into the group's first points.
-void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes, double frame) {
+void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.friction[lane] = pair.friction;
     g.round[0][lane] = pair.round_a;
@@ -80,8 +80,6 @@ void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, con
         g.tangent[i][lane] = t1[i];
     }
     const PairMovement moves(pairs, pair, nodes);
-    const double turn = frame * frame * std::max(moves.a.w.squaredNorm(), moves.b.w.squaredNorm());
-    if (turn > kLeverTurn * kLeverTurn) g.arcs |= 1u << lane;
     for (int k = 0; k < pair.manifold.count; ++k)
         fill_lane(g.point[k], lane, on_ball_paths(pairs, nodes, pair, moves.levers(pair, k)),
                   pair.manifold.points[k].separation, pair.impulse[k], pair.restitution);
@@ -126,10 +124,9 @@ void prefetch_pair(const LaneGroup& g, const LaneGroup* next, int lane, const Pa
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
-bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, double frame, Pairs& pairs,
+bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& pairs,
                 const Nodes& nodes) {
     bool bounces = false, driven = false, turns = false, round = false, rolls = false;
-    g.arcs = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
         prefetch_pair(g, next, lane, pairs);
         uint32_t filled = 0;
@@ -137,7 +134,7 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, double f
             Pair& pair = pairs.list[g.pair[lane]];
             leave_block(pair);
             change_substeps(pair, substeps);
-            fill_pair(g, lane, pairs, pair, nodes, frame);
+            fill_pair(g, lane, pairs, pair, nodes);
             filled = static_cast<uint32_t>(pair.manifold.count);
             bounces = bounces || pair.restitution > 0;
             driven = driven || pair.driven;
@@ -190,12 +187,11 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
     share_out(team, system, pairs, group);
     const auto prepare = [&](uint32_t g) { kernels.prepare(lanes.view(), g, g + 1, system.sweep.data()); };
     std::atomic<bool> bounces{false}, special{false};
-    const double frame = system.h * group.substeps;  // [s]
     for_lane_parts(team, lanes, [&](uint32_t part) {
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
             LaneGroup& g = lanes.group[i];
-            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, group.substeps, frame, pairs, nodes))
+            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, group.substeps, pairs, nodes))
                 bounces.store(true, std::memory_order_relaxed);
             if (is_special(g))
                 special.store(true, std::memory_order_relaxed);
@@ -218,13 +214,12 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
 namespace {
 
 // Notes which lanes turned; false: none.
-bool note_turns(LaneGroup& g, const System& system, LaneTurns& turns) {
+bool note_turns(const LaneGroup& g, const System& system, LaneTurns& turns) {
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         const bool a = system.turned[g.a[lane]] != 0, b = system.turned[g.b[lane]] != 0;
         turns.turned[0][lane] = a;
         turns.turned[1][lane] = b;
-        if (a || b) g.arcs |= 1u << lane;
         any = any || a || b;
     }
     return any;

@@ -73,7 +73,6 @@ struct Data {
             if (i % 3 == 1) add_drive(g, any);
             if (i % 4 == 2) add_rolling(g, any);
             if (i % 5 == 3) add_axes(g, any);
-            if (i % 2 == 1) g.arcs = static_cast<uint32_t>(engine()) & kAllLanes;
             for (uint32_t k = 0; k < g.points; ++k) {
                 LanePoint p{};
                 for (int lane = 0; lane < kLanes; ++lane) {
