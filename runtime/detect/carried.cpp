@@ -20,14 +20,33 @@ bool any_carries(const Nodes& nodes) {
     return false;
 }
 
-// Whether some point was pushed in the last substep with less friction than it may have.
+// Whether friction held a pair in the last substep: its force F and its torque T about the normal through the centre of
+// pressure are within what its points give where they slide and spin, F_s = mu sum N_k and T_s = mu sum N_k r_k,
+//   (F / F_s)^2 + (T / T_s)^2 < 1    (ellipsoidal limit surface: Howe and Cutkosky 1996).
+// Single points say nothing: against each other they may all be at their bounds.
 bool sticks(const Pair& pair) {
-    constexpr float kWithin = 0.999f;  // of the cone; impulses are floats
-    return std::any_of(pair.impulse, pair.impulse + pair.manifold.count, [&](const Impulse& impulse) {
-        const float most = kWithin * pair.friction * impulse.normal;
-        return impulse.normal > 0 &&
-               impulse.tangent1 * impulse.tangent1 + impulse.tangent2 * impulse.tangent2 < most * most;
+    constexpr float kWithin = 0.999f;  // of the bounds; impulses are floats
+    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+    Vec3f force = Vec3f::Zero(), centre = Vec3f::Zero();
+    float pressure = 0, torque = 0, arms = 0;
+    const auto each = [&](auto visit) {
+        for (int k = 0; k < pair.manifold.count; ++k) visit(pair.impulse[k], pair.manifold.points[k].position);
+    };
+    each([&](const Impulse& impulse, const Vec3f& point) {
+        pressure += impulse.normal;
+        centre += impulse.normal * point;
     });
+    if (!(pressure > 0)) return false;
+    centre /= pressure;
+    each([&](const Impulse& impulse, const Vec3f& point) {
+        const Vec3f push = impulse.tangent1 * t1 + impulse.tangent2 * t2, arm = point - centre;
+        force += push;
+        torque += n.dot(arm.cross(push));
+        arms += impulse.normal * (arm - n.dot(arm) * n).norm();
+    });
+    const float slide = force.norm() / (pair.friction * pressure);
+    const float turn = arms > 0 ? torque / (pair.friction * arms) : 0;
+    return slide * slide + turn * turn < kWithin * kWithin;
 }
 
 Carried pose_of(const Nodes& nodes, const Pair& pair) {
