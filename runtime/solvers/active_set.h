@@ -94,7 +94,6 @@ private:
     double slope_of_energy(double part, double& curvature) const;
     double least_energy(double start) const;
     double negligible() const;
-    bool fits_friction(double energy) const;
 
     Substep& s_;
     System& sys_;

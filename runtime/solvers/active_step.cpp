@@ -66,17 +66,6 @@ double ActiveSet::negligible() const {
     return least * (kSettledAtRest * sys_.h * sys_.h * s_.settings.gravity_squared + kSettled * fastest);
 }
 
-// False if some friction is so far from its bound that what is too much of it, or too little, is worth more than that:
-// the energy knows them as the linear rows of a given c.
-bool ActiveSet::fits_friction(double energy) const {
-    for (const BoundedRow& lead : rows()) {
-        if (lead.width == 0 || !lead.on) continue;
-        const double over = size_of(lead) - bound_of(lead), miss = lead.c > lead.least ? over : std::max(0.0, over);
-        if (miss * miss * lead.k > energy) return false;
-    }
-    return true;
-}
-
 void ActiveSet::begin_rounds() {
     for (BoundedRow& r : rows()) r.short_rate = r.short_mu = 0;
 }
@@ -87,8 +76,7 @@ double ActiveSet::advance(bool first) {
     settled_ = false;
     if (!first) {
         const double start = slope_of_energy(0, curvature);
-        const double energy = negligible();
-        settled_ = std::abs(start) <= energy && fits_friction(energy);
+        settled_ = std::abs(start) <= negligible();
         t = least_energy(start);
     }
     for (BoundedRow& r : rows()) {

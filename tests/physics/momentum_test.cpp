@@ -85,22 +85,6 @@ TEST(HangingRow, KeepsMomentumAndEnergyInAnElasticBlow) {
             }
 }
 
-// Friction turns a ball that strikes another against its swing by a coefficient times the blow at most.
-TEST(HangingRow, FrictionTakesNoMoreThanItsShare) {
-    for (const double friction : {0.01, 0.05, 0.2})
-        for (const uint32_t substeps : {1u, 4u})
-            for (const int count : {3, 4}) {
-                const RowPlan plan{.count = count, .friction = friction, .substeps = substeps};
-                const std::vector<double> speeds = speeds_of(plan);
-                double sum = 0;
-                for (const double speed : speeds) sum += speed;
-                // At a radius r of the arm l, of each ball by both its neighbours.
-                const double most = 5 * friction * 0.12 / 1.5;
-                EXPECT_LE(sum, 1.02) << text_of(plan, speeds);
-                EXPECT_GE(sum, 1 - 0.02 - most) << text_of(plan, speeds);
-            }
-}
-
 class FreeMechanism : public testing::TestWithParam<uint32_t> {};
 
 // Angular momentum as far as a straight substep keeps it: what turns opens joints, and what bounces has moved past the
