@@ -6,7 +6,7 @@
 namespace taut::collision {
 
 // A contact as one of its two sides has it: in the frame of its shape, with the normal out of it and the points on it.
-struct Footing {
+struct SolidContact {
     Vec3f normal;
     int count = 0;
     Vec3f points[4];
@@ -27,10 +27,10 @@ float flush_tolerance(const Shape& body);
 // Whether the contact of a convex body with a solid, or a part of it, is with a face, or along the normal of a face,
 // that is inside of what the solid and that of the cover make up together, as at the seams of a floor: the body cannot
 // meet it while the cover holds.
-bool is_internal(const Shape& body, const Shape& solid, uint32_t part, const Footing& contact, const Cover& cover);
+bool is_internal(const Shape& body, const Shape& solid, uint32_t part, const SolidContact& contact, const Cover& cover);
 // As collide(), with the faces of a box or hull that are not internal: the body's contact in place of such a one; of
 // other solids none.
 void collide_open(const Shape& body, const Placement& at_body, const Shape& solid, const Placement& at_solid,
-                  const Footing& contact, const Cover& cover, bool solid_is_b, float margin, Manifold& out);
+                  const SolidContact& contact, const Cover& cover, bool solid_is_b, float margin, Manifold& out);
 
 }  // namespace taut::collision

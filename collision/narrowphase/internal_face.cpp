@@ -29,7 +29,7 @@ constexpr float kNowhere = -1e30f;  // height of what is not near the body
 // The plane of a cover as a contact of a body with another solid sees it.
 class Horizon {
 public:
-    Horizon(const Shape& body, const Footing& contact, const Cover& cover)
+    Horizon(const Shape& body, const SolidContact& contact, const Cover& cover)
         : cover_(cover), slack_(flush_tolerance(body)) {
         at_ = Vec3f::Zero();
         for (int k = 0; k < contact.count; ++k) at_ += contact.points[k] / float(contact.count);
@@ -81,13 +81,13 @@ public:
         return horizon_.top(polygon, face.u, face.v);
     }
     bool is_internal(const Face& face) const { return !horizon_.goes_on(face.normal) && !rises(face); }
-    bool touches(const Footing& contact, const Face& face) const {
+    bool touches(const SolidContact& contact, const Face& face) const {
         return std::any_of(contact.points, contact.points + contact.count, [&](const Vec3f& p) {
             return std::fabs(face.normal.dot(p) - face.offset) <= horizon_.slack();
         });
     }
     // Whether the contact is along a normal that only an internal face lends it.
-    bool is_internal(const Footing& contact) const {
+    bool is_internal(const SolidContact& contact) const {
         bool internal = false;
         for (const Face& face : solid_.faces) {
             const float along = contact.normal.dot(face.normal);
@@ -182,7 +182,7 @@ private:
 };
 
 // Edges and vertices in the plane or below it; facets that end there.
-bool is_internal_part(const Shape& shape, uint32_t part, const Footing& contact, const Cover& cover,
+bool is_internal_part(const Shape& shape, uint32_t part, const SolidContact& contact, const Cover& cover,
                       const Horizon& horizon) {
     if (horizon.goes_on(contact.normal)) return false;
     if (!is_face(part))
@@ -207,7 +207,8 @@ Pose pose_in(const Placement& solid, const Placement& body) {
 // As of clipping.
 float flush_tolerance(const Shape& body) { return flush_slack(inner_radius(body)); }
 
-bool is_internal(const Shape& body, const Shape& solid, uint32_t part, const Footing& contact, const Cover& cover) {
+bool is_internal(const Shape& body, const Shape& solid, uint32_t part, const SolidContact& contact,
+                 const Cover& cover) {
     const Horizon horizon(body, contact, cover);
     if (has_parts(solid)) return is_internal_part(solid, part, contact, cover, horizon);
     if (!is_polytope(solid)) return false;
@@ -216,7 +217,7 @@ bool is_internal(const Shape& body, const Shape& solid, uint32_t part, const Foo
 }
 
 void collide_open(const Shape& body, const Placement& at_body, const Shape& solid, const Placement& at_solid,
-                  const Footing& contact, const Cover& cover, bool solid_is_b, float margin, Manifold& out) {
+                  const SolidContact& contact, const Cover& cover, bool solid_is_b, float margin, Manifold& out) {
     out.count = 0;
     if (!is_polytope(solid)) return;
     const Horizon horizon(body, contact, cover);

@@ -71,7 +71,7 @@ float growth_of(const Detection& of, const Side& one, const Side& other, const V
 
 // A contact before the plane of another, in the frame of its solid.
 struct Question {
-    collision::Footing contact;
+    collision::SolidContact contact;
     collision::Cover cover;
 
     Question(const Detection& of, const Side& one, const Side& other) {

@@ -226,7 +226,7 @@ void Shaped::find_parts(collision::Parts& parts) const {
     if (std::isfinite(then_)) collision::collide_parts(a_, *at_a_, b_, *at_b_, margin_, parts);
 }
 
-void Shaped::find_open_points(bool solid_is_b, const collision::Footing& contact, const collision::Cover& cover,
+void Shaped::find_open_points(bool solid_is_b, const collision::SolidContact& contact, const collision::Cover& cover,
                               collision::Manifold& manifold) const {
     if (solid_is_b)
         collision::collide_open(a_, *at_a_, b_, *at_b_, contact, cover, true, margin_, manifold);
@@ -317,7 +317,7 @@ Vec3 origin_of_points(const Detection& of, const Pair& pair) {
     return of.pairs.placement[a].position - of.pairs.stance[a].from_node.cast<double>();
 }
 
-void find_open_points(const Detection& of, bool solid_is_b, const collision::Footing& contact,
+void find_open_points(const Detection& of, bool solid_is_b, const collision::SolidContact& contact,
                       const collision::Cover& cover, Pair& pair) {
     const Shaped shaped(of, pair, Shaped::Met{pair.then});
     shaped.find_open_points(solid_is_b, contact, cover, pair.manifold);

@@ -49,7 +49,7 @@ public:
     // Returns, if it finds no points, how far apart the two are at least [m]; 0: not known.
     float find_points(collision::PairCache& cache, collision::Manifold& manifold) const;
     void find_parts(collision::Parts& parts) const;
-    void find_open_points(bool solid_is_b, const collision::Footing& contact, const collision::Cover& cover,
+    void find_open_points(bool solid_is_b, const collision::SolidContact& contact, const collision::Cover& cover,
                           collision::Manifold& manifold) const;
 
     float then() const { return then_; }
@@ -155,7 +155,7 @@ bool refresh_part(const Shaped& shaped, const Detection& of, Pair& pair);
 // Where a pair's points are counted from: the origin of node a's body, at the placement of its collider.
 Vec3 origin_of_points(const Detection& of, const Pair& pair);
 // Points on open faces in place of those on internal ones, without impulses, or none; detect/internal_faces.h.
-void find_open_points(const Detection& of, bool solid_is_b, const collision::Footing& contact,
+void find_open_points(const Detection& of, bool solid_is_b, const collision::SolidContact& contact,
                       const collision::Cover& cover, Pair& pair);
 
 // Brings a manifold that NearPair::kept holds to the present; false if it is to be found again.

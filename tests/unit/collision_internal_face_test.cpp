@@ -22,11 +22,11 @@ struct Scene {
         return {Vec3f::UnitY(), 0, Vec3f(std::min(middle.x(), -0.01f), 0, middle.z()), middle, 1};
     }
     // What collide() says of the two, as the solid has it.
-    Footing footing() const {
+    SolidContact footing() const {
         PairCache cache;
         Manifold found;
         collide(solid, solid_at(), body, body_at(), 0.3f, cache, found);
-        Footing out{found.normal, found.count, {}};
+        SolidContact out{found.normal, found.count, {}};
         for (int k = 0; k < found.count; ++k)
             out.points[k] = found.points[k].position - 0.5f * found.points[k].separation * found.normal;
         return out;
@@ -127,7 +127,7 @@ TEST(InternalFace, WallIsNone) {
     const Vec3 at(-0.45, 0.39, 0);
     collide(wall, Scene::solid_at(), cube(), {at, lean}, 0.2f, cache, found);
     ASSERT_GT(found.count, 0);
-    Footing footing{found.normal, found.count, {}};
+    SolidContact footing{found.normal, found.count, {}};
     for (int k = 0; k < found.count; ++k)
         footing.points[k] = found.points[k].position - 0.5f * found.points[k].separation * found.normal;
     const Cover cover{Vec3f::UnitY(), 0, {-0.4f, 0, 0}, at.cast<float>(), 1};
