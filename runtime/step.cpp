@@ -75,6 +75,13 @@ void build_group(World& w, const Group& group, const Solver& solver, const Conta
     watch_group(group, w.system, w.pairs, w.watch);
 }
 
+void assemble_joint_lanes(World& w, const SolverSettings& settings) {
+    evaluate_joint_lanes(w.team, w.system);
+    if (settings.geometric_stiffness)
+        stiffen_joints(w.team, w.system, w.nodes, *settings.joint_kernels, settings.velocity_filter > 0);
+    prepare_joint_lanes(w.team, w.system, *settings.joint_kernels);
+}
+
 // All substeps of a group of islands, which no other group touches.
 void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSettings& settings, SolverReport& report,
                  Stopwatch& watch) {
@@ -108,7 +115,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();
         evaluate_rows(w.team, system, part.left(), frame);
-        if (solver.lanes) evaluate_joint_lanes(w.team, system, *settings.joint_kernels);
+        if (solver.lanes) assemble_joint_lanes(w, settings);
         tell(w, {Stage::assemble, index, i});
         w.profile.assemble_us += watch.lap();
         Substep substep{w.team, system,    group,       w.partition.blocks, w.nodes,    settings,

@@ -18,7 +18,7 @@ struct alignas(32) SweepVelocity {  // [m/s, rad/s]; no component is -0: what be
 struct alignas(32) SweepMass {
     float inv_mass = 0;
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
-    float pad = 0;
+    float joint_share = 1;                      // within inv_inertia: what stiffen_joints() left of it
 };
 // By seat (system/system.h). A cache line each: who gathers fetches one, and threads that write to neighbours do not
 // meet.
@@ -31,7 +31,7 @@ struct alignas(32) SweepShift {        // since the contacts were found
     float dq[4] = {0, 0, 0, 1};        // rotation x, y, z, w
 };
 
-struct alignas(32) SweepFlight {           // of the substep, where something may bounce
+struct alignas(32) SweepFlight {            // of the substep, where something may bounce
     float gained[3] = {0, 0, 0}, pad0 = 0;  // velocity that forces give the body [m/s]
     float moved[3] = {0, 0, 0}, pad1 = 0;   // by what impacts have moved where its path begins [m]
 };

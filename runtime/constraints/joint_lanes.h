@@ -42,22 +42,29 @@ struct JointGroup {
 };
 
 struct alignas(64) LaneRow {
-    float locked[kLanes];   // 1: solved with the block
-    float rigid[kLanes];    // 1: locked without compliance, so softened while positions are corrected
-    float bias[kLanes];     // J v that is wanted: locked rows against it [m/s]; zero for the others
-    float own[kLanes];      // J W J^T [1/kg or 1/(kg m^2)]
-    float impulse[kLanes];  // of the row, stops, drive and friction included [N s]
+    float locked[kLanes];     // 1: solved with the block
+    float bias[kLanes];       // of locked rows J v + c p while positions are corrected [m/s]; zero for the others
+    float kept_bias[kLanes];  // likewise of the velocity that is kept
+    float own[kLanes];        // J W J^T [1/kg or 1/(kg m^2)]
+    float impulse[kLanes];    // of the row, stops, drive and friction included [N s]
+    float kept[kLanes];       // what it is once the positions are corrected [N s]
 };
 
 // What a row's bias comes from.
 struct alignas(32) LaneCoordinate {
     float value[kLanes];         // C [m or rad]; prepare() adds what of the drift has come
-    float rate[kLanes];          // bias = -rate C [1/s]; zero for rows that are not locked
+    float rate[kLanes];          // of elastic rows, J v + c p = -rate C [1/s]; 0 for the others
     float drift[kLanes];         // of C in this frame [m or rad] ...
     float damped_drift[kLanes];  // ... and what damping adds; see evaluate_rows()
 };
 
-constexpr uint32_t kRubbing = 3;  // AxisRow::part
+// K of a group's forces against the turning of its ends, at most [N m].
+struct alignas(64) LaneStiffness {
+    float of[2][kLanes];
+};
+
+constexpr uint32_t kDriving = 2, kRubbing = 3;  // AxisRow::part
+constexpr float kUnlimited = 1e30f;             // LaneAxis::most
 
 // A stop, drive or friction along a row: sign J v + c mu = target, least <= mu <= most. Empty places have no mass.
 // c = max(compliance, softness J W J^T) of its law.
@@ -67,7 +74,7 @@ struct alignas(64) LaneAxis {
     float compliance[kLanes];
     float target[kLanes], relaxed_target[kLanes];  // [m/s]
     float least[kLanes], most[kLanes];             // [N s]
-    float impulse[kLanes];                         // [N s]
+    float impulse[kLanes], kept[kLanes];           // [N s]
     float* force[kLanes];                          // where impulse / h belongs, null for an empty place
     uint32_t row;
     uint32_t part;  // AxisRow::part
@@ -97,6 +104,7 @@ struct JointView {
     const LaneScalar* jacobian;
     LaneScalar* factor;
     const LaneScalar* compliance;
+    LaneStiffness* stiffness;
 };
 
 // What groups have of one kind in this frame, one after the other.
@@ -134,7 +142,9 @@ struct JointLanes {
           jacobian(memory),
           factor(memory),
           compliance(memory),
-          colour_begin(memory) {}
+          stiffness(memory),
+          colour_begin(memory),
+          node_stiffness(memory) {}
 
     Array<JointGroup> group;
     LanePlaces<LaneRow> row;
@@ -143,11 +153,13 @@ struct JointLanes {
     LanePlaces<LaneAxisLaw> law;  // one for each axis
     LanePlaces<LaneFrames> frames;
     LanePlaces<LaneScalar> jacobian, factor, compliance;
-    Array<uint32_t> colour_begin;  // first group of each colour, and one past the last
+    LanePlaces<LaneStiffness> stiffness;  // one for each group
+    Array<uint32_t> colour_begin;         // first group of each colour, and one past the last
+    Array<float> node_stiffness;          // by seat [N m], -1: seen to; stiffen_joints()
 
     JointView view() {
-        return {group.data(), row.data(),      coordinate.data(), axis.data(),
-                law.data(),   jacobian.data(), factor.data(),     compliance.data()};
+        return {group.data(),    row.data(),    coordinate.data(), axis.data(),     law.data(),
+                jacobian.data(), factor.data(), compliance.data(), stiffness.data()};
     }
 };
 
@@ -158,13 +170,19 @@ constexpr uint32_t triangle(uint32_t row, uint32_t column) { return row * (row +
 // AVX2, AVX-512.
 struct JointKernels {
     const char* name;
+    // From impulses and Jacobian, for substeps of length h [s].
+    void (*stiffen)(JointView, uint32_t begin, uint32_t end, float h);
     // From coordinates, Jacobian and compliance: biases, targets, factors and masses. frame_left: share of the frame
     // after this substep.
-    void (*prepare)(JointView, uint32_t begin, uint32_t end, const SweepNode*, float frame_left);
+    void (*prepare)(JointView, uint32_t begin, uint32_t end, const SweepNode*, float frame_left, const SweepTerms&);
     void (*warm_start)(JointView, uint32_t begin, uint32_t end, SweepNode*);
-    void (*sweep_biased)(JointView, uint32_t begin, uint32_t end, SweepNode*, const SweepTerms&);
-    // Same rows without the bias and softness of rigid ones and the push of stops.
-    void (*sweep_relaxed)(JointView, uint32_t begin, uint32_t end, SweepNode*);
+    // Towards the velocity that is kept.
+    void (*sweep)(JointView, uint32_t begin, uint32_t end, SweepNode*);
+    // From there to the velocity that moves the positions, with what closes gaps and the push of stops: before the
+    // first of these sweeps what is kept is noted; and, after the positions moved, the way back to it.
+    void (*keep)(JointView, uint32_t begin, uint32_t end);
+    void (*correct)(JointView, uint32_t begin, uint32_t end, SweepNode*);
+    void (*take_back)(JointView, uint32_t begin, uint32_t end, SweepNode*);
     // Largest |J v + c p - bias| of the locked rows [m/s or rad/s].
     float (*residual)(JointView, uint32_t begin, uint32_t end, const SweepNode*);
 };

@@ -1,8 +1,12 @@
 // The sweep of joints, a template over the lanes (simd/lanes.h). Included by one file for each build.
 //
-// Locked rows, as one block:  dp = -(S + c)^-1 (scale (J v - bias) + c p) - softness p,   S = J W J^T
-// with scale and softness of rigid rows from the soft-contact model (system/soft_contact.h), 1 and 0 where they are
-// elastic or the sweep is relaxed. Then each axis row:  mu += (target - s J v - c mu) / (k + c), within its bounds.
+// Locked rows, as one block:  dp = -(S + c)^-1 (J v - bias + c p),   S = J W J^T.  Then each axis row:
+// mu += (target - s J v - c mu) / (k + c), within its bounds.
+//
+// A sweep leaves what spans many joints nearly unsolved, and the impulses that the next substep starts from sum up what
+// it was: they integrate J v, as a spring does. Were the bias that closes gaps in them they would integrate C as well:
+// with a, the share that a sweep solves, d^3 C = -a (d^2 C + d C + rate C) a substep, which grows without bound where
+// a < rate (Hurwitz). What closes gaps therefore moves the positions alone, and is taken back after that.
 #pragma once
 
 #include "constraints/joint_lanes.h"
@@ -87,6 +91,34 @@ struct JointSweep {
         return zero - F::max(zero - F::max(x, least), zero - most);
     }
 
+    // Of forces f of locked rows at levers r the positive part of K is at most (f . r + |f||r|)/2 (Tournier et al.
+    // 2015, eq. 22; the eigenvalues of lever.h). Rows that move are along three axes e, and turn by r x e; what they
+    // leave of a lever, e x (r x e) summed, is twice the lever. Torques are left out: theirs would take the spin of
+    // wheels.
+    static void stiffen(JointView view, uint32_t begin, uint32_t end, float h) {
+        const F half = F::all(0.5f), rate = F::all(1 / h);
+        for (uint32_t i = begin; i < end; ++i) {
+            const JointGroup& g = view.group[i];
+            LaneStiffness& out = view.stiffness[i];
+            if (g.first_turn < 3 || g.nodes > 2) continue;
+            const Joints joints(view, g);
+            const auto impulse = [&](uint32_t r) {
+                const LaneRow& row = view.row[g.first_row + r];
+                return rate * F::load(row.locked) * F::load(row.impulse);
+            };
+            for (uint32_t n = 0; n < g.nodes; ++n) {
+                V f = impulse(0) * joints.linear(n, 0), lever = cross(joints.linear(n, 0), joints.angular(n, 0));
+                for (uint32_t r = 1; r < 3; ++r) {
+                    f = f + impulse(r) * joints.linear(n, r);
+                    lever = lever + cross(joints.linear(n, r), joints.angular(n, r));
+                }
+                lever = half * lever;
+                const F size = F::sqrt(dot(f, f) * dot(lever, lever));
+                (half * (dot(f, lever) + size)).store(out.of[n]);
+            }
+        }
+    }
+
     // S + c of the locked rows, an identity in the place of the others, as L D L^T. A row that what it moves or the
     // rows before it leave nothing to do is left out: its pivot is no more than rounding.
     static void factor(const JointView& view, const JointGroup& g, const F (&s)[21]) {
@@ -111,14 +143,29 @@ struct JointSweep {
         }
     }
 
-    // C with what of its drift has come, and the biases.
-    static void set_biases(const JointView& view, const JointGroup& g, const F& frame_left) {
-        for (uint32_t r = g.first_row; r < g.first_row + g.rows; ++r) {
-            LaneCoordinate& at = view.coordinate[r];
-            const F come = F::load(at.damped_drift) - frame_left * F::load(at.drift);
+    // C with what of its drift has come, and the biases. An elastic row's law is J v + c p = -rate C at the end of the
+    // substep. Where its spring is stiffer than h^2 S of its ends bears, it is a rigid row that yields: the change
+    // alone is kept, J v + c dp = 0, and what of the law that does not hold moves the positions.
+    static void set_biases(const JointView& view, const JointGroup& g, const F& frame_left, const SweepTerms& terms) {
+        const F zero = F::all(0), share = F::all(terms.bias_rate), inv_h = F::all(terms.inv_h);
+        const bool elastic = g.first_compliance != kNoLanes;
+        F p[kMaxRows];
+        for (uint32_t r = 0; r < g.held; ++r) p[r] = F::load(view.row[g.first_row + r].impulse);
+        for (uint32_t r = 0; r < g.rows; ++r) {
+            LaneRow& row = view.row[g.first_row + r];
+            LaneCoordinate& at = view.coordinate[g.first_row + r];
+            const F come = F::load(at.damped_drift) - frame_left * F::load(at.drift), locked = F::load(row.locked);
             const F c = F::load(at.value) + come;
             c.store(at.value);
-            (F::all(0) - F::load(at.rate) * c).store(view.row[r].bias);
+            F kept = zero, rate = locked * share;
+            if (elastic && r < g.held) {
+                const F soft = F::load(view.compliance[g.first_compliance + triangle(r, r)].value) * inv_h;
+                const F spring = F::load(at.rate), law = zero - spring * c, yields = locked * yielding(view, g, r, p);
+                rate = F::if_greater(spring, zero, spring, rate);
+                kept = F::if_greater(soft, spring * F::load(row.own), law, yields);
+            }
+            kept.store(row.kept_bias);
+            (zero - rate * c).store(row.bias);
         }
     }
 
@@ -153,7 +200,8 @@ struct JointSweep {
         (F::load(row.impulse) + F::load(axis.sign) * (kept - carried)).store(row.impulse);
     }
 
-    static void prepare(JointView view, uint32_t begin, uint32_t end, const SweepNode* nodes, float frame_left) {
+    static void prepare(JointView view, uint32_t begin, uint32_t end, const SweepNode* nodes, float frame_left,
+                        const SweepTerms& terms) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
@@ -165,7 +213,7 @@ struct JointSweep {
                 for (uint32_t e = 0; e < triangle(g.held, 0); ++e)
                     s[e] = s[e] + F::load(view.compliance[g.first_compliance + e].value);
             factor(view, g, s);
-            set_biases(view, g, F::all(frame_left));
+            set_biases(view, g, F::all(frame_left), terms);
             for (uint32_t a = g.first_axis; a < g.first_axis + g.axes; ++a) {
                 const uint32_t row = view.axis[a].row;
                 set_axis(view.axis[a], view.law[a], view.coordinate[g.first_row + row],
@@ -208,27 +256,19 @@ struct JointSweep {
         return sum;
     }
 
-    // stiffening: what of a rigid row's effective mass is left out; softness: of the impulse already there.
-    static void locked_rows(const JointView& view, Joints& joints, const F& stiffening, const F& softness,
-                            bool biased) {
+    static void locked_rows(const JointView& view, Joints& joints, bool corrects) {
         const JointGroup& g = joints.g;
         if (g.held == 0) return;
-        const F one = F::all(1);
         LaneRow* row = view.row + g.first_row;
         F x[kMaxRows], p[kMaxRows];
         for (uint32_t r = 0; r < g.held; ++r) {
-            const F rigid = F::load(row[r].rigid), wanted = F::load(row[r].bias);
             p[r] = F::load(row[r].impulse);
-            const F bias = biased ? wanted : (one - rigid) * wanted;
-            x[r] = (one - rigid * stiffening) * (F::load(row[r].locked) * joints.velocity(r) - bias);
+            x[r] = F::load(row[r].locked) * joints.velocity(r) - F::load(corrects ? row[r].bias : row[r].kept_bias);
         }
         if (g.first_compliance != kNoLanes)
             for (uint32_t r = 0; r < g.held; ++r) x[r] = x[r] + yielding(view, g, r, p);
         solve_block(view, g, x);
-        for (uint32_t r = 0; r < g.held; ++r) {
-            x[r] = x[r] - F::load(row[r].rigid) * softness * p[r];
-            (p[r] + x[r]).store(row[r].impulse);
-        }
+        for (uint32_t r = 0; r < g.held; ++r) (p[r] + x[r]).store(row[r].impulse);
         joints.apply(x, g.held);
     }
 
@@ -242,7 +282,17 @@ struct JointSweep {
         return sign * (after - before);
     }
 
-    // One after another; those along one row, side by side, are applied together.
+    // A drive without limit against a stop: no forces fulfil both, and those that sweeps find grow without end. The
+    // stop wins, and neither keeps what it takes back of the drive's push.
+    static void unwind(LaneAxis& drive, F& pushed, LaneAxis& stop, const F& change) {
+        const F zero = F::all(0);
+        const F taken = clamp(zero - change, zero - F::max(zero - pushed, zero), F::max(pushed, zero));
+        (F::load(drive.impulse) - F::load(drive.sign) * taken).store(drive.impulse);
+        (F::load(stop.impulse) + F::load(stop.sign) * taken).store(stop.impulse);
+        pushed = pushed - taken;
+    }
+
+    // One after another, stops last; those along one row, side by side, are applied together.
     static void axis_rows(const JointView& view, Joints& joints, bool biased) {
         const uint32_t end = joints.g.first_axis + joints.g.axes;
         for (uint32_t a = joints.g.first_axis; a < end;) {
@@ -252,37 +302,74 @@ struct JointSweep {
             }
             const uint32_t r = view.axis[a].row;
             LaneRow& row = view.row[joints.g.first_row + r];
-            const F own = F::load(row.own);
-            F v = joints.velocity(r), sum = F::all(0);
+            const F own = F::load(row.own), zero = F::all(0);
+            F v = joints.velocity(r), sum = zero, pushed = zero;  // by a drive without limit
+            LaneAxis* drive = nullptr;
             for (; a < end && view.axis[a].row == r; ++a) {
-                if (!view.axis[a].used) continue;
-                const F change = axis_change(view.axis[a], v, biased);
+                LaneAxis& axis = view.axis[a];
+                if (!axis.used) continue;
+                const F change = axis_change(axis, v, biased);
                 v = v + own * change;
                 sum = sum + change;
+                if (axis.part == kDriving) {
+                    drive = &axis;
+                    pushed = F::if_greater(F::all(kUnlimited), F::load(axis.most), zero, change);
+                } else if (drive && axis.part < kDriving) {
+                    unwind(*drive, pushed, axis, change);
+                }
             }
             (F::load(row.impulse) + sum).store(row.impulse);
             joints.apply(r, sum);
         }
     }
 
-    static void sweep(const JointView& view, uint32_t begin, uint32_t end, SweepNode* nodes, const F& stiffening,
-                      const F& softness, bool biased) {
+    static void solve(const JointView& view, Joints& joints, SweepNode* nodes, bool corrects) {
+        joints.gather(nodes);
+        locked_rows(view, joints, corrects);
+        axis_rows(view, joints, corrects);
+        joints.scatter(nodes);
+    }
+
+    static void sweep(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes) {
+        for (uint32_t i = begin; i < end; ++i) {
+            Joints joints(view, view.group[i]);
+            solve(view, joints, nodes, false);
+        }
+    }
+
+    static void keep(JointView view, uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const JointGroup& g = view.group[i];
+            for (uint32_t r = g.first_row; r < g.first_row + g.rows; ++r)
+                F::load(view.row[r].impulse).store(view.row[r].kept);
+            for (uint32_t a = g.first_axis; a < g.first_axis + g.axes; ++a)
+                F::load(view.axis[a].impulse).store(view.axis[a].kept);
+        }
+    }
+
+    static void correct(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes) {
+        for (uint32_t i = begin; i < end; ++i) {
+            Joints joints(view, view.group[i]);
+            solve(view, joints, nodes, true);
+        }
+    }
+
+    static void take_back(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes) {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
             joints.gather(nodes);
-            locked_rows(view, joints, stiffening, softness, biased);
-            axis_rows(view, joints, biased);
+            F change[kMaxRows];
+            for (uint32_t r = 0; r < g.rows; ++r) {
+                LaneRow& row = view.row[g.first_row + r];
+                change[r] = F::load(row.kept) - F::load(row.impulse);
+                F::load(row.kept).store(row.impulse);
+            }
+            for (uint32_t a = g.first_axis; a < g.first_axis + g.axes; ++a)
+                F::load(view.axis[a].kept).store(view.axis[a].impulse);
+            joints.apply(change, g.rows);
             joints.scatter(nodes);
         }
-    }
-
-    static void sweep_biased(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes, const SweepTerms& terms) {
-        sweep(view, begin, end, nodes, F::all(1 - terms.mass_scale), F::all(terms.impulse_scale), true);
-    }
-
-    static void sweep_relaxed(JointView view, uint32_t begin, uint32_t end, SweepNode* nodes) {
-        sweep(view, begin, end, nodes, F::all(0), F::all(0), false);
     }
 
     static float residual(JointView view, uint32_t begin, uint32_t end, const SweepNode* nodes) {
@@ -308,7 +395,7 @@ struct JointSweep {
     }
 
     static constexpr JointKernels table(const char* name) {
-        return {name, prepare, warm_start, sweep_biased, sweep_relaxed, residual};
+        return {name, stiffen, prepare, warm_start, sweep, keep, correct, take_back, residual};
     }
 };
 

@@ -15,6 +15,7 @@ namespace taut {
 namespace {
 
 void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
+    out.joint_share = 1;
     out.inv_mass = static_cast<float>(mass.inv_mass);
     const Mat3 inverse =
         mass.isotropic ? mass.inv_inertia.matrix() : Mat3(R * mass.inv_inertia.matrix() * R.transpose());
@@ -122,7 +123,7 @@ void rotate(const double theta[3], double q[4]) {
 // What the last frame left at a seat.
 void forget(System& system, uint32_t at) {
     system.shift[at] = {};
-    system.turned[at] = system.in_block[at] = 0;
+    system.turned[at] = system.in_block[at] = system.filtered[at] = 0;
     system.place[at] = kNone;
 }
 
@@ -287,8 +288,8 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
-        if (kernels.store(rows, batch, system.h, kLeverTurn, turning & ~in_block, velocity_filter, in_block,
-                          kMaxSpeed) !=
+        const Bodies slow = which(batch.seat, [&](uint32_t at) { return system.filtered[at] != 0; }) | in_block;
+        if (kernels.store(rows, batch, system.h, kLeverTurn, turning & ~in_block, velocity_filter, slow, kMaxSpeed) !=
             kAll)
             all_sane.store(false, std::memory_order_relaxed);
     });

@@ -26,7 +26,8 @@ void publish(Substep& s, uint32_t begin, uint32_t end) {
 // What the kernels work on, and one pass over a piece of it.
 class Kernels {
 public:
-    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed };  // the first measures the gaps
+    // The first of the biased ones measures the gaps of contacts, the first that corrects keeps what joints had.
+    enum class Pass : uint8_t { warm_start, first_biased, biased, relaxed, first_correct, correct, take_back };
 
     explicit Kernels(Substep& substep)
         : s_(substep),
@@ -39,9 +40,10 @@ public:
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
         if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, nodes_);
-        if (is_biased(pass))
-            joint_.sweep_biased(joints_, begin, end, nodes_, joint_terms(s_.system.h, s_.system.stretch));
-        if (pass == Pass::relaxed) joint_.sweep_relaxed(joints_, begin, end, nodes_);
+        if (is_biased(pass) || pass == Pass::relaxed) joint_.sweep(joints_, begin, end, nodes_);
+        if (pass == Pass::first_correct) joint_.keep(joints_, begin, end);
+        if (pass == Pass::first_correct || pass == Pass::correct) joint_.correct(joints_, begin, end, nodes_);
+        if (pass == Pass::take_back) joint_.take_back(joints_, begin, end, nodes_);
     }
     void rows(Pass pass) const {
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
@@ -82,9 +84,11 @@ public:
     explicit Program(Substep& s) : s_(s), kernels_(s) { first_piece_[0] = 0; }
 
     // Joints, rows, then contacts, colour by colour, backward if asked.
-    void add(Pass pass, bool backward = false) {
-        if (!s_.system.joints.group.empty())
-            for (uint32_t c = 0; c < kMaxColours; ++c) add_joints(pass, c);
+    void add_joints(Pass pass, bool backward = false) {
+        if (s_.system.joints.group.empty()) return;
+        for (uint32_t k = 0; k < kMaxColours; ++k) add_joints_of(pass, backward ? kMaxColours - 1 - k : k);
+    }
+    void add_rows_and_contacts(Pass pass, bool backward = false) {
         add_rows(pass);
         add_contacts(pass, backward);
     }
@@ -103,7 +107,7 @@ private:
         uint32_t colour;
     };
 
-    void add_joints(Pass pass, uint32_t colour) {
+    void add_joints_of(Pass pass, uint32_t colour) {
         const auto& begin = s_.system.joints.colour_begin;
         const uint32_t count = begin[colour + 1] - begin[colour];
         if (count == 0) return;
@@ -192,7 +196,8 @@ private:
     }
     uint32_t begin_of(uint32_t part, uint32_t count) const { return begin_of_part(part, s_.team.size(), count); }
 
-    static constexpr uint32_t kMostPasses = kRelaxSweeps, kMost = kMostPasses * (3 * kMaxColours + 1) + 1;
+    static constexpr uint32_t kMostPasses = kRelaxSweeps;
+    static constexpr uint32_t kMost = kMostPasses * (3 * kMaxColours + 1) + kMaxColours + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;
@@ -205,26 +210,48 @@ private:
     uint32_t through_borders_ = 0, through_alone_ = 0;  // stages up to the last of these
 };
 
+void sweep_joints(Substep& s, Kernels::Pass pass, bool backward) {
+    if (s.system.joints.group.empty()) return;
+    Program program(s);
+    program.add_joints(pass, backward);
+    program.run(false);
+}
+
 }  // namespace
 
 void warm_start_sweeps(Substep& s) {
     Program program(s);
-    program.add(Kernels::Pass::warm_start);
+    program.add_joints(Kernels::Pass::warm_start);
+    program.add_rows_and_contacts(Kernels::Pass::warm_start);
     program.run(false);
 }
 
+// Joints are swept to and fro: symmetric Gauss-Seidel, whose error shrinks without swinging on any graph. Impulses that
+// sum up what sweeps leave (constraints/joint_sweep.inl) grow where it swings, as it may around loops of very unequal
+// masses if all sweeps go one way: eigenvalues z of a sweep that are not real and positive give l^2 - 2 z l + z = 0,
+// |l| > 1 from |z| = 1/3 on.
 void sweep_biased(Substep& s) {
+    using Pass = Kernels::Pass;
     const uint32_t sweeps = s.settings.sweeps ? s.settings.sweeps : s.group.sweeps;
     for (uint32_t i = 0; i < sweeps; ++i) {
+        const Pass pass = i == 0 ? Pass::first_biased : Pass::biased;
+        const bool last = i + 1 == sweeps;
+        for (const bool backward : {false, true}) sweep_joints(s, Pass::biased, backward);
+        for (uint32_t k = 0; last && k < sweeps; ++k)
+            sweep_joints(s, k == 0 ? Pass::first_correct : Pass::correct, k % 2 == 1);
         Program program(s);
-        program.add(i == 0 ? Kernels::Pass::first_biased : Kernels::Pass::biased, s.corrects_backward);
-        program.run(i + 1 == sweeps);
+        program.add_rows_and_contacts(pass, s.corrects_backward);
+        program.run(last);
     }
 }
 
 void sweep_relaxed(Substep& s) {
     Program program(s);
-    for (uint32_t i = 0; i < kRelaxSweeps; ++i) program.add(Kernels::Pass::relaxed, s.relaxes_backward);
+    program.add_joints(Kernels::Pass::take_back);
+    for (uint32_t i = 0; i < kRelaxSweeps; ++i) {
+        program.add_joints(Kernels::Pass::relaxed, i % 2 == 1);
+        program.add_rows_and_contacts(Kernels::Pass::relaxed, s.relaxes_backward);
+    }
     program.run(true);
 }
 

@@ -30,8 +30,12 @@ void store_lanes(Team& team, const System& system, Pairs& pairs);
 
 // Once a frame and group: swept joints by colour into lanes.
 void build_joint_lanes(Team& team, System& system, const Group& group, double frame);
-// Once a substep, after evaluate_rows(): their rows, stops, drives and friction.
-void evaluate_joint_lanes(Team& team, System& system, const JointKernels& kernels);
+// Once a substep, after evaluate_rows(): C and J of their rows;
+void evaluate_joint_lanes(Team& team, System& system);
+// the geometric stiffness of the forces of the last substep, as inertia that the slow spin of their ends is spared;
+void stiffen_joints(Team& team, System& system, const Nodes& nodes, const JointKernels& kernels, bool filters);
+// and their rows, stops, drives and friction.
+void prepare_joint_lanes(Team& team, System& system, const JointKernels& kernels);
 // Once a frame and group: their forces back into the joints.
 void store_joint_lanes(Team& team, const System& system);
 

@@ -1,7 +1,9 @@
 // Coordinates and Jacobians of swept joints in lanes, and their forces back.
 #include <algorithm>
+#include <cmath>
 
 #include "system/assemble.h"
+#include "system/soft_contact.h"
 
 namespace taut {
 namespace {
@@ -37,6 +39,39 @@ void evaluate_group(System& system, const JointGroup& g) {
         std::copy(value[r].value, value[r].value + kLanes, lanes.coordinate[g.first_row + r].value);
 }
 
+// visit(seat, K) for the moving ends of all joints.
+template <class Visit>
+void for_each_end(const System& system, Visit visit) {
+    const JointLanes& lanes = system.joints;
+    for (uint32_t i = 0; i < lanes.group.size(); ++i) {
+        const JointGroup& g = lanes.group[i];
+        for (uint32_t n = 0; n < g.nodes && n < 2; ++n)
+            for (int lane = 0; lane < kLanes; ++lane)
+                if (g.block[lane] != kNoLanes) visit(g.node[n][lane], lanes.stiffness[i].of[n][lane]);
+    }
+}
+
+// (I + h^2 K') w = I w* + h^2 K' s with K' = k |I^-1| I, which is not less than k in any direction; |I^-1| by its
+// largest sum of a row. s: the low-passed spin.
+void stiffen(System& system, const Nodes& nodes, uint32_t at, float k, bool filters) {
+    SweepNode& node = system.sweep[at];
+    if (system.in_block[at] || node.mass.inv_mass == 0) return;
+    float(&i)[6] = node.mass.inv_inertia;
+    for (float& each : i) each /= node.mass.joint_share;  // of the last substep
+    const float xy = std::abs(i[3]), xz = std::abs(i[4]), yz = std::abs(i[5]);
+    const float most = std::max({i[0] + xy + xz, i[1] + xy + yz, i[2] + xz + yz});
+    const auto h = static_cast<float>(system.h);
+    const float share = 1 / (1 + h * h * k * most);
+    node.mass.joint_share = share;
+    for (float& each : i) each *= share;
+    const uint32_t from = system.node_at[at];
+    const Vec3& slow = system.lent ? system.motion[at].slow_w : nodes.motion[from].slow_w;
+    for (int a = 0; a < 3; ++a) {
+        const float spared = filters ? static_cast<float>(slow[a]) : 0.0f;
+        node.velocity.w[a] = spared + share * (node.velocity.w[a] - spared) + 0.0f;
+    }
+}
+
 void store_lane(const System& system, const JointGroup& g, int lane) {
     const JointLanes& lanes = system.joints;
     const RowBlock& block = system.rows.block[g.block[lane]];
@@ -54,11 +89,32 @@ void store_lane(const System& system, const JointGroup& g, int lane) {
 
 }  // namespace
 
-void evaluate_joint_lanes(Team& team, System& system, const JointKernels& kernels) {
+void evaluate_joint_lanes(Team& team, System& system) {
+    team.for_ranges(size_of(system.joints.group), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) evaluate_group(system, system.joints.group[i]);
+    });
+}
+
+void stiffen_joints(Team& team, System& system, const Nodes& nodes, const JointKernels& kernels, bool filters) {
     JointLanes& lanes = system.joints;
+    if (lanes.group.empty()) return;
+    const auto h = static_cast<float>(system.h);
+    team.for_ranges(size_of(lanes.group), kGrain,
+                    [&](uint32_t begin, uint32_t end) { kernels.stiffen(lanes.view(), begin, end, h); });
+    grow_to(lanes.node_stiffness, system.sweep.size());
+    for_each_end(system, [&](uint32_t at, float) { lanes.node_stiffness[at] = 0; });
+    for_each_end(system, [&](uint32_t at, float k) { lanes.node_stiffness[at] += k; });
+    for_each_end(system, [&](uint32_t at, float) {
+        if (lanes.node_stiffness[at] >= 0) stiffen(system, nodes, at, lanes.node_stiffness[at], filters);
+        lanes.node_stiffness[at] = -1;
+    });
+}
+
+void prepare_joint_lanes(Team& team, System& system, const JointKernels& kernels) {
+    JointLanes& lanes = system.joints;
+    const SweepTerms terms = joint_terms(system.h, system.stretch);
     team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i) evaluate_group(system, lanes.group[i]);
-        kernels.prepare(lanes.view(), begin, end, system.sweep.data(), static_cast<float>(system.frame_left));
+        kernels.prepare(lanes.view(), begin, end, system.sweep.data(), static_cast<float>(system.frame_left), terms);
     });
 }
 

@@ -28,7 +28,7 @@ constexpr double kReach = 50;
 // beyond their stops 20 burst, now none; of half of that stiffness none either, but drives of 10 Hz would be weaker).
 constexpr double kDriveSoftness = 2;
 
-constexpr double kMost = 1e30;  // as a float
+constexpr double kMost = kUnlimited;
 
 uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.size()); }
 
@@ -88,6 +88,7 @@ void add_group(System& system, std::span<const uint32_t> blocks) {
     };
     const bool any_elastic = std::any_of(blocks.begin(), blocks.end(), elastic);
     g.first_compliance = any_elastic ? lanes.compliance.take(triangle(g.rows, 0)) : kNoLanes;
+    lanes.stiffness[lanes.stiffness.take(1)] = {};
     g.first_frames = type.evaluate_lanes ? lanes.frames.take(1) : kNoLanes;
     add_axes(system, g, blocks);
     std::fill(g.block, g.block + kLanes, kNoLanes);
@@ -141,11 +142,9 @@ void fill_rows(System& system, const JointGroup& g, int lane, const RowBlock& bl
         const bool locked = block.locked(i), rigid = locked && !block.elastic(i);
         LaneRow& row = lanes.row[g.first_row + r];
         row.locked[lane] = locked ? 1 : 0;
-        row.rigid[lane] = rigid ? 1 : 0;
         row.impulse[lane] = locked || block.type->swept(r) ? static_cast<float>(times.h * block.force[r]) : 0;
         LaneCoordinate& c = lanes.coordinate[g.first_row + r];
         c.drift[lane] = static_cast<float>(block.drift[r]);
-        if (rigid) c.rate[lane] = times.soft.bias_rate;
         if (!locked || rigid) continue;
         c.rate[lane] = static_cast<float>(row_terms(block, i, times.h).rate);
         c.damped_drift[lane] = static_cast<float>(relaxation_of(block, i) / times.frame * block.drift[r]);
@@ -294,12 +293,15 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
     lanes.jacobian.clear();
     lanes.factor.clear();
     lanes.compliance.clear();
+    lanes.stiffness.clear();
     lanes.colour_begin.assign(1, 0);
     const uint32_t first = system.rows.direct;
     for (uint32_t c = 0; c < kMaxColours; ++c) {
         const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one joint at a time
         add_colour(system, first + group.joint_colour_begin[c], first + group.joint_colour_begin[c + 1], width);
     }
+    for (uint32_t i = first; i < system.rows.joints; ++i)
+        for (int n = 0; n < system.rows.block[i].type->nodes; ++n) system.filtered[system.rows.block[i].node[n]] = 1;
     const Times times{system.h, frame, joint_terms(system.h, system.stretch)};
     team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) fill_group(system, lanes.group[i], times);

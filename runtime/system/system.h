@@ -124,6 +124,7 @@ struct System {
           turned(memory),
           kinematic(memory),
           in_block(memory),
+          filtered(memory),
           place(memory),
           sweep(memory),
           shift(memory),
@@ -137,7 +138,7 @@ struct System {
         const size_t size = nodes + 1;
         grow_to(seat, size), grow_to(node_at, size);
         grow_to(pose, size), grow_to(exact, size), grow_to(found, size), grow_to(turned, size);
-        grow_to(in_block, size), grow_to(place, size);
+        grow_to(in_block, size), grow_to(filtered, size), grow_to(place, size);
         grow_to(sweep, size), grow_to(shift, size);
     }
 
@@ -167,6 +168,7 @@ struct System {
     Array<uint8_t> turned;        // 1: so far that levers turn in this substep; predict(), turn_kinematic()
     Array<uint32_t> kinematic;    // nodes; begin_frame()
     Array<uint8_t> in_block;      // 1: a direct solve owns its exact velocity; build_rows()
+    Array<uint8_t> filtered;      // 1: swept joints spare its slow velocity; build_joint_lanes()
     Array<uint32_t> place;        // in the nodes of its block, or kNone; build_rows()
     Array<SweepNode> sweep;       // velocities in floats and inverse masses, world axes
     Array<SweepShift> shift;      // motion since contacts were found; commit()

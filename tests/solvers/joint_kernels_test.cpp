@@ -37,6 +37,7 @@ struct Mechanism {
         system.pose.resize(1 + kMaxNodes * kJoints);
         system.sweep_pose.resize(1 + kMaxNodes * kJoints);
         system.found.resize(1 + kMaxNodes * kJoints);
+        system.filtered.resize(1 + kMaxNodes * kJoints);
         group.joint_colour_begin.assign(kMaxColours + 1, kJoints);
         group.joint_colour_begin[0] = 0;
         std::vector<const ConstraintType*> types;
@@ -120,14 +121,20 @@ struct Mechanism {
         block.memory = part.memory.data();
     }
 
-    void run(const JointKernels& kernels, int biased, int relaxed) {
+    // Sweeps before and after positions are corrected, which is taken back if there are any after it.
+    void run(const JointKernels& kernels, int before, int after) {
         evaluate_rows(team, system, 0, kStep);
-        evaluate_joint_lanes(team, system, kernels);
+        evaluate_joint_lanes(team, system);
+        prepare_joint_lanes(team, system, kernels);
         const JointView view = system.joints.view();
         const auto groups = static_cast<uint32_t>(system.joints.group.size());
         kernels.warm_start(view, 0, groups, system.sweep.data());
-        for (int i = 0; i < biased; ++i) kernels.sweep_biased(view, 0, groups, system.sweep.data(), joint_terms(kStep));
-        for (int i = 0; i < relaxed; ++i) kernels.sweep_relaxed(view, 0, groups, system.sweep.data());
+        kernels.stiffen(view, 0, groups, float(kStep));
+        for (int i = 0; i < before; ++i) kernels.sweep(view, 0, groups, system.sweep.data());
+        kernels.keep(view, 0, groups);
+        kernels.correct(view, 0, groups, system.sweep.data());
+        if (after > 0) kernels.take_back(view, 0, groups, system.sweep.data());
+        for (int i = 0; i < after; ++i) kernels.sweep(view, 0, groups, system.sweep.data());
         store_joint_lanes(team, system);
     }
 
@@ -154,6 +161,10 @@ void expect_same_bits(const JointKernels& kernels) {
         ASSERT_TRUE(std::isfinite(sum));
         ASSERT_TRUE(same_bits(scalar.system.sweep, other.system.sweep));
         for (uint32_t j = 0; j < kJoints; ++j) ASSERT_EQ(scalar.parts[j].force, other.parts[j].force);
+        const auto groups = scalar.system.joints.group.size();
+        ASSERT_EQ(std::memcmp(scalar.system.joints.stiffness.data(), other.system.joints.stiffness.data(),
+                              groups * sizeof(LaneStiffness)),
+                  0);
     }
 }
 
@@ -195,7 +206,7 @@ Vector velocities_of(const System& system, const RowBlock& block) {
     return u;
 }
 
-// One joint's warm start and biased sweep, written out: joint_sweep.inl, system.h and axis.h.
+// One joint's warm start and correction, written out: joint_sweep.inl, system.h and axis.h.
 struct Written {
     Vector u, p;
     double condition = 1;  // of the block of locked rows, each scaled to 1
@@ -253,7 +264,7 @@ struct Written {
                 const double c = block.compliance[block.angular(r)], d = block.relaxation[block.angular(r)];
                 if (elastic) a(i, i) += c / (kStep * (kStep + d));
                 residual[i] = elastic ? v[r] + error[r] / (kStep + d) + c / (kStep * (kStep + d)) * p[r]
-                                      : soft.mass_scale * (v[r] + soft.bias_rate * error[r]);
+                                      : v[r] + soft.bias_rate * error[r];
             }
             change = -a.inverse() * residual;
             const Vector scale = a.diagonal().cwiseSqrt().cwiseInverse();
@@ -263,7 +274,7 @@ struct Written {
             Vector all = Vector::Zero(rows);
             for (Eigen::Index i = 0; i < count; ++i) {
                 const int r = locked[static_cast<size_t>(i)];
-                all[r] = change[i] - (elastic ? 0 : soft.impulse_scale * p[r]);
+                all[r] = change[i];
             }
             p += all;
             u += w * jacobian.transpose() * all;
@@ -311,7 +322,7 @@ TEST(JointKernels, SolveTheEquationsOfEachJoint) {
         std::vector<Written> written;
         for (uint32_t j = 0; j < kJoints; ++j)
             written.emplace_back(m, j, velocities_of(m.system, m.system.rows.block[j]));
-        m.run(kJointKernelsSse2, 1, 0);
+        m.run(kJointKernelsSse2, 0, 0);
         for (uint32_t j = 0; j < kJoints; ++j) {
             const RowBlock& block = m.system.rows.block[j];
             SCOPED_TRACE(testing::Message() << block.type->name << ", joint " << j);

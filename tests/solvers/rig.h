@@ -107,7 +107,11 @@ public:
         taut::predict(w.team, w.system, group(), w.nodes, gravity);
         build_block_contacts(w.system, group(), w.partition.blocks, w.pairs, w.nodes);
         evaluate_rows(w.team, w.system, 0, h);
-        if (solver.lanes) evaluate_joint_lanes(w.team, w.system, *settings.joint_kernels);
+        if (!solver.lanes) return;
+        evaluate_joint_lanes(w.team, w.system);
+        if (settings.geometric_stiffness)
+            stiffen_joints(w.team, w.system, w.nodes, *settings.joint_kernels, settings.velocity_filter > 0);
+        prepare_joint_lanes(w.team, w.system, *settings.joint_kernels);
     }
     void solve() {
         Substep s = substep();
