@@ -65,10 +65,8 @@ TEST_P(Bounces, WithoutLossForEver) {
         for (const double drop : {0.07, 1.3}) {
             World world(at_rate(GetParam()));
             add_floor(world, floor, 1);
-            const taut_body ball = world.add({.shape = world.sphere(0.23),
-                                              .position = {0.17, 0.23 + drop, 0.29},
-                                              .friction = 0,
-                                              .restitution = 1});
+            const taut_body ball = world.add(
+                {.shape = world.sphere(0.23), .position = {0.17, 0.23 + drop, 0.29}, .friction = 0, .restitution = 1});
             const auto tops = peaks(world, ball, 0.23, 15, 40);
             ASSERT_EQ(tops.size(), 15u);
             for (const double top : tops) EXPECT_NEAR(top / tops[0], 1, 2e-3) << "floor " << static_cast<int>(floor);
@@ -85,10 +83,8 @@ TEST_P(Bounces, KeepTheirSpeedInARoom) {
             const Vec half = side < 2 ? Vec(1, 6, 6) : side < 4 ? Vec(6, 1, 6) : Vec(6, 6, 1);
             world.add({.kind = TAUT_BODY_STATIC, .shape = world.box(half), .position = 5 * out, .restitution = 1});
         }
-        const taut_body ball = world.add({.shape = world.sphere(0.4),
-                                          .velocity = speed * unit({0.7, 0.2, -0.5}),
-                                          .friction = 0,
-                                          .restitution = 1});
+        const taut_body ball = world.add(
+            {.shape = world.sphere(0.4), .velocity = speed * unit({0.7, 0.2, -0.5}), .friction = 0, .restitution = 1});
         world.step(10 * GetParam().hz);
         EXPECT_NEAR(norm(velocity(ball)) / speed, 1, 1e-3) << speed << " m/s";
         EXPECT_LT(norm(position(ball)), std::sqrt(3) * 4);
@@ -126,13 +122,11 @@ TEST_P(Bounces, LeaveAHeavierBallAsElasticImpactsSay) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rates, Bounces,
-                         testing::Values(Rate{30, 4}, Rate{60, 1}, Rate{60, 4}, Rate{60, 16}, Rate{120, 2},
-                                         Rate{240, 4}),
-                         [](const auto& tested) {
-                             return std::to_string(tested.param.hz) + "_Hz_" + std::to_string(tested.param.substeps) +
-                                    "_substeps";
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Rates, Bounces, testing::Values(Rate{30, 4}, Rate{60, 1}, Rate{60, 4}, Rate{60, 16}, Rate{120, 2}, Rate{240, 4}),
+    [](const auto& tested) {
+        return std::to_string(tested.param.hz) + "_Hz_" + std::to_string(tested.param.substeps) + "_substeps";
+    });
 
 class EverySolverBounces : public testing::TestWithParam<taut_solver> {};
 
@@ -198,6 +192,64 @@ TEST(BallsCollide, ExchangeVelocitiesWhenElastic) {
         EXPECT_NEAR(velocity(a).x + velocity(b).x, 2, 1e-5) << "e = " << e;
     }
 }
+
+class TopspinHits : public testing::TestWithParam<Rate> {};
+
+// A ball that rolls on ground meets one at rest: its front goes down, and friction throws it up and the other one down.
+// The blow is J = (1 + e) m v / 2, friction at most mu J, and where that ends the slip v / 7 of a mass: spheres resist
+// it with 2 / 7 of their reduced mass (Garwin, 1969). Both gain 5 / 2 of that over r in spin.
+TEST_P(TopspinHits, ThrowUpwardsByFriction) {
+    for (const double e : {0.3, 0.6, 0.95})
+        for (const double friction : {0.04, 0.12, 0.5}) {
+            World world(at_rate(GetParam(), 0));
+            constexpr double kRadius = 0.06, kSpeed = 2.4;
+            const BodyPlan plan{.shape = world.sphere(kRadius), .mass = 0.3, .friction = friction, .restitution = e};
+            BodyPlan rolls = plan;
+            rolls.position = {-0.21, 0, 0};
+            rolls.velocity = {kSpeed, 0, 0};
+            rolls.spin = {0, 0, -kSpeed / kRadius};
+            const taut_body ball = world.add(rolls), other = world.add(plan);
+            const double before = energy(world, {ball, other});
+            world.step(GetParam().hz / 10);
+            const double up = kSpeed * std::min(friction * (1 + e) / 2, 1.0 / 7), near = 0.05 * up;
+            const BodyState a = state(ball), b = state(other);
+            EXPECT_NEAR(a.velocity.y, up, near) << "e = " << e << ", friction " << friction;
+            EXPECT_NEAR(b.velocity.y, -up, near) << "e = " << e << ", friction " << friction;
+            EXPECT_NEAR(a.velocity.x, kSpeed * (1 - e) / 2, 0.01 * kSpeed) << "e = " << e << ", friction " << friction;
+            EXPECT_NEAR(b.velocity.x, kSpeed * (1 + e) / 2, 0.01 * kSpeed) << "e = " << e << ", friction " << friction;
+            EXPECT_NEAR(a.spin.z + kSpeed / kRadius, 2.5 * up / kRadius, 2.5 * near / kRadius);
+            EXPECT_NEAR(b.spin.z, 2.5 * up / kRadius, 2.5 * near / kRadius);
+            EXPECT_LE(energy(world, {ball, other}), 1.0001 * before) << "e = " << e << ", friction " << friction;
+        }
+}
+
+// On a table, at the height to which that takes it.
+TEST_P(TopspinHits, ClimbOverATable) {
+    if (GetParam().hz * GetParam().substeps < 240) GTEST_SKIP() << "a third as high in substeps of 1/60 s";
+    World world(at_rate(GetParam()));
+    constexpr double kRadius = 0.03, kSpeed = 6, kFriction = 0.1;
+    world.add_ground(kFriction);
+    const BodyPlan plan{.shape = world.sphere(kRadius), .mass = 0.2, .friction = kFriction, .restitution = 0.9};
+    BodyPlan rolls = plan, rests = plan;
+    rolls.position = {-0.3, kRadius, 0};
+    rolls.velocity = {kSpeed, 0, 0};
+    rolls.spin = {0, 0, -kSpeed / kRadius};
+    rests.position = {0, kRadius, 0};
+    const taut_body ball = world.add(rolls), other = world.add(rests);
+    double top = 0, lowest = kRadius;
+    for (int k = 0; k < GetParam().hz / 2; ++k) {
+        world.step();
+        top = std::max(top, position(ball).y - kRadius);
+        lowest = std::min(lowest, position(other).y);
+    }
+    const double up = kSpeed * kFriction * 0.95, height = up * up / (2 * kG);
+    EXPECT_NEAR(top, height, 0.1 * height + 0.5 * up * world.frame());
+    EXPECT_GT(lowest, kRadius - 0.001) << "the other one is pressed into the table";
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, TopspinHits,
+                         testing::Values(Rate{60, 1}, Rate{60, 4}, Rate{60, 16}, Rate{240, 1}, Rate{240, 4},
+                                         Rate{240, 16}));
 
 // Of a row of touching balls that another one hits the last leaves with all of its speed.
 TEST(BallsCollide, PassOnABlowAlongARow) {
