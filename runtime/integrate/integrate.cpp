@@ -36,6 +36,8 @@ void set_sweep_pose(System& system, uint32_t at, const Vec3& dx, const Quat& q) 
     for (int i = 0; i < 4; ++i) pose.q[i] = static_cast<float>(q.coeffs()[i]);
 }
 
+// Below such a turn in a substep a spin is left in the world: to first order in it, and I w is off by its square [rad].
+constexpr double kStill = 1e-3;
 // Kinematic bodies do not yield: what they seem to move at beside their way is forced on what they carry.
 constexpr double kKinematicTurn = 1e-3;
 
@@ -73,6 +75,7 @@ NodeRows rows_of(System& system, Nodes& nodes, Array<Velocity>& velocity) {
             nodes.load.empty() ? nullptr : rows_of<const PairRow>(nodes.load.data()),
             rows_of<PoseRow>(system.pose.data()),
             rows_of<PairRow>(velocity.data()),
+            rows_of<PairRow>(system.start.data()),
             rows_of<const FoundRow>(system.found.data()),
             rows_of<FloatRow>(system.shift.data()),
             rows_of<SweepRow>(system.sweep.data()),
@@ -165,6 +168,15 @@ bool turns_freely(const Nodes& nodes, uint32_t node) {
     return nodes.info[node].kind == NodeKind::dynamic && !nodes.mass[node].isotropic;
 }
 
+// Masses of a batch's bodies.
+struct Masses {
+    const MassRow* of[kBodies];
+
+    Masses(const Nodes& nodes, const Batch& batch) {
+        for (int i = 0; i < kBodies; ++i) of[i] = rows_of<const MassRow>(&nodes.mass[batch.node[i]]);
+    }
+};
+
 // Quarantined in this frame.
 void stop(System& system, uint32_t at) {
     system.exact[at] = {};
@@ -196,6 +208,7 @@ void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
 void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, const Joints& joints) {
     const uint32_t slots = nodes.slots();
     system.make_room(slots);
+    grow_to(system.start, system.pose.size());
     system.sweep_pose.resize(joints.ids.count() > 0 ? slots + 1 : 0);
     take_seats(system, partition, nodes);
     system.kinematic.clear();
@@ -232,11 +245,9 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     const NodeMotion* const motion = motions_of(system, nodes);
     const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kLeverTurn, gyroscopic_euler};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
-        const MassRow* mass[kBodies];
-        for (int i = 0; i < kBodies; ++i) mass[i] = rows_of<const MassRow>(&nodes.mass[batch.node[i]]);
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
-        const Bodies turned = kernels.predict(rows, batch, mass, terms, turning, in_block);
+        const Bodies turned = kernels.predict(rows, batch, Masses(nodes, batch).of, terms, turning, in_block);
         for (uint32_t i = 0; i < batch.count; ++i) {
             const uint32_t node = batch.node[i], at = batch.seat[i];
             const NodeMotion& m = motion[batch.motion[i]];
@@ -244,7 +255,6 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
             if (kind == NodeKind::dynamic) turn_axes(system, nodes.mass[node], m, at, (turned >> i & 1) != 0);
             if (kind == NodeKind::fixed) stop(system, at);
             if (rows.load) add_torque(system, nodes, node, at);
-            if (in_block >> i & 1) system.start[at] = {m.v, m.w};
         }
     });
 }
@@ -283,14 +293,14 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
 bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes, double velocity_filter) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
+    const Keeping keeping{system.h, kStill, velocity_filter, kMaxSpeed, rotate};
     constexpr Bodies kAll = (1u << kBodies) - 1;
     std::atomic<bool> all_sane{true};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
-        const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         const Bodies slow = which(batch.seat, [&](uint32_t at) { return system.filtered[at] != 0; }) | in_block;
-        if (kernels.store(rows, batch, system.h, kLeverTurn, turning & ~in_block, velocity_filter, slow, kMaxSpeed) !=
-            kAll)
+        const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
+        if (kernels.store(rows, batch, Masses(nodes, batch).of, keeping, turning, in_block, slow) != kAll)
             all_sane.store(false, std::memory_order_relaxed);
     });
     return all_sane.load(std::memory_order_relaxed);

@@ -39,6 +39,7 @@ struct NodeRows {
     // By seat.
     PoseRow* pose;
     PairRow* velocity;
+    PairRow* start;
     const FoundRow* found;
     FloatRow* shift;
     SweepRow* sweep;
@@ -62,21 +63,29 @@ struct Prediction {
     void (*damp)(double w[3], const double inertia[6], double h, bool damped);
 };
 
+// exp(theta) for turns of more than half a radian.
+using Rotate = void (*)(const double theta[3], double q[4]);
+
+struct Keeping {
+    double h, turn;      // [s], [rad]
+    double kappa, most;  // [1]; [m/s, rad/s]
+    Rotate rotate;
+};
+
 struct MotionKernels {
-    // Poses from motions; v* = v + h (g + f/m); of `turning` w* by the implicit midpoint rule in body axes, I (w - w0)
-    // + h m x I m = 0, m = (w + w0)/2, or damp(). Gives those that turned by more than `turn` from where their contacts
-    // were found.
+    // Poses from motions; v* = v + h (g + f/m); of `turning` w* = m, the mean spin of the substep, by the implicit
+    // midpoint rule in body axes, I (w - w0) + h m x I m = 0, m = (w + w0)/2, or w by damp(). Starts: v and w*. Gives
+    // those that turned by more than `turn` from where their contacts were found.
     Bodies (*predict)(const NodeRows&, const Batch&, const MassRow* const mass[kBodies], const Prediction&,
                       Bodies turning, Bodies damped);
-    // x += h v, q = exp(h w) q, and how far that is from where contacts were found. rotate: exp(theta) for turns of
-    // more than half a radian.
-    void (*commit)(const NodeRows&, const Batch&, double h, void (*rotate)(const double theta[3], double q[4]));
-    // Solved velocities into motions. A spin of `turning` that turned the body by more than `turn` [rad] in this
-    // substep was found for the pose that it turned from: it is that spin as seen from the body. kappa: of the
+    // x += h v, q = exp(h w) q, and how far that is from where contacts were found.
+    void (*commit)(const NodeRows&, const Batch&, double h, Rotate rotate);
+    // Solved velocities into motions; of `turning` that turned by more than `turn` [rad] in this substep the spin at
+    // its end, which keeps I w in the world but for what the solver gave; `damped` as predicted. kappa: of the
     // low-passed velocities of those `slow`. Gives those whose motion is finite and not faster than `most` [m/s,
     // rad/s].
-    Bodies (*store)(const NodeRows&, const Batch&, double h, double turn, Bodies turning, double kappa, Bodies slow,
-                    double most);
+    Bodies (*store)(const NodeRows&, const Batch&, const MassRow* const mass[kBodies], const Keeping&, Bodies turning,
+                    Bodies damped, Bodies slow);
 };
 
 extern const MotionKernels kMotionKernelsBase, kMotionKernelsAvx2;

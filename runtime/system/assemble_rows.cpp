@@ -231,7 +231,7 @@ void reserve_room(Array<Data>& data, size_t most) {
 // Of arrays by seat, those that only nodes in blocks use.
 void make_room_for_blocks(System& system) {
     const size_t count = system.pose.size();
-    for (Array<Velocity>* each : {&system.free, &system.kept, &system.correction, &system.start}) each->resize(count);
+    for (Array<Velocity>* each : {&system.free, &system.kept, &system.correction}) each->resize(count);
     system.inertia.resize(count);
 }
 

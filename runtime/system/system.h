@@ -162,7 +162,7 @@ struct System {
     Array<Velocity> free;         // v* with contact impulses, of nodes in blocks; block_ldlt
     Array<Velocity> kept;         // v+ without the push of overlaps, of nodes in blocks with bounded rows
     Array<Velocity> correction;   // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
-    Array<Velocity> start;        // v before forces, for energy balances, of nodes in blocks; predict()
+    Array<Velocity> start;        // v before forces, w after the gyroscopic torque, for energy balances; predict()
     Array<Mat3> inertia;          // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;           // begin_frame(), predict()
     Array<uint8_t> turned;        // 1: so far that levers turn in this substep; predict(), turn_kinematic()

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "integrate/gyroscopic.h"
 #include "integrate/motion_kernels.h"
 #include "simd/width.h"
@@ -18,6 +20,7 @@ struct MotionRig {
     PairRow velocity[kBodies] = {}, load[kBodies] = {};
     FoundRow found[kBodies] = {};
     FloatRow shift[kBodies] = {}, sweep_pose[kBodies] = {};
+    PairRow start[kBodies] = {};
     SweepRow sweep[kBodies] = {};
     Batch batch{{0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}, kBodies};
 
@@ -25,18 +28,33 @@ struct MotionRig {
         for (MotionRow& row : motion) row.q[3] = 1;
         for (FoundRow& row : found) row.q[3] = 1;
     }
-    NodeRows rows() { return {motion, load, pose, velocity, found, shift, sweep, sweep_pose}; }
+    NodeRows rows() { return {motion, load, pose, velocity, start, found, shift, sweep, sweep_pose}; }
     void set_mass(int i, const NodeMass& m) {
         const Sym3& I = m.inertia;
-        mass[i] = {m.mass, m.inv_mass, {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz}, {}, {}, m.gravity_scale};
+        const Sym3 J = Sym3::of(I.matrix().inverse());
+        mass[i] = {m.mass,
+                   m.inv_mass,
+                   {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz},
+                   {J.xx, J.yy, J.zz, J.xy, J.xz, J.yz},
+                   {},
+                   m.gravity_scale};
     }
     Bodies predict(const MotionKernels& kernels, double h, Bodies turning, Bodies damped = 0,
                    const Vec3& gravity = Vec3::Zero(), double turn = 0.05) {
-        const MassRow* masses[kBodies];
-        for (int i = 0; i < kBodies; ++i) masses[i] = &mass[batch.node[i]];
-        return kernels.predict(rows(), batch, masses,
+        return kernels.predict(rows(), batch, Masses(*this).of,
                                {h, {gravity.x(), gravity.y(), gravity.z()}, turn, gyroscopic_euler}, turning, damped);
     }
+    Bodies store(const MotionKernels& kernels, const Keeping& terms, Bodies turning, Bodies slow) {
+        return kernels.store(rows(), batch, Masses(*this).of, terms, turning, slow, slow);
+    }
+
+private:
+    struct Masses {
+        const MassRow* of[kBodies];
+        explicit Masses(const MotionRig& rig) {
+            for (int i = 0; i < kBodies; ++i) of[i] = &rig.mass[rig.batch.node[i]];
+        }
+    };
 };
 
 // Those that this machine runs.
