@@ -140,7 +140,7 @@ struct Pair : PairEnds {
     // capsules roll on as on rigid ground.
     float spinning_arm() const { return std::max(spinning, 2.0f / 3 * friction * patch); }
     float rolling_arm() const {
-        constexpr float kLoss = 0.05f;
+        constexpr float kLoss = 0.008f;  // about that of steel
         return std::max(rolling, rolls_a || rolls_b ? 3.0f / 16 * kLoss * patch : 0);
     }
 };

@@ -25,8 +25,7 @@ void add_flat(const World& world, Ground ground, double friction) {
     }
     if (ground == Ground::mesh) plan.shape = mesh(world, grid(kLength, kWidth, 0.8));
     if (ground == Ground::fine_mesh) plan.shape = mesh(world, grid(kLength, 2, 0.4)), plan.position.z = -1;
-    if (ground == Ground::field)
-        plan.shape = height_field(world, 33, 321, 0.5, [](double, double) { return 0.0; });
+    if (ground == Ground::field) plan.shape = height_field(world, 33, 321, 0.5, [](double, double) { return 0.0; });
     world.add(plan);
 }
 
@@ -200,8 +199,8 @@ TEST_P(OnFlat, WhatIsPressedInStaysOut) {
     for (const Rate& rate : kRates) {
         const World world = world_at(rate);
         add_flat(world, GetParam(), 0.5);
-        const taut_shape shapes[] = {world.cylinder(0.2, 0.3), world.cone(0.3, 0.3), world.tapered_capsule(0.3, 0.2, 0.3),
-                                     world.box({0.3, 0.2, 0.25}), stone(world)};
+        const taut_shape shapes[] = {world.cylinder(0.2, 0.3), world.cone(0.3, 0.3),
+                                     world.tapered_capsule(0.3, 0.2, 0.3), world.box({0.3, 0.2, 0.25}), stone(world)};
         const double lowest[] = {0.3, 0.3, 0.6, 0.2, 0.2};
         // Sides of so large triangles still take points from polytopes that lie in.
         const int kinds = GetParam() == Ground::two_triangles ? 3 : 5;
@@ -259,5 +258,25 @@ INSTANTIATE_TEST_SUITE_P(Of, OnFlat,
                          testing::Values(Ground::plane, Ground::box, Ground::two_triangles, Ground::mesh,
                                          Ground::field),
                          [](const auto& tested) { return kGrounds[static_cast<int>(tested.param)]; });
+
+// A wheel of steel rolls on: it the ground resists with a ten-thousandth of its weight.
+TEST(SlowCylinder, RollsFar) {
+    for (const bool on_box : {false, true}) {
+        World world;
+        BodyPlan ground{.kind = TAUT_BODY_STATIC, .shape = world.plane(), .friction = 0.6};
+        if (on_box) ground.shape = world.box({20, 0.5, 3}), ground.position = {0, -0.5, 0};
+        world.add(ground);
+        constexpr double kWheel = 0.25, kSpeed = 1.5, kWay = 12;
+        const taut_body wheel = world.add({.shape = world.cylinder(kWheel, 0.15),
+                                           .position = {-6, kWheel, 0},
+                                           .rotation = Quat::turn({1, 0, 0}, kPi / 2),
+                                           .velocity = {kSpeed, 0, 0},
+                                           .spin = {0, 0, -kSpeed / kWheel},
+                                           .friction = 0.6});
+        world.step(static_cast<int>(60 * kWay / kSpeed));
+        EXPECT_GT(velocity(wheel).x, 0.992 * kSpeed) << (on_box ? "box" : "plane");
+        EXPECT_LE(velocity(wheel).x, 1.0001 * kSpeed) << (on_box ? "box" : "plane");
+    }
+}
 
 }  // namespace
