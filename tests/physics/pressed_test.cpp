@@ -4,6 +4,7 @@
 
 #include "physics/joint_lab.h"
 #include "physics/tunnel_lab.h"
+#include "starts.h"
 
 namespace lab {
 namespace {
@@ -201,7 +202,7 @@ protected:
     void expect_none_sinks_in(Outcome (*scene)(Light kind, double mass, std::mt19937& random)) const {
         for (const double mass : {30.0, 1e3, 1e4, 1e5}) {
             std::mt19937 random(7);
-            for (int start = 0; start < 16; ++start) {
+            for (int start = 0; start < starts(16); ++start) {
                 const Outcome came = scene(GetParam(), mass, random);
                 EXPECT_LT(came.depth, 0.31) << mass << " kg, start " << start;
                 EXPECT_LT(came.energy, 1) << mass << " kg, start " << start;
@@ -223,7 +224,7 @@ TEST_P(HeavyOn, WhatIsBeforeAWallStopsThere) { expect_none_sinks_in(box_at_wall)
 TEST_P(HeavyOn, RubbleThrowsNoneOfIt) {
     for (const double mass : {100.0, 1e3, 1e4}) {
         std::mt19937 random(7);
-        for (int start = 0; start < 16; ++start) {
+        for (int start = 0; start < starts(16); ++start) {
             const Shove came = shove(GetParam(), mass, random);
             EXPECT_LT(came.fastest, 20) << mass << " kg, start " << start;
             EXPECT_LT(came.energy, 1e-3) << mass << " kg, start " << start;
@@ -235,7 +236,7 @@ TEST_P(HeavyOn, RubbleThrowsNoneOfIt) {
 TEST_P(HeavyOn, RubbleIsHardlyThrownByWhatDoesNotYield) {
     std::mt19937 random(7);
     int fast = 0;
-    for (int start = 0; start < 32; ++start) {
+    for (int start = 0; start < starts(32); ++start) {
         const double came = plough(GetParam(), random);
         EXPECT_LT(came, 100) << "start " << start;
         fast += came > 20;

@@ -1,6 +1,7 @@
 // Round bodies that rock, roll and wobble on what holds them, and towers that sway, lose energy, as mechanics says, or
 // keep it.
 #include "physics/surface_lab.h"
+#include "starts.h"
 
 #include <algorithm>
 #include <random>
@@ -122,18 +123,19 @@ class RockingOn : public testing::TestWithParam<Support> {};
 // Contacts that came late drove them to 0.3 J/kg and more, the height of 30 mm, and so on average. What a blow drove in
 // is pushed out by some mm, one in hundreds of coins over an edge or wedged between logs by 13 to 15: 0.15 J/kg.
 TEST_P(RockingOn, GainsNoEnergy) {
-    constexpr uint32_t kStarts = 12;
+    const uint32_t count = starts(12u);
+    const double mean_bound = 0.012 * std::sqrt(12.0 / count);  // the mean of fewer varies more
     for (const Rocker& rocker : kRockers)
         for (const uint32_t substeps : {4u, 16u}) {
             double mean = 0, most = 0;
-            for (uint32_t seed = 0; seed < kStarts; ++seed) {
+            for (uint32_t seed = 0; seed < count; ++seed) {
                 const double gained = most_gained(rocker, GetParam(), substeps, seed);
-                mean += gained / kStarts;
+                mean += gained / count;
                 most = std::max(most, gained);
             }
             std::printf("%s on %s, %d substeps: gains %.4f J/kg, at most %.4f\n", rocker.name, GetParam().name,
                         static_cast<int>(substeps), mean, most);
-            EXPECT_LE(mean, 0.012) << rocker.name << ", " << substeps << " substeps";
+            EXPECT_LE(mean, mean_bound) << rocker.name << ", " << substeps << " substeps";
             EXPECT_LE(most, 0.15) << rocker.name << ", " << substeps << " substeps";
         }
 }
@@ -187,7 +189,7 @@ TEST(Tower, ThatSwaysComesToRest) {
     for (const Part& part : kParts)
         for (const bool on_plane : {true, false})
             for (const int parts : {5, 6})
-                for (uint32_t seed = 0; seed < 12; ++seed)
+                for (uint32_t seed = 0; seed < starts(12u); ++seed)
                     EXPECT_LT(sway_of_tower(part, on_plane, parts, seed), 0.005)
                         << parts << ' ' << part.name << (on_plane ? " on a plane" : " on their like") << ", start "
                         << seed;

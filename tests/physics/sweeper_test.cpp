@@ -2,6 +2,7 @@
 // nothing, so what it passed in a step goes on instead of back.
 #include "physics/cable_lab.h"
 #include "physics/tunnel_lab.h"
+#include "starts.h"
 
 namespace {
 
@@ -239,7 +240,7 @@ TEST(ShakenContainer, KeepsWhatIsInIt) {
         for (double speed : {2.0, 5.0, 20.0, 50.0, 100.0}) {
             std::mt19937 random(13);
             int lost = 0;
-            for (int start = 0; start < 8; ++start) {
+            for (int start = 0; start < starts(8); ++start) {
                 Container container(kind, random);
                 container.lab.step(30);
                 container.shake(speed, random);

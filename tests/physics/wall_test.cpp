@@ -3,6 +3,7 @@
 
 #include "physics/joint_lab.h"
 #include "physics/tunnel_lab.h"
+#include "starts.h"
 
 namespace lab {
 namespace {
@@ -82,7 +83,7 @@ class Laying : public testing::TestWithParam<Laid> {};
 
 TEST_P(Laying, StandsForTenSeconds) {
     const auto& [name, lay, half, courses, length] = GetParam();
-    for (uint32_t seed = 1; seed <= 3; ++seed) {
+    for (uint32_t seed = 1; seed <= starts(3u); ++seed) {
         std::mt19937 random(seed);
         Site site;
         lay(site, half, courses, length, random);

@@ -1,5 +1,8 @@
 // A heap of all kinds of shapes comes to rest and stays whole.
+#include <span>
+
 #include "scenes/running_scene.h"
+#include "starts.h"
 
 namespace {
 
@@ -23,8 +26,9 @@ double mean_overlap(const RunningScene& run) {
 
 // Nineteen of twenty starts within 25 s (94 of 96, of another 96 all); in the others a body shifts for longer.
 TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
-    int at_rest = 0;
-    for (uint64_t seed = 0; seed < 8; ++seed) {
+    uint64_t at_rest = 0;
+    const auto count = starts<uint64_t>(8);
+    for (uint64_t seed = 0; seed < count; ++seed) {
         SCOPED_TRACE(seed);
         scenes::Options options;
         options.seed = seed;
@@ -48,7 +52,7 @@ TEST(Heap, OfTwoHundredMixedShapesComesToRest) {
         std::printf("heap, seed %d: mean overlap %.3f mm, mean speed %.5f m/s, fastest %.4f m/s\n",
                     static_cast<int>(seed), 1e3 * overlap, mean, fastest);
     }
-    EXPECT_GE(at_rest, 7);
+    EXPECT_GE(at_rest, 7 * count / 8);
 }
 
 // Their joints are solved by load: at rest nothing in the heap needs a direct solve, and the joints stay closed.
@@ -78,8 +82,10 @@ TEST(Heap, OfRagdollsHoldsTogetherBySweepsAlone) {
 
 // A body that bursts or whips has its own remedies: the substeps of all that it touches are not for it.
 TEST(Heap, OfRagdollsLandsWithFourSubsteps) {
+    constexpr uint64_t kSeeds[] = {2, 5, 6, 7};
+    const auto tried = std::span(kSeeds).first(starts(std::size(kSeeds)));
     int more = 0;
-    for (uint64_t seed : {2u, 5u, 6u, 7u}) {
+    for (const uint64_t seed : tried) {
         scenes::Options options;
         options.seed = seed;
         RunningScene run(scenes::make_scene("ragdolls100", options));
@@ -88,7 +94,7 @@ TEST(Heap, OfRagdollsLandsWithFourSubsteps) {
             more += run.world.profile().substeps > 4;
         }
     }
-    std::printf("%d of 480 frames with more\n", more);
+    std::printf("%d of %d frames with more\n", more, 120 * static_cast<int>(tried.size()));
     EXPECT_LE(more, 3);
 }
 

@@ -1,5 +1,8 @@
 // Contacts that carry what hangs or stands on light bodies: chains over edges, towers under heavy loads.
+#include <span>
+
 #include "scenes/running_scene.h"
+#include "starts.h"
 
 namespace {
 
@@ -128,9 +131,9 @@ INSTANTIATE_TEST_SUITE_P(Seed, LightWeightOverEdge, testing::Values(1, 2));
 class LightWeightLeans : public testing::TestWithParam<const char*> {};
 
 TEST_P(LightWeightLeans, AndComesToRestWithinAMinute) {
-    constexpr int kStarts = 4;
-    int rest = 0;
-    for (uint64_t seed = 901; seed < 901 + kStarts; ++seed) {
+    const auto count = starts<uint64_t>(4);
+    uint64_t rest = 0;
+    for (uint64_t seed = 901; seed < 901 + count; ++seed) {
         SCOPED_TRACE(seed);
         RunningScene run(without_pins(GetParam(), seed));
         fastest_in(run, 3540);
@@ -140,7 +143,7 @@ TEST_P(LightWeightLeans, AndComesToRestWithinAMinute) {
         EXPECT_LE(penetration(run.world.world), 3e-3);
         rest += fastest < 0.01;
     }
-    EXPECT_GE(rest, kStarts - 1);
+    EXPECT_GE(rest, count - 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ratio, LightWeightLeans, testing::Values("10", "30"),
@@ -149,7 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Ratio, LightWeightLeans, testing::Values("10", "30"),
 // Drag of 2 / s, applied by the host as forces.
 TEST(LightWeightInDrag, ComesToRestOnTheEdge) {
     constexpr double kDrag = 2;  // [1/s]
-    for (uint64_t seed : {0, 1, 5, 9, 16, 19, 101, 102, 103, 104}) {
+    constexpr uint64_t kSeeds[] = {0, 1, 5, 9, 16, 19, 101, 102, 103, 104};
+    for (const uint64_t seed : std::span(kSeeds).first(starts(std::size(kSeeds)))) {
         SCOPED_TRACE(seed);
         RunningScene run(without_pins("10", seed));
         const auto& bodies = run.scene.roles.chain->bodies;
@@ -221,16 +225,18 @@ bool stands(int cubes, double mass, double height, double off, double angle) {
 }
 
 TEST(TowerUnderAFallingLoad, HoldsInEveryStart) {
-    int held = 0, starts = 0;
+    constexpr uint32_t kCases = 90;
+    const uint32_t tried = starts(kCases);
+    uint32_t held = 0, all = 0;
     for (int cubes : {8, 10, 12})
         for (double mass : {10.0, 100.0, 1000.0})
             for (double height : {0.1, 0.2, 0.3, 0.5, 1.0})
                 for (double off : {0.0, 0.03}) {
-                    ++starts;
+                    if (++all * 7 % kCases >= tried) continue;
                     held += stands(cubes, mass, height, off, 0.7 * cubes + height);
                 }
-    EXPECT_EQ(held, 90);
-    EXPECT_EQ(starts, 90);
+    EXPECT_EQ(held, tried);
+    EXPECT_EQ(all, kCases);
 }
 
 }  // namespace

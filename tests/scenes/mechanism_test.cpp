@@ -2,6 +2,7 @@
 #include <set>
 
 #include "scenes/running_scene.h"
+#include "starts.h"
 
 namespace {
 
@@ -133,7 +134,7 @@ TEST(BridgeBreaking, BreaksHangerByHanger) {
 
 // Where a bridge tears is chance, that it drops the truck is not.
 TEST(BridgeBreaking, DropsTheTruckFromEveryStart) {
-    for (uint64_t seed = 1; seed <= 8; ++seed) {
+    for (uint64_t seed = 1; seed <= starts<uint64_t>(8); ++seed) {
         scenes::Options options;
         options.seed = seed;
         RunningScene run(scenes::make_scene("bridge_breaking", options));

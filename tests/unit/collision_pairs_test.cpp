@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "collision_oracle.h"
+#include "starts.h"
 
 namespace taut::collision {
 namespace {
@@ -87,7 +88,7 @@ protected:
 TEST_P(CollisionPairs, FindsEveryOverlapAtItsDepth) {
     Random random(seed());
     int overlaps = 0, nears = 0, found_nears = 0;
-    for (int run = 0; run < 1500; ++run) {
+    for (int run = 0; run < starts(1500); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() << " run " << run);
         const Scene s = random_scene(GetParam(), random);
         const Manifold m = collide_fresh(s);
@@ -112,7 +113,7 @@ TEST_P(CollisionPairs, FindsEveryOverlapAtItsDepth) {
         freed.at_b.position += normal * (-deepest_of(m) + 1e-4);
         ASSERT_GT(truth(freed, normal), -allowed(want));
     }
-    EXPECT_GT(overlaps, 700);
+    EXPECT_GT(overlaps, starts(700));
     // Corner to corner, nearness is no contact yet; all other near pairs are.
     EXPECT_GT(found_nears, 0.7 * nears);
 }
@@ -120,7 +121,7 @@ TEST_P(CollisionPairs, FindsEveryOverlapAtItsDepth) {
 TEST_P(CollisionPairs, LibccdAgreesOnOverlap) {
     if (GetParam().a == ShapeKind::plane) return;
     Random random(seed() + 1000);
-    for (int run = 0; run < 500; ++run) {
+    for (int run = 0; run < starts(500); ++run) {
         const Scene s = random_scene(GetParam(), random);
         const oracle::Core a = oracle::core(s.a, s.at_a);
         const oracle::Core b = oracle::core(s.b, s.at_b);
@@ -135,7 +136,7 @@ TEST_P(CollisionPairs, LibccdAgreesOnOverlap) {
 TEST_P(CollisionPairs, PointsLieBetweenTheSurfaces) {
     Random random(seed() + 2000);
     int astray = 0;
-    for (int run = 0; run < 500; ++run) {
+    for (int run = 0; run < starts(500); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() + 2000 << " run " << run);
         const Scene s = random_scene(GetParam(), random);
         const Manifold m = collide_fresh(s);
@@ -156,7 +157,7 @@ TEST_P(CollisionPairs, PointsLieBetweenTheSurfaces) {
 TEST_P(CollisionPairs, OrderOfShapesDoesNotMatter) {
     Random random(seed() + 3000);
     int checked = 0, opposite = 0, other_face = 0;
-    for (int run = 0; run < 500; ++run) {
+    for (int run = 0; run < starts(500); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() + 3000 << " run " << run);
         const Scene s = random_scene(GetParam(), random);
         const Manifold ab = collide_fresh(s);
@@ -185,14 +186,14 @@ TEST_P(CollisionPairs, OrderOfShapesDoesNotMatter) {
         other_face += farthest >= 0.02f;  // beside crossing edges, a tie of two faces
     }
     EXPECT_LE(other_face, checked / 100);
-    EXPECT_GT(checked, 200);
+    EXPECT_GT(checked, starts(200));
     EXPECT_GT(opposite, 0.97 * checked);
 }
 
 TEST_P(CollisionPairs, TenKilometresAwayIsTheSame) {
     Random random(seed() + 4000);
     int differ = 0;
-    for (int run = 0; run < 300; ++run) {
+    for (int run = 0; run < starts(300); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() + 4000 << " run " << run);
         const Scene s = random_scene(GetParam(), random);
         Scene far = s;
@@ -219,7 +220,7 @@ TEST_P(CollisionPairs, TenKilometresAwayIsTheSame) {
 // With the cache carried on, from far to near and through each other, nothing is missed and depths stay right.
 TEST_P(CollisionPairs, CacheMissesNothingAlongAPath) {
     Random random(seed() + 5000);
-    for (int run = 0; run < 40; ++run) {
+    for (int run = 0; run < starts(40); ++run) {
         Scene s = random_scene(GetParam(), random);
         const Vec3 push = random.uniform(0.0005, 0.01) * random.unit();
         const Vec3 turn = random.uniform(0.0005, 0.02) * random.unit();
@@ -246,7 +247,7 @@ TEST_P(CollisionPairs, CacheMissesNothingAlongAPath) {
 TEST_P(CollisionPairs, IdsSurviveTinyMotion) {
     Random random(seed() + 6000);
     int same = 0, all = 0;
-    for (int run = 0; run < 150; ++run) {
+    for (int run = 0; run < starts(150); ++run) {
         Scene s = random_scene(GetParam(), random);
         PairCache cache;
         Manifold before;
@@ -265,7 +266,7 @@ TEST_P(CollisionPairs, IdsSurviveTinyMotion) {
             before = after;
         }
     }
-    EXPECT_GT(all, 500);
+    EXPECT_GT(all, starts(500));
     EXPECT_GT(same, 0.97 * all) << "seed " << seed() + 6000;
 }
 
