@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -100,11 +101,37 @@ struct BodyState {
     Vec velocity, spin;
 };
 
+// How all tests of a run step time, where a test does not say it itself: TAUT_LAB_HZ (30, 60, 120 or 240 steps a
+// second) and TAUT_LAB_SUBSTEPS in the environment. The tests labelled full run with several of each.
+struct Pace {
+    double hz = number("TAUT_LAB_HZ", 60);
+    uint32_t substeps = static_cast<uint32_t>(number("TAUT_LAB_SUBSTEPS", 4));
+
+    static double number(const char* name, double otherwise) {
+        const char* text = std::getenv(name);
+        return text ? std::atof(text) : otherwise;
+    }
+};
+
+inline const Pace& pace() {
+    static const Pace read;
+    return read;
+}
+
 class World {
 public:
     explicit World(const std::function<void(taut_world_def&)>& change = {}) {
         taut_world_def_init(&def);
+        // Of no test's own choosing: a step by the last bit off.
+        const float usual = def.time_step, paced = static_cast<float>(1 / pace().hz);
+        const float unchosen = pace().hz == 60 ? usual : std::nextafter(paced, 0.0f);
+        def.time_step = unchosen;
+        def.substeps = pace().substeps;
         if (change) change(def);
+        if (def.time_step == unchosen && paced != usual) {
+            def.time_step = paced;
+            tick_ = static_cast<double>(usual);
+        }
         ok(taut_world_create(&def, &handle));
     }
     ~World() { taut_world_destroy(handle); }
@@ -224,12 +251,14 @@ public:
         return out;
     }
 
+    // Steps of the world; of a sixtieth of a second where the run's pace is another and the test leaves it to the run.
     void step(int count = 1) const {
-        for (int i = 0; i < count; ++i) ok(taut_world_step(handle));
+        for (int i = 0; i < count; ++i)
+            ok(tick_ > 0 ? taut_world_advance(handle, tick_, nullptr) : taut_world_step(handle));
     }
-    double frame() const { return static_cast<double>(def.time_step); }  // [s]
-    double substep() const {                                             // of the last frame [s]
-        return frame() / profile().substeps;
+    double frame() const { return tick_ > 0 ? tick_ : static_cast<double>(def.time_step); }  // what step() steps [s]
+    double substep() const {                                                                 // of the last step [s]
+        return static_cast<double>(def.time_step) / profile().substeps;
     }
     taut_profile profile() const {
         taut_profile p{};
@@ -247,6 +276,9 @@ public:
 
     taut_world_def def{};
     taut_world handle{};
+
+private:
+    double tick_ = 0;  // [s], 0: the world's own step
 };
 
 inline BodyState state(taut_body body) {
