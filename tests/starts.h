@@ -15,3 +15,13 @@ Count starts(Count all) {
 #endif
     return asked && std::string_view(asked) == "all" ? all : (all + kPart - 1) / kPart;
 }
+
+// How many runs a test takes that is through with them in a second: a tenth of them with sanitizers.
+template <class Count>
+constexpr Count runs(Count all) {
+#ifdef TAUT_INSTRUMENTED
+    return (all + 9) / 10;
+#else
+    return all;
+#endif
+}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "starts.h"
 #include "collision/manifold.h"
 #include "collision_oracle.h"
 
@@ -315,7 +316,7 @@ TEST(CollisionContacts, PointsFollowAPatchThatMoves) {
 TEST(CollisionContacts, PairThatStandsKeepsAllItsPoints) {
     Random random(17);
     int touching = 0, on_many = 0;
-    for (int run = 0; run < 40000; ++run) {
+    for (int run = 0; run < runs(40000); ++run) {
         const Shape a = oracle::random_shape(ShapeKind(1 + run % 4), random);
         const Shape b = oracle::random_shape(ShapeKind(1 + run / 4 % 4), random);
         const Placement at_a{Vec3::Zero(), random.rotation()};
@@ -333,8 +334,8 @@ TEST(CollisionContacts, PairThatStandsKeepsAllItsPoints) {
             EXPECT_LT((again.points[i].position - first.points[i].position).norm(), 1e-5f) << "seed 17 run " << run;
         }
     }
-    EXPECT_GT(touching, 1000);
-    EXPECT_GT(on_many, 250);
+    EXPECT_GT(touching, runs(1000));
+    EXPECT_GT(on_many, runs(250));
 }
 
 // The cache is a hint: whatever it holds, the same overlap is found.
@@ -359,7 +360,7 @@ TEST(CollisionContacts, ForeignCacheDoesNoHarm) {
 TEST(CollisionContacts, NoAxisOnRecordHidesAnOverlap) {
     Random random(12);
     int overlaps = 0;
-    for (int run = 0; run < 4000; ++run) {
+    for (int run = 0; run < runs(4000); ++run) {
         const Shape a = oracle::random_shape(run % 2 ? ShapeKind::box : ShapeKind::hull, random);
         const Shape b = oracle::random_shape(run / 2 % 2 ? ShapeKind::box : ShapeKind::hull, random);
         const Placement at_a{Vec3::Zero(), random.rotation()};
@@ -374,7 +375,7 @@ TEST(CollisionContacts, NoAxisOnRecordHidesAnOverlap) {
         collide(a, at_a, b, at_b, kMargin, cache, m);
         EXPECT_GT(m.count, 0) << "seed 12 run " << run;
     }
-    EXPECT_GT(overlaps, 1000);
+    EXPECT_GT(overlaps, runs(1000));
 }
 
 // Of many low corners four are kept, and none that is left out lies more than a millimetre deeper.
@@ -438,7 +439,7 @@ TEST(CollisionSupportMapped, FindsEveryOverlapAndFreesIt) {
     Random random(seed);
     double excess = 0, depths = 0;
     int overlaps = 0;
-    for (int run = 0; run < 4000; ++run) {
+    for (int run = 0; run < runs(4000); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed << " run " << run);
         const Shape a = oracle::random_shape(ShapeKind(1 + run % 4), random);
         const Shape b = oracle::random_shape(ShapeKind(1 + run / 4 % 4), random);
@@ -458,7 +459,7 @@ TEST(CollisionSupportMapped, FindsEveryOverlapAndFreesIt) {
         const Placement freed{at_b.position + (depth + 0.012) * m.normal.cast<double>(), at_b.rotation};
         ASSERT_GT(oracle::separation(oracle::core(a, at_a), oracle::core(b, freed)), -2e-3);
     }
-    EXPECT_GT(overlaps, 500);
+    EXPECT_GT(overlaps, runs(500));
     EXPECT_LT(excess, 0.15 * depths);
 }
 

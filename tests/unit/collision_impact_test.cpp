@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "starts.h"
 #include "collision_oracle.h"
 
 namespace taut::collision {
@@ -68,7 +69,7 @@ TEST_P(ImpactOfSolid, IsNotLateAndNothingDeepIsMissed) {
     Random random(31);
     int found = 0, late = 0, far = 0, shallow = 0, missed = 0;
     for (const ShapeKind other : kSolids) {
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < runs(60); ++i) {
             const Ways ways(GetParam(), other, random);
             const Looks looks(ways);
             const double met = ways.impact(), deepest = looks.least(0, 2 * kHorizon);
@@ -82,7 +83,7 @@ TEST_P(ImpactOfSolid, IsNotLateAndNothingDeepIsMissed) {
             shallow += met > 0 && deepest > -0.7 * ways.depth + 3e-3;
         }
     }
-    EXPECT_GT(found, 100);
+    EXPECT_GT(found, runs(100));
     EXPECT_EQ(late, 0);
     EXPECT_EQ(missed, 0);
     EXPECT_LE(far, found / 50);  // grazes

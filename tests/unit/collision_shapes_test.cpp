@@ -142,7 +142,7 @@ TEST(CollisionBounds, TouchTheShapeOnEverySide) {
     Random random(kSeed + 2);
     for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::hull,
                                  ShapeKind::cylinder, ShapeKind::cone, ShapeKind::tapered_capsule}) {
-        for (int run = 0; run < 100; ++run) {
+        for (int run = 0; run < runs(100); ++run) {
             const Shape shape = oracle::random_shape(kind, random);
             const double far = run % 2 == 0 ? 1 : 10000;
             const Placement at{far * random.unit(), random.rotation()};

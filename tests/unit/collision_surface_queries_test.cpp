@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "starts.h"
 #include "collision_oracle.h"
 
 using namespace taut;
@@ -108,7 +109,7 @@ TEST(SurfaceQueries, CastsEndInTouchAndTriangleNumbersSayWhere) {
 TEST(SurfaceQueries, DistanceIsThatToTheNearestTriangle) {
     const Shape field = ground({1, 0.001f, 1});  // nearly flat
     Random random(3);
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < runs(300); ++i) {
         const double height = random.uniform(0.05, 20);
         const Gap gap = find_gap(in_world({random.uniform(1, 15), height, random.uniform(1, 15)}), field, kAt);
         EXPECT_NEAR(gap.distance, height, 1e-3);

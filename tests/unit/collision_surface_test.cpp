@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "starts.h"
 #include "base/memory.h"
 #include "collision/hull.h"
 #include "collision_oracle.h"
@@ -179,7 +180,7 @@ TEST_F(Surfaces, AgreeWithAThinTetrahedron) {
     Random random(5);
     int touching = 0;
     double worst = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < runs(20000); ++i) {
         Vec3f p[3];
         for (Vec3f& corner : p) corner = (random.unit() * random.uniform(0.5, 1.5)).cast<float>();
         const Vec3f normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();

@@ -1,5 +1,6 @@
 // Which faces and edges of polytopes separate most, and whether two edges decide where they touch, against the axes
 // between all of their features.
+#include "starts.h"
 #include "collision/narrowphase/polytope_axes.h"
 
 #include <gtest/gtest.h>
@@ -90,7 +91,7 @@ TEST(BestFace, SeparatesMostOfAllFaces) {
 TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
     constexpr float kAsk = 0.0025f, kRounding = 2e-5f;
     int bear = 0, decide = 0;
-    for (uint32_t seed = 1; seed <= 300; ++seed) {
+    for (uint32_t seed = 1; seed <= runs(300u); ++seed) {
         SCOPED_TRACE(seed);
         const Overlap overlap(seed, -0.005, 0.03);
         const PolytopePair& pair = overlap.pair;
@@ -107,7 +108,7 @@ TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
                 decide += decides;
             }
     }
-    EXPECT_GE(bear, 25);
+    EXPECT_GE(bear, runs(25));
     EXPECT_GE(2 * decide, bear) << decide << " of " << bear;
 }
 
