@@ -289,7 +289,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ViolentStart,
                          testing::Values(Seeds{1, 1, 16}, Seeds{100, 1, 16}, Seeds{1000, 1, 48}, Seeds{10000, 1, 48},
                                          Seeds{1, 1001, 1008}, Seeds{100, 1001, 1016}, Seeds{1000, 1001, 1048},
                                          Seeds{10000, 1001, 1048}, Seeds{100000, 1, 48}, Seeds{100000, 1001, 1048},
-                                         Seeds{1000000, 1, 48, 1}, Seeds{1000000, 1001, 1048, 1},
+                                         Seeds{1000000, 1, 48, 2}, Seeds{1000000, 1001, 1048, 1},
                                          Seeds{100000, 1, 16, 0, true}, Seeds{1000000, 1, 16, 0, true},
                                          Seeds{100000, 1001, 1008, 0, true}, Seeds{1000000, 1001, 1008, 0, true}),
                          [](const auto& tested) {
