@@ -30,9 +30,11 @@ struct Shape {
     // at -half length, half length,); tapered capsule: (radius at -half length, half length, radius at +half length);
     // plane: unit normal [1]
     Vec3f size = Vec3f::Zero();
-    std::shared_ptr<const Hull> hull;                   // hull only
-    std::shared_ptr<const Surface> surface = nullptr;   // surface only; size: its scale along x, y, z, none of them 0
+    std::shared_ptr<const Hull> hull;                  // hull only
+    std::shared_ptr<const Surface> surface = nullptr;  // surface only; size: its scale along x, y, z, none of them 0
 };
+
+inline bool is_convex(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::surface; }
 
 struct MassProperties {
     double mass = 0;             // [kg]

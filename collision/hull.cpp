@@ -15,7 +15,7 @@ namespace {
 // are on it.
 constexpr double kRelativeTolerance = 2e-4;
 
-bool before(const Vec3f& a, const Vec3f& b) {
+bool corner_before(const Vec3f& a, const Vec3f& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
@@ -97,7 +97,7 @@ std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_ver
     }
     std::vector<Vec3f> points(given.begin(), given.end());
     for (Vec3f& p : points) p += Vec3f::Zero();  // -0 becomes 0, so that equal points are one
-    std::sort(points.begin(), points.end(), before);
+    std::sort(points.begin(), points.end(), corner_before);
     points.erase(std::unique(points.begin(), points.end()), points.end());
     if (points.size() < 4) return refuse("fewer than 4 distinct points");
 
@@ -136,7 +136,8 @@ std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, f
     for (const Vec3f& v : hull.vertices) points.push_back(v.cwiseProduct(factors) + Vec3f::Zero());
     std::vector<int> order(points.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = int(i);
-    std::sort(order.begin(), order.end(), [&](int i, int j) { return before(points[size_t(i)], points[size_t(j)]); });
+    std::sort(order.begin(), order.end(),
+              [&](int i, int j) { return corner_before(points[size_t(i)], points[size_t(j)]); });
     std::vector<int> place(points.size());
     std::vector<Vec3f> sorted;
     for (size_t i = 0; i < order.size(); ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 // Heights over a triangle are good to this part of the points' extent, divided by the sine of its corner: some fifty
 // roundings.
-constexpr double kRounding = 1e-14;
+constexpr double kNormalRounding = 1e-14;
 
 struct Triangle {
     std::array<int, 3> corner;
@@ -63,7 +63,7 @@ Triangle Quickhull::make(int a, int b, int c) const {
     const Vec3 cross = ab.cross(ac);
     const double area = cross.norm();
     if (!(area > 0)) return {{a, b, c}, {-1, -1, -1}, at(a), Vec3::Zero(), 0};
-    return {{a, b, c}, {-1, -1, -1}, at(a), cross / area, kRounding * extent_ * ab.norm() * ac.norm() / area};
+    return {{a, b, c}, {-1, -1, -1}, at(a), cross / area, kNormalRounding * extent_ * ab.norm() * ac.norm() / area};
 }
 
 // At the triangle, from the first on, that it is highest above.

@@ -15,18 +15,18 @@ constexpr double kFlat = 5e-4;
 // Edges that bend by less are flat: sine of the angle.
 constexpr double kBend = 1e-3;
 
-struct Plane {
+struct FacetPlane {
     Vec3 normal = Vec3::Zero();  // unit
     double offset = 0, area = 0, longest = 0;
 };
 
-Plane plane_of(const Surface& surface, uint32_t triangle) {
+FacetPlane plane_of(const Surface& surface, uint32_t triangle) {
     const Corners corners = surface.corners(triangle);
     const Vec3 a = surface.vertex(corners[0]).cast<double>();
     const Vec3 b = surface.vertex(corners[1]).cast<double>();
     const Vec3 c = surface.vertex(corners[2]).cast<double>();
     const Vec3 cross = (b - a).cross(c - a);
-    Plane plane;
+    FacetPlane plane;
     plane.area = 0.5 * cross.norm();
     plane.normal = cross / (2 * plane.area);
     plane.offset = plane.normal.dot(a);
@@ -34,7 +34,7 @@ Plane plane_of(const Surface& surface, uint32_t triangle) {
     return plane;
 }
 
-bool continues(const Surface& surface, const Plane& seed, uint32_t triangle) {
+bool continues(const Surface& surface, const FacetPlane& seed, uint32_t triangle) {
     const double flat = std::min(kFlat, kRelativeFlat * seed.longest);
     for (const uint32_t corner : surface.corners(triangle)) {
         const double height = seed.normal.dot(surface.vertex(corner).cast<double>()) - seed.offset;
@@ -61,7 +61,7 @@ void grow_facets(Surface& surface) {
         if (surface.facet_of[seed] != kNoTriangle) continue;
         const uint32_t facet = uint32_t(surface.seed_of.size());
         surface.seed_of.push_back(seed);
-        const Plane plane = plane_of(surface, seed);
+        const FacetPlane plane = plane_of(surface, seed);
         surface.facet_of[seed] = facet;
         open.assign(1, seed);
         while (!open.empty()) {
@@ -85,7 +85,7 @@ bool is_sharp(const Surface& surface, uint32_t triangle, int edge) {
     const Corners corners = surface.corners(triangle);
     const uint32_t from = corners[size_t(edge)];
     const uint32_t opposite = third_corner(surface.corners(other), from, corners[size_t(next_corner(edge))]);
-    const Plane plane = plane_of(surface, triangle);
+    const FacetPlane plane = plane_of(surface, triangle);
     const Vec3 normal = plane_of(surface, other).normal;
     const double height = plane.normal.dot(surface.vertex(opposite).cast<double>()) - plane.offset;
     const bool bends = plane.normal.cross(normal).norm() > kBend || plane.normal.dot(normal) < 0;

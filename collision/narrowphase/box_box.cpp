@@ -17,7 +17,7 @@ constexpr int kAxes = 15;
 constexpr uint32_t kTouching = 1u << 8;
 
 // Nearly parallel edges (0.6 degrees) have no axis of their own: the square of the sine of their angle.
-constexpr float kParallel = 1e-4f;
+constexpr float kEdgeSine2 = 1e-4f;
 
 constexpr int next(int axis) { return axis == 2 ? 0 : axis + 1; }
 
@@ -42,7 +42,7 @@ struct Boxes {
     // n = e_i x r_j / sin of their angle; -1e30 for one that separates by no more than least (not positive).
     float edge(int i, int j, float least) const {
         const float sine_squared = 1 - r(i, j) * r(i, j);
-        if (sine_squared < kParallel) return -1e30f;
+        if (sine_squared < kEdgeSine2) return -1e30f;
         const int i1 = next(i), i2 = next(i1), j1 = next(j), j2 = next(j1);
         const float reach = a[i1] * q(i2, j) + a[i2] * q(i1, j) + b[j1] * q(i, j2) + b[j2] * q(i, j1);
         const float apart = std::fabs(t[i2] * r(i1, j) - t[i1] * r(i2, j)) - reach;
@@ -54,7 +54,7 @@ struct Boxes {
         if (axis < 3) return Vec3f::Unit(axis);
         if (axis < kFirstEdge) return r.col(axis - 3);
         const Vec3f n = Vec3f::Unit((axis - kFirstEdge) / 3).cross(r.col((axis - kFirstEdge) % 3));
-        return n.squaredNorm() < kParallel ? Vec3f(Vec3f::Zero()) : n.normalized();
+        return n.squaredNorm() < kEdgeSine2 ? Vec3f(Vec3f::Zero()) : n.normalized();
     }
     float size() const { return std::min(a.minCoeff(), b.minCoeff()); }
 };
@@ -65,7 +65,7 @@ struct Best {
 };
 
 // Whether two axes look about the same way.
-bool same_way(const Vec3f& one, const Vec3f& other) { return std::fabs(one.dot(other)) > kSamePlane; }
+bool same_axis(const Vec3f& one, const Vec3f& other) { return std::fabs(one.dot(other)) > kSamePlane; }
 
 struct Axes {
     Best face, edge;
@@ -97,7 +97,7 @@ Axes find_axes(const Boxes& boxes, float margin, int kept, const Preference& pre
             return axes;
         }
         if (s > axes.edge.separation) axes.edge = {axis, s};
-        if (s > std::max(least, axes.across.separation) && !same_way(boxes.normal(axis), boxes.normal(axes.face.axis)))
+        if (s > std::max(least, axes.across.separation) && !same_axis(boxes.normal(axis), boxes.normal(axes.face.axis)))
             axes.across = {axis, s};
     }
     return axes;
@@ -119,8 +119,8 @@ bool edges_bear(const Boxes& boxes, const Axes& axes, const Vec3f& kept, const P
     const float gain = axes.across.separation - axes.face.separation;
     if (gain <= -preference.keep) return false;
     const Vec3f edges = boxes.normal(axes.across.axis);
-    if (!same_way(edges, boxes.normal(facing(boxes, edges)))) return false;
-    return same_way(edges, kept) || gain > preference.keep;
+    if (!same_axis(edges, boxes.normal(facing(boxes, edges)))) return false;
+    return same_axis(edges, kept) || gain > preference.keep;
 }
 
 // The two edges that support the axis, their nearest points and the point between.
@@ -153,28 +153,28 @@ void edge_contact(const Boxes& boxes, const Best& edge, Manifold& out) {
 }
 
 // One box as the reference, the other as the incident box in the reference's frame.
-struct FaceView {
+struct BoxFace {
     Vec3f reference, incident;  // half extents
     Vec3f centre;               // of the incident box
     Mat3f axes;                 // of the incident box
 };
 
 // Whether the incident box lies over the reference face with all of its corners, wherever it turns.
-bool is_plane(const FaceView& view, int r) {
+bool is_plane(const BoxFace& view, int r) {
     const float reach = view.incident.norm();
     return std::fabs(view.centre[next(r)]) + reach < view.reference[next(r)] &&
            std::fabs(view.centre[next(next(r))]) + reach < view.reference[next(next(r))];
 }
 
 // Then any of them may touch it, not those of one face alone. In the incident box's frame, normal to the face.
-void touch_plane(const FaceView& view, int r, const Wanted& wanted, Manifold& out) {
+void touch_plane(const BoxFace& view, int r, const Wanted& wanted, Manifold& out) {
     const Vec3f up = view.axes.row(r).transpose() * (view.centre[r] < 0 ? -1.0f : 1.0f);
     collision::touch_plane(box_corners(view.incident), 0, up, std::fabs(view.centre[r]) - view.reference[r], wanted,
                            out);
 }
 
 // Clips the incident face that looks most against the reference face.
-void face_contact(const FaceView& view, int r, bool reference_on_b, const Wanted& wanted, Manifold& out) {
+void face_contact(const BoxFace& view, int r, bool reference_on_b, const Wanted& wanted, Manifold& out) {
     const int u = next(r);
     const int v = next(u);
     const float sign = view.centre[r] < 0 ? -1.0f : 1.0f;
@@ -204,8 +204,8 @@ void face_contact(const FaceView& view, int r, bool reference_on_b, const Wanted
 
 void face_contact(const Pair& pair, const Boxes& boxes, int axis, Manifold& out) {
     const bool on_b = axis >= 3;
-    const FaceView view = on_b ? FaceView{boxes.b, boxes.a, -boxes.t_in_b, boxes.r.transpose()}
-                               : FaceView{boxes.a, boxes.b, boxes.t, boxes.r};
+    const BoxFace view = on_b ? BoxFace{boxes.b, boxes.a, -boxes.t_in_b, boxes.r.transpose()}
+                              : BoxFace{boxes.a, boxes.b, boxes.t, boxes.r};
     const int r = axis % 3;
     const bool plane = is_plane(view, r);
     if (plane)
@@ -241,7 +241,7 @@ float boxes_apart(const Sides& sides, const PairCache& cache) {
         n = axis < 3 ? a.col(axis) : b.col(axis - 3);
     } else {
         n = a.col((axis - kFirstEdge) / 3).cross(b.col((axis - kFirstEdge) % 3));
-        if (n.squaredNorm() < kParallel) return kNoAxis;
+        if (n.squaredNorm() < kEdgeSine2) return kNoAxis;
         n.normalize();
     }
     return std::fabs(n.dot(sides.apart)) - reach(sides.a, sides.at_a, n) - reach(sides.b, sides.at_b, n);

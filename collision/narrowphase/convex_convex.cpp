@@ -10,27 +10,27 @@ namespace taut::collision {
 namespace {
 
 // Lines within 10 degrees (sine squared 0.03) of parallel touch along a stretch: two points.
-constexpr float kParallel = 0.03f;
+constexpr float kFacingSine2 = 0.03f;
 // They do as far as they run no further beside each other than this, in parts of the smaller shape's inner radius r:
 // a round side falls off by kBeside^2 r / 2 there. A shorter stretch is a point.
 constexpr float kBeside = 0.02f, kShort = 0.1f;
 
 // Ids where no flat face bears the contact.
-constexpr uint32_t kAlone = (3u << 30) | 1;
-constexpr uint32_t kFirstEnd = (3u << 30) | 2;  // the other end's is one more
+constexpr uint32_t kLineAlone = (3u << 30) | 1;
+constexpr uint32_t kLineEnd = (3u << 30) | 2;  // the other end's is one more
 
 // ---------------------------------------------------------------- cache
 
 // Words 0 to 2: the normal; word 3: what bore the contact.
 enum Bearer : uint32_t { kNothing, kFaceOfA, kFaceOfB, kRound };
 
-struct Kept {
+struct KeptPush {
     Vec3 normal = Vec3::Zero();
     Bearer bearer = kNothing;
 };
 
-Kept read(const PairCache& cache) {
-    Kept kept;
+KeptPush read_push(const PairCache& cache) {
+    KeptPush kept;
     kept.bearer = Bearer(cache.words[3] & 3);
     Vec3 normal;
     for (int i = 0; i < 3; ++i) normal[i] = double(std::bit_cast<float>(cache.words[i]));
@@ -61,7 +61,7 @@ struct Solids {
           size(std::min(inner_radius(pair.a), inner_radius(pair.b))) {}
 };
 
-struct Bearing {
+struct BearingFace {
     Bearer bearer = kNothing;
     int face = -1;
     float separation = -1e30f;  // along the face's normal [m]
@@ -75,8 +75,8 @@ float face_separation(const Solid& solid, const Solid& other, const Pose& other_
 }
 
 // The flat face that looks along the normal and separates most; last frame's is kept if it is nearly as good.
-Bearing best_face(const Solids& solids, const Vec3f& normal, Bearer was) {
-    Bearing on_a, on_b;
+BearingFace best_face(const Solids& solids, const Vec3f& normal, Bearer was) {
+    BearingFace on_a, on_b;
     const float keep = Preference(solids.size).keep;
     const int face_a = solids.a.face_along(normal);
     const int face_b = solids.b.face_along(solids.b_in_a.rotation.transpose() * -normal);
@@ -85,7 +85,7 @@ Bearing best_face(const Solids& solids, const Vec3f& normal, Bearer was) {
     return on_b.separation > on_a.separation + (was == kFaceOfB ? -keep : keep) ? on_b : on_a;
 }
 
-void clip_face(const Solids& solids, const Bearing& bearing, Manifold& out) {
+void clip_face(const Solids& solids, const BearingFace& bearing, Manifold& out) {
     const bool on_b = bearing.bearer == kFaceOfB;
     const float slack = flush_slack(solids.size);
     const uint32_t base = face_base(on_b, bearing.face, 0);
@@ -125,10 +125,10 @@ void add_line(const Solids& solids, Manifold& out) {
     const Segment b = {solids.b_in_a * own.from, solids.b_in_a.rotation * own.step};
     const float aa = a.step.squaredNorm();
     const float bb = b.step.squaredNorm();
-    if (!(aa > 0 && bb > 0) || a.step.cross(b.step).squaredNorm() >= kParallel * aa * bb) return;
+    if (!(aa > 0 && bb > 0) || a.step.cross(b.step).squaredNorm() >= kFacingSine2 * aa * bb) return;
     const Segment stretch = side_by_side(a, b, out.normal, kBeside * solids.size);
     if (stretch.step.norm() < kShort * solids.size) return;
-    uint32_t feature = kFirstEnd;
+    uint32_t feature = kLineEnd;
     for (const float s : {0.0f, 1.0f}) {
         const Vec3f p = stretch.at(s);
         const Vec3f q = b.at(b.nearest(p));
@@ -145,14 +145,14 @@ void round_contact(const Solids& solids, const Push& push, double radius_a, Mani
     const float separation = float(push.separation);
     if (out.count > 0 && deepest(out) <= separation + std::min(5e-4f, 0.01f * solids.size)) return;
     const Vec3 middle = push.on_a + push.normal * (radius_a + 0.5 * push.separation);
-    out.points[out.count++] = {middle.cast<float>(), separation, kAlone};
+    out.points[out.count++] = {middle.cast<float>(), separation, kLineAlone};
 }
 
 }  // namespace
 
 float convex_convex(const Pair& pair, Manifold& out) {
     const Solids solids(pair);
-    const Kept kept = read(pair.cache);
+    const KeptPush kept = read_push(pair.cache);
     const Push push = least_push(solids.a, solids.b, pair, kept.normal, double(pair.wanted.margin));
     if (push.separation > double(pair.wanted.margin)) {
         write(push.normal, kNothing, pair.cache);
@@ -161,7 +161,7 @@ float convex_convex(const Pair& pair, Manifold& out) {
 
     const Preference preference(solids.size);
     const float separation = float(push.separation);
-    const Bearing face = best_face(solids, push.normal.cast<float>(), kept.bearer);
+    const BearingFace face = best_face(solids, push.normal.cast<float>(), kept.bearer);
     Manifold clipped;
     if (face.bearer != kNothing) clip_face(solids, face, clipped);
     if (clipped.count > 0 && !preference.edge_wins(separation, face.separation, kept.bearer == kRound) &&

@@ -11,19 +11,19 @@ namespace {
 
 // Ids of points, below 1 << 14: corners of the polygon by number; then
 constexpr uint32_t kCrossing = kFaceCorners;  // + 2 * side + (0 where it enters the disc, 1 where it leaves)
-constexpr uint32_t kRim = 256;      // + quarter of the incident disc's rim, from the deepest point on
-constexpr uint32_t kOwnRim = 264;   // + quarter of the face's own rim
-constexpr uint32_t kDeepest = 272;  // + 0 at the incident shape's -y end, 1 at +y; also the ends of its line
+constexpr uint32_t kRim = 256;                // + quarter of the incident disc's rim, from the deepest point on
+constexpr uint32_t kOwnRim = 264;             // + quarter of the face's own rim
+constexpr uint32_t kDeepest = 272;            // + 0 at the incident shape's -y end, 1 at +y; also the ends of its line
 constexpr uint32_t kOwnDeepest = 274;
 constexpr uint32_t kCircles = 276;  // + which of the two crossings of two circles
 constexpr uint32_t kCut = 1024;     // + 2 * side (or kOfCircle) + (0 entering, 1 leaving), of a line
 constexpr uint32_t kOfCircle = 128;
 
 // A tilted disc counts as a circle up to 8 degrees (cosine), where it meets another.
-constexpr float kParallel = 0.99f;
+constexpr float kFacing = 0.99f;
 
 // How far a line runs over the face: from parameter enter to leave, with the sides that cut it.
-struct Stretch {
+struct LinePart {
     float enter = 0, leave = 1;
     uint32_t enter_id, leave_id;
 
@@ -68,7 +68,7 @@ void line_on_face(const FlatFace& face, const Segment& line, float slack, Polygo
     const ClipPoint from = above(face, line.from, kDeepest);
     const ClipPoint to = above(face, line.at(1), kDeepest + 1);
     const float dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
-    Stretch stretch{0, 1, from.id, to.id};
+    LinePart stretch{0, 1, from.id, to.id};
     if (face.is_disc()) stretch.cut_by_circle(from.x, from.y, dx, dy, face.radius + slack);
     for (size_t i = 0; i < face.sides.size(); ++i) {
         const Side& side = face.sides[i];
@@ -91,8 +91,8 @@ struct Disc {
     float radius;
 };
 
-// Heights over a plane, in its coordinates: z = at + slope_x x + slope_y y.
-struct Heights {
+// Slope over a plane, in its coordinates: z = at + slope_x x + slope_y y.
+struct Slope {
     float at, slope_x, slope_y;
 
     float operator()(float x, float y) const { return at + slope_x * x + slope_y * y; }
@@ -103,7 +103,7 @@ struct Heights {
 // lies flat to kFlatRim [m], no point is the lowest.
 constexpr float kFlatRim = 1e-6f;
 
-std::array<ClipPoint, 4> rim_points(float radius, const Heights& heights, uint32_t rim, uint32_t deepest) {
+std::array<ClipPoint, 4> rim_points(float radius, const Slope& heights, uint32_t rim, uint32_t deepest) {
     const float steep = std::sqrt(heights.slope_x * heights.slope_x + heights.slope_y * heights.slope_y);
     const bool flat = steep * radius <= kFlatRim;
     const float x = flat ? 0.70710678f * radius : heights.slope_x * (-radius / steep);
@@ -129,7 +129,7 @@ bool holds(const Polygon& polygon, float turn, float x, float y, float slack) {
 // What a polygon (its corners' ids are their numbers, turn: 1 counter-clockwise, -1 clockwise) and a disc about the
 // origin have in common, in the disc's coordinates.
 void disc_and_polygon(const Polygon& polygon, float turn, float radius, const std::array<ClipPoint, 4>& rim,
-                      const Heights& heights, float slack, Polygon& out) {
+                      const Slope& heights, float slack, Polygon& out) {
     for (const ClipPoint& p : rim) {
         if (holds(polygon, turn, p.x, p.y, slack)) out.points[out.count++] = p;
     }
@@ -137,7 +137,7 @@ void disc_and_polygon(const Polygon& polygon, float turn, float radius, const st
     for (int i = 0; i < polygon.count; ++i) {
         const ClipPoint& p = polygon.points[i];
         const ClipPoint& q = polygon.points[i + 1 == polygon.count ? 0 : i + 1];
-        Stretch stretch{0, 1, p.id, q.id};
+        LinePart stretch{0, 1, p.id, q.id};
         stretch.cut_by_circle(p.x, p.y, q.x - p.x, q.y - p.y, radius);
         if (stretch.enter > stretch.leave) continue;
         const auto add = [&](float t, uint32_t id) {
@@ -155,7 +155,7 @@ void disc_on_polygon(const FlatFace& face, const Disc& disc, uint32_t deepest, f
     const float a = face.u.dot(disc.e1), b = face.u.dot(disc.e2);
     const float c = face.v.dot(disc.e1), d = face.v.dot(disc.e2);
     const float determinant = a * d - b * c;
-    const Heights heights = {middle.z, face.normal.dot(disc.e1), face.normal.dot(disc.e2)};
+    const Slope heights = {middle.z, face.normal.dot(disc.e1), face.normal.dot(disc.e2)};
     Polygon corners;
     for (const uint8_t corner : face.loop) {
         const Vec3f& p = face.vertices[corner];
@@ -178,8 +178,8 @@ void disc_on_polygon(const FlatFace& face, const Disc& disc, uint32_t deepest, f
     }
 }
 
-// Heights over the face of the plane normal . p = offset, looked at along the face's normal.
-Heights heights_of(const FlatFace& face, const Vec3f& normal, float offset) {
+// Slope over the face of the plane normal . p = offset, looked at along the face's normal.
+Slope heights_of(const FlatFace& face, const Vec3f& normal, float offset) {
     const float along = normal.dot(face.normal);
     return {offset / along - face.offset, -normal.dot(face.u) / along, -normal.dot(face.v) / along};
 }
@@ -187,7 +187,7 @@ Heights heights_of(const FlatFace& face, const Vec3f& normal, float offset) {
 // The face is the disc, a polygon lies against it.
 void polygon_on_disc(const FlatFace& face, const FlatFace& incident, const Pose& pose, float slack, Polygon& out) {
     const Vec3f normal = pose.rotation * incident.normal;
-    const Heights heights = heights_of(face, normal, incident.offset + normal.dot(pose.position));
+    const Slope heights = heights_of(face, normal, incident.offset + normal.dot(pose.position));
     Polygon corners;
     for (const uint8_t corner : incident.loop) {
         corners.points[corners.count] = above(face, pose * incident.vertices[corner], uint32_t(corners.count));
@@ -198,7 +198,7 @@ void polygon_on_disc(const FlatFace& face, const FlatFace& incident, const Pose&
 }
 
 // Where the circles of two nearly parallel discs cross: along the line of centres, and across it by the half chord.
-void circles_cross(float radius, const ClipPoint& middle, float other, const Heights& heights, float slack,
+void circles_cross(float radius, const ClipPoint& middle, float other, const Slope& heights, float slack,
                    Polygon& out) {
     const float apart = std::sqrt(middle.x * middle.x + middle.y * middle.y);
     if (apart <= std::fabs(radius - other) + slack || apart >= radius + other) return;
@@ -216,7 +216,7 @@ void circles_cross(float radius, const ClipPoint& middle, float other, const Hei
 // Two discs: the points of either rim over the other disc, and where the circles cross.
 void disc_on_disc(const FlatFace& face, const Disc& disc, uint32_t deepest, float slack, Polygon& out) {
     const ClipPoint middle = above(face, disc.centre, 0);
-    const Heights own = {middle.z, face.normal.dot(disc.e1), face.normal.dot(disc.e2)};
+    const Slope own = {middle.z, face.normal.dot(disc.e1), face.normal.dot(disc.e2)};
     const float most = face.radius + slack;
     for (const ClipPoint& p : rim_points(disc.radius, own, kRim, deepest)) {
         const ClipPoint at = above(face, disc.centre + disc.e1 * p.x + disc.e2 * p.y, p.id);
@@ -224,7 +224,7 @@ void disc_on_disc(const FlatFace& face, const Disc& disc, uint32_t deepest, floa
     }
     if (out.count == 4) return;
     const Vec3f normal = disc.e1.cross(disc.e2);
-    const Heights heights = heights_of(face, normal, normal.dot(disc.centre));
+    const Slope heights = heights_of(face, normal, normal.dot(disc.centre));
     const float least = std::max(disc.radius - slack, 0.0f);
     int inside = 0;
     for (const ClipPoint& p : rim_points(face.radius, heights, kOwnRim, kOwnDeepest)) {
@@ -233,7 +233,7 @@ void disc_on_disc(const FlatFace& face, const Disc& disc, uint32_t deepest, floa
         out.points[out.count++] = p;
         ++inside;
     }
-    if (inside < 4 && normal.dot(face.normal) < -kParallel) {
+    if (inside < 4 && normal.dot(face.normal) < -kFacing) {
         circles_cross(face.radius, middle, disc.radius, heights, slack, out);
     }
 }

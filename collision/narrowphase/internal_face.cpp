@@ -65,9 +65,9 @@ private:
 };
 
 // The faces of a box or hull.
-class Faces {
+class FacesMet {
 public:
-    Faces(const Polytope& solid, const Horizon& horizon) : solid_(solid), horizon_(horizon) {}
+    FacesMet(const Polytope& solid, const Horizon& horizon) : solid_(solid), horizon_(horizon) {}
 
     bool rises(const Face& face) const { return top(face) > horizon_.slack(); }
     // How high a face reaches near the body.
@@ -213,7 +213,7 @@ bool is_internal(const Shape& body, const Shape& solid, uint32_t part, const Sol
     if (has_parts(solid)) return is_internal_part(solid, part, contact, cover, horizon);
     if (!is_polytope(solid)) return false;
     const PolytopeOf polytope(solid);
-    return Faces(polytope.view(), horizon).is_internal(contact);
+    return FacesMet(polytope.view(), horizon).is_internal(contact);
 }
 
 void collide_open(const Shape& body, const Placement& at_body, const Shape& solid, const Placement& at_solid,
@@ -222,7 +222,7 @@ void collide_open(const Shape& body, const Placement& at_body, const Shape& soli
     if (!is_polytope(solid)) return;
     const Horizon horizon(body, contact, cover);
     const Solid sides(solid), other(body);
-    const Faces faces(*sides.polytope(), horizon);
+    const FacesMet faces(*sides.polytope(), horizon);
     const Pose pose = pose_in(at_solid, at_body);
     const auto lowest = [&](const Vec3f& normal) {
         const Vec3 down = (pose.rotation.transpose() * -normal).cast<double>().normalized();

@@ -13,11 +13,11 @@ namespace taut::collision {
 namespace {
 
 // The vertices of one polytope along a direction of its frame.
-struct Heights {
+struct CornerHeights {
     alignas(64) float of[kMaxVertices];
     float top;
 
-    Heights(const Polytope& polytope, const Vec3f& direction)
+    CornerHeights(const Polytope& polytope, const Vec3f& direction)
         : top(lane_kernels().heights(polytope.corners, direction.data(), of)) {}
     const Vec3f& highest(const Polytope& polytope) const {
         return polytope.vertices[size_t(std::find(of, of + polytope.vertices.size() - 1, top) - of)];
@@ -40,8 +40,8 @@ struct Demand {
 };
 
 // The edges that do; returns how many.
-int edges_that_may(const Polytope& polytope, const Heights& heights, const HeightsOver& over, const Demand& demand,
-                   uint8_t* index) {
+int edges_that_may(const Polytope& polytope, const CornerHeights& heights, const HeightsOver& over,
+                   const Demand& demand, uint8_t* index) {
     int count = 0;
     for (size_t e = 0; e < polytope.edges.size(); ++e) {
         const Edge& edge = polytope.edges[e];
@@ -183,8 +183,8 @@ private:
 // If an edge pair bears the least overlap d <= depth, its nearest points lie on the edges, d apart and both within
 // the two polytopes' overlap along normal grown by d.
 Separation best_edges(const PolytopePair& pair, const Vec3f& normal, float depth, float least) {
-    const Heights up_a(pair.a, normal);
-    const Heights down_b(pair.b, pair.b_in_a.rotation.transpose() * -normal);
+    const CornerHeights up_a(pair.a, normal);
+    const CornerHeights down_b(pair.b, pair.b_in_a.rotation.transpose() * -normal);
     const float middle = normal.dot(pair.b_in_a.position), under = std::min(least, 0.0f);
     uint8_t own[kMaxEdges];
     const HeightsOver over_a(pair.a, pair.b_in_a * down_b.highest(pair.b));

@@ -132,20 +132,20 @@ Nearest nearest_inside(const Polytope& polytope, const Segment& axis, const Face
     return nearest;
 }
 
-struct Round {
+struct RoundSide {
     Segment axis;  // in the polytope's frame
     float radius;
 };
 
 // Midway between the polytope's surface and the round one along the normal; height of the axis' point.
-void add_point(const Round& round, float t, float height, uint32_t feature, Manifold& out) {
+void add_point(const RoundSide& round, float t, float height, uint32_t feature, Manifold& out) {
     out.points[out.count++] = {round.axis.at(t) - out.normal * (0.5f * (height + round.radius)), height - round.radius,
                                feature};
 }
 
 // The stretch of the axis over the face; false if none is, or none as deep as the nearest point.
-bool lie_on_face(const Polytope& polytope, const Round& round, const Faces& faces, const Nearest& nearest, float margin,
-                 Manifold& out) {
+bool lie_on_face(const Polytope& polytope, const RoundSide& round, const Faces& faces, const Nearest& nearest,
+                 float margin, Manifold& out) {
     size_t best = 0;
     float alignment = -1;
     for (size_t i = 0; i < polytope.faces.size(); ++i) {
@@ -185,7 +185,7 @@ float polytope_round(const Pair& pair, Manifold& out) {
     const PolytopeOf storage(pair.a);
     const Polytope& polytope = storage.view();
     const Segment own = round_axis(pair.b);
-    const Round round = {{pair.b_in_a * own.from, pair.b_in_a.rotation * own.step}, round_radius(pair.b)};
+    const RoundSide round = {{pair.b_in_a * own.from, pair.b_in_a.rotation * own.step}, round_radius(pair.b)};
 
     // Word 0 of the cache: the face that separated most.
     Faces faces;

@@ -10,11 +10,11 @@ namespace taut::collision {
 namespace {
 
 // The least cosine between the outward direction of an edge's or vertex' contact and the triangle's normal.
-constexpr float kFront = 0.02f;
+constexpr float kLeastFacing = 0.02f;
 // Lines of edges that meet, but beside the edges themselves, miss by more than this share of the body's size.
 constexpr float kMiss = 1e-3f;
 // Edges within 1e-3 rad of parallel have no axis of their own.
-constexpr float kParallel = 1e-6f;
+constexpr float kAcrossSine2 = 1e-6f;
 
 class PolytopeSurface {
 public:
@@ -138,7 +138,7 @@ bool PolytopeSurface::try_faces(const Facet& facet, const SurfaceView::Triangle&
             if (height[i] < height[lowest]) lowest = i;
         }
         if (height[lowest] > meeting_.margin) return false;
-        if (height[lowest] <= best.separation || -face.normal.dot(facet.normal) < kFront) continue;
+        if (height[lowest] <= best.separation || -face.normal.dot(facet.normal) < kLeastFacing) continue;
         if (!view_.is_top_vertex(triangle.corner[size_t(lowest)], triangle.at[lowest], -face.normal)) continue;
         best = {height[lowest], int(f), 0, 0, part_on_face(triangle, height, lowest), -face.normal};
     }
@@ -163,7 +163,7 @@ bool PolytopeSurface::try_edges(const Facet& facet, const SurfaceView::Triangle&
         const Vec3f direction = body_.direction(own);
         const Vec3f cross = along.cross(direction);
         const float squared = cross.squaredNorm();
-        if (!(squared > kParallel * along.squaredNorm() * direction.squaredNorm())) continue;
+        if (!(squared > kAcrossSine2 * along.squaredNorm() * direction.squaredNorm())) continue;
         const Vec3f outward = cross * ((cross.dot(facet.normal) < 0 ? -1 : 1) / std::sqrt(squared));
         // The body lies outward of its edge if the way in lies between the normals of the edge's faces.
         const Vec3f inward = -outward;
@@ -174,7 +174,7 @@ bool PolytopeSurface::try_edges(const Facet& facet, const SurfaceView::Triangle&
         float top = outward.dot(from);
         for (const Vec3f& corner : triangle.at) top = std::max(top, outward.dot(corner));
         const float separation = outward.dot(body_edge.from) - top;
-        if (separation <= best.separation || outward.dot(facet.normal) < kFront) continue;
+        if (separation <= best.separation || outward.dot(facet.normal) < kLeastFacing) continue;
         if (!view_.is_top_edge(triangle, edge, outward)) continue;
         if (separation > meeting_.margin) return false;
         const SegmentPair nearest = nearest_points(body_edge, surface_edge);

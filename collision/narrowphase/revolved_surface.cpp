@@ -12,9 +12,9 @@ namespace taut::collision {
 namespace {
 
 // A line over the seam of two triangles is over both: room as a share of the inner radius.
-constexpr float kSeam = 1e-3f;
+constexpr float kRimSeam = 1e-3f;
 // The least cosine between the outward direction of an edge's or vertex' contact and the triangle's normal.
-constexpr float kFront = 1e-3f;
+constexpr float kRimFront = 1e-3f;
 // An edge meets the body as a capsule this thin, in parts of the body's inner radius, which is taken off again.
 constexpr float kThin = 0.01f;
 
@@ -59,7 +59,7 @@ void RevolvedSurface::add_face(const Facet& facet, Touch& touch) {
 void RevolvedSurface::touch_by_line(const Facet& facet, const Segment& line) {
     Stretch stretch;
     for (const uint64_t key : facet.triangles)
-        stretch.join(line, kSeam * inner_, facet, view_.triangle(uint32_t(key)));
+        stretch.join(line, kRimSeam * inner_, facet, view_.triangle(uint32_t(key)));
     if (stretch.is_empty()) return;
     Touch touch{facet.number + 1, 0, facet.height + facet.offset, facet.triangles, {}};
     Manifold& out = touch.manifold;
@@ -108,7 +108,8 @@ void RevolvedSurface::take(const Facet& facet, const SurfaceView::Triangle& tria
         } else if (is_crossing(point.id)) {
             const int edge = TriangleFace::edge_of(facet, side_of_crossing(point.id));
             if (is_seam(edge)) continue;
-            point.id = kFaceCorners + (2 * (3 * triangle.number + uint32_t(edge)) + (point.id & 1)) % (2 * kFaceCorners);
+            point.id =
+                kFaceCorners + (2 * (3 * triangle.number + uint32_t(edge)) + (point.id & 1)) % (2 * kFaceCorners);
         } else {
             const auto same = [&](const ClipPoint& p) { return p.id == point.id; };
             if (std::any_of(points.points, points.points + points.count, same)) continue;
@@ -146,7 +147,7 @@ bool RevolvedSurface::is_across(const Vec3f& normal, const Vec3f& from, const Ve
                                 const Vec3f& opposite) const {
     const Vec3f lowest = furthest_point(body_.shape(), -normal.cast<double>()).cast<float>(), side = opposite - from;
     const Vec3f inward = side - along * (along.dot(side) / along.squaredNorm());
-    return inward.dot(lowest - from) <= kSeam * inner_ * inward.norm();
+    return inward.dot(lowest - from) <= kRimSeam * inner_ * inward.norm();
 }
 
 // The separation along n, the least of n . p over the body, falls from a face's normal towards the other's where the
@@ -174,7 +175,8 @@ Manifold RevolvedSurface::meet_edge(const Segment& edge, const SegmentPair& near
     const Vec3f way = edge.at(nearest.t) - centre_line(body_.shape()).at(nearest.s);
     const float distance = way.norm();
     PairCache cache;
-    for (int i = 0; i < 3 && distance > 1e-3f * inner_; ++i) cache.words[i] = std::bit_cast<uint32_t>(way[i] / distance);
+    for (int i = 0; i < 3 && distance > 1e-3f * inner_; ++i)
+        cache.words[i] = std::bit_cast<uint32_t>(way[i] / distance);
     Manifold out;
     const Placement own{Vec3::Zero(), Mat3f::Identity()};
     convex_convex({body_.shape(), capsule, own, at, {at.rotation, edge.at(0.5f)}, meeting_.margin, cache}, out);
@@ -195,12 +197,12 @@ void RevolvedSurface::touch_edge(const Facet& facet, const SurfaceView::Triangle
     if ((axis.at(nearest.s) - edge.at(nearest.t)).norm() > std::max(size.x(), size.z()) + meeting_.margin) return;
     const Manifold found = meet_edge(edge, nearest);
     if (found.count == 0) return;
-    const ContactPoint& point = *std::min_element(
-        found.points, found.points + found.count,
-        [](const ContactPoint& p, const ContactPoint& q) { return p.separation < q.separation; });
+    const ContactPoint& point =
+        *std::min_element(found.points, found.points + found.count,
+                          [](const ContactPoint& p, const ContactPoint& q) { return p.separation < q.separation; });
     if (point.separation > meeting_.margin) return;
     const Vec3f out = -found.normal;
-    if (out.dot(facet.normal) < kFront) return;
+    if (out.dot(facet.normal) < kRimFront) return;
     const float t = edge.nearest(point.position);
     const bool inside = t > 0 && t < 1;
     const size_t end = ends[t > 0.5f];

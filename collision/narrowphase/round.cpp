@@ -9,7 +9,7 @@ namespace taut::collision {
 namespace {
 
 // Capsules within 10 degrees (sine squared 0.03) of parallel touch along a line: two points.
-constexpr float kParallel = 0.03f;
+constexpr float kAxisSine2 = 0.03f;
 // The nearest points are a third contact if they are this much closer than the line's ends [m].
 constexpr float kBetween = 5e-4f;
 
@@ -60,7 +60,7 @@ void add_ends(const Rounds& rounds, float margin, Manifold& out) {
     out.normal = squared > least * least ? Vec3f(between / std::sqrt(squared)) : across(rounds.a.step, rounds.b.step);
     const float aa = rounds.a.step.squaredNorm();
     const float bb = rounds.b.step.squaredNorm();
-    if (rounds.a.step.cross(rounds.b.step).squaredNorm() < kParallel * aa * bb) {
+    if (rounds.a.step.cross(rounds.b.step).squaredNorm() < kAxisSine2 * aa * bb) {
         add_ends(rounds, margin, out);
         if (deepest(out) <= std::sqrt(squared) - rounds.radius_a - rounds.radius_b + kBetween) return 0;
     }

@@ -15,9 +15,9 @@ constexpr double kContact = 1e-5;
 // How far it is lifted, in the same parts.
 constexpr double kLift = 0.25;
 // Of heights over faces, in parts of how far from the shape the ends of the way are.
-constexpr float kRounding = 1e-6f;
+constexpr float kHeightRounding = 1e-6f;
 // A few as a rule; where the way grazes the surface each halves the distance.
-constexpr int kMaxSteps = 64;
+constexpr int kMaxCastSteps = 64;
 
 // Overlap at the start, told from the still shape a.
 Hit inside(const Couple& couple, const Distance& cores) {
@@ -34,7 +34,7 @@ bool stays_above_face(const Shape& moving, const Placement& from, const Vec3& al
         return Vec3f(at.rotation.transpose() * (p - at.position).cast<float>());
     };
     const Vec3f start = to_still(from.position), end = to_still(from.position + limit * along);
-    const float rounding = kRounding * (start.norm() + end.norm());
+    const float rounding = kHeightRounding * (start.norm() + end.norm());
     const float height = moving.size.x() + float(kContact) * still.hull->inner_radius + rounding;
     return lane_kernels().way_outside(still.hull->view().planes, start.data(), end.data()) > height;
 }
@@ -55,7 +55,7 @@ bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& alon
     const Vec3 way = couple.to_a(along);
     Vec3 normal = start.normal, on_core = start.on_a;
     double t = 0;
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 0; step < kMaxCastSteps; ++step) {
         const double lift = std::max(kLift * couple.size() - separation, 0.0);
         const Distance cores = couple.distance(t * along + couple.to_world(lift * normal), normal);
         if (!cores.apart) break;  // rounding

@@ -53,8 +53,6 @@ constexpr std::array<GapFunctions, kShapeKinds> kGaps = {kPlane,  kConvex, kConv
 const GapFunctions& functions_of(const Shape& shape) { return kGaps[size_t(shape.kind)]; }
 
 // With a reach, and in one piece.
-bool is_convex(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::surface; }
-
 // A ball for a point, which has no inside that a search for the least push could go by: its core is the point.
 Shape ball_for_point(const Shape& other) {
     Shape ball;

@@ -16,11 +16,9 @@
 namespace taut::collision {
 namespace {
 
-bool is_convex(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::surface; }
-
 constexpr double kNever = std::numeric_limits<double>::infinity();
 // A few as a rule. What needs more grazes; the moment reached is before the meeting.
-constexpr int kMaxSteps = 64;
+constexpr int kMaxImpactSteps = 64;
 // Whether a meeting goes deep is looked at no more often.
 constexpr int kMaxLooks = 64;
 
@@ -75,7 +73,7 @@ double plane_meeting(const Shape& a, const Motion& motion_a, const Shape& b, con
     Motion still = motion_b;
     still.spin.setZero();
     double t = 0;
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 0; step < kMaxImpactSteps; ++step) {
         const Clearance clear = clearance(b, still.after(t), a, motion_a.after(t));
         if (clear.height <= reach) return t;
         const double approach =
@@ -200,7 +198,7 @@ double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, co
     // come nearer.
     Vec3 normal = nearest.norm() > 0 ? nearest.normalized() : Vec3::UnitY();  // then of the step before
     const Moment end(a, motion_a, b, motion_b, limit);
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 0; step < kMaxImpactSteps; ++step) {
         const Moment now(a, motion_a, b, motion_b, t);
         double separation = now.apart(normal);
         if (separation <= reach) {  // the last normal parts them no more, for which one support point was asked

@@ -7,7 +7,7 @@ namespace {
 
 // Inside the double cone x^2 + z^2 <= (radius + slope y)^2, on the side of its tip where radius + slope y > 0; a
 // cylinder where slope is 0. The normal is (x, -slope r, z) / (r sqrt(1 + slope^2)), r the radius there.
-Interval of_cone(const Line& line, double radius, double slope) {
+Interval of_cone(const UnitLine& line, double radius, double slope) {
     const Vec3 &o = line.from, &d = line.along;
     const double at_start = radius + slope * o.y(), growth = slope * d.y();
     const double a = d.x() * d.x() + d.z() * d.z() - growth * growth;
@@ -45,7 +45,7 @@ Roots roots_of(double a, double b, double c) {
     return {true, std::min(one, other), std::max(one, other)};
 }
 
-Interval of_ball(const Line& line, const Vec3& centre, double radius) {
+Interval of_ball(const UnitLine& line, const Vec3& centre, double radius) {
     const Vec3 from = line.from - centre;
     const double b = from.dot(line.along);
     // The square of the distance of the line, which |from|^2 - b^2 would cancel.
@@ -59,7 +59,7 @@ Interval of_ball(const Line& line, const Vec3& centre, double radius) {
     return out;
 }
 
-Interval of_frustum(const Line& line, double from, double to, double first, double second) {
+Interval of_frustum(const UnitLine& line, double from, double to, double first, double second) {
     const double slope = (second - first) / (to - from);
     const Interval low = of_half_space(line, Vec3(0, -1, 0), -from);
     const Interval slab = intersection(low, of_half_space(line, Vec3(0, 1, 0), to));

@@ -8,7 +8,7 @@
 
 namespace taut::collision {
 
-struct Line {
+struct UnitLine {
     Vec3 from, along;  // [m], unit; a shape's frame
 
     Vec3 at(double s) const { return from + s * along; }
@@ -46,7 +46,7 @@ inline Interval hull_of(const Interval& a, const Interval& b) {
 }
 
 // The half space normal . p <= offset.
-inline Interval of_half_space(const Line& line, const Vec3& normal, double offset) {
+inline Interval of_half_space(const UnitLine& line, const Vec3& normal, double offset) {
     const double above = normal.dot(line.from) - offset;
     const double rise = normal.dot(line.along);
     Interval out;
@@ -63,8 +63,8 @@ struct Roots {
 };
 Roots roots_of(double a, double b, double c);
 
-Interval of_ball(const Line& line, const Vec3& centre, double radius);
+Interval of_ball(const UnitLine& line, const Vec3& centre, double radius);
 // The frustum about y between from and to [m along y], whose radius goes from first to second [m], at least 0.
-Interval of_frustum(const Line& line, double from, double to, double first, double second);
+Interval of_frustum(const UnitLine& line, double from, double to, double first, double second);
 
 }  // namespace taut::collision

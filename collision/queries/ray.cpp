@@ -11,12 +11,12 @@
 namespace taut::collision {
 namespace {
 
-Interval plane_interval(const Shape& shape, const Line& line) {
+Interval plane_interval(const Shape& shape, const UnitLine& line) {
     return of_half_space(line, shape.size.cast<double>().normalized(), 0);
 }
 
 // Slab by slab; the normal is of the side that is crossed last on the way in.
-Interval box_interval(const Shape& shape, const Line& line) {
+Interval box_interval(const Shape& shape, const UnitLine& line) {
     Interval out;
     int axis = 0;
     for (int i = 0; i < 3; ++i) {
@@ -34,13 +34,13 @@ Interval box_interval(const Shape& shape, const Line& line) {
     return out;
 }
 
-Interval sphere_interval(const Shape& shape, const Line& line) {
+Interval sphere_interval(const Shape& shape, const UnitLine& line) {
     return of_ball(line, Vec3::Zero(), double(shape.size.x()));
 }
 
 // Two balls and what is between the circles where the side touches them. The normal comes from the point of the axis
 // that the side's normal passes through, or from the end beyond which that would be.
-Interval balls_interval(const Line& line, double half, double low, double high, const TaperedSide& side) {
+Interval balls_interval(const UnitLine& line, double half, double low, double high, const TaperedSide& side) {
     const Interval ends = hull_of(of_ball(line, Vec3(0, -half, 0), low), of_ball(line, Vec3(0, half, 0), high));
     Interval out = hull_of(ends, of_frustum(line, side.from, side.to, side.from_radius, side.to_radius));
     if (out.empty()) return out;
@@ -51,27 +51,27 @@ Interval balls_interval(const Line& line, double half, double low, double high, 
     return out;
 }
 
-Interval capsule_interval(const Shape& shape, const Line& line) {
+Interval capsule_interval(const Shape& shape, const UnitLine& line) {
     const double radius = shape.size.x(), half = shape.size.y();
     return balls_interval(line, half, radius, radius, {-half, half, radius, radius, 0, 1});
 }
 
-Interval tapered_capsule_interval(const Shape& shape, const Line& line) {
+Interval tapered_capsule_interval(const Shape& shape, const UnitLine& line) {
     const Vec3 size = shape.size.cast<double>();
     return balls_interval(line, size.y(), size.x(), size.z(), tapered_side(shape));
 }
 
-Interval cylinder_interval(const Shape& shape, const Line& line) {
+Interval cylinder_interval(const Shape& shape, const UnitLine& line) {
     const double radius = shape.size.x(), half = shape.size.y();
     return of_frustum(line, -half, half, radius, radius);
 }
 
-Interval cone_interval(const Shape& shape, const Line& line) {
+Interval cone_interval(const Shape& shape, const UnitLine& line) {
     const double half = shape.size.y();
     return of_frustum(line, -half, half, double(shape.size.x()), 0);
 }
 
-Interval hull_interval(const Shape& shape, const Line& line) {
+Interval hull_interval(const Shape& shape, const UnitLine& line) {
     Interval out;
     for (const Face& face : shape.hull->faces) {
         out = intersection(out, of_half_space(line, face.normal.cast<double>(), double(face.offset)));
@@ -82,7 +82,7 @@ Interval hull_interval(const Shape& shape, const Line& line) {
 
 // A solid is met where its interval begins, or at once by what starts inside. The line starts at its point nearest to
 // the shape, so that a far ray loses no digits.
-template <Interval (*interval)(const Shape&, const Line&)>
+template <Interval (*interval)(const Shape&, const UnitLine&)>
 bool cast_at_solid(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit,
                    Hit& out) {
     const double length = along.norm();
@@ -90,8 +90,8 @@ bool cast_at_solid(const Shape& shape, const Placement& at, const Vec3& from, co
     const Vec3 apart = from - at.position;
     const double start = apart.dot(direction);  // of the ray, as a parameter of the line
     const Mat3 rotation = at.rotation.cast<double>();
-    const Line line = {rotation.transpose() * (apart - start * direction),
-                       (rotation.transpose() * direction).normalized()};
+    const UnitLine line = {rotation.transpose() * (apart - start * direction),
+                           (rotation.transpose() * direction).normalized()};
     const Interval met = interval(shape, line);
     if (met.empty() || met.exit < start || met.enter > start + limit * length) return false;
     out.inside = met.enter < start;

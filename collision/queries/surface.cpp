@@ -52,10 +52,10 @@ public:
             Act& act;
         };
         const Vec3 p = where.lo.cwiseQuotient(scale_), q = where.hi.cwiseQuotient(scale_);
-        constexpr float kRounding = 1e-6f;  // of coordinates, so that the box holds what the room does
+        constexpr float kCoordinateRounding = 1e-6f;  // of coordinates, so that the box holds what the room does
         Box box = {p.cwiseMin(q).cast<float>(), p.cwiseMax(q).cast<float>()};
-        box.lo -= kRounding * box.lo.cwiseAbs();
-        box.hi += kRounding * box.hi.cwiseAbs();
+        box.lo -= kCoordinateRounding * box.lo.cwiseAbs();
+        box.hi += kCoordinateRounding * box.hi.cwiseAbs();
         Call call(act);
         surface_.find(box, call);
     }

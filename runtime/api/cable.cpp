@@ -23,20 +23,20 @@ constexpr Range kAcceleration{0, 1e6};               // [m/s^2]
 constexpr Range kMetres{-1e6, 1e6};                  // [m]
 constexpr uint32_t kStraightSegments = 16;           // of a path of two points that says nothing else
 
-struct EndNames {
+struct CableEndNames {
     const char *attached, *clamped, *body, *anchor;
 };
-constexpr EndNames kEndNames[2] = {{"end[0].attached", "end[0].clamped", "end[0].body", "end[0].anchor"},
-                                   {"end[1].attached", "end[1].clamped", "end[1].body", "end[1].anchor"}};
+constexpr CableEndNames kCableEndNames[2] = {{"end[0].attached", "end[0].clamped", "end[0].body", "end[0].anchor"},
+                                             {"end[1].attached", "end[1].clamped", "end[1].body", "end[1].anchor"}};
 
 // ---------------------------------------------------------------- check
 
 bool check_ends(Check& check, const taut_cable_def& def) {
     for (int e = 0; e < 2; ++e) {
         const taut_cable_end_def& end = def.end[e];
-        check.boolean(kEndNames[e].attached, end.attached)
-            .boolean(kEndNames[e].clamped, end.clamped)
-            .bounded(kEndNames[e].anchor, end.anchor, kPosition);
+        check.boolean(kCableEndNames[e].attached, end.attached)
+            .boolean(kCableEndNames[e].clamped, end.clamped)
+            .bounded(kCableEndNames[e].anchor, end.anchor, kPosition);
         check.require(end.attached || (!end.clamped && end.body.bits == 0),
                       "an end that is not attached has a body or is clamped");
         check.require(!end.clamped || def.bending_stiffness > 0, "an end is clamped without bending_stiffness");
@@ -86,7 +86,7 @@ bool check_def(Check& check, const taut_cable_def& def) {
 // ---------------------------------------------------------------- find
 
 // Where the end is, in the world.
-taut_result find_end(Check& check, const World& world, const taut_cable_end_def& def, const EndNames& names,
+taut_result find_end(Check& check, const World& world, const taut_cable_end_def& def, const CableEndNames& names,
                      CableTie& tie, Vec3& point) {
     tie.attached = def.attached != 0;
     tie.clamped = def.clamped != 0;
@@ -196,7 +196,7 @@ taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* def, t
         CableTie tie[2];
         Vec3 at[2];
         for (int e = 0; e < 2; ++e) {
-            const taut_result found = find_end(check, world, def->end[e], kEndNames[e], tie[e], at[e]);
+            const taut_result found = find_end(check, world, def->end[e], kCableEndNames[e], tie[e], at[e]);
             if (found != TAUT_OK) return found;
         }
         Array<Vec3> path(world.memory), points(world.memory);

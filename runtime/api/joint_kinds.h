@@ -11,7 +11,7 @@
 namespace taut {
 
 struct JointAxis {
-    int row;
+    int row = 0;
     bool swing = false;  // a coordinate that is never negative: has an upper stop alone
     int around = -1;     // of a swing: the row of its direction, which its friction and damping hold too
 };

@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
+void evaluate_ball(const void* data, const Pose* x, double* error, double* jacobian) {
     const auto& joint = *static_cast<const BallData*>(data);
     const Vec3 ra = x[0].R * joint.anchor_a, rb = x[1].R * joint.anchor_b;
     Vec3::Map(error) = (x[1].x - x[0].x) + (rb - ra);
@@ -22,7 +22,7 @@ void evaluate(const void* data, const Pose* x, double* error, double* jacobian) 
     set_block(jacobian, 3, 1, 3, -hat(rb));
 }
 
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
+void stiffness_of_ball(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
     const auto& joint = *static_cast<const BallData*>(data);
     const Vec3 f = Vec3::Map(lambda);
     std::fill(k, k + 12 * 12, 0.0);
@@ -30,7 +30,7 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
     add_block(k, 9, 9, lever_stiffness(f, x[1].R * joint.anchor_b, part));
 }
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_ball(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& joint = *static_cast<BallData*>(data);
     joint = {random.vector(), random.vector()};
@@ -39,6 +39,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kBall{"ball", 3, 2, sizeof(BallData), Bound::free, false, 0, evaluate, stiffness, nullptr, sample};
+const ConstraintType kBall{
+    "ball", 3, 2, sizeof(BallData), Bound::free, false, 0, evaluate_ball, stiffness_of_ball, nullptr, sample_ball};
 
 }  // namespace taut

@@ -2,7 +2,7 @@
 // of size 2 sin(angle/2), across the line where that is small. With angular compliance span/EI the energy is that of a
 // beam of which `span` metres bend at p_b,  EI/(2 span) |C|^2 = EI/span (1 - cos angle), and the moment EI/span sin.
 // J_a = P_1/l_1 B_a, J_b = -(P_1/l_1 + P_2/l_2) B_b, J_c = P_2/l_2 B_c,  P = I - u u^T, B = (I, -hat r);
-// K = sum over both stretches of B^T T B + lever parts, T the stiffness of lambda . u(d):
+// K = sum over both stretches of B^T T B + lever parts, T the stiffness_of_bend of lambda . u(d):
 //   T = ((u.q) P + u q_p^T + q_p u^T)/l^2,  q_p = P q,  q = lambda at d_2 and -lambda at d_1.
 #include "constraints/bend.h"
 
@@ -48,7 +48,7 @@ struct Points {
 // How u turns with its d.
 Mat3 turning(const Stretch& s) { return (Mat3::Identity() - s.u * s.u.transpose()) / s.length; }
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
+void evaluate_bend(const void* data, const Pose* x, double* error, double* jacobian) {
     const Points p(*static_cast<const BendData*>(data), x);
     Vec3::Map(error) = p.stretch[1].u - p.stretch[0].u;
     if (!jacobian) return;
@@ -75,7 +75,7 @@ Mat3 stretch_stiffness(const Stretch& s, const Vec3& q, Curvature part) {
     return scale * (larger * e * e.transpose() + std::max(b, 0.0) * w * w.transpose());
 }
 
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
+void stiffness_of_bend(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
     const Points p(*static_cast<const BendData*>(data), x);
     Eigen::Map<Eigen::Matrix<double, 3 * kDof, 3 * kDof, Eigen::RowMajor>> sum(k);
     sum.setZero();
@@ -91,7 +91,7 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
     }
 }
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_bend(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& bend = *static_cast<BendData*>(data);
     bend = {random.vector(), random.vector(), random.vector()};
@@ -100,7 +100,7 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kBend{"bend", 3,        3,         sizeof(BendData), Bound::free, true,
-                           0b111,  evaluate, stiffness, nullptr,          sample};
+const ConstraintType kBend{
+    "bend", 3, 3, sizeof(BendData), Bound::free, true, 0b111, evaluate_bend, stiffness_of_bend, nullptr, sample_bend};
 
 }  // namespace taut

@@ -20,7 +20,7 @@ struct ConeTwist {
     }
 };
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_cone_twist(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     const double swing = random.between(0.2, 2.4), direction = random.between(-3, 3), twist = random.between(-2.7, 2.7);
     sample_frames(random, swing_after_twist(swing, direction, twist), data, x);
@@ -28,6 +28,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kConeTwist = frame_joint<ConeTwist, 6>("cone_twist", sample, 1 << 5);
+const ConstraintType kConeTwist = frame_joint<ConeTwist, 6>("cone_twist", sample_cone_twist, 1 << 5);
 
 }  // namespace taut

@@ -13,7 +13,7 @@
 namespace taut {
 namespace {
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
+void evaluate_contact(const void* data, const Pose* x, double* error, double* jacobian) {
     const auto& point = *static_cast<const ContactData*>(data);
     const Vec3 ra = x[0].R * point.anchor_a + point.skin_a, rb = x[1].R * point.anchor_b + point.skin_b;
     Vec3::Map(error) = point.basis * ((x[1].x - x[0].x) + (rb - ra)) + point.offset;
@@ -24,7 +24,7 @@ void evaluate(const void* data, const Pose* x, double* error, double* jacobian) 
     set_block(jacobian, 3, 1, 3, -point.basis * hat(rb));
 }
 
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
+void stiffness_of_contact(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
     const auto& point = *static_cast<const ContactData*>(data);
     const Vec3 f = point.basis.transpose() * Vec3::Map(lambda);
     std::fill(k, k + 12 * 12, 0.0);
@@ -32,7 +32,7 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
     add_block(k, 9, 9, lever_stiffness(f, x[1].R * point.anchor_b, part));
 }
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_contact(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& point = *static_cast<ContactData*>(data);
     point.anchor_a = random.vector();
@@ -44,7 +44,8 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kContact{"contact", 3,       2,     sizeof(ContactData), Bound::cone, false, 0, evaluate,
-                              stiffness, nullptr, sample};
+const ConstraintType kContact{
+    "contact",     3, 2, sizeof(ContactData), Bound::cone, false, 0, evaluate_contact, stiffness_of_contact, nullptr,
+    sample_contact};
 
 }  // namespace taut

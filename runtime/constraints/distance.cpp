@@ -29,7 +29,7 @@ Span span_of(const DistanceData& rod, const Pose* x) {
     return s;
 }
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
+void evaluate_distance(const void* data, const Pose* x, double* error, double* jacobian) {
     const auto& rod = *static_cast<const DistanceData*>(data);
     const Span s = span_of(rod, x);
     *error = s.length - rod.length;
@@ -40,7 +40,7 @@ void evaluate(const void* data, const Pose* x, double* error, double* jacobian) 
     Vec3::Map(jacobian + 9) = s.rb.cross(s.u);
 }
 
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
+void stiffness_of_distance(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
     const auto& rod = *static_cast<const DistanceData*>(data);
     const Span s = span_of(rod, x);
     std::fill(k, k + 12 * 12, 0.0);
@@ -68,7 +68,7 @@ Line line(const void* data, const Pose* x) {
     return {std::max(s.length, 1e-12) * s.u, s.ra, s.rb};
 }
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_distance(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& rod = *static_cast<DistanceData*>(data);
     rod = {random.vector(), random.vector(), 0.5 + random.unit()};
@@ -77,7 +77,17 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kDistance{"distance", 1,      2,   sizeof(DistanceData), Bound::free, true, 0, evaluate, stiffness,
-                               nullptr,    sample, line};
+const ConstraintType kDistance{"distance",
+                               1,
+                               2,
+                               sizeof(DistanceData),
+                               Bound::free,
+                               true,
+                               0,
+                               evaluate_distance,
+                               stiffness_of_distance,
+                               nullptr,
+                               sample_distance,
+                               line};
 
 }  // namespace taut

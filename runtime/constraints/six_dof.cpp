@@ -19,7 +19,7 @@ struct SixDof {
     }
 };
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_six_dof(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     const double first = random.between(-2.7, 2.7), middle = random.between(-1.2, 1.2),
                  last = random.between(-2.7, 2.7);
@@ -28,6 +28,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kSixDof = frame_joint<SixDof, 6>("six_dof", sample);
+const ConstraintType kSixDof = frame_joint<SixDof, 6>("six_dof", sample_six_dof);
 
 }  // namespace taut

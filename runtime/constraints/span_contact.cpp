@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNodes = 4;
 
-void evaluate(const void* data, const Pose* x, double* error, double* jacobian) {
+void evaluate_span_contact(const void* data, const Pose* x, double* error, double* jacobian) {
     const auto& point = *static_cast<const SpanContactData*>(data);
     Vec3 apart = Vec3::Zero();
     for (int n = 0; n < kNodes; ++n) {
@@ -27,7 +27,7 @@ void evaluate(const void* data, const Pose* x, double* error, double* jacobian) 
     Vec3::Map(error) = point.basis * apart + point.offset;
 }
 
-void stiffness(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
+void stiffness_of_span_contact(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
     const auto& point = *static_cast<const SpanContactData*>(data);
     const Vec3 f = point.basis.transpose() * Vec3::Map(lambda);
     Eigen::Map<Eigen::Matrix<double, kNodes * kDof, kNodes * kDof, Eigen::RowMajor>> sum(k);
@@ -37,7 +37,7 @@ void stiffness(const void* data, const Pose* x, const double* lambda, Curvature 
             lever_stiffness(point.weight[n] * f, x[n].R * point.anchor[n], part);
 }
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_span_contact(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& point = *static_cast<SpanContactData*>(data);
     const double t = random.unit(), s = random.unit();
@@ -51,7 +51,16 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kSpanContact{
-    "span_contact", 3, 4, sizeof(SpanContactData), Bound::cone, false, 0, evaluate, stiffness, nullptr, sample};
+const ConstraintType kSpanContact{"span_contact",
+                                  3,
+                                  4,
+                                  sizeof(SpanContactData),
+                                  Bound::cone,
+                                  false,
+                                  0,
+                                  evaluate_span_contact,
+                                  stiffness_of_span_contact,
+                                  nullptr,
+                                  sample_span_contact};
 
 }  // namespace taut

@@ -17,7 +17,7 @@ struct Universal {
     }
 };
 
-void sample(uint64_t seed, void* data, Pose* x) {
+void sample_universal(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     const double first = random.between(-2.7, 2.7), cross = random.between(-1, 1), last = random.between(-2.7, 2.7);
     sample_frames(random, turn_about(0, first) * turn_about(2, cross) * turn_about(1, last), data, x);
@@ -25,6 +25,6 @@ void sample(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-const ConstraintType kUniversal = frame_joint<Universal, 6>("universal", sample);
+const ConstraintType kUniversal = frame_joint<Universal, 6>("universal", sample_universal);
 
 }  // namespace taut

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStride = 0.25;    // of the ball inside a shape: who moved less against each other is not looked after
 constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have passed the next
-constexpr uint32_t kGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
+constexpr uint32_t kColliderGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
 // spans two nodes; may be ignored by the host's function or a one-way direction: what goes through on purpose is not
@@ -55,7 +55,7 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
     std::atomic<bool> any = false, newly = false;
     pairs.marks.resize(colliders.record.size());
     if (with_courses) pairs.courses.resize(colliders.record.size());
-    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kColliderGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c) {
             const Collider& collider = colliders.record[c];
             uint8_t& mark = pairs.marks[c];
@@ -79,7 +79,7 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
 
 void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     pairs.courses.resize(colliders.record.size());
-    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kColliderGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t c = begin; c < end; ++c)
             if (pairs.marks[c] & kMoved) find_course(nodes, colliders, shapes, c, pairs);
     });

@@ -13,7 +13,7 @@ namespace {
 
 using collision::ShapeKind;
 
-constexpr uint32_t kGrain = 16;  // overlap tests that a thread takes at a time
+constexpr uint32_t kOverlapGrain = 16;  // overlap tests that a thread takes at a time
 
 bool is_convex(const Shapes& shapes, const Collider& collider) {
     const ShapeKind kind = shapes.record[collider.shape].shape.kind;
@@ -103,7 +103,7 @@ void sense(Team& team, const Nodes& nodes, const Colliders& colliders, const Sha
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
 
     sensors.meets.resize(candidates.size());
-    team.for_ranges(static_cast<uint32_t>(candidates.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(static_cast<uint32_t>(candidates.size()), kOverlapGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i)
             sensors.meets[i] = meet(nodes, colliders, shapes, static_cast<uint32_t>(candidates[i] >> 32),
                                     static_cast<uint32_t>(candidates[i]));

@@ -88,7 +88,7 @@ void gather(Substep& s) {
     }
 }
 
-void solve(Substep& s) {
+void solve_blocks(Substep& s) {
     const bool alone = !has_sweeps(s);
     warm_start_sweeps(s);
     Stopwatch watch;
@@ -119,14 +119,14 @@ void solve(Substep& s) {
     s.report.direct_us += watch.lap();
 }
 
-void settle(Substep& s) {
+void settle_blocks(Substep& s) {
     for_blocks(s, [&](Block& block) {
         block.corrected =
             !block.failed && !block.tower && block.mass_ratio <= kSettleMassRatio && BlockSolve(s, block).settle();
     });
 }
 
-void relax(Substep& s) {
+void relax_blocks(Substep& s) {
     for (uint32_t b : s.group.blocks) {
         Block& block = s.blocks[b];
         if (block.bounded_count == 0 || block.failed) continue;
@@ -140,6 +140,6 @@ void relax(Substep& s) {
 
 }  // namespace
 
-const Solver kBlockLdlt{"block_ldlt", true, true, solve, settle, relax};
+const Solver kBlockLdlt{"block_ldlt", true, true, solve_blocks, settle_blocks, relax_blocks};
 
 }  // namespace taut

@@ -9,7 +9,7 @@
 namespace taut {
 namespace {
 
-// What the sweeps changed becomes part of the solution, except where a direct solve owns it.
+// What the sweeps changed becomes part of the solution, except where a direct solve_sweeps owns it.
 void publish(Substep& s, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
         const uint32_t at = s.system.at(s.group.nodes[i]);
@@ -257,15 +257,15 @@ void sweep_relaxed(Substep& s) {
 
 namespace {
 
-void solve(Substep& s) {
+void solve_sweeps(Substep& s) {
     warm_start_sweeps(s);
     sweep_biased(s);
 }
 
-void relax(Substep& s) { sweep_relaxed(s); }
+void relax_sweeps(Substep& s) { sweep_relaxed(s); }
 
 }  // namespace
 
-const Solver kProjectedGaussSeidel{"projected_gauss_seidel", false, true, solve, nullptr, relax};
+const Solver kProjectedGaussSeidel{"projected_gauss_seidel", false, true, solve_sweeps, nullptr, relax_sweeps};
 
 }  // namespace taut

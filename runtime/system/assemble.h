@@ -7,6 +7,10 @@
 
 namespace taut {
 
+constexpr uint32_t kLaneGrain = 8;  // lane groups that a thread takes at a time
+
+inline uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.size()); }
+
 // Once a frame and group: which rows there are, in the order that the solver wants them: block by block when joints
 // are solved directly, colour by colour when they are swept; contact points after them when they come as rows.
 void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Pairs& pairs,

@@ -8,10 +8,6 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kGrain = 8;  // lane groups that a thread takes at a time
-
-uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.size()); }
-
 // C and J of types that are evaluated one by one.
 void load_rows(System& system, const JointGroup& g, int lane) {
     JointLanes& lanes = system.joints;
@@ -90,7 +86,7 @@ void store_lane(const System& system, const JointGroup& g, int lane) {
 }  // namespace
 
 void evaluate_joint_lanes(Team& team, System& system) {
-    team.for_ranges(size_of(system.joints.group), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(size_of(system.joints.group), kLaneGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) evaluate_group(system, system.joints.group[i]);
     });
 }
@@ -99,7 +95,7 @@ void stiffen_joints(Team& team, System& system, const Nodes& nodes, const JointK
     JointLanes& lanes = system.joints;
     if (lanes.group.empty()) return;
     const auto h = static_cast<float>(system.h);
-    team.for_ranges(size_of(lanes.group), kGrain,
+    team.for_ranges(size_of(lanes.group), kLaneGrain,
                     [&](uint32_t begin, uint32_t end) { kernels.stiffen(lanes.view(), begin, end, h); });
     grow_to(lanes.node_stiffness, system.sweep.size());
     for_each_end(system, [&](uint32_t at, float) { lanes.node_stiffness[at] = 0; });
@@ -113,14 +109,14 @@ void stiffen_joints(Team& team, System& system, const Nodes& nodes, const JointK
 void prepare_joint_lanes(Team& team, System& system, const JointKernels& kernels) {
     JointLanes& lanes = system.joints;
     const SweepTerms terms = joint_terms(system.h, system.stretch);
-    team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(size_of(lanes.group), kLaneGrain, [&](uint32_t begin, uint32_t end) {
         kernels.prepare(lanes.view(), begin, end, system.sweep.data(), static_cast<float>(system.frame_left), terms);
     });
 }
 
 void store_joint_lanes(Team& team, const System& system) {
     const JointLanes& lanes = system.joints;
-    team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(size_of(lanes.group), kLaneGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i)
             for (int lane = 0; lane < kLanes; ++lane)
                 if (lanes.group[i].block[lane] != kNoLanes) store_lane(system, lanes.group[i], lane);

@@ -16,8 +16,6 @@ namespace {
 // AxisRow::part of a row, in the order in which they are swept. The last has its way: what drives against a stop, or
 // rubs, is not stronger than it is, however strong.
 constexpr uint32_t kParts = 4, kOrder[kParts] = {2, kRubbing, 0, 1};
-constexpr uint32_t kGrain = 8;  // lane groups that a thread takes at a time
-
 // A stop that nothing reaches within a substep at this speed, and that does not push, is left out [m/s or rad/s]; not
 // one that a drive may reach, which makes any speed.
 constexpr double kReach = 50;
@@ -29,8 +27,6 @@ constexpr double kReach = 50;
 constexpr double kDriveSoftness = 2;
 
 constexpr double kMost = kUnlimited;
-
-uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.size()); }
 
 // visit(row, AxisRow) for each stop, drive and friction of a block that is swept, with drives at their target.
 template <class Visit>
@@ -163,8 +159,8 @@ void fill_turn(LaneAxisLaw& law, int lane, bool angular, double near, double at)
     law.at[lane] = static_cast<float>(at - whole);
 }
 
-void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, const AxisMemory& memory,
-               bool angular, const Times& times) {
+void fill_axis_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, const AxisMemory& memory,
+                    bool angular, const Times& times) {
     const double relaxation = double(axis.limit_compliance) * axis.limit_damping;
     const auto yielding = static_cast<float>(1 / (times.h + relaxation));
     fill_turn(law, lane, angular, reading_middle(axis, memory), stop.sign > 0 ? axis.lower : axis.upper);
@@ -176,8 +172,8 @@ void fill_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis
 }
 
 // A drive at its target, or friction.
-void fill_drive(LaneAxisLaw& law, int lane, const AxisRow& drive, const Axis& axis, const AxisMemory& memory,
-                bool angular, const Times& times) {
+void fill_axis_drive(LaneAxisLaw& law, int lane, const AxisRow& drive, const Axis& axis, const AxisMemory& memory,
+                     bool angular, const Times& times) {
     const auto rate = static_cast<float>(times.h * drive.compliance * axis.stiffness);
     const bool between = axis.mode == AxisMode::limited && std::isfinite(axis.lower) && std::isfinite(axis.upper);
     const double target = between && angular ? target_angle(axis, axis.target) : axis.target;
@@ -203,7 +199,7 @@ void fill_axes(System& system, const JointGroup& g, int lane, const RowBlock& bl
         law.filled[lane] = 1;
         law.compliance[lane] = static_cast<float>(axis.compliance);
         law.friction[lane] = out.most[lane];
-        const auto fill = axis.stop ? fill_stop : fill_drive;
+        const auto fill = axis.stop ? fill_axis_stop : fill_axis_drive;
         fill(law, lane, axis, block.axis[r], block.memory[r], block.angular(static_cast<int>(r)), times);
     });
 }
@@ -303,7 +299,7 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
     for (uint32_t i = first; i < system.rows.joints; ++i)
         for (int n = 0; n < system.rows.block[i].type->nodes; ++n) system.filtered[system.rows.block[i].node[n]] = 1;
     const Times times{system.h, frame, joint_terms(system.h, system.stretch)};
-    team.for_ranges(size_of(lanes.group), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(size_of(lanes.group), kLaneGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) fill_group(system, lanes.group[i], times);
     });
 }
