@@ -8,18 +8,6 @@ using namespace taut_test;
 
 namespace {
 
-struct Mass {
-    float mass;
-    taut_vec3 centre;
-    taut_sym3 inertia;
-};
-
-Mass mass_of(taut_body body) {
-    Mass out;
-    EXPECT_OK(taut_body_get_mass(body, &out.mass, &out.centre, &out.inertia));
-    return out;
-}
-
 taut_pose pose_of(taut_body body) {
     taut_pose out;
     EXPECT_OK(taut_body_get_pose(body, &out));

@@ -30,17 +30,6 @@ std::vector<taut_collider> colliders_of(taut_body body) {
     return out;
 }
 
-struct Mass {
-    float mass;
-    taut_vec3 centre;
-    taut_sym3 inertia;
-};
-Mass mass_of(taut_body body) {
-    Mass out{};
-    EXPECT_EQ(taut_body_get_mass(body, &out.mass, &out.centre, &out.inertia), TAUT_OK) << taut_last_error();
-    return out;
-}
-
 struct ColliderCalls : testing::Test {
     Populated p;
 };

@@ -229,6 +229,18 @@ inline taut_pose at(double x, double y, double z, taut_quat q = {0, 0, 0, 1}) { 
 inline taut_result set_pose(taut_body body, const taut_pose& pose) { return taut_body_set_pose(body, &pose); }
 inline taut_result move_to(taut_body body, const taut_pose& pose) { return taut_body_move_kinematic(body, &pose); }
 
+struct Mass {
+    float mass;
+    taut_vec3 centre;
+    taut_sym3 inertia;
+};
+
+inline Mass mass_of(taut_body body) {
+    Mass out{};
+    EXPECT_OK(taut_body_get_mass(body, &out.mass, &out.centre, &out.inertia));
+    return out;
+}
+
 // A world with one of everything, a box at rest on a plane and a pendulum; destroyed with the object.
 struct Populated {
     explicit Populated(const taut_hooks& hooks = {}) : world(make_world(hooks)) {

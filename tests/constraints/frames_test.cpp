@@ -14,7 +14,7 @@ namespace taut::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSamples = 300;
+constexpr int kFrameSamples = 300;
 
 const ConstraintType* const kFrameTypes[] = {&kFixed,     &kHinge,     &kSlider, &kCylindrical,
                                              &kUniversal, &kConeTwist, &kSixDof};
@@ -50,7 +50,7 @@ TEST_P(EveryFrameType, IsZeroWhereTheFramesCoincide) {
 
 TEST_P(EveryFrameType, DoesNotDependOnWhereThePairIs) {
     Random random(3);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         Instance at(*GetParam(), static_cast<uint64_t>(i));
         const Vector before = at.error();
         const Mat3 turn = random.rotation().toRotationMatrix();
@@ -63,7 +63,7 @@ TEST_P(EveryFrameType, DoesNotDependOnWhereThePairIs) {
 
 // No force on the pair from within.
 TEST_P(EveryFrameType, ForcesAndMomentsAreEqualAndOpposite) {
-    for (uint64_t seed = 1; seed <= kSamples; ++seed) {
+    for (uint64_t seed = 1; seed <= kFrameSamples; ++seed) {
         const Instance at(*GetParam(), seed);
         const Vector force = at.jacobian().transpose() * at.lambda;
         const Vec3 fa = force.segment<3>(0), fb = force.segment<3>(6);
@@ -82,7 +82,7 @@ TEST_P(EveryFrameType, ForcesAndMomentsAreEqualAndOpposite) {
 // Anchors are within half a metre of each other, as those of a slide are.
 TEST_P(EveryFrameType, PositiveStiffnessIsOfTheOrderOfTheExactOne) {
     double worst = 0;
-    for (uint64_t seed = 1; seed <= kSamples; ++seed) {
+    for (uint64_t seed = 1; seed <= kFrameSamples; ++seed) {
         Instance at(*GetParam(), seed);
         const auto& joint = *reinterpret_cast<const JointFrames*>(at.data.data());
         const Vec3 anchor = at.pose[0].x + at.pose[0].R * joint.anchor_a;
@@ -196,7 +196,7 @@ TEST_P(EveryFrameType, DerivativesHoldFarFromAligned) {
 
 TEST(Fixed, MisalignmentIsAlongTheAxisAndTheRotationVectorToFirstOrder) {
     Random random(1);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         const Vec3 axis = random.vector().normalized();
         const double angle = random.between(0, kPi);
         const Vec3 offset = random.vector();
@@ -238,7 +238,7 @@ TEST(Hinge, RateIsTheAngularVelocityAboutTheAxis) {
 
 TEST(Slider, CoordinatesAreTheOffsetInFrameA) {
     Random random(5);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         const Vec3 offset = 3 * random.vector();
         const Mat3 turned = random.rotation().toRotationMatrix();
         for (const ConstraintType* type : {&kSlider, &kCylindrical, &kSixDof})
@@ -259,7 +259,7 @@ TEST(Universal, AnglesAreThoseOfTheCross) {
 
 TEST(ConeTwist, IsTheSwingTwistDecomposition) {
     Random random(6);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         const double swing = random.between(0, 3), direction = random.between(-kPi, kPi),
                      twist = random.between(-3.1, 3.1);
         const Vec3 across(0, std::cos(direction), std::sin(direction));
@@ -285,7 +285,7 @@ TEST(ConeTwist, SwingHasAUnitGradientWhereItIsZero) {
 
 TEST(SixDof, CardanAnglesRecomposeTheRotation) {
     Random random(8);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         const Mat3 turned = random.rotation().toRotationMatrix();
         const Vector c = coordinates(kSixDof, turned);
         EXPECT_LE((rotation(0, c[3]) * rotation(1, c[4]) * rotation(2, c[5]) - turned).norm(), 1e-12);
@@ -310,7 +310,7 @@ TEST(Frames, AgreeOnTheTurnAboutTheirMainAxis) {
 
 TEST(Spread, IsTheExactPositivePart) {
     Random random(9);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         const Vec3 u = 5 * random.vector(), v = i % 7 ? random.vector() : Vec3((i % 2 ? 2 : -2) * u);
         const Matrix raw = spread(u, v, Curvature::raw);
         EXPECT_LE(largest(spread(u, v, Curvature::positive) - positive_part(raw)), 1e-13 * (1 + largest(raw)));
@@ -320,7 +320,7 @@ TEST(Spread, IsTheExactPositivePart) {
 
 TEST(Dyad, IsTheExactPositivePart) {
     Random random(9);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kFrameSamples; ++i) {
         const Vec3 u = 5 * random.vector(), v = i % 7 ? random.vector() : Vec3((i % 2 ? 2 : -2) * u);
         const Matrix raw = dyad(u, v, Curvature::raw);
         EXPECT_LE(largest(dyad(u, v, Curvature::positive) - positive_part(raw)), 1e-13 * (1 + largest(raw)));

@@ -39,18 +39,17 @@ TEST(Lever, PushedAlongItNothingIsKept) {
 // All the way from pull to push, and finely around both ends, where the eigenvectors lose their meaning. Within 1e-4
 // of the ends the form is that of the end itself: wrong by half that angle at most.
 TEST(Lever, IsTheExactPositivePartAtEveryAngle) {
-    constexpr double kPi = 3.14159265358979323846;
     Random random(7);
     std::vector<double> angles;
-    for (int i = 0; i <= 64; ++i) angles.push_back(i * kPi / 64);
+    for (int i = 0; i <= 64; ++i) angles.push_back(i * std::numbers::pi / 64);
     for (double tiny = 1e-9; tiny < 1e-2; tiny *= 1.7) {
         angles.push_back(tiny);
-        angles.push_back(kPi - tiny);
+        angles.push_back(std::numbers::pi - tiny);
     }
     for (double angle : angles) {
         const Vec3 r = 3 * random.vector(), across = r.cross(random.vector()).normalized();
         const Vec3 f = 20 * random.unit() * (Eigen::AngleAxisd(angle, across) * r);
-        const double scale = f.norm() * r.norm(), from_end = std::min(angle, kPi - angle);
+        const double scale = f.norm() * r.norm(), from_end = std::min(angle, std::numbers::pi - angle);
         const Matrix raw = symmetric(lever_stiffness(f, r, Curvature::raw));
         const Mat3 k = lever_stiffness(f, r, Curvature::positive);
         const double tolerance = from_end < 1.1e-4 ? 0.6e-4 : 1e-11;

@@ -94,9 +94,9 @@ TEST_P(WithEachSolver, EveryPushIsTold) {
         const double speed = between(random, 1, 10), mass = 3;
         const taut_body cube = world.add({.shape = world.box({0.05, 0.05, 0.05}),
                                           .position = {0, between(random, 0.1, 0.3), 0},
-                                          .rotation = Quat::turn(direction(random), between(random, 0, 6)),
+                                          .rotation = Quat::turn(random_direction(random), between(random, 0, 6)),
                                           .velocity = {0, -speed, 0},
-                                          .spin = between(random, 0, 20) * direction(random),
+                                          .spin = between(random, 0, 20) * random_direction(random),
                                           .mass = mass});
         bool touching = false;
         for (int step = 0; step < 60; ++step) {

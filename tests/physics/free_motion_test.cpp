@@ -96,8 +96,8 @@ TEST(FreeSpin, NeverGainsEnergyOrMomentum) {
         World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
         const double speed = std::pow(10, between(random, 2.7, 4));
         const taut_body body = world.add({.shape = world.box({0.1, start % 2 ? 0.015 : 0.07, 0.07}),
-                                          .rotation = Quat::turn(direction(random), between(random, 0, kPi)),
-                                          .spin = speed * direction(random)});
+                                          .rotation = Quat::turn(random_direction(random), between(random, 0, kPi)),
+                                          .spin = speed * random_direction(random)});
         const Totals before = totals({body});
         world.step(240);
         const Totals after = totals({body});

@@ -150,10 +150,11 @@ TEST(DeepInABall, ComesOut) {
             const taut_shape pebbles[] = {world.box({size, size, size}), world.box({size, 0.1 * size, 0.7 * size}),
                                           world.capsule(0.5 * size, 0.6 * size), world.cone(size, size)};
             const taut_body ball = world.add({.shape = world.sphere(1), .mass = 100});
-            const taut_body pebble = world.add({.shape = pebbles[start % 4],
-                                                .position = between(random, 0, 0.7) * direction(random),
-                                                .rotation = Quat::turn(direction(random), between(random, 0, 2 * kPi)),
-                                                .mass = 1});
+            const taut_body pebble =
+                world.add({.shape = pebbles[start % 4],
+                           .position = between(random, 0, 0.7) * random_direction(random),
+                           .rotation = Quat::turn(random_direction(random), between(random, 0, 2 * kPi)),
+                           .mass = 1});
             world.step(150);
             EXPECT_GT(norm(position(pebble) - position(ball)), 1) << size << " m, start " << start;
         }

@@ -58,7 +58,7 @@ TEST_P(JerkedChain, StaysClosedAndGainsNoEnergyOfItself) {
         const HeldChain chain(jerk.ratio);
         double least = 0;
         for (int frame = 0; frame < kFrames; ++frame) {
-            if (frame % kJerk == 0) chain.move(frame < kJerked ? jerk.speed * direction(random) : Vec());
+            if (frame % kJerk == 0) chain.move(frame < kJerked ? jerk.speed * random_direction(random) : Vec());
             chain.world.step();
             worst = std::max(worst, chain.gap());
             if (frame < kJerked) continue;
@@ -109,7 +109,7 @@ TEST(JerkedChainsSubsteps, HardlyChangeWhatANeighbourDoes) {
         std::mt19937 random(1);
         std::vector<Vec> way;
         for (int frame = 0; frame < 120; ++frame) {
-            if (jerked && frame % 15 == 0) chain.move(20 * direction(random));
+            if (jerked && frame % 15 == 0) chain.move(20 * random_direction(random));
             chain.world.step();
             way.push_back(position(top));
         }

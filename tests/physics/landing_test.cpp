@@ -59,7 +59,7 @@ TEST_P(ThinOnPlane, LiesStillAndDoesNotSinkIn) {
         const taut_body body =
             world.add({.shape = GetParam().hull ? hull_of(world, corners) : world.box(corners.back()),
                        .position = {0, height, 0},
-                       .rotation = flat ? Quat() : Quat::turn(direction(random), between(random, 0, 2 * kPi)),
+                       .rotation = flat ? Quat() : Quat::turn(random_direction(random), between(random, 0, 2 * kPi)),
                        .rolling = 0.002,
                        .spinning = 0.002});
         world.step(600);
@@ -124,12 +124,12 @@ double mean_depth_of_stones(const Landing& landing, bool on_plane, int stones) {
         else
             world.add({.kind = TAUT_BODY_STATIC, .shape = world.box({20, 0.5, 20}), .position = {0, -0.5, 0}});
         std::vector<Vec> corners;
-        for (int i = 0; i < 14; ++i) corners.push_back(between(random, 0.24, 0.36) * direction(random));
+        for (int i = 0; i < 14; ++i) corners.push_back(between(random, 0.24, 0.36) * random_direction(random));
         const taut_body body = world.add({.shape = hull_of(world, corners),
                                           .position = {0, between(random, 0.4, 0.8), 0},
-                                          .rotation = Quat::turn(direction(random), between(random, 0, 6)),
+                                          .rotation = Quat::turn(random_direction(random), between(random, 0, 6)),
                                           .velocity = {between(random, -1, 1), -landing.speed, 0},
-                                          .spin = landing.spin * direction(random),
+                                          .spin = landing.spin * random_direction(random),
                                           .mass = 80});
         double deepest = 0;
         for (int frame = 0; frame < 60; ++frame) {
@@ -177,9 +177,9 @@ TEST_P(TumblesOnBox, SwingsHardlyIn) {
         const double height = norm(thing.half) + 0.02 + between(random, 0, thing.landing.speed / 60);
         const taut_body body = world.add({.shape = world.box(thing.half),
                                           .position = {0, height, 0},
-                                          .rotation = Quat::turn(direction(random), between(random, 0, 2 * kPi)),
+                                          .rotation = Quat::turn(random_direction(random), between(random, 0, 2 * kPi)),
                                           .velocity = {0, -thing.landing.speed, 0},
-                                          .spin = thing.landing.spin * direction(random)});
+                                          .spin = thing.landing.spin * random_direction(random)});
         double deepest = 0;
         for (int frame = 0; frame < 40; ++frame) {
             world.step();

@@ -81,8 +81,8 @@ protected:
 TEST_P(OnTriangles, WhatLiesIsNeverWithoutAContact) {
     std::mt19937 random(7);
     for (int i = 0; i < 4; ++i) {
-        const Quat turn =
-            Quat::turn({0, 1, 0}, between(random, 0, 6)) * Quat::turn(direction(random), between(random, 0.001, 0.012));
+        const Quat turn = Quat::turn({0, 1, 0}, between(random, 0, 6)) *
+                          Quat::turn(random_direction(random), between(random, 0.001, 0.012));
         const taut_body body = drop(random, half_of(GetParam().body).y + 0.004, turn, {});
         world_->step(frames(0.2));
         for (int frame = 0; frame < frames(0.4); ++frame) {
@@ -99,8 +99,8 @@ TEST_P(OnTriangles, WhatLiesIsNeverWithoutAContact) {
 TEST_P(OnTriangles, WhatFallsStaysAbove) {
     std::mt19937 random(11);
     for (int i = 0; i < 5; ++i) {
-        const taut_body body = drop(random, 1.5, Quat::turn(direction(random), between(random, 0, 6)),
-                                    between(random, 0, 6) * direction(random));
+        const taut_body body = drop(random, 1.5, Quat::turn(random_direction(random), between(random, 0, 6)),
+                                    between(random, 0, 6) * random_direction(random));
         for (int frame = 0; frame < frames(1.1); ++frame) world_->step();
         EXPECT_GT(position(body).y, 0) << i;
         ok(taut_body_remove(body));

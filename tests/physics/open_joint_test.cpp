@@ -62,8 +62,8 @@ TEST_P(OpenJoint, ClosesGently) {
             std::mt19937 random(seed);
             const Row row(GetParam().tie, GetParam().count);
             row.world.step(10);
-            const Quat turn = far > 0 ? Quat() : Quat::turn(direction(random), kPi);
-            row.put(random() % row.bodies.size(), far * direction(random), turn);
+            const Quat turn = far > 0 ? Quat() : Quat::turn(random_direction(random), kPi);
+            row.put(random() % row.bodies.size(), far * random_direction(random), turn);
             double fastest = 0;
             for (int frame = 0; frame < 300; ++frame) {
                 row.world.step();

@@ -146,7 +146,7 @@ std::vector<taut_body> add_rubble_before_a_wall(World& w, Light kind, std::mt199
         const double radius = between(random, 0.03, 0.12);
         const Vec at(2 + 0.24 * i, 1.5 * radius, between(random, -0.5, 0.5));
         const taut_shape shape = kind == Light::ball ? w.sphere(radius) : w.box({radius, radius, radius});
-        const Quat turn = Quat::turn(direction(random), between(random, 0, 1));
+        const Quat turn = Quat::turn(random_direction(random), between(random, 0, 1));
         bodies.push_back(w.add({.shape = shape, .position = at, .rotation = turn, .mass = between(random, 0.3, 3)}));
     }
     return bodies;

@@ -129,7 +129,7 @@ TEST(FloorOfTriangles, PushesOutWhatIsMadeAcrossIt) {
         for (int i = 0; i < 3; ++i)
             bodies.push_back(world.add({.shape = kinds[i],
                                         .position = {1.5 * i - 1.5, between(random, 0, 0.25), between(random, -1, 1)},
-                                        .rotation = Quat::turn(direction(random), between(random, 0, 6))}));
+                                        .rotation = Quat::turn(random_direction(random), between(random, 0, 6))}));
         double fastest = 0;
         for (int i = 0; i < 120; ++i) {
             world.step();

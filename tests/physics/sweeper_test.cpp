@@ -52,7 +52,7 @@ Bodies chain(CableLab& lab, const Vec& middle, const Quat& turned) {
 }
 
 Bodies add(CableLab& lab, Thing thing, const Vec& at, std::mt19937& random) {
-    const Quat turned = Quat::turn(direction(random), between(random, 0, kPi));
+    const Quat turned = Quat::turn(random_direction(random), between(random, 0, kPi));
     const auto body = [&](taut_shape shape) {
         return Bodies{lab.add({.shape = shape, .position = at, .rotation = turned, .mass = 1})};
     };
@@ -219,8 +219,8 @@ struct Container {
     void shake(double speed, std::mt19937& random) {
         for (int jolt = 0; jolt < 12; ++jolt) {
             const double now = jolt % 2 ? 0 : speed;
-            ok(taut_body_set_velocity(body, (now * direction(random)).narrow(),
-                                      (now / 5 * direction(random)).narrow()));
+            ok(taut_body_set_velocity(body, (now * random_direction(random)).narrow(),
+                                      (now / 5 * random_direction(random)).narrow()));
             lab.step(20);
         }
     }

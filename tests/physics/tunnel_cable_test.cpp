@@ -78,7 +78,7 @@ Outcome outcome(const Throw& row, double speed) {
                      far = between(random, 1.2, 3);
         const Vec way(std::cos(angle), std::sin(angle) * std::cos(round), std::sin(angle) * std::sin(round));
         if (row.wall_first) add_wall();
-        const std::vector<taut_body> bodies = cable_of(lab, row, -far * way, direction(random));
+        const std::vector<taut_body> bodies = cable_of(lab, row, -far * way, random_direction(random));
         if (!row.wall_first) add_wall();
         for (taut_body body : bodies) ok(taut_body_set_velocity(body, (speed * way).narrow(), {0, 0, 0}));
         const double before = kinetic(bodies);
@@ -96,8 +96,8 @@ Outcome outcome(const Throw& row, double speed) {
     return out;
 }
 
-// What hits a wall by its end is stopped there and pushed on by what holds its length, in the same step. One in a hundred
-// cables gains some per cent for a frame, before it loses a third.
+// What hits a wall by its end is stopped there and pushed on by what holds its length, in the same step. One in a
+// hundred cables gains some per cent for a frame, before it loses a third.
 TEST_P(ThrownCable, StaysOnItsSideOfTheWallAndGainsNoEnergy) {
     for (double speed : kSpeeds) {
         const Outcome out = outcome(GetParam(), speed);

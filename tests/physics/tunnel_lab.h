@@ -13,7 +13,7 @@ inline double between(std::mt19937& random, double lo, double hi) {
     return std::uniform_real_distribution<double>(lo, hi)(random);
 }
 
-inline Vec direction(std::mt19937& random) {
+inline Vec random_direction(std::mt19937& random) {
     for (;;) {
         const Vec v(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));
         if (norm(v) > 0.1 && norm(v) < 1) return unit(v);

@@ -44,9 +44,9 @@ int through(const Row& row, double speed, double restitution, uint32_t seed) {
         const Vec start = -between(random, 0.6, 3) * way;
         const taut_body bullet = world.add({.shape = shape_of(world, row.bullet),
                                             .position = start,
-                                            .rotation = Quat::turn(direction(random), between(random, 0, kPi)),
+                                            .rotation = Quat::turn(random_direction(random), between(random, 0, kPi)),
                                             .velocity = speed * way,
-                                            .spin = between(random, 0, 60) * direction(random),
+                                            .spin = between(random, 0, 60) * random_direction(random),
                                             .mass = 0.1,
                                             .restitution = restitution});
         bool passed = false;
@@ -226,9 +226,9 @@ double largest_energy(const Bounce& bounce, double speed, std::mt19937& random) 
         {.kind = TAUT_BODY_STATIC, .shape = world.plane({-1, 0, 0}), .friction = friction, .restitution = restitution});
     const taut_body body = world.add({.shape = shape_of(world, slim),
                                       .position = {-between(random, 0.6, 3), 0, 0},
-                                      .rotation = Quat::turn(direction(random), between(random, 0, kPi)),
+                                      .rotation = Quat::turn(random_direction(random), between(random, 0, kPi)),
                                       .velocity = {speed, 0, 0},
-                                      .spin = between(random, 0, 60) * direction(random),
+                                      .spin = between(random, 0, 60) * random_direction(random),
                                       .mass = 0.1,
                                       .friction = friction,
                                       .restitution = restitution});

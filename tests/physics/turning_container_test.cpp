@@ -30,7 +30,7 @@ taut_body add_thing(const World& world, Thing thing, double size, double spin, s
                                : thing == Thing::box ? world.box({size, 0.7 * size, 0.8 * size})
                                                      : world.box({size, 0.15 * size, 0.7 * size}),
                       .position = at,
-                      .rotation = Quat::turn(direction(random), between(random, 0, kPi)),
+                      .rotation = Quat::turn(random_direction(random), between(random, 0, kPi)),
                       .velocity = cross({0, spin, 0}, at),
                       .spin = {0, spin, 0}});
 }

@@ -110,7 +110,7 @@ void drop_columns(Site& site, double side, uint32_t layers) {
     std::mt19937 random(1);
     for (uint32_t layer = 0; layer < layers; ++layer)
         for (int i = 0; i < kRow * kRow; ++i) {
-            const Vec axis = direction(random);
+            const Vec axis = random_direction(random);
             site.lay({0.5 * side, 0.5 * side, 0.5 * side},
                      {1.36 * side * (i % kRow), (1.2 + 1.6 * layer) * side, 1.36 * side * (i / kRow)},
                      Quat::turn(axis, between(random, 0, 0.3)));

@@ -15,7 +15,7 @@ double most_speed(taut_shape (*make)(const World&, std::mt19937&), std::mt19937&
     const Vec place(between(random, 0, 1), between(random, -1, 1), between(random, -1, 1));
     const taut_body body = world.add({.shape = make(world, random),
                                       .position = place,
-                                      .rotation = Quat::turn(direction(random), between(random, 0, 2 * kPi))});
+                                      .rotation = Quat::turn(random_direction(random), between(random, 0, 2 * kPi))});
     double most = 0;
     for (int frame = 0; frame < 150; ++frame) {
         world.step();
@@ -26,7 +26,7 @@ double most_speed(taut_shape (*make)(const World&, std::mt19937&), std::mt19937&
 
 taut_shape stone(const World& world, std::mt19937& random) {
     std::vector<taut_vec3> points;
-    for (int i = 0; i < 20; ++i) points.push_back((between(random, 0.18, 0.3) * direction(random)).narrow());
+    for (int i = 0; i < 20; ++i) points.push_back((between(random, 0.18, 0.3) * random_direction(random)).narrow());
     return hull(world, points);
 }
 

@@ -75,7 +75,7 @@ void Medley::scatter(Random& random, int count, const Vec& from, const Vec& to) 
         taken.push_back({at, reach});
         add({.shape = shape,
              .position = at,
-             .rotation = Quat::turn(direction(random), between(random, 0, 3)),
+             .rotation = Quat::turn(random_direction(random), between(random, 0, 3)),
              .mass = between(random, 0.3, 3)},
             core);
         --count;

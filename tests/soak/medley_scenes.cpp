@@ -21,7 +21,7 @@ void rain(Medley& m, Random& random, int count, double spread, double height, in
         const bool heavy = one_heavy_in > 0 && random() % static_cast<uint32_t>(one_heavy_in) == 0;
         m.add({.shape = shape,
                .position = {between(random, -spread, spread), height + 0.35 * i, between(random, -spread, spread)},
-               .rotation = Quat::turn(direction(random), between(random, 0, 3)),
+               .rotation = Quat::turn(random_direction(random), between(random, 0, 3)),
                .mass = heavy ? heavy_mass(random) : between(random, 0.3, 3)},
               core);
     }

@@ -49,10 +49,10 @@ TEST_P(MedleyShort, IsTheSameOnAnyThreads) {
 struct MedleyLong : testing::TestWithParam<Family> {};
 TEST_P(MedleyLong, KeepsItsBounds) { expect_bounds(GetParam(), 7001, 200); }
 
-std::string name_of(const testing::TestParamInfo<Family>& tested) { return tested.param.name; }
+std::string family_name(const testing::TestParamInfo<Family>& tested) { return tested.param.name; }
 
 const auto kFamilies = testing::ValuesIn(soak::families().begin(), soak::families().end());
-INSTANTIATE_TEST_SUITE_P(Of, MedleyShort, kFamilies, name_of);
-INSTANTIATE_TEST_SUITE_P(Of, MedleyLong, kFamilies, name_of);
+INSTANTIATE_TEST_SUITE_P(Of, MedleyShort, kFamilies, family_name);
+INSTANTIATE_TEST_SUITE_P(Of, MedleyLong, kFamilies, family_name);
 
 }  // namespace

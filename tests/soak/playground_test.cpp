@@ -1,29 +1,15 @@
 // Half an hour in which things come and go and are asked for: nothing bursts, falls through, leaks or slows down.
-#include <ctime>
-
 #include <cstdio>
 #include <thread>
 
 #include "soak/allocation_counter.h"
+#include "soak/frame_time.h"
 #include "soak/playground.h"
 
 namespace {
 
 using namespace lab;
-
-#if defined(NDEBUG)
-constexpr bool kTimed = true;
-#else
-constexpr bool kTimed = false;  // checked and sanitized builds are slow by design
-#endif
-constexpr double kBudget = 1000.0 / 60;  // of a frame [ms]
-
-// Of this thread: what others do to the machine must not fail a soak.
-double processor_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
+using soak::kBudget, soak::kTimed, soak::processor_ms;
 
 struct Record {
     std::vector<double> ms;

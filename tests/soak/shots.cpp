@@ -8,16 +8,18 @@ using namespace lab;
 
 namespace {
 
-constexpr int kCells = 20;      // of the ground, along each side
-constexpr double kCell = 0.5;   // [m]
-constexpr double kRough = 0.3;  // [m]
-constexpr double kSide = kCell * kCells;
+constexpr int kCells = 20;         // of the ground, along each side
+constexpr double kShotCell = 0.5;  // [m]
+constexpr double kRough = 0.3;     // [m]
+constexpr double kSide = kShotCell * kCells;
 
 size_t sample(int row, int column) { return static_cast<size_t>(row * (kCells + 1) + column); }
 
 Triangles ground_of(const std::vector<double>& heights) {
     Triangles out;
-    const auto at = [&](int row, int column) { return Vec(kCell * column, heights[sample(row, column)], kCell * row); };
+    const auto at = [&](int row, int column) {
+        return Vec(kShotCell * column, heights[sample(row, column)], kShotCell * row);
+    };
     for (int row = 0; row < kCells; ++row)
         for (int column = 0; column < kCells; ++column)
             out.add_quad(at(row, column + 1), at(row, column), at(row + 1, column), at(row + 1, column + 1), true);
@@ -54,8 +56,9 @@ ShootingRange::ShootingRange(const ShotPlan& plan, uint64_t seed) : plan_(plan),
     } else if (plan.target == Target::mesh) {
         wall.shape = mesh(world_, ground_of(heights_));
     } else {
-        wall.shape = height_field(world_, kCells + 1, kCells + 1, kCell, [&](double x, double z) {
-            return heights_[sample(static_cast<int>(std::lround(z / kCell)), static_cast<int>(std::lround(x / kCell)))];
+        wall.shape = height_field(world_, kCells + 1, kCells + 1, kShotCell, [&](double x, double z) {
+            return heights_[sample(static_cast<int>(std::lround(z / kShotCell)),
+                                   static_cast<int>(std::lround(x / kShotCell)))];
         });
     }
     wall.restitution = 0.5;
@@ -107,8 +110,8 @@ Vec ShootingRange::aim() {
     const auto along = [&] { return kSide * (0.3 + 0.4 * random_.uniform()); };
     double x = along(), z = along();
     const uint64_t at = random_.bits() % 4;
-    if (at > 1) x = kCell * std::round(x / kCell);
-    if (at > 2) z = kCell * std::round(z / kCell);
+    if (at > 1) x = kShotCell * std::round(x / kShotCell);
+    if (at > 2) z = kShotCell * std::round(z / kShotCell);
     return {x, 0.5 * kRough, z};
 }
 
@@ -128,7 +131,7 @@ bool ShootingRange::over_target(const Vec& p) const {
 bool ShootingRange::beyond(taut_body body) const {
     const Vec p = centre(body);
     if (!over_target(p)) return !finite(p);
-    const int row = static_cast<int>(p.z / kCell), column = static_cast<int>(p.x / kCell);
+    const int row = static_cast<int>(p.z / kShotCell), column = static_cast<int>(p.x / kShotCell);
     const double lowest = std::min({heights_[sample(row, column)], heights_[sample(row + 1, column)],
                                     heights_[sample(row, column + 1)], heights_[sample(row + 1, column + 1)]});
     return p.y < lowest - 0.02;

@@ -66,11 +66,11 @@ TEST_P(RagdollsShort, LeaveNoLimbBehind) { EXPECT_EQ(throw_ragdolls(GetParam(), 
 struct Ragdolls : testing::TestWithParam<Case> {};
 TEST_P(Ragdolls, LeaveNoLimbBehind) { EXPECT_EQ(throw_ragdolls(GetParam(), 200, 977), 0); }
 
-std::string name_of(const testing::TestParamInfo<Case>& tested) { return tested.param.name; }
+std::string case_name(const testing::TestParamInfo<Case>& tested) { return tested.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(At, ShotsShort, testing::ValuesIn(kCases), name_of);
-INSTANTIATE_TEST_SUITE_P(At, Shots, testing::ValuesIn(kCases), name_of);
-INSTANTIATE_TEST_SUITE_P(At, RagdollsShort, testing::ValuesIn(kCases), name_of);
-INSTANTIATE_TEST_SUITE_P(At, Ragdolls, testing::ValuesIn(kCases), name_of);
+INSTANTIATE_TEST_SUITE_P(At, ShotsShort, testing::ValuesIn(kCases), case_name);
+INSTANTIATE_TEST_SUITE_P(At, Shots, testing::ValuesIn(kCases), case_name);
+INSTANTIATE_TEST_SUITE_P(At, RagdollsShort, testing::ValuesIn(kCases), case_name);
+INSTANTIATE_TEST_SUITE_P(At, Ragdolls, testing::ValuesIn(kCases), case_name);
 
 }  // namespace

@@ -1,31 +1,17 @@
 // Ten minutes of the main demo, of a pile that bodies join and leave, of a bridge that breaks and of a ragdoll that is
 // shaken; the short forms take ten seconds of it.
-#include <ctime>
-
 #include <cstdio>
 #include <deque>
 
 #include "scenes/random.h"
 #include "scenes/running_scene.h"
 #include "soak/allocation_counter.h"
+#include "soak/frame_time.h"
 
 namespace {
 
 using namespace lab;
-
-constexpr double kBudget = 1000.0 / 60;  // of a frame [ms]
-#if defined(NDEBUG)
-constexpr bool kTimed = true;
-#else
-constexpr bool kTimed = false;  // checked and sanitized builds are slow by design
-#endif
-
-// Of this thread: what others do to the machine must not fail a soak.
-double processor_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
+using soak::kBudget, soak::kTimed, soak::processor_ms;
 
 class Figures {
 public:

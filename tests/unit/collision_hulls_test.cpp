@@ -17,8 +17,8 @@ using hull_points::Like;
 using oracle::Core;
 using oracle::Random;
 
-constexpr float kMargin = 0.02f;
-constexpr double kBias = 0.0026, kRelativeBias = 0.11;  // as in collision_pairs_test.cpp
+constexpr float kHullMargin = 0.02f;
+constexpr double kHullBias = 0.0026, kHullRelativeBias = 0.11;  // as in collision_pairs_test.cpp
 
 Shape hull_like(Like like, hull_points::Maker& maker) {
     while (true) {
@@ -29,7 +29,7 @@ Shape hull_like(Like like, hull_points::Maker& maker) {
 }
 
 // How deep the oracle has two shapes in each other, found by no code of the library.
-struct Overlap {
+struct HullOverlap {
     Shape a, b;
     Placement at_a, at_b;
     double depth() const {
@@ -39,8 +39,8 @@ struct Overlap {
 };
 
 // At random, b so far along a direction that it reaches into a by at most a depth that is often small.
-Overlap random_overlap(const Shape& a, const Shape& b, Random& random) {
-    Overlap out{a, b, {}, {}};
+HullOverlap random_overlap(const Shape& a, const Shape& b, Random& random) {
+    HullOverlap out{a, b, {}, {}};
     out.at_a = {random.uniform(0, 3) * random.unit(), random.rotation()};
     out.at_b = {Vec3::Zero(), random.rotation()};
     const Vec3 way = random.unit();
@@ -50,18 +50,18 @@ Overlap random_overlap(const Shape& a, const Shape& b, Random& random) {
     return out;
 }
 
-void expect_found(const Overlap& pair) {
+void expect_found(const HullOverlap& pair) {
     PairCache cache;
     Manifold m;
-    collide(pair.a, pair.at_a, pair.b, pair.at_b, kMargin, cache, m);
-    const double depth = pair.depth(), allowed = kBias + kRelativeBias * depth;
+    collide(pair.a, pair.at_a, pair.b, pair.at_b, kHullMargin, cache, m);
+    const double depth = pair.depth(), allowed = kHullBias + kHullRelativeBias * depth;
     if (depth < 1e-4) return;
     ASSERT_GT(m.count, 0) << "missed, " << depth << " m deep";
     double deepest = 1e30;
     for (int i = 0; i < m.count; ++i) deepest = std::min(deepest, double(m.points[i].separation));
     EXPECT_NEAR(-deepest, depth, allowed);
     // Pushing b out by the depth along the normal frees it.
-    Overlap freed = pair;
+    HullOverlap freed = pair;
     freed.at_b.position -= (deepest - 1e-4) * m.normal.cast<double>();
     EXPECT_LT(freed.depth(), allowed);
 }
@@ -123,13 +123,13 @@ TEST_P(HullsLike, MissNothingAlongAWay) {
     Random random(600 + uint32_t(GetParam()));
     for (int run = 0; run < starts(10) && !HasFailure(); ++run) {
         const Shape a = hull_like(GetParam(), maker), b = hull_like(GetParam(), maker);
-        Overlap pair = random_overlap(a, b, random);
+        HullOverlap pair = random_overlap(a, b, random);
         const Vec3 way = random.uniform(0.001, 0.01) * random.unit();
         pair.at_b.position -= 15 * way;
         PairCache cache;
         Manifold m;
         for (int step = 0; step < 30; ++step, pair.at_b.position += way) {
-            collide(pair.a, pair.at_a, pair.b, pair.at_b, kMargin, cache, m);
+            collide(pair.a, pair.at_a, pair.b, pair.at_b, kHullMargin, cache, m);
             ASSERT_TRUE(m.count > 0 || pair.depth() < 1e-4) << "run " << run << " step " << step;
         }
     }

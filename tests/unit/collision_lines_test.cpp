@@ -40,7 +40,8 @@ TEST(LineDistance, AgreesWithGjk) {
         const Placement at_b = {random.uniform(0.3, 3) * random.unit(), turned(random, i, at_a.rotation)};
         const Couple couple(a, at_a, b, at_b);
         PairCache cache;
-        const Pair pair = {a, b, at_a, at_b, {at_a.rotation.transpose() * at_b.rotation, Vec3f::Zero()}, 0, cache};
+        const collision::Pair pair = {a, b,    at_a, at_b, {at_a.rotation.transpose() * at_b.rotation, Vec3f::Zero()},
+                                      0, cache};
         const Distance found = couple.distance(Vec3::Zero(), couple.hint());
         const Distance searched = gjk(Difference(pair), couple.to_a(at_b.position), couple.hint(), kQueryGap);
         ASSERT_EQ(found.apart, searched.apart) << i;

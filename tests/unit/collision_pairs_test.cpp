@@ -13,7 +13,7 @@ namespace {
 
 using oracle::Random;
 
-constexpr float kMargin = 0.02f;
+constexpr float kPairMargin = 0.02f;
 // A face is taken for an edge that is less than 2.5 mm, or a tenth of the depth, better.
 constexpr double kBias = 0.0026;
 constexpr double kRelativeBias = 0.11;
@@ -36,13 +36,13 @@ std::vector<Kinds> all_kinds() {
     return out;
 }
 
-struct Scene {
+struct PairScene {
     Shape a, b;
     Placement at_a, at_b;
 };
 
 // The true signed distance of the shapes. normal: found by what is tested, for the oracle's search to better.
-double truth(const Scene& s, const Vec3& normal = Vec3::Zero()) {
+double truth(const PairScene& s, const Vec3& normal = Vec3::Zero()) {
     if (s.a.kind != ShapeKind::plane) return separation(oracle::core(s.a, s.at_a), oracle::core(s.b, s.at_b), normal);
     const Vec3 up = (s.at_a.rotation * s.a.size).cast<double>();
     const oracle::Core core = oracle::core(s.b, s.at_b);
@@ -50,8 +50,8 @@ double truth(const Scene& s, const Vec3& normal = Vec3::Zero()) {
 }
 
 // Mostly a few centimetres of overlap, some more, some apart.
-Scene random_scene(const Kinds& kinds, Random& random) {
-    Scene s{oracle::random_shape(kinds.a, random), oracle::random_shape(kinds.b, random), {}, {}};
+PairScene random_scene(const Kinds& kinds, Random& random) {
+    PairScene s{oracle::random_shape(kinds.a, random), oracle::random_shape(kinds.b, random), {}, {}};
     s.at_a = {random.uniform(0, 3) * random.unit(), random.rotation()};
     s.at_b = {Vec3::Zero(), random.rotation()};
     const Vec3 way = kinds.a == ShapeKind::plane ? Vec3((s.at_a.rotation * s.a.size).cast<double>()) : random.unit();
@@ -65,14 +65,14 @@ Scene random_scene(const Kinds& kinds, Random& random) {
     return s;
 }
 
-Manifold collide_fresh(const Scene& s) {
+Manifold collide_fresh(const PairScene& s) {
     PairCache cache;
     Manifold out;
-    collide(s.a, s.at_a, s.b, s.at_b, kMargin, cache, out);
+    collide(s.a, s.at_a, s.b, s.at_b, kPairMargin, cache, out);
     return out;
 }
 
-Scene swapped(const Scene& s) { return {s.b, s.a, s.at_b, s.at_a}; }
+PairScene swapped(const PairScene& s) { return {s.b, s.a, s.at_b, s.at_a}; }
 
 double deepest_of(const Manifold& m) {
     double least = 1e30;
@@ -90,11 +90,11 @@ TEST_P(CollisionPairs, FindsEveryOverlapAtItsDepth) {
     int overlaps = 0, nears = 0, found_nears = 0;
     for (int run = 0; run < starts(1500); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() << " run " << run);
-        const Scene s = random_scene(GetParam(), random);
+        const PairScene s = random_scene(GetParam(), random);
         const Manifold m = collide_fresh(s);
         const Vec3 normal = m.normal.cast<double>();
         const double want = truth(s, m.count > 0 ? normal : Vec3::Zero());
-        if (want > 1e-4 && want < double(kMargin)) {
+        if (want > 1e-4 && want < double(kPairMargin)) {
             ++nears;
             found_nears += m.count > 0;
         }
@@ -104,12 +104,12 @@ TEST_P(CollisionPairs, FindsEveryOverlapAtItsDepth) {
         }
         ASSERT_LE(m.count, 4);
         ASSERT_NEAR(m.normal.norm(), 1, 1e-4);
-        ASSERT_LT(deepest_of(m), double(kMargin) + 1e-6);
+        ASSERT_LT(deepest_of(m), double(kPairMargin) + 1e-6);
         if (want > 0) continue;
         ++overlaps;
         ASSERT_NEAR(deepest_of(m), want, allowed(want));
         // Pushing b out by the depth along the normal frees it.
-        Scene freed = s;
+        PairScene freed = s;
         freed.at_b.position += normal * (-deepest_of(m) + 1e-4);
         ASSERT_GT(truth(freed, normal), -allowed(want));
     }
@@ -122,7 +122,7 @@ TEST_P(CollisionPairs, LibccdAgreesOnOverlap) {
     if (GetParam().a == ShapeKind::plane) return;
     Random random(seed() + 1000);
     for (int run = 0; run < starts(500); ++run) {
-        const Scene s = random_scene(GetParam(), random);
+        const PairScene s = random_scene(GetParam(), random);
         const oracle::Core a = oracle::core(s.a, s.at_a);
         const oracle::Core b = oracle::core(s.b, s.at_b);
         if (!oracle::cores_overlap(a, b) || truth(s) > -1e-4) continue;
@@ -138,7 +138,7 @@ TEST_P(CollisionPairs, PointsLieBetweenTheSurfaces) {
     int astray = 0;
     for (int run = 0; run < starts(500); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() + 2000 << " run " << run);
-        const Scene s = random_scene(GetParam(), random);
+        const PairScene s = random_scene(GetParam(), random);
         const Manifold m = collide_fresh(s);
         for (int i = 0; i < m.count; ++i) {
             const Vec3 p = s.at_a.position + m.points[i].position.cast<double>();
@@ -159,7 +159,7 @@ TEST_P(CollisionPairs, OrderOfShapesDoesNotMatter) {
     int checked = 0, opposite = 0, other_face = 0;
     for (int run = 0; run < starts(500); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() + 3000 << " run " << run);
-        const Scene s = random_scene(GetParam(), random);
+        const PairScene s = random_scene(GetParam(), random);
         const Manifold ab = collide_fresh(s);
         const Manifold ba = collide_fresh(swapped(s));
         if (ab.count == 0 || ba.count == 0) {
@@ -195,8 +195,8 @@ TEST_P(CollisionPairs, TenKilometresAwayIsTheSame) {
     int differ = 0;
     for (int run = 0; run < starts(300); ++run) {
         SCOPED_TRACE(testing::Message() << "seed " << seed() + 4000 << " run " << run);
-        const Scene s = random_scene(GetParam(), random);
-        Scene far = s;
+        const PairScene s = random_scene(GetParam(), random);
+        PairScene far = s;
         const Vec3 shift(10000.1, -20000.3, 30000.7);
         far.at_a.position += shift;
         far.at_b.position += shift;
@@ -221,7 +221,7 @@ TEST_P(CollisionPairs, TenKilometresAwayIsTheSame) {
 TEST_P(CollisionPairs, CacheMissesNothingAlongAPath) {
     Random random(seed() + 5000);
     for (int run = 0; run < starts(40); ++run) {
-        Scene s = random_scene(GetParam(), random);
+        PairScene s = random_scene(GetParam(), random);
         const Vec3 push = random.uniform(0.0005, 0.01) * random.unit();
         const Vec3 turn = random.uniform(0.0005, 0.02) * random.unit();
         PairCache cache;
@@ -234,7 +234,7 @@ TEST_P(CollisionPairs, CacheMissesNothingAlongAPath) {
                                   .toRotationMatrix()
                                   .cast<float>();
             Manifold m;
-            collide(s.a, s.at_a, s.b, s.at_b, kMargin, cache, m);
+            collide(s.a, s.at_a, s.b, s.at_b, kPairMargin, cache, m);
             const double want = truth(s);
             if (want > -1e-4) continue;
             ASSERT_GT(m.count, 0);
@@ -248,17 +248,17 @@ TEST_P(CollisionPairs, IdsSurviveTinyMotion) {
     Random random(seed() + 6000);
     int same = 0, all = 0;
     for (int run = 0; run < starts(150); ++run) {
-        Scene s = random_scene(GetParam(), random);
+        PairScene s = random_scene(GetParam(), random);
         PairCache cache;
         Manifold before;
-        collide(s.a, s.at_a, s.b, s.at_b, kMargin, cache, before);
+        collide(s.a, s.at_a, s.b, s.at_b, kPairMargin, cache, before);
         for (int step = 0; step < 10; ++step) {
             s.at_b.position += 1e-4 * random.unit();
             s.at_b.rotation =
                 (rotation_from_vector(1e-4 * random.unit()).toRotationMatrix() * s.at_b.rotation.cast<double>())
                     .cast<float>();
             Manifold after;
-            collide(s.a, s.at_a, s.b, s.at_b, kMargin, cache, after);
+            collide(s.a, s.at_a, s.b, s.at_b, kPairMargin, cache, after);
             for (int i = 0; i < after.count; ++i) {
                 ++all;
                 for (int j = 0; j < before.count; ++j) same += after.points[i].feature == before.points[j].feature;

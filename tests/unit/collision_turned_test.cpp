@@ -12,16 +12,16 @@ namespace {
 
 using oracle::Random;
 
-const Mat3f kUpright = Mat3f::Identity();
+const Mat3f kUnturned = Mat3f::Identity();
 constexpr double kQuarter = 1.57079632679489662;
 
-Mat3f turned(const Vec3& vector) { return rotation_from_vector(vector).toRotationMatrix().cast<float>(); }
+Mat3f turned_by(const Vec3& vector) { return rotation_from_vector(vector).toRotationMatrix().cast<float>(); }
 
 Manifold collide_above(const Shape& below, const Shape& above, const Vec3& position, const Mat3f& rotation,
                        float margin) {
     PairCache cache;
     Manifold out;
-    collide(below, {Vec3::Zero(), kUpright}, above, {position, rotation}, margin, cache, out);
+    collide(below, {Vec3::Zero(), kUnturned}, above, {position, rotation}, margin, cache, out);
     return out;
 }
 
@@ -74,7 +74,7 @@ TEST_P(TurnedShapes, StandOnFourPointsOfTheirRim) {
     for (const auto& [ground, top] : grounds()) {
         for (const Shape& body : {oracle::cylinder(size(), 1.5f * size()), oracle::cone(size(), 1.5f * size())}) {
             const Vec3 at = top + Vec3(0.2 * double(size()), 1.5 * double(size()) - depth(), 0);
-            const Manifold m = collide_above(ground, body, at, turned(Vec3(0, 0.3, 0)), margin());
+            const Manifold m = collide_above(ground, body, at, turned_by(Vec3(0, 0.3, 0)), margin());
             expect_flat(m, 4);
             EXPECT_GT(spread(m), 0.9f * size() * size());
         }
@@ -88,15 +88,15 @@ TEST_P(TurnedShapes, LieOnTwoPointsOfTheirLine) {
     const double tapered_turn = std::asin(0.5 * double(r) / (2.0 * double(half)));
     for (const auto& [ground, top] : grounds()) {
         const Manifold lying = collide_above(ground, oracle::cylinder(r, half), top + Vec3(0, double(r) - depth(), 0),
-                                             turned(Vec3(kQuarter, 0, 0)), margin());
+                                             turned_by(Vec3(kQuarter, 0, 0)), margin());
         expect_flat(lying, 2);
         const Manifold cone =
             collide_above(ground, oracle::cone(r, half), top + Vec3(0, double(half) * std::sin(cone_turn) - depth(), 0),
-                          turned(Vec3(0, 0, -kQuarter - cone_turn)), margin());
+                          turned_by(Vec3(0, 0, -kQuarter - cone_turn)), margin());
         expect_flat(cone, 2);
         const Manifold tapered = collide_above(ground, oracle::tapered_capsule(r, half, 0.5f * r),
                                                top + Vec3(0, 0.75 * double(r) - depth(), 0),
-                                               turned(Vec3(0, 0, -kQuarter - tapered_turn)), margin());
+                                               turned_by(Vec3(0, 0, -kQuarter - tapered_turn)), margin());
         expect_flat(tapered, 2);
     }
 }
@@ -104,7 +104,7 @@ TEST_P(TurnedShapes, LieOnTwoPointsOfTheirLine) {
 // Side by side along a line, or across each other in a point.
 TEST_P(TurnedShapes, RoundSidesMeetInLinesAndPoints) {
     const float r = size(), half = 2 * size();
-    const Mat3f lying = turned(Vec3(kQuarter, 0, 0));
+    const Mat3f lying = turned_by(Vec3(kQuarter, 0, 0));
     const Shape below = oracle::cylinder(r, half);
     for (const Shape& body : {oracle::cylinder(0.5f * r, half), oracle::capsule(0.5f * r, half),
                               oracle::tapered_capsule(0.5f * r, half, 0.5f * r)}) {
@@ -113,7 +113,7 @@ TEST_P(TurnedShapes, RoundSidesMeetInLinesAndPoints) {
             PairCache cache;
             Manifold m;
             for (int frame = 0; frame < 2; ++frame) {  // the second one starts from the first one's normal
-                collide(below, {Vec3::Zero(), lying}, body, {at, across ? turned(Vec3(0, 0, kQuarter)) : lying},
+                collide(below, {Vec3::Zero(), lying}, body, {at, across ? turned_by(Vec3(0, 0, kQuarter)) : lying},
                         margin(), cache, m);
             }
             expect_flat(m, across ? 1 : 2);
@@ -123,14 +123,14 @@ TEST_P(TurnedShapes, RoundSidesMeetInLinesAndPoints) {
 
 TEST_P(TurnedShapes, ApexAndRoundEndsTouchInAPoint) {
     const float r = size();
-    const Mat3f over = turned(Vec3(2 * kQuarter, 0, 0));
+    const Mat3f over = turned_by(Vec3(2 * kQuarter, 0, 0));
     for (const auto& [ground, top] : grounds()) {
         const Manifold apex =
             collide_above(ground, oracle::cone(r, r), top + Vec3(0, double(r) - depth(), 0), over, margin());
         ASSERT_GE(apex.count, 1);
         EXPECT_NEAR(least(apex), -depth(), 2e-3 * depth());
         const Manifold end = collide_above(ground, oracle::tapered_capsule(r, r, 0.5f * r),
-                                           top + Vec3(0, 2 * double(r) - depth(), 0), kUpright, margin());
+                                           top + Vec3(0, 2 * double(r) - depth(), 0), kUnturned, margin());
         ASSERT_EQ(end.count, 1);
         EXPECT_NEAR(least(end), -depth(), 2e-3 * depth());
     }
@@ -148,7 +148,7 @@ double new_ids(const Shape& below, const Shape& above, int steps, PoseAt&& pose_
     int fresh = 0, all = 0;
     for (int step = 0; step < steps; ++step) {
         Manifold now;
-        collide(below, {Vec3::Zero(), kUpright}, above, pose_at(step), 0.02f, cache, now);
+        collide(below, {Vec3::Zero(), kUnturned}, above, pose_at(step), 0.02f, cache, now);
         EXPECT_GE(now.count, least_count) << step;
         for (int i = 0; i < now.count && step > 0; ++i) {
             bool known = false;
@@ -168,7 +168,7 @@ TEST(CollisionTurned, StandingCylinderKeepsItsPointsWhileItTrembles) {
         const double fresh = new_ids(
             below, body, 300,
             [&](int) {
-                return Placement{Vec3(0, 0.998, 0) + 2e-4 * random.unit(), turned(2e-4 * random.unit())};
+                return Placement{Vec3(0, 0.998, 0) + 2e-4 * random.unit(), turned_by(2e-4 * random.unit())};
             },
             4);
         EXPECT_EQ(fresh, 0) << oracle::name(below.kind);
@@ -181,13 +181,13 @@ TEST(CollisionTurned, RollingCylinderHasNoCorners) {
     const Shape body = oracle::cylinder(0.5f, 0.5f);
     const auto pose = [&](int step) {
         const double angle = 0.01 * step;
-        return Placement{Vec3(0.5 * angle, 0.999, 0), turned(Vec3(0, 0, -angle)) * turned(Vec3(kQuarter, 0, 0))};
+        return Placement{Vec3(0.5 * angle, 0.999, 0), turned_by(Vec3(0, 0, -angle)) * turned_by(Vec3(kQuarter, 0, 0))};
     };
     EXPECT_EQ(new_ids(below, body, 700, pose, 2), 0);
     PairCache cache;
     for (int step = 0; step < 700; ++step) {
         Manifold m;
-        collide(below, {Vec3::Zero(), kUpright}, body, pose(step), 0.02f, cache, m);
+        collide(below, {Vec3::Zero(), kUnturned}, body, pose(step), 0.02f, cache, m);
         ASSERT_EQ(m.count, 2);
         for (int i = 0; i < 2; ++i) ASSERT_NEAR(m.points[i].separation, -0.001f, 2e-6f);
     }
@@ -202,12 +202,12 @@ TEST(CollisionTurned, CoinRollsOverItsRim) {
             const double height = 0.5 * std::sin(tilt) + 0.05 * std::cos(tilt) - 0.001;
             const auto pose = [&](int step) {
                 const double angle = 0.02 * step;
-                return Placement{Vec3(0, top + height, 0), turned(tilt * Vec3(std::cos(angle), 0, std::sin(angle)))};
+                return Placement{Vec3(0, top + height, 0), turned_by(tilt * Vec3(std::cos(angle), 0, std::sin(angle)))};
             };
             PairCache cache;
             for (int step = 0; step < 300; ++step) {
                 Manifold m;
-                collide(below, {Vec3::Zero(), kUpright}, coin, pose(step), 0.02f, cache, m);
+                collide(below, {Vec3::Zero(), kUnturned}, coin, pose(step), 0.02f, cache, m);
                 ASSERT_GE(m.count, 1);
                 ASSERT_NEAR(least(m), -0.001f, 6e-4f) << tilt << " " << step;
             }

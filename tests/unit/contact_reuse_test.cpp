@@ -24,7 +24,7 @@ struct Pose {
 
 Vec3 within(Random& random, double length) { return random.uniform(0, length) * random.unit(); }
 
-constexpr float kMargin = kContactMargin;
+constexpr float kReuseMargin = kContactMargin;
 
 // Two bodies of one shape each.
 struct Couple {
@@ -48,7 +48,7 @@ struct Couple {
         }
         pairs.placement.resize(2);
         pairs.stance.resize(2);
-        pairs.travel.assign(2, Travel{.margin = kMargin});
+        pairs.travel.assign(2, Travel{.margin = kReuseMargin});
         pair.key = near.key = pair_key(0, 1);
         pair.a = 0, pair.b = 1;
     }
@@ -90,13 +90,13 @@ bool bring_together(Couple& couple, Random& random) {
         couple.place(1, b);
         Manifold m;
         couple.cache = {};
-        couple.find(kMargin, m);
+        couple.find(kReuseMargin, m);
         (m.count > 0 ? touching : parted) = middle;
     }
     b.x = (touching - random.uniform(0, 0.04)) * along;
     couple.place(1, b);
     couple.cache = {};
-    couple.find(kMargin, couple.pair.manifold);
+    couple.find(kReuseMargin, couple.pair.manifold);
     return couple.pair.manifold.count > 0;
 }
 
@@ -114,7 +114,7 @@ void move(Couple& couple, Random& random, double little) {
     couple.place(1, {pivot + turned * (b.x - pivot) + within(random, little), turned * b.q});
 }
 
-float deepest(const Manifold& m) {
+float deepest_of(const Manifold& m) {
     float least = 1e30f;
     for (int k = 0; k < m.count; ++k) least = std::min(least, m.points[k].separation);
     return least;
@@ -126,9 +126,9 @@ protected:
     ShapeKind other() const { return ShapeKind(std::get<1>(GetParam())); }
 };
 
-// The deepest point is as deep as found in full, within the bound of reuse.h, and so are nearly all. One in a hundred
-// of shapes that are some mm apart, and one in some thousands that touch, is told up to 2.5 mm off, by which one axis
-// is taken for another.
+// The deepest_of point is as deep as found in full, within the bound of reuse.h, and so are nearly all. One in a
+// hundred of shapes that are some mm apart, and one in some thousands that touch, is told up to 2.5 mm off, by which
+// one axis is taken for another.
 TEST_P(ReusedPairs, AreAsFoundInFull) {
     Random random(static_cast<uint32_t>(17 + 8 * std::get<0>(GetParam()) + std::get<1>(GetParam())));
     int reused = 0, tried = 0, others = 0, points = 0, beyond = 0, off_apart = 0, off_touching = 0;
@@ -143,16 +143,16 @@ TEST_P(ReusedPairs, AreAsFoundInFull) {
         if (!reuse_manifold(couple.pairs, 1.0 / 60, couple.pair)) continue;
         ++reused;
         Manifold full;
-        couple.find(kMargin + slide, full);
+        couple.find(kReuseMargin + slide, full);
         const Manifold& m = couple.pair.manifold;
         if (full.count == 0) {  // corner to corner, nearness is no contact yet
-            EXPECT_GT(deepest(m), 0) << round;
+            EXPECT_GT(deepest_of(m), 0) << round;
             ++off_apart;
             continue;
         }
-        const float off = std::abs(deepest(m) - deepest(full));
+        const float off = std::abs(deepest_of(m) - deepest_of(full));
         EXPECT_LE(off, 2.6e-3f) << round;
-        (deepest(full) > 1e-3f ? off_apart : off_touching) += off > slide;
+        (deepest_of(full) > 1e-3f ? off_apart : off_touching) += off > slide;
         if (m.normal.dot(full.normal) < 0.999f) {
             ++others;  // another axis of two about as good
             continue;
@@ -188,7 +188,7 @@ TEST_P(ReusedPairs, StayClearWhileTheyAre) {
             const bool said = stay_clear(couple.pairs, couple.near);
             clear += said;
             Manifold m;
-            const float gap = couple.find(kMargin, m);
+            const float gap = couple.find(kReuseMargin, m);
             EXPECT_FALSE(said && m.count > 0);
             if (!said) note_clear(couple.pairs, gap, couple.near);
             couple.place(
@@ -209,9 +209,9 @@ TEST_P(ReusedPairs, GapIsNoMoreThanTheDistance) {
         couple.place(1, {within(random, 4), rotation_from_vector(within(random, 3))});
         for (int ask = 0; ask < 2; ++ask) {  // the second time along the axis that parted them
             Manifold m;
-            const float gap = couple.find(kMargin, m);
+            const float gap = couple.find(kReuseMargin, m);
             if (m.count > 0 || gap == 0) break;
-            EXPECT_GT(gap, kMargin);
+            EXPECT_GT(gap, kReuseMargin);
             const auto core = [&](uint32_t i) {
                 return collision::oracle::core(couple.shape(i), couple.pairs.placement[i]);
             };
@@ -250,7 +250,7 @@ TEST(Reuse, EndsWhereThePairMovesFastOrTurns) {
         Couple couple = pair_of_boxes();
         couple.place(0, {});
         couple.place(1, {Vec3(0, 0.999, 0), Quat::Identity()});
-        couple.find(kMargin, couple.pair.manifold);
+        couple.find(kReuseMargin, couple.pair.manifold);
         ASSERT_EQ(couple.pair.manifold.count, 4);
         ASSERT_TRUE(keep_manifold(couple.pairs, 1.0 / 60, couple.pair));
         couple.nodes.motion[1].v = c.velocity;

@@ -173,7 +173,7 @@ TEST(Memory, TakesTheRuntimesWithoutHooks) {
     EXPECT_EQ(memory.calls(), 1u);
 }
 
-struct alignas(64) Wide {
+struct alignas(64) WideItem {
     float f[16];
 };
 
@@ -184,7 +184,7 @@ TEST(Array, TakesEverythingFromItsMemory) {
         Array<int> numbers(memory);
         for (int i = 0; i < 1000; ++i) numbers.push_back(i);
         EXPECT_GE(memory.bytes(), 1000 * sizeof(int));
-        Array<Wide> wide(3, Wide{}, memory);
+        Array<WideItem> wide(3, WideItem{}, memory);
         EXPECT_EQ(reinterpret_cast<uintptr_t>(wide.data()) % 64, 0u);
         Array<Array<int>> nested(4, Array<int>(memory), memory);
         for (auto& inner : nested) inner.assign(10, 1);
