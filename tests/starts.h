@@ -1,27 +1,32 @@
-// How many random starts a statistic takes: all of them in the tests labelled full (TAUT_STARTS=all in the
-// environment), a tenth in the quick ones, a hundredth where sanitizers make each some ten times as long.
+// How much of a statistic runs: all of it in the tests labelled full (TAUT_STARTS=all in the environment), a part in
+// the quick ones, few where sanitizers make each start some ten times as long (TAUT_STARTS=few).
 #pragma once
 
 #include <cstdlib>
 #include <string_view>
 
-template <class Count>
-Count starts(Count all) {
+inline bool asked_starts(std::string_view which) {
     const char* asked = std::getenv("TAUT_STARTS");
-#ifdef TAUT_INSTRUMENTED
-    constexpr Count kPart = 100;
-#else
-    constexpr Count kPart = 10;
-#endif
-    return asked && std::string_view(asked) == "all" ? all : (all + kPart - 1) / kPart;
+    return asked && asked == which;
 }
 
-// How many runs a test takes that is through with them in a second: a tenth of them with sanitizers.
-template <class Count>
-constexpr Count runs(Count all) {
+inline bool few_starts() {
 #ifdef TAUT_INSTRUMENTED
-    return (all + 9) / 10;
+    return true;
 #else
-    return all;
+    return asked_starts("few");
 #endif
+}
+
+// Random starts: a tenth in the quick tests, a hundredth of few.
+template <class Count>
+Count starts(Count all) {
+    const Count part = asked_starts("all") ? 1 : few_starts() ? 100 : 10;
+    return (all + part - 1) / part;
+}
+
+// Runs of a test that is through with them in a second: a tenth of few.
+template <class Count>
+Count runs(Count all) {
+    return few_starts() ? (all + 9) / 10 : all;
 }

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "determinism/step_trace.h"
+#include "starts.h"
 
 namespace {
 
@@ -70,7 +71,7 @@ TEST(SameBits, OnThreadsAtOnce) {
 class SameBitsOnTeams : public testing::TestWithParam<const char*> {};
 
 TEST_P(SameBitsOnTeams, OfAnySize) {
-    constexpr int kSteps = 40;
+    const int steps = few_starts() ? 10 : 40;
     scenes::Scene scene = scenes::make_scene(GetParam());
     TracedScene alone(scene);
     std::vector<std::unique_ptr<TracedScene>> teams;
@@ -78,7 +79,7 @@ TEST_P(SameBitsOnTeams, OfAnySize) {
         scene.world.threads = threads;
         teams.push_back(std::make_unique<TracedScene>(scene));
     }
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < steps; ++step) {
         alone.step();
         const uint64_t hash = alone.hash();
         for (const auto& team : teams) {

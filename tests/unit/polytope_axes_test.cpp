@@ -1,7 +1,7 @@
 // Which faces and edges of polytopes separate most, and whether two edges decide where they touch, against the axes
 // between all of their features.
-#include "starts.h"
 #include "collision/narrowphase/polytope_axes.h"
+#include "starts.h"
 
 #include <gtest/gtest.h>
 
@@ -50,8 +50,8 @@ PolytopePair overlapping(const Hull& a, const Hull& b, double depth, Random& ran
 }
 
 // Two random hulls, their least overlap from least to most deep [m].
-struct Overlap {
-    Overlap(uint32_t seed, double least, double most)
+struct RandomOverlap {
+    RandomOverlap(uint32_t seed, double least, double most)
         : random(seed),
           a(oracle::random_shape(ShapeKind::hull, random)),
           b(oracle::random_shape(ShapeKind::hull, random)),
@@ -64,26 +64,26 @@ struct Overlap {
 
 // The face found separates as much as any of its polytope; of b, where that is more than is asked.
 TEST(BestFace, SeparatesMostOfAllFaces) {
-    constexpr float kAll = -1e30f, kMargin = 1, kRounding = 1e-5f;
-    for (uint32_t seed = 1; seed <= 500; ++seed) {
+    constexpr float kAll = -1e30f, kWide = 1, kRounding = 1e-5f;
+    for (uint32_t seed = 1; seed <= runs(500u); ++seed) {
         SCOPED_TRACE(seed);
-        const Overlap overlap(seed, -0.05, 0.05);
+        const RandomOverlap overlap(seed, -0.05, 0.05);
         const PolytopePair& pair = overlap.pair;
         float most_of_a = kAll, most_of_b = kAll;
         for (const Face& face : pair.a.faces) most_of_a = std::max(most_of_a, apart_along(pair, face.normal));
         for (const Face& face : pair.b.faces)
             most_of_b = std::max(most_of_b, apart_along(pair, -(pair.b_in_a.rotation * face.normal)));
-        const Separation of_a = best_face_a(pair, kMargin), of_b = best_face_b(pair, kAll, kMargin);
+        const Separation of_a = best_face_a(pair, kWide), of_b = best_face_b(pair, kAll, kWide);
         EXPECT_NEAR(of_a.distance, most_of_a, kRounding);
         EXPECT_NEAR(of_b.distance, most_of_b, kRounding);
         EXPECT_NEAR(apart_along(pair, pair.normal(of_a.axis)), most_of_a, kRounding);
         EXPECT_NEAR(apart_along(pair, pair.normal(of_b.axis)), most_of_b, kRounding);
         for (const float less : {0.0001f, 0.01f}) {
-            const Separation asked = best_face_b(pair, of_b.distance - less, kMargin);
+            const Separation asked = best_face_b(pair, of_b.distance - less, kWide);
             EXPECT_EQ(asked.axis, of_b.axis);
             EXPECT_EQ(asked.distance, of_b.distance);
         }
-        EXPECT_LE(best_face_b(pair, of_b.distance, kMargin).distance, of_b.distance);
+        EXPECT_LE(best_face_b(pair, of_b.distance, kWide).distance, of_b.distance);
     }
 }
 
@@ -93,7 +93,7 @@ TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
     int bear = 0, decide = 0;
     for (uint32_t seed = 1; seed <= runs(300u); ++seed) {
         SCOPED_TRACE(seed);
-        const Overlap overlap(seed, -0.005, 0.03);
+        const RandomOverlap overlap(seed, -0.005, 0.03);
         const PolytopePair& pair = overlap.pair;
         const float most = most_apart(pair);
         for (size_t i = 0; i < pair.a.edges.size(); ++i)
@@ -116,9 +116,9 @@ TEST(EdgesDecide, OnlyWhereNoAxisSeparatesMore) {
 TEST(BestEdges, AreFoundWhereTheySeparateByAsMuchAsIsAsked) {
     constexpr float kDeep = 0.1f, kAll = -1e30f, kRounding = 1e-5f;
     int found = 0, left_out = 0;
-    for (uint32_t seed = 1; seed <= 1000; ++seed) {
+    for (uint32_t seed = 1; seed <= runs(1000u); ++seed) {
         SCOPED_TRACE(seed);
-        const Overlap overlap(seed, -0.02, 0.03);
+        const RandomOverlap overlap(seed, -0.02, 0.03);
         const PolytopePair& pair = overlap.pair;
         const Separation face_a = best_face_a(pair, 1), face_b = best_face_b(pair, kAll, 1);
         const Vec3f normal = pair.normal(face_a.distance > face_b.distance ? face_a.axis : face_b.axis);
@@ -135,8 +135,8 @@ TEST(BestEdges, AreFoundWhereTheySeparateByAsMuchAsIsAsked) {
         EXPECT_LE(more.distance, most.distance);
         left_out += more.distance < most.distance;
     }
-    EXPECT_GE(found, 900);
-    EXPECT_GE(left_out, 100);
+    EXPECT_GE(found, runs(900));
+    EXPECT_GE(left_out, runs(100));
 }
 
 }  // namespace
