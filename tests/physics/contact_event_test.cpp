@@ -186,6 +186,7 @@ TEST(ContactEvents, FrictionImpulsesAreTheMomentumLost) {
     for (int i = 0; i < 30; ++i) {
         world.step();
         const taut_events e = events_of(world);
+        ASSERT_GT(e.begin_count + e.persist_count, 0u) << i;
         const taut_contact_event& event = e.begin_count ? e.begin[0] : e.persist[0];
         friction += sum_of(e, event, &taut_contact_point::friction_impulse);
     }
