@@ -20,7 +20,8 @@ inline Vec centre_of(taut_body body) {
 }
 
 inline Vec flight_velocity(const World& world, taut_body body) {
-    return velocity(body) - 0.5 * world.frame() / world.def.substeps * Vec(0, gravity_of(world), 0);
+    return velocity(body) -
+           0.5 * static_cast<double>(world.def.time_step) / world.def.substeps * Vec(0, gravity_of(world), 0);
 }
 
 // Kinetic and potential energy of bodies, in flight at that velocity [J].

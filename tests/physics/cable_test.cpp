@@ -308,11 +308,11 @@ TEST_P(EitherCable, IsHauledInAtAnySpeed) {
         taut_cable_def d = CableLab::plan(GetParam(), load);
         d.segment_length = 0.1f;
         const taut_cable cable = lab.cable(d);
-        const double speed = 0.01 * percent * 0.1 / lab.frame();
+        const double speed = 0.01 * percent * 0.1 / static_cast<double>(lab.def.time_step);
         ok(taut_cable_set_reel_speed(cable, 0, static_cast<float>(-speed), 0));
         const int steps = static_cast<int>(2 / (speed * lab.frame()));
         lab.step(steps);
-        EXPECT_NEAR(length_of(cable), 4 - steps * speed * lab.frame(), 0.01) << percent;
+        EXPECT_NEAR(length_of(cable), 4 - speed * lab.stepped(steps), 0.01) << percent;
         EXPECT_EQ(tensions_of(cable).size() + 1, points_of(cable).size());
     }
 }
@@ -350,8 +350,9 @@ TEST_P(EitherCable, JoinsFoldedSegments) {
         d.filter.mask = 0;
         d.end[0] = to_world({0, 0, 0});
         const taut_cable cable = lab.cable(d);
-        ok(taut_cable_set_reel_speed(cable, 0, static_cast<float>(-0.499 * kNominal / lab.frame()), 0));
-        lab.step();
+        ok(taut_cable_set_reel_speed(
+            cable, 0, static_cast<float>(-0.499 * kNominal / static_cast<double>(lab.def.time_step)), 0));
+        ok(taut_world_step(lab.handle));
         EXPECT_EQ(tensions_of(cable).size(), 1u);
         EXPECT_NEAR(length_of(cable), 0.2 * kNominal, 1e-4);
         ok(taut_cable_set_reel_speed(cable, 0, 1, 0));

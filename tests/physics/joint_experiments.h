@@ -42,7 +42,7 @@ inline taut_joint reach_a_speed(const World& world, taut_body rotor, double iner
     const double reached = 6 * inertia / 3;  // [s]
     const int before = static_cast<int>(0.5 * reached / world.frame());
     world.step(before);
-    EXPECT_NEAR(motion(joint).rate, 3 / inertia * before * world.frame(), 1e-3);
+    EXPECT_NEAR(motion(joint).rate, 3 / inertia * world.stepped(before), 1e-3);
     EXPECT_NEAR(forces(joint).drive, 3, 1e-5);
     world.step(static_cast<int>(reached / world.frame()));
     EXPECT_NEAR(motion(joint).rate, 6, 1e-3);

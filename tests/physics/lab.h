@@ -257,7 +257,12 @@ public:
             ok(tick_ > 0 ? taut_world_advance(handle, tick_, nullptr) : taut_world_step(handle));
     }
     double frame() const { return tick_ > 0 ? tick_ : static_cast<double>(def.time_step); }  // what step() steps [s]
-    double substep() const {                                                                 // of the last step [s]
+    // What so many steps of step() have stepped: where the world's own are longer, whole ones of those [s].
+    double stepped(int count) const {
+        const auto own = static_cast<double>(def.time_step);
+        return std::floor(count * frame() / own + 1e-3) * own;
+    }
+    double substep() const {  // of the last step [s]
         return static_cast<double>(def.time_step) / profile().substeps;
     }
     taut_profile profile() const {

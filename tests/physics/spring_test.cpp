@@ -56,8 +56,8 @@ TEST_P(Spring, OscillatesAtItsPeriod) {
 TEST_P(Spring, DampsByItsDampingRatio) {
     for (double ratio : {0.1, 0.2, 0.4}) {
         World world;
-        const double sag = kMass * kG * kCompliance,
-                     own = world.frame() / world.def.substeps / 2 / std::sqrt(kMass * kCompliance);
+        const double sag = kMass * kG * kCompliance, own = static_cast<double>(world.def.time_step) /
+                                                           world.def.substeps / 2 / std::sqrt(kMass * kCompliance);
         const Hung hung(world, GetParam(), ratio * critical(), sag + 0.2);
         std::vector<double> peaks = {0.2};
         double before = 0.2, last = 0.2;

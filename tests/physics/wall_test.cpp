@@ -167,7 +167,7 @@ TEST(Heap, OfSmallCubesTakesNoMoreSubsteps) {
     int more = 0;
     for (int frame = 60; frame < 300; ++frame) {
         site.world.step();
-        more += site.world.profile().substeps > 4;
+        more += site.world.profile().substeps > site.world.def.substeps;
     }
     EXPECT_LE(more, 6);
 }
