@@ -155,7 +155,7 @@ struct JointLanes {
     LanePlaces<LaneScalar> jacobian, factor, compliance;
     LanePlaces<LaneStiffness> stiffness;  // one for each group
     Array<uint32_t> colour_begin;         // first group of each colour, and one past the last
-    Array<float> node_stiffness;          // by seat [N m], -1: seen to; stiffen_joints()
+    Array<float> node_stiffness;          // by seat [N m], -1: applied; stiffen_joints()
 
     JointView view() {
         return {group.data(),    row.data(),    coordinate.data(), axis.data(),     law.data(),
