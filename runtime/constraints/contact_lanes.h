@@ -45,6 +45,7 @@ struct alignas(64) LaneGroup {
     uint32_t pair[kLanes];          // index into Pairs::list, UINT32_MAX for an empty lane
     float normal[3][kLanes], tangent[3][kLanes];
     float friction[kLanes];
+    float stiffness[kLanes];          // of normal rows, in parts of what SweepTerms give
     float round[2][kLanes];           // of a and b: how far from their surfaces what turns ends [m]; is_round
     LanePoint* point;                 // one for each of `points`
     uint32_t points;                  // most points of a lane

@@ -194,7 +194,7 @@ struct ContactSweep {
         Side a, b;
         a.gather(g.a, nodes);
         b.gather(g.b, nodes);
-        const F inv_mass = a.inv_mass + b.inv_mass;
+        const F inv_mass = a.inv_mass + b.inv_mass, stiffness = F::load(g.stiffness);
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
             const V ra = load(p.ra), rb = load(p.rb);
@@ -209,7 +209,7 @@ struct ContactSweep {
             const F mean = half * (k11 + k22), diff = half * (k11 - k22);
             const F largest = mean + F::sqrt(diff * diff + k12 * k12);
             const F det = k11 * k22 - k12 * k12, inv_det = used / F::max(det, tiny);
-            const F mass = used / F::max(kn, tiny), approach = dot(b.at(rb) - a.at(ra), f.n);
+            const F mass = stiffness * used / F::max(kn, tiny), approach = dot(b.at(rb) - a.at(ra), f.n);
             before(p, mass);
             put(mass, p.normal_mass);
             put(k22 * inv_det, p.friction_mass[0]);

@@ -28,6 +28,8 @@ Partition::Partition(Memory& memory)
       rank_begin_(memory),
       efforts_(memory),
       presses_(memory),
+      squeezes_(memory),
+      softened_(memory),
       small_(memory),
       pressed_(memory),
       tied_(memory),
@@ -75,6 +77,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pair
         graph_.moves.clear();
         throw;
     }
+    soften_squeezed(nodes, pairs, rules);
     find_loads(nodes);
     find_columns(nodes, pairs, rules);
     for (Island& island : island_) island.tower = false;

@@ -154,6 +154,15 @@ private:
                                    // press, what does not yield
     };
 
+    // Of what something kinematic drives before it: a body, and the contacts on the way to it.
+    struct Squeeze {
+        uint32_t node, pair;  // slot; index in Pairs::active, of the last contact
+        uint32_t before;      // index in squeezes_ of the body before it, or kNone
+        uint32_t contacts;    // on the way
+        Vec3f along;          // unit, from the kinematic one to the first
+        double lack;          // by how much they overlap at the end of the frame, if nothing else moves [m]
+    };
+
     // Parts that write nothing which another one reads.
     using Part = void (Partition::*)(const Nodes& nodes);
     void run(Team& team, std::span<const Part> parts, const Nodes& nodes);
@@ -176,6 +185,9 @@ private:
     void list_small();
     void note_held(const Nodes& nodes, const Pairs& pairs);
     void find_squeezed(const Nodes& nodes, Pairs& pairs, double weight);
+    void soften_squeezed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
+    void begin_squeezes(const Nodes& nodes, const Pairs& pairs, double time_step);
+    void soften(const Squeeze& last, double most, double furthest, Pairs& pairs);
     void find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void push_on(const Nodes& nodes, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);
@@ -232,6 +244,8 @@ private:
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those
+    Array<Squeeze> squeezes_;                      // scratch: in the order of reach
+    Array<uint32_t> softened_;                     // pairs of less stiffness, by index in Pairs::list
     Array<uint32_t> small_;                        // scratch: touches of small islands, by index in Pairs::active
     Array<uint8_t> pressed_;                       // scratch: by index in Pairs::active
     Array<uint8_t> tied_;                          // by slot: has a joint

@@ -3,32 +3,26 @@
 
 #include "partition/movers.h"
 #include "partition/partition.h"
+#include "partition/weights.h"
 
 namespace taut {
 namespace {
 
 constexpr float kPress = 0.5f;  // cosine: a body between two others is pushed by one against the other
 
-// A contact between bodies that bears twenty times the weight of the lighter is taken in as one with a body of ten
-// times its mass is, whatever presses: swept, a box of .2 kg sinks in by 3.5 mm under 50 N, and by 7 cm under 1 kN.
-// Where one of the two is held already a third is enough, lest some of a row be swept. After so many frames, as blows
-// are over sooner: after six, boxes of a pile that landed were in blocks, and with half the load all its columns. What
-// stands high bears as many weights itself, and twice that as it lands.
-constexpr double kPressed = 20;       // weights, or
-constexpr double kPressedByBody = 2;  // so many for each body of the island
+// A contact that bears more weights than sweeps hold is taken in as one with a heavy body is. Where one of the two is
+// held already a third is enough, lest some of a row be swept. After so many frames, as blows are over sooner: after
+// six, boxes of a pile that landed were in blocks, and with half the load all its columns.
 constexpr double kBesideHeld = 1.0 / 3;
-constexpr double kLeastGravity = 9.81;  // where there is less, weights are as on Earth [m/s^2]
-constexpr uint8_t kPressedFor = 10;     // frames
+constexpr uint8_t kPressedFor = 10;  // frames
 
 // How many weights of the lighter body are too much.
 double most_weights(uint32_t bodies, bool beside_held) {
-    return std::max(kPressed, kPressedByBody * bodies) * (beside_held ? kBesideHeld : 1);
+    return taut::most_weights(bodies) * (beside_held ? kBesideHeld : 1);
 }
 
 // The impulse of a weight in a frame, over its mass [N s/kg].
-double weight_of(const PartitionRules& rules) {
-    return std::max(rules.gravity.norm(), kLeastGravity) * rules.time_step;
-}
+double weight_of(const PartitionRules& rules) { return least_gravity(rules) * rules.time_step; }
 
 // Counts the frames in which a contact bore more than that [N s]; whether it did so for a while.
 bool bears(Pairs& pairs, ActivePair& active, double most) {

@@ -109,6 +109,7 @@ struct Pair : PairEnds {
     float friction = 0;  // of the two surfaces together
     float restitution = 0;
     float spinning = 0, rolling = 0;  // arms of the friction torques [m]
+    float stiffness = 1;  // of its normal rows in sweeps, in parts of what contacts have; partition/squeezed.cpp
     float patch = 0;                  // radius of the patch in which a round side touches [m]; see spinning_arm()
     Impulse turning;                  // of these torques [N m s]; slip: of rolling [rad^2/(kg m^2)]
     float spin_slip = -1;             // the same of spinning

@@ -73,6 +73,7 @@ struct PairMovement {
 void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.friction[lane] = pair.friction;
+    g.stiffness[lane] = pair.stiffness;
     g.round[0][lane] = pair.round_a;
     g.round[1][lane] = pair.round_b;
     for (int i = 0; i < 3; ++i) {
@@ -105,6 +106,7 @@ void fill_axes(LaneRolling& to, int lane, const Pairs& pairs, const Pair& pair, 
 
 void clear_pair(LaneGroup& g, int lane) {
     g.friction[lane] = g.round[0][lane] = g.round[1][lane] = 0;
+    g.stiffness[lane] = 1;
     for (int i = 0; i < 3; ++i) g.normal[i][lane] = g.tangent[i][lane] = 0;
 }
 

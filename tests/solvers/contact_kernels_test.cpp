@@ -56,6 +56,7 @@ struct Data {
         for (uint32_t i = 0; i < kGroups; ++i) {
             std::shuffle(order.begin(), order.end(), engine);
             LaneGroup g{};
+            std::fill(std::begin(g.stiffness), std::end(g.stiffness), 1.0f);
             g.bounces = i % 5 != 3;
             g.points = 1 + static_cast<uint32_t>(engine() % 4);
             for (int lane = 0; lane < kLanes; ++lane) {
