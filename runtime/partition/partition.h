@@ -156,6 +156,7 @@ private:
 
     // Of what something kinematic drives before it: a body, and the contacts on the way to it.
     struct Squeeze {
+        uint32_t by;          // slot of the kinematic one
         uint32_t node, pair;  // slot; index in Pairs::active, of the last contact
         uint32_t before;      // index in squeezes_ of the body before it, or kNone
         uint32_t contacts;    // on the way
@@ -187,7 +188,7 @@ private:
     void find_squeezed(const Nodes& nodes, Pairs& pairs, double weight);
     void soften_squeezed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void begin_squeezes(const Nodes& nodes, const Pairs& pairs, double time_step);
-    void soften(const Squeeze& last, double most, double furthest, Pairs& pairs);
+    void soften(const Nodes& nodes, const Squeeze& last, double most, double furthest, Pairs& pairs);
     void find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void push_on(const Nodes& nodes, const Pairs& pairs);
     void choose_direct(const Nodes& nodes, const Joints& joints);

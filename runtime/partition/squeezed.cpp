@@ -32,6 +32,11 @@ double overlap_of(const Pair& pair) {
     return -static_cast<double>(least);
 }
 
+// How far two can overlap before they part on the other side [m]: Pace::thickness is that of half a body.
+double room_of(const Pairs& pairs, const Pair& pair) {
+    return pairs.pace[pair.collider_a()].thickness + pairs.pace[pair.collider_b()].thickness;
+}
+
 // By how much contacts yield to the weight of what they bear [m].
 double yield_to_weight(const SweepTerms& terms, const PartitionRules& rules) {
     const auto share = static_cast<double>(terms.mass_scale * terms.bias_rate / terms.impulse_scale);
@@ -53,28 +58,39 @@ void Partition::begin_squeezes(const Nodes& nodes, const Pairs& pairs, double ti
         const Vec3f along = -normal_from(pairs, node, p);
         const double lack = overlap_of(pair) + speed_along(nodes, by, pair, along) * time_step;
         reserve_more(squeezes_, 1);
-        squeezes_.push_back({node, p, kNone, 1, along, lack});
+        squeezes_.push_back({by, node, p, kNone, 1, along, lack});
     }
 }
 
-// All contacts on the way to the last, so that on average they yield by what they lack under so many weights; of all
-// ways that lead through a contact, the narrowest counts. The deeper, the stiffer: SweepTerms::push bounds how fast each
-// goes back, and with the same for all a weight would draw what is squeezed on through one side.
-void Partition::soften(const Squeeze& last, double most, double furthest, Pairs& pairs) {
+// The contacts on the way to the last, so that each yields by its part of what is lacking under so many weights; of all
+// ways that lead through a contact, the narrowest counts. Parts are as what is thin can take them; where nothing can,
+// what drives goes on alone. Who took more than its part is stiffer: SweepTerms::push bounds how fast each goes back,
+// and with the same for all a weight would draw what is squeezed on through one side.
+void Partition::soften(const Nodes& nodes, const Squeeze& last, double most, double furthest, Pairs& pairs) {
     if (!(last.lack > most * last.contacts)) return;
-    const double mean = last.lack / last.contacts;
-    for (const Squeeze* at = &last;; at = &squeezes_[at->before]) {
-        const uint32_t index = pairs.active[at->pair].pair;
-        const double part = 0.5 * (1 + std::max(0.0, overlap_of(pairs.list[index])) / mean);
-        reserve_more(softened_, 1);
-        softened_.push_back(index);
+    const auto for_way = [&](auto act) {
+        for (const Squeeze* at = &last;; at = &squeezes_[at->before]) {
+            const uint32_t index = pairs.active[at->pair].pair;
+            act(index, std::min(room_of(pairs, pairs.list[index]), last.lack));
+            if (at->before == kNone) break;
+        }
+    };
+    double all = 0;
+    for_way([&](uint32_t, double room) { all += room; });
+    reserve_more(softened_, last.contacts);
+    for_way([&](uint32_t index, double room) {
+        const Pair& pair = pairs.list[index];
+        if (last.lack > all && !drives(nodes, pair.a) && !drives(nodes, pair.b)) return;
+        const double part = std::min(1.0, last.lack / all) * room;
+        const double taken = 0.5 * (1 + std::max(0.0, overlap_of(pair)) / part);
         float& stiffness = pairs.list[index].stiffness;
-        stiffness = std::min(stiffness, static_cast<float>(part * most / std::min(mean, furthest)));
-        if (at->before == kNone) break;
-    }
+        stiffness = std::min(stiffness, static_cast<float>(taken * most / std::min(part, furthest)));
+        softened_.push_back(index);
+    });
 }
 
-// Breadth first from what is kinematic, through each body once, to what does not yield.
+// Breadth first from what is kinematic, through each body once, to what does not yield; but for a container itself,
+// whose walls leave as much room as before.
 void Partition::soften_squeezed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules) {
     for (const uint32_t index : softened_)
         if (index < pairs.list.size()) pairs.list[index].stiffness = 1;
@@ -93,10 +109,12 @@ void Partition::soften_squeezed(const Nodes& nodes, Pairs& pairs, const Partitio
             if (p == of.pair || pairs.active[p].spans() || !(of.along.dot(normal) > kAhead)) continue;
             const Pair& pair = pairs.list[pairs.active[p].pair];
             const uint32_t next = graph_.touches[p].other(of.node);
-            Squeeze to{next, p, i, of.contacts + 1, of.along, of.lack + overlap_of(pair)};
+            const uint32_t end = pair.a == of.node ? pair.b : pair.a;
+            Squeeze to{of.by, next, p, i, of.contacts + 1, of.along, of.lack + overlap_of(pair)};
             if (next == kNone) {
-                to.lack -= speed_along(nodes, pair.a == of.node ? pair.b : pair.a, pair, of.along) * rules.time_step;
-                soften(to, most_weights(island_[island_of_[of.node]].nodes) * yield, furthest, pairs);
+                if (end == of.by) continue;
+                to.lack -= speed_along(nodes, end, pair, of.along) * rules.time_step;
+                soften(nodes, to, most_weights(island_[island_of_[of.node]].nodes) * yield, furthest, pairs);
             } else if (!reached[next]) {
                 reached[next] = 1;
                 reserve_more(squeezes_, 1);
