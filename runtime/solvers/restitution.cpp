@@ -59,6 +59,11 @@ private:
                            [](const RowBlock& each) { return each.restitution > 0; });
     }
 
+    // At the substep's begin.
+    const NodeMotion& motion(uint32_t at) const {
+        return sys_.lent ? sys_.motion[at] : s_.nodes.motion[sys_.node_at[at]];
+    }
+
     void note_forces() {
         const size_t seats = sys_.pose.size();
         all_.flight.assign(seats, {});
@@ -66,9 +71,8 @@ private:
         all_.held.clear();
         for (const uint32_t node : s_.group.nodes) {
             const uint32_t at = sys_.at(node);
-            const Vec3& before = sys_.lent ? sys_.motion[at].v : s_.nodes.motion[node].v;
-            for (int i = 0; i < 3; ++i)
-                all_.flight[at].gained[i] = static_cast<float>(sys_.exact[at].v[i] - before[i]);
+            const Vec3& before = motion(at).v;
+            for (int i = 0; i < 3; ++i) all_.flight[at].gained[i] = static_cast<float>(sys_.exact[at].v[i] - before[i]);
         }
     }
 
@@ -270,6 +274,7 @@ private:
             first = std::min(first, bodies_[side->body].time);
         }
         impact.time = !moves ? 0 : impact.supports ? first : fall.time(sys_.h);
+        align(impact);
         Mat3 k = Mat3::Zero();
         for (int r = 0; r < 3; ++r) {
             impact.impulse[r] = impact.known[r] = 0;
@@ -285,6 +290,41 @@ private:
             impact.approach += side->linear[0].dot(body.before.v) + side->angular[0].dot(body.before.w);
         }
         if (!moves && fall.gap > 0) impact.restitution = restitution_above(impact, fall.gained / sys_.h * fall.gap);
+    }
+
+    // Levers are of when the contact was found, and its sides have moved on since or have a way to go until they meet:
+    // with ends that are apart, angular momentum comes from nothing. As they meet, forces of a row act on one line. The
+    // side whose centre of mass is further from the normal takes more of the change, so that it turns no ball.
+    void align(Impact& impact) const {
+        if (impact.sides != 2) return;  // of particles, which do not turn
+        Impact::Side *const a = impact.side, *const b = a + 1;
+        if (a->body == kNone || b->body == kNone) return;
+        const Vec3 end_a = place_at(*a, impact.time) + lever_of(*a), end_b = place_at(*b, impact.time) + lever_of(*b);
+        const double arm_a = arm_of(*a), arm_b = arm_of(*b);
+        if (!(arm_a + arm_b > 0)) return;
+        shift_lever(*a, arm_a / (arm_a + arm_b) * (end_b - end_a));
+        shift_lever(*b, arm_b / (arm_a + arm_b) * (end_a - end_b));
+    }
+    static void shift_lever(Impact::Side& side, const Vec3& by) {
+        for (int r = 0; r < 3; ++r) side.angular[r] += by.cross(side.linear[r]);
+    }
+    // Square of how far the normal is from the centre of mass, and as much more as rounding makes of nothing; of what
+    // does not turn, 0 [m^2].
+    double arm_of(const Impact::Side& side) const {
+        constexpr double kRounding = 1e-6;  // of the lever, squared
+        const bool turns = s_.nodes.mass[sys_.node_at[side.at]].inv_inertia.xx > 0;
+        return turns ? side.angular[0].squaredNorm() + kRounding * lever_of(side).squaredNorm() : 0;
+    }
+    // Where its path takes a side.
+    Vec3 place_at(const Impact::Side& side, double time) const {
+        const ImpactBody& body = bodies_[side.body];
+        return motion(side.at).x + wide(all_.flight[side.at].moved) + body.moves * time * body.before.v;
+    }
+    // r of the moments r x l about three axes l at right angles: sum of l x (r x l) = 2 r.
+    static Vec3 lever_of(const Impact::Side& side) {
+        Vec3 sum = Vec3::Zero();
+        for (int r = 0; r < 3; ++r) sum += side.linear[r].cross(side.angular[r]);
+        return 0.5 * sum;
     }
 
     // Of what leaves above the surface: so that it has e^2 of its energy there. work: of forces on the way [m^2/s^2].

@@ -85,6 +85,52 @@ TEST(HangingRow, KeepsMomentumAndEnergyInAnElasticBlow) {
             }
 }
 
+// Two free bodies of any shape, of which one hits the other anywhere; what they lose of angular momentum, in parts of
+// their momentum times how far apart they were.
+double lost_turning(uint32_t seed, double restitution, double rate, uint32_t substeps) {
+    std::mt19937 random(seed);
+    const World world([&](taut_world_def& def) {
+        def.gravity = {0, 0, 0};
+        def.substeps = substeps;
+        def.time_step = static_cast<float>(1 / rate);
+    });
+    const auto shape = [&] {
+        const double r = draw(random, 0.1, 0.4);
+        const uint32_t kind = random() % 3;
+        return kind == 0   ? world.sphere(r)
+               : kind == 1 ? world.box({r, draw(random, 0.1, 0.4), draw(random, 0.1, 0.4)})
+                           : world.capsule(r, draw(random, 0.1, 0.3));
+    };
+    const double friction = one_in(random, 2) ? draw(random, 0, 0.8) : 0;
+    const Vec from = direction(random), aim = draw(random, 0, 0.3) * direction(random);
+    std::vector<taut_body> bodies;
+    for (const bool comes : {false, true})
+        bodies.push_back(world.add({.shape = shape(),
+                                    .position = comes ? 1.6 * from + aim : Vec{},
+                                    .rotation = Quat::turn(direction(random), draw(random, 0, 3)),
+                                    .velocity = comes ? draw(random, 3, 9) * -from : Vec{},
+                                    .spin = draw(random, 0, 3) * direction(random),
+                                    .mass = draw(random, 1, 8),
+                                    .friction = friction,
+                                    .restitution = restitution}));
+    const Balance start(bodies);
+    world.step(static_cast<int>(0.6 * rate));
+    return norm(Balance(bodies).turning - start.turning) / (start.momentum_scale * start.size);
+}
+
+TEST(Impact, KeepsAngularMomentum) {
+    for (const double rate : {30.0, 60.0, 240.0})
+        for (const uint32_t substeps : {1u, 4u, 8u}) {
+            std::vector<double> lost;
+            for (uint32_t seed = 1; seed <= 60; ++seed)
+                lost.push_back(lost_turning(seed, seed % 2 == 0 ? 1 : 0.4, rate, substeps));
+            std::sort(lost.begin(), lost.end());
+            const std::string text = std::to_string(rate) + " Hz, " + std::to_string(substeps) + " substeps";
+            EXPECT_LE(lost[lost.size() / 2], 1e-4) << text;
+            EXPECT_LE(lost[9 * lost.size() / 10], rate * substeps < 60 ? 5e-3 : 5e-4) << text;
+        }
+}
+
 class FreeMechanism : public testing::TestWithParam<uint32_t> {};
 
 // Angular momentum as far as a straight substep keeps it: what turns opens joints, and what bounces has moved past the
