@@ -29,7 +29,6 @@ Partition::Partition(Memory& memory)
       efforts_(memory),
       presses_(memory),
       squeezes_(memory),
-      softened_(memory),
       small_(memory),
       pressed_(memory),
       tied_(memory),

@@ -246,7 +246,7 @@ private:
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those
     Array<Squeeze> squeezes_;                      // scratch: in the order of reach
-    Array<uint32_t> softened_;                     // pairs of less stiffness, by index in Pairs::list
+    bool softened_ = false;                        // in the last frame: some pairs have less stiffness
     Array<uint32_t> small_;                        // scratch: touches of small islands, by index in Pairs::active
     Array<uint8_t> pressed_;                       // scratch: by index in Pairs::active
     Array<uint8_t> tied_;                          // by slot: has a joint

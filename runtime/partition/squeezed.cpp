@@ -77,7 +77,6 @@ void Partition::soften(const Nodes& nodes, const Squeeze& last, double most, dou
     };
     double all = 0;
     for_way([&](uint32_t, double room) { all += room; });
-    reserve_more(softened_, last.contacts);
     for_way([&](uint32_t index, double room) {
         const Pair& pair = pairs.list[index];
         if (last.lack > all && !drives(nodes, pair.a) && !drives(nodes, pair.b)) return;
@@ -85,22 +84,22 @@ void Partition::soften(const Nodes& nodes, const Squeeze& last, double most, dou
         const double taken = 0.5 * (1 + std::max(0.0, overlap_of(pair)) / part);
         float& stiffness = pairs.list[index].stiffness;
         stiffness = std::min(stiffness, static_cast<float>(taken * most / std::min(part, furthest)));
-        softened_.push_back(index);
+        softened_ = true;
     });
 }
 
 // Breadth first from what is kinematic, through each body once, to what does not yield; but for a container itself,
 // whose walls leave as much room as before.
 void Partition::soften_squeezed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules) {
-    for (const uint32_t index : softened_)
-        if (index < pairs.list.size()) pairs.list[index].stiffness = 1;
-    softened_.clear();
+    if (softened_)  // which ones is not known: records change places between frames
+        for (Pair& pair : pairs.list) pair.stiffness = 1;
+    softened_ = false;
     begin_squeezes(nodes, pairs, rules.time_step);
     if (squeezes_.empty()) return;
     const SweepTerms terms = contact_terms(rules.spring_substep);
     const double yield = yield_to_weight(terms, rules);
     const auto furthest = static_cast<double>(terms.push / terms.bias_rate);  // overlap that pushes as more does [m]
-    auto& reached = core_;  // until blocks are built
+    auto& reached = core_;                                                    // until blocks are built
     reached.assign(nodes.slots(), 0);
     for (uint32_t i = 0; i < squeezes_.size(); ++i) {  // grows
         const Squeeze of = squeezes_[i];

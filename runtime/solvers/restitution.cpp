@@ -308,12 +308,12 @@ private:
     static void shift_lever(Impact::Side& side, const Vec3& by) {
         for (int r = 0; r < 3; ++r) side.angular[r] += by.cross(side.linear[r]);
     }
-    // Square of how far the normal is from the centre of mass, and as much more as rounding makes of nothing; of what
-    // does not turn, 0 [m^2].
+    // Square of how far the normal is from the centre of mass, and a thousandth of the lever, so that two balls take
+    // half each and not what rounding leaves them; of what does not turn, 0 [m^2].
     double arm_of(const Impact::Side& side) const {
-        constexpr double kRounding = 1e-6;  // of the lever, squared
+        constexpr double kLeastArm = 1e-3;  // of the lever: floats lose 1e-7
         const bool turns = s_.nodes.mass[sys_.node_at[side.at]].inv_inertia.xx > 0;
-        return turns ? side.angular[0].squaredNorm() + kRounding * lever_of(side).squaredNorm() : 0;
+        return turns ? side.angular[0].squaredNorm() + kLeastArm * kLeastArm * lever_of(side).squaredNorm() : 0;
     }
     // Where its path takes a side.
     Vec3 place_at(const Impact::Side& side, double time) const {
@@ -400,7 +400,8 @@ private:
         }
         for (const Impact& impact : impacts_) {
             if (!(impact.impulse[0] > 0)) continue;
-            all_.strikes.push_back({impact.pair, impact.point,
+            all_.strikes.push_back({impact.pair,
+                                    impact.point,
                                     {static_cast<float>(impact.impulse[0]), static_cast<float>(impact.impulse[1]),
                                      static_cast<float>(impact.impulse[2])}});
             if (impact.peak) *impact.peak = std::max(*impact.peak, static_cast<float>(impact.impulse[0]));

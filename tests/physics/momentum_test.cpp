@@ -133,8 +133,8 @@ TEST(Impact, KeepsAngularMomentum) {
 
 class FreeMechanism : public testing::TestWithParam<uint32_t> {};
 
-// Angular momentum as far as a straight substep keeps it: what turns opens joints, and what bounces has moved past the
-// line of its blow. Elastic blows of one substep may gain a little where joints are to close. Some starts of each kind;
+// Angular momentum as far as a straight substep keeps it: what turns opens joints, and what closes them moves bodies
+// without a force. Elastic blows of one substep may gain a little where joints are to close. Some starts of each kind;
 // tests/soak has more.
 TEST_P(FreeMechanism, KeepsMomentumAndGainsNoEnergy) {
     for (const double restitution : {0.0, 1.0})
