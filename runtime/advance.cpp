@@ -232,7 +232,6 @@ void restart_path(World& world, uint32_t node) {
 
 void change_time_step(World& world, float time_step) {
     const double by = static_cast<double>(time_step) / static_cast<double>(world.def.time_step);
-    for_pairs(world.pairs, [&](Pair& pair) { scale_impulses(pair, static_cast<float>(by)); });
     for_paths(world.nodes, [&](KinematicPath& path, NodeMotion& motion) {
         if (path.asked) set_speed(motion, limited({motion.v / by, motion.w / by}));
     });

@@ -97,10 +97,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     const bool lends = w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !w.observer;
     MotionLoan loan(w.team, system, group, w.nodes);
     bool loaded = false, sane = false;  // the nodes, as far as is known
-    uint32_t as_long = group.substeps;  // in a frame, as the last one
     while (!part.done()) {
         const uint32_t i = part.number();
-        if (part.length() != system.h) change_length(w.team, system, group, part.length(), frame);
+        if (part.length() != system.h) change_length(w.team, system, group, w.pairs, part.length(), frame);
         if (loaded || !sane) {
             loan.end();
             loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
@@ -148,11 +147,9 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         gather_impulses(system, w.impacts, w.pairs, w.watch);
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
-        as_long = part.per_frame();
         part.advance(substep.turn);
     }
     loan.end();
-    note_substeps(group, as_long, w.pairs);
     w.profile.substeps = std::max(w.profile.substeps, part.number());
     if (!sane) quarantine(w.team, w.nodes, group.nodes, w.frozen);
     if (!solver.lanes) return;

@@ -156,8 +156,9 @@ typedef struct taut_contact {
     taut_pos position;      /**< midway between the two surfaces [m] */
     taut_vec3 normal;       /**< unit, from a to b */
     float separation;       /**< [m], negative when overlapping */
-    float normal_impulse;   /**< of the last substep [N s] */
-    float friction_impulse; /**< magnitude, of the last substep [N s] */
+    float normal_impulse;   /**< of the force in the last substep, over the world's least substep [N s]: time_step /
+                                 taut_world_def::substeps, however many its island took */
+    float friction_impulse; /**< magnitude, likewise [N s] */
     taut_collider collider_a;
     taut_collider collider_b;
 } taut_contact;

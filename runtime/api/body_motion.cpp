@@ -100,7 +100,7 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
         restart_path(world, node);
         wake_about(world, node);
         for_pairs(world.pairs, [&](Pair& pair) {
-            if (ends_on(node)(pair)) std::fill(std::begin(pair.impulse), std::end(pair.impulse), Impulse{});
+            if (ends_on(node)(pair)) forget_forces(pair);
         });
         for (Joint& joint : world.joints.record)
             if (ends_on(joint, node)) forget_angles(joint);

@@ -58,6 +58,7 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
         }
         if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
         *count = needed;
+        const auto substep = static_cast<float>(world.last_step / world.least_substeps());
         for_pairs(world.pairs, [&](const Pair& pair) {
             if (!pair.touching) return;
             const taut_body a = world.body_handle(pair.a), b = world.body_handle(pair.b);
@@ -65,14 +66,14 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
             const Vec3f& normal = pair.manifold.normal;
             for (int i = 0; i < pair.manifold.count; ++i) {
                 const collision::ContactPoint& point = pair.manifold.points[i];
-                const Impulse& impulse = pair.impulse[i];
+                const ContactForce& force = pair.force[i];
                 *contacts++ = {a,
                                b,
                                to_pos(origin + point.position.cast<double>()),
                                {normal.x(), normal.y(), normal.z()},
                                point.separation,
-                               impulse.normal,
-                               std::hypot(impulse.tangent1, impulse.tangent2),
+                               substep * force.normal,
+                               substep * std::hypot(force.tangent1, force.tangent2),
                                world.collider_handle(pair.collider_a()),
                                world.collider_handle(pair.collider_b())};
             }

@@ -12,8 +12,8 @@ using namespace taut;
 namespace {
 
 constexpr uint32_t kMaxThreads = 64;
-constexpr Range kSleepSpeed{0, 10};  // [m/s]
-constexpr Range kSleepTime{0, 1e3};  // [s]
+constexpr Range kSleepSpeed{0, 10};             // [m/s]
+constexpr Range kSleepTime{0, 1e3};             // [s]
 constexpr Range kRestitutionThreshold{0, 1e4};  // [m/s]
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
@@ -141,7 +141,7 @@ taut_result taut_world_set_substeps(taut_world handle, uint32_t substeps) {
     Check check(__func__);
     if (!check.count("substeps", substeps, 1, kMaxSubsteps)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        world.def.substeps = substeps;  // pairs know how many their impulses are for
+        world.def.substeps = substeps;
         world.spring_substep = std::max(world.first_substep, static_cast<double>(world.def.time_step) / substeps);
         return TAUT_OK;
     });

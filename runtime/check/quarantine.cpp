@@ -66,12 +66,12 @@ bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uin
 }
 
 void drop_bad_impulses(Pairs& pairs, Joints& joints) {
-    const auto drop = [](Impulse& p) {
+    const auto drop = [](ContactForce& p) {
         if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
     };
     for (Pair& pair : pairs.list) {
-        for (Impulse& p : pair.impulse) drop(p);
-        drop(pair.turning);
+        for (ContactForce& p : pair.force) drop(p);
+        drop(pair.torque);
     }
     for (Joint& joint : joints.record) {
         bool bad = false;

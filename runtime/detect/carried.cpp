@@ -25,24 +25,24 @@ bool any_carries(const Nodes& nodes) {
 //   (F / F_s)^2 + (T / T_s)^2 < 1    (ellipsoidal limit surface: Howe and Cutkosky 1996).
 // Single points say nothing: against each other they may all be at their bounds.
 bool sticks(const Pair& pair) {
-    constexpr float kWithin = 0.999f;  // of the bounds; impulses are floats
+    constexpr float kWithin = 0.999f;  // of the bounds; forces are floats
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
     Vec3f force = Vec3f::Zero(), centre = Vec3f::Zero();
     float pressure = 0, torque = 0, arms = 0;
     const auto each = [&](auto visit) {
-        for (int k = 0; k < pair.manifold.count; ++k) visit(pair.impulse[k], pair.manifold.points[k].position);
+        for (int k = 0; k < pair.manifold.count; ++k) visit(pair.force[k], pair.manifold.points[k].position);
     };
-    each([&](const Impulse& impulse, const Vec3f& point) {
-        pressure += impulse.normal;
-        centre += impulse.normal * point;
+    each([&](const ContactForce& at, const Vec3f& point) {
+        pressure += at.normal;
+        centre += at.normal * point;
     });
     if (!(pressure > 0)) return false;
     centre /= pressure;
-    each([&](const Impulse& impulse, const Vec3f& point) {
-        const Vec3f push = impulse.tangent1 * t1 + impulse.tangent2 * t2, arm = point - centre;
+    each([&](const ContactForce& at, const Vec3f& point) {
+        const Vec3f push = at.tangent1 * t1 + at.tangent2 * t2, arm = point - centre;
         force += push;
         torque += n.dot(arm.cross(push));
-        arms += impulse.normal * (arm - n.dot(arm) * n).norm();
+        arms += at.normal * (arm - n.dot(arm) * n).norm();
     });
     const float slide = force.norm() / (pair.friction * pressure);
     const float turn = arms > 0 ? torque / (pair.friction * arms) : 0;
@@ -102,7 +102,8 @@ bool hold(const Nodes& nodes, float borne, double time_step, const Carried& from
     if (!sticks(pair) || !(tipped(nodes, pair, from, now) <= kTips)) return false;
     const Slip slip(nodes, pair, from);
     const double inv_mass = std::max(nodes.mass[pair.a].inv_mass, nodes.mass[pair.b].inv_mass);
-    if (!(slip.way.norm() <= static_cast<double>(pair.friction * borne) * inv_mass * time_step)) return false;
+    const double friction = static_cast<double>(pair.friction * borne);
+    if (!(slip.way.norm() <= friction * inv_mass * time_step * time_step)) return false;
     drive_back(slip, time_step, pair);
     return true;
 }

@@ -11,14 +11,14 @@ constexpr float kSamePoint = 0.02f;
 
 // What points gave that are gone: together, as a force with its moment.
 struct Lost {
-    float normal = 0;                // [N s]
-    Vec3f moment = Vec3f::Zero();    // sum of normal impulse times position [N s m]
-    Vec3f friction = Vec3f::Zero();  // [N s]
+    float normal = 0;                // [N]
+    Vec3f moment = Vec3f::Zero();    // sum of normal force times position [N m]
+    Vec3f friction = Vec3f::Zero();  // [N]
 
-    void add(const Vec3f& position, const Impulse& impulse, const Vec3f& t1, const Vec3f& t2) {
-        normal += impulse.normal;
-        moment += impulse.normal * position;
-        friction += impulse.tangent1 * t1 + impulse.tangent2 * t2;
+    void add(const Vec3f& position, const ContactForce& force, const Vec3f& t1, const Vec3f& t2) {
+        normal += force.normal;
+        moment += force.normal * position;
+        friction += force.tangent1 * t1 + force.tangent2 * t2;
     }
 };
 
@@ -26,7 +26,7 @@ struct Lost {
 // heaps in which points come and go never rest. Of all shares d_i that leave the pair's force and moment as they were,
 //   sum d_i = F,  sum d_i (x_i, y_i) = M,
 // the least ones, d = F / n + b x + c y with x, y from the mean of the points; of M as much as no d below 0 bears.
-void hand_over(const Lost& lost, const collision::Manifold& now, const Vec3f& t1, const Vec3f& t2, Impulse* to) {
+void hand_over(const Lost& lost, const collision::Manifold& now, const Vec3f& t1, const Vec3f& t2, ContactForce* to) {
     const float even = lost.normal / static_cast<float>(now.count);
     Vec3f mean = Vec3f::Zero();
     for (int i = 0; i < now.count; ++i) mean += now.points[i].position / static_cast<float>(now.count);
@@ -55,10 +55,10 @@ void hand_over(const Lost& lost, const collision::Manifold& now, const Vec3f& t1
     }
 }
 
-// Impulses of the old points onto the new ones: by feature, else by place, what is left over, if all is asked for, to
+// Forces of the old points onto the new ones: by feature, else by place, what is left over, if all is asked for, to
 // all; friction turned into the new tangents.
-void carry_impulses(const collision::Manifold& old, const Impulse* from, bool all, const collision::Manifold& now,
-                    Impulse* to) {
+void carry_forces(const collision::Manifold& old, const ContactForce* from, bool all, const collision::Manifold& now,
+                  ContactForce* to) {
     const Vec3f t1 = tangent_of(now.normal), t2 = now.normal.cross(t1);
     const Vec3f o1 = tangent_of(old.normal), o2 = old.normal.cross(o1);
     unsigned left = (1u << old.count) - 1, missing = 0;  // bits of old points, and of new ones
@@ -95,36 +95,35 @@ void carry_impulses(const collision::Manifold& old, const Impulse* from, bool al
 }
 
 // Friction torques carried over, turned into the frame of the new manifold.
-void carry_turning(const collision::Manifold& old, Impulse turning, float spin_slip, Pair& pair) {
+void carry_torque(const collision::Manifold& old, ContactForce torque, float spin_slip, Pair& pair) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), o1 = tangent_of(old.normal);
-    const Vec3f sum = turning.normal * old.normal + turning.tangent1 * o1 + turning.tangent2 * old.normal.cross(o1);
-    pair.turning = {sum.dot(n), sum.dot(t1), sum.dot(n.cross(t1)), turning.slip};
+    const Vec3f sum = torque.normal * old.normal + torque.tangent1 * o1 + torque.tangent2 * old.normal.cross(o1);
+    pair.torque = {sum.dot(n), sum.dot(t1), sum.dot(n.cross(t1)), torque.slip};
     pair.spin_slip = spin_slip;
 }
 
 // Whether points have something to carry: without a push there is no friction; those in blocks may know their slip.
 bool bore(const collision::Manifold& old, const Pair& before) {
-    return std::any_of(before.impulse, before.impulse + old.count,
-                       [](const Impulse& impulse) { return impulse.normal > 0 || impulse.slip >= 0; });
+    return std::any_of(before.force, before.force + old.count,
+                       [](const ContactForce& force) { return force.normal > 0 || force.slip >= 0; });
 }
 
 }  // namespace
 
 void carry(const collision::Manifold& old, const Pair& before, Pair& pair) {
-    if (old.count == 0) return forget_impulses(pair);
+    if (old.count == 0) return forget_forces(pair);
     pair.in_block = before.in_block;
     pair.loaded = before.loaded;
-    pair.substeps = before.substeps;
     if (bore(old, before)) {
-        Impulse carried[4];
-        std::copy(before.impulse, before.impulse + 4, carried);
+        ContactForce carried[4];
+        std::copy(before.force, before.force + 4, carried);
         // Flat faces keep most of their points, and the rest are not worth the time.
         const bool is_round = pair.patch > 0;
-        carry_impulses(old, carried, is_round, pair.manifold, pair.impulse);
+        carry_forces(old, carried, is_round, pair.manifold, pair.force);
     } else {
-        std::fill(pair.impulse, pair.impulse + 4, Impulse{});
+        std::fill(pair.force, pair.force + 4, ContactForce{});
     }
-    if (pair.twists()) carry_turning(old, before.turning, before.spin_slip, pair);
+    if (pair.twists()) carry_torque(old, before.torque, before.spin_slip, pair);
 }
 
 void carry_on(const Vec3f& old_normal, Pair& pair) {

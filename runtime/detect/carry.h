@@ -5,7 +5,7 @@
 
 namespace taut {
 
-// Impulses of the record before, which go with its manifold `old`, onto the points of a pair: by feature, else by
+// Forces of the record before, which go with its manifold `old`, onto the points of a pair: by feature, else by
 // place; those of points of round shapes that are gone go to all, with the force and moment that they had. All turned
 // into the tangents of the new normal. before may be the pair itself.
 void carry(const collision::Manifold& old, const Pair& before, Pair& pair);

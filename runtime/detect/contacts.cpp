@@ -167,7 +167,7 @@ void list_active(Team& team, Pairs& pairs) {
             const Pair& pair = pairs.list[p];
             near.asks = pair.asks;
             const auto points = static_cast<uint8_t>(pair.manifold.count);
-            const float borne = push_of(pair.manifold, pair.impulse) * static_cast<float>(pair.substeps);
+            const float borne = push_of(pair.manifold, pair.force);
             *to++ = {pair.a, pair.b, p, points, pair.asks, pair.loaded, pair.in_block, pair.a2, pair.b2, borne, index};
         }
     };
@@ -179,7 +179,7 @@ void forget_unheld(Pairs& pairs) {
     if (!pairs.any_unheld) return;
     for (const ActivePair& active : pairs.active) {
         Pair& pair = pairs.list[active.pair];
-        if ((pairs.unheld[active.a] || pairs.unheld[active.b]) && !pair.in_block) forget_impulses(pair);
+        if ((pairs.unheld[active.a] || pairs.unheld[active.b]) && !pair.in_block) forget_forces(pair);
     }
 }
 

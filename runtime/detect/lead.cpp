@@ -47,8 +47,8 @@ float patch_of(const Pairs& pairs, const PairEnds& pair) {
 double lead_of(const Detection& of, const Pair& pair) {
     constexpr float kStill = 5e-5f;  // [m], as in reuse.cpp
     if (of.lead == 0 || pair.patch == 0) return 0;
-    const auto bears = [](const Impulse& impulse) { return impulse.normal > 0; };
-    if (std::none_of(pair.impulse, pair.impulse + pair.manifold.count, bears)) return 0;
+    const auto bears = [](const ContactForce& force) { return force.normal > 0; };
+    if (std::none_of(pair.force, pair.force + pair.manifold.count, bears)) return 0;
     const Stance &a = of.pairs.stance[pair.collider_a()], &b = of.pairs.stance[pair.collider_b()];
     const float most = kStill / static_cast<float>(of.lead);
     const auto moves = [&](const Stance& side) {

@@ -66,7 +66,7 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
 // What is wedged is pushed by what would throw it out at a hundred metres a second, from both sides. Where one side
 // slips off, or pushes another way from now on, a substep's sweeps take no more than most of the other's away, and as
 // contacts do not pull, the rest stays; direct solves do not lag. Bodies that lose more than this speed [m/s] of a
-// push, and this part of it, begin without any. Pushes are along the normals [N s].
+// push, and this part of it, begin without any. Pushes are along the normals [N].
 void note_lost(const Detection& of, const PairEnds& pair, float push, const Vec3f& normal, const Vec3f& left) {
     constexpr double kLost = 3;
     constexpr float kPart = 0.1f;
@@ -74,7 +74,8 @@ void note_lost(const Detection& of, const PairEnds& pair, float push, const Vec3
     if (!(lost.squaredNorm() > kPart * kPart * push * push)) return;
     const auto mark = [](uint8_t& flag) { std::atomic_ref(flag).store(1, std::memory_order_relaxed); };
     for (const uint32_t node : {pair.a, pair.b}) {
-        if (!(static_cast<double>(lost.norm()) * of.nodes.mass[node].inv_mass > kLost)) continue;
+        const double impulse = of.substep() * static_cast<double>(lost.norm());
+        if (!(impulse * of.nodes.mass[node].inv_mass > kLost)) continue;
         mark(of.pairs.unheld[node]);
         mark(of.pairs.any_unheld);
     }
@@ -90,7 +91,7 @@ void note_shapes(const Pairs& pairs, Pair& pair) {
     pair.patch = patch_of(pairs, pair);
 }
 
-// A pair's new manifold: its place, its surface unless that is known, and the impulses that the record before had with
+// A pair's new manifold: its place, its surface unless that is known, and the forces that the record before had with
 // the old one. Whether it is kept.
 bool adopt(const Shaped& shaped, const Detection& of, bool known, const collision::Manifold& old, const Pair& before,
            Pair& pair) {
@@ -104,9 +105,9 @@ bool adopt(const Shaped& shaped, const Detection& of, bool known, const collisio
     pair.then = shaped.then();
     shaped.bring_to_present(pair);
     if (!known) meet(of, shaped.at_a(), shaped.at_b(), from_a, pair);
-    const float push = before.in_block ? 0 : push_of(old, before.impulse);
+    const float push = before.in_block ? 0 : push_of(old, before.force);
     carry(old, before, pair);
-    if (push > 0) note_lost(of, pair, push, old.normal, push_of(pair.manifold, pair.impulse) * pair.manifold.normal);
+    if (push > 0) note_lost(of, pair, push, old.normal, push_of(pair.manifold, pair.force) * pair.manifold.normal);
     return shaped.can_be_kept() && keep_manifold(of.pairs, of.time, pair);
 }
 
@@ -127,7 +128,7 @@ void take_over(const Shaped& shaped, const Detection& of, const collision::Manif
     near.kept = pair.manifold.count > 0 && adopt(shaped, of, known, old, pair, pair);
     near.changed = false;
     if (pair.manifold.count > 0) return;
-    if (old.count > 0 && !pair.in_block) note_lost(of, pair, push_of(old, pair.impulse), old.normal, Vec3f::Zero());
+    if (old.count > 0 && !pair.in_block) note_lost(of, pair, push_of(old, pair.force), old.normal, Vec3f::Zero());
 }
 
 // Whether the axis that parted two last still does.
@@ -324,7 +325,7 @@ void find_open_points(const Detection& of, bool solid_is_b, const collision::Sol
     const Vec3f from_a = offset_of(of.nodes, of.colliders.record[pair.collider_a()], shaped.at_a(), shaped.then());
     for (int k = 0; k < pair.manifold.count; ++k) pair.manifold.points[k].position += from_a;
     shaped.bring_to_present(pair);
-    forget_impulses(pair);
+    forget_forces(pair);
 }
 
 bool reuse(const Detection& of, const NearPair& near, Pair& pair) {

@@ -23,7 +23,9 @@ struct Detection {
     const Shapes& shapes;
     Pairs& pairs;
     double time;  // ahead [s]
-    double lead;  // of contacts that move over their surfaces [s]; see Shaped
+    double lead;  // of contacts that move over their surfaces, their mean age in the time ahead [s]; see Shaped
+
+    double substep() const { return time - 2 * lead; }
 };
 
 // Two shapes as they stand in a pair, or as they will where they meet later in the time ahead.

@@ -18,7 +18,6 @@ public:
     bool last() const { return at_ + size_ == end_; }
     uint32_t number() const { return number_; }                     // of those that were kept before this one
     double length() const { return time(size_); }                   // [s]
-    uint32_t per_frame() const { return end_ / size_; }             // as long as this
     double begin() const { return time(at_); }                      // [s], of the frame
     double end() const { return time(at_ + size_); }                // [s]
     double left() const { return 1 - double(at_ + size_) / end_; }  // share of the frame

@@ -52,7 +52,7 @@ double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_st
     }
     double inverse = 0;  // of the reduced mass [1/kg]
     for (const uint32_t side : {pair.a, pair.b}) inverse += moving(nodes, side) ? nodes.mass[side].inv_mass : 0;
-    if (borne * inverse > kLoad * time_step) return std::numeric_limits<double>::infinity();
+    if (borne * inverse > kLoad) return std::numeric_limits<double>::infinity();
     return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
 }
 

@@ -21,10 +21,7 @@ double most_weights(uint32_t bodies, bool beside_held) {
     return taut::most_weights(bodies) * (beside_held ? kBesideHeld : 1);
 }
 
-// The impulse of a weight in a frame, over its mass [N s/kg].
-double weight_of(const PartitionRules& rules) { return least_gravity(rules) * rules.time_step; }
-
-// Counts the frames in which a contact bore more than that [N s]; whether it did so for a while.
+// Counts the frames in which a contact bore more than that [N]; whether it did so for a while.
 bool bears(Pairs& pairs, ActivePair& active, double most) {
     const int frames = static_cast<double>(active.borne) > most ? std::min(active.loaded + 1, int{kPressedFor}) : 0;
     if (frames != active.loaded) active.loaded = pairs.list[active.pair].loaded = static_cast<uint8_t>(frames);
@@ -56,7 +53,7 @@ void Partition::add_press(const Press& press) {
 void Partition::find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules) {
     presses_.clear();
     if (small_.empty()) return;
-    const double weight = weight_of(rules);
+    const double weight = least_gravity(rules);  // of a mass [N/kg]
     std::fill(pressed_.begin(), pressed_.end(), 0);
     note_held(nodes, pairs);
     find_squeezed(nodes, pairs, weight);

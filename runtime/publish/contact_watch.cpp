@@ -34,8 +34,11 @@ void follow_points(const collision::Manifold& now, WatchedPair& watched) {
     }
 }
 
-Impulse impulse_of(const WatchedPair& watched, const System& system, const Pair& pair, int k) {
-    if (watched.lane_group == kNone) return pair.impulse[k];
+// Of the last substep [N s]: normal, tangent 1, tangent 2.
+Vec3f impulse_of(const WatchedPair& watched, const System& system, const Pair& pair, int k) {
+    const ContactForce& force = pair.force[k];
+    if (watched.lane_group == kNone)
+        return static_cast<float>(system.h) * Vec3f(force.normal, force.tangent1, force.tangent2);
     const ContactLanes& lanes = system.contacts;
     const LanePoint& p = lanes.group[watched.lane_group].point[k];
     return {p.impulse[0][watched.lane], p.impulse[1][watched.lane], p.impulse[2][watched.lane]};
@@ -87,9 +90,9 @@ void gather_impulses(const System& system, const Impacts& impacts, const Pairs& 
         follow_points(pair.manifold, watched);
         const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
         for (int k = 0; k < pair.manifold.count; ++k) {
-            const Impulse impulse = impulse_of(watched, system, pair, k);
-            watched.normal[k] += impulse.normal;
-            watched.friction[k] += impulse.tangent1 * t1 + impulse.tangent2 * t2;
+            const Vec3f impulse = impulse_of(watched, system, pair, k);
+            watched.normal[k] += impulse[0];
+            watched.friction[k] += impulse[1] * t1 + impulse[2] * t2;
         }
     }
     for (const Impacts::Strike& strike : impacts.strikes) {

@@ -64,8 +64,7 @@ bool will_touch(const World& world, const Pair& pair) {
 
 bool touches_closely(const Pair& pair) {
     for (int k = 0; k < pair.manifold.count; ++k)
-        if (static_cast<double>(pair.manifold.points[k].separation) <= kClose || pair.impulse[k].normal > 0)
-            return true;
+        if (static_cast<double>(pair.manifold.points[k].separation) <= kClose || pair.force[k].normal > 0) return true;
     return false;
 }
 

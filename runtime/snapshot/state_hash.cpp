@@ -151,7 +151,7 @@ void add_found(Hash& hash, const FoundManifold& found, int count) {
     for (int k = 0; k < count; ++k) hash.add(found.separation[k]);
 }
 
-void add_pair(Hash& hash, const NearPair& near, const Pair& pair, uint32_t substeps) {
+void add_pair(Hash& hash, const NearPair& near, const Pair& pair) {
     if (pair.manifold.count == 0) return;
     hash.add(pair.key);
     if (pair.part != 0) hash.add(static_cast<uint64_t>(pair.part));
@@ -160,24 +160,22 @@ void add_pair(Hash& hash, const NearPair& near, const Pair& pair, uint32_t subst
     for (uint32_t word : pair.cache) hash.add(static_cast<uint64_t>(word));
     if (pair.in_block) hash.add(uint64_t{1});
     if (pair.loaded > 0) hash.add(uint64_t{2} + pair.loaded);
-    if (pair.substeps != 0 && pair.substeps != substeps) hash.add(uint64_t{pair.substeps} << 32);
     if (near.kept) add_found(hash, pair.found, pair.manifold.count);
     for (int k = 0; k < pair.manifold.count; ++k) {
         hash.add(static_cast<uint64_t>(pair.manifold.points[k].feature));
-        hash.add(pair.impulse[k].normal);
-        hash.add(pair.impulse[k].tangent1);
-        hash.add(pair.impulse[k].tangent2);
-        hash.add(pair.impulse[k].slip);
+        hash.add(pair.force[k].normal);
+        hash.add(pair.force[k].tangent1);
+        hash.add(pair.force[k].tangent2);
+        hash.add(pair.force[k].slip);
     }
     if (!pair.twists()) return;
-    for (float x :
-         {pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2, pair.turning.slip, pair.spin_slip})
+    for (float x : {pair.torque.normal, pair.torque.tangent1, pair.torque.tangent2, pair.torque.slip, pair.spin_slip})
         hash.add(x);
 }
 
-void add_pairs(Hash& hash, const Pairs& pairs, uint32_t substeps) {
+void add_pairs(Hash& hash, const Pairs& pairs) {
     for_near(pairs, [&](const NearPair& near) {
-        for_parts(pairs, near, [&](const Pair& pair) { add_pair(hash, near, pair, substeps); });
+        for_parts(pairs, near, [&](const Pair& pair) { add_pair(hash, near, pair); });
     });
     for (const Stay& stay : pairs.mechanisms.stays) hash.add(static_cast<uint64_t>(stay.root) << 32 | stay.frames);
 }
@@ -198,7 +196,7 @@ uint64_t state_hash(const World& world) {
     add_colliders(hash, world.colliders);
     add_joints(hash, world.joints);
     add_cables(hash, world.cables);
-    add_pairs(hash, world.pairs, world.def.substeps);
+    add_pairs(hash, world.pairs);
     for (const Block& block : world.partition.blocks) {
         hash.add(block.memory.excess_energy);
         hash.add(static_cast<uint64_t>(block.memory.guard_left) << 1 | block.memory.escalated);

@@ -24,30 +24,16 @@ uint32_t take_slot(Pairs& pairs, const PairEnds& ends) {
     return slot;
 }
 
-void forget_impulses(Pair& pair) {
-    std::fill(pair.impulse, pair.impulse + 4, Impulse{});
-    pair.turning = {};
+void forget_forces(Pair& pair) {
+    std::fill(pair.force, pair.force + 4, ContactForce{});
+    pair.torque = {};
     pair.spin_slip = -1;
-}
-
-void scale_impulses(Pair& pair, float factor) {
-    const auto scale = [&](Impulse& impulse) {
-        for (float* each : {&impulse.normal, &impulse.tangent1, &impulse.tangent2}) *each *= factor;
-    };
-    std::for_each_n(pair.impulse, pair.manifold.count, scale);
-    scale(pair.turning);
-}
-
-void change_substeps(Pair& pair, uint32_t substeps) {
-    if (pair.substeps == substeps) return;
-    scale_impulses(pair, static_cast<float>(pair.substeps) / static_cast<float>(substeps));
-    pair.substeps = static_cast<uint16_t>(substeps);
 }
 
 void leave_block(Pair& pair) {
     if (!pair.in_block) return;
     pair.in_block = false;
-    forget_impulses(pair);
+    forget_forces(pair);
 }
 
 void give_slots(Pairs& pairs, NearPair& near) {

@@ -22,7 +22,7 @@ constexpr double kBoxLag = 0.5;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
 
-struct Impulse {  // of one contact point [N s], in the frame (normal, tangent1, tangent2) of its manifold
+struct ContactForce {  // of one contact point [N], in the frame (normal, tangent1, tangent2) of its manifold
     float normal = 0, tangent1 = 0, tangent2 = 0;
     float slip = -1;  // of points in blocks: compliance of sliding friction [1/kg]; 0: sticks; -1: new
 };
@@ -105,14 +105,14 @@ struct Pair : PairEnds {
     float then = 0;                // when the two meet, for a manifold found there [s]; 0: now; detect/impact.h
     // Radii of the balls that grow the two cores to their shapes [m]; see state/levers.h.
     float round_a = 0, round_b = 0;
-    Impulse impulse[4];  // by point: carried in, updated by the solver
-    float friction = 0;  // of the two surfaces together
+    ContactForce force[4];  // by point: carried in, updated by the solver
+    float friction = 0;     // of the two surfaces together
     float restitution = 0;
     float spinning = 0, rolling = 0;  // arms of the friction torques [m]
-    float stiffness = 1;  // of its normal rows in sweeps, in parts of what contacts have; partition/squeezed.cpp
-    float patch = 0;                  // radius of the patch in which a round side touches [m]; see spinning_arm()
-    Impulse turning;                  // of these torques [N m s]; slip: of rolling [rad^2/(kg m^2)]
-    float spin_slip = -1;             // the same of spinning
+    float stiffness = 1;   // of its normal rows in sweeps, in parts of what contacts have; partition/squeezed.cpp
+    float patch = 0;       // radius of the patch in which a round side touches [m]; see spinning_arm()
+    ContactForce torque;   // of these, as forces [N m]; slip: of rolling [rad^2/(kg m^2)]
+    float spin_slip = -1;  // the same of spinning
     // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
     // bodies: drive + drive_spin x p [m/s], world axes, p as the points of the manifold.
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
@@ -122,9 +122,8 @@ struct Pair : PairEnds {
     bool pushed = false;                    // some point was in this step, in any of its substeps
     bool answered = false;                  // the host gave this step's friction and restitution
     bool in_block = false;                  // was solved directly when it was solved last
-    uint8_t loaded = 0;     // frames in which it bore much, one after another in a small island; partition/pressed.cpp
-    uint8_t asks = 0;       // bits of contact events, kAsks: of the world and the two colliders
-    uint16_t substeps = 0;  // that are as long as the one that its impulses are of, in a frame; 0: it has none
+    uint8_t loaded = 0;  // frames in which it bore much, one after another in a small island; partition/pressed.cpp
+    uint8_t asks = 0;    // bits of contact events, kAsks: of the world and the two colliders
 
     // What find_contacts() alone asks for: the last kSought bytes.
     PointsCache cache{};
@@ -146,10 +145,10 @@ struct Pair : PairEnds {
     }
 };
 
-// The sum of the points' normal impulses [N s].
-inline float push_of(const collision::Manifold& manifold, const Impulse* impulse) {
+// The sum of the points' normal forces [N].
+inline float push_of(const collision::Manifold& manifold, const ContactForce* force) {
     float sum = 0;
-    for (int k = 0; k < manifold.count; ++k) sum += impulse[k].normal;
+    for (int k = 0; k < manifold.count; ++k) sum += force[k].normal;
     return sum;
 }
 
@@ -199,7 +198,7 @@ struct ActivePair {
     uint8_t loaded = 0;
     bool in_block = false;
     uint32_t a2 = kNone, b2 = kNone;  // the second nodes of sides that span two
-    float borne = 0;                  // by its points, if they push all frame as in the last substep [N s]
+    float borne = 0;                  // by its points in the last substep [N]
     uint32_t near = 0;                // index into Pairs::near
 
     bool spans() const { return a2 != kNone || b2 != kNone; }
@@ -311,11 +310,7 @@ uint32_t take_slot(Pairs& pairs, const PairEnds& ends);
 void give_slots(Pairs& pairs, NearPair& near);
 
 // As if the two had just met.
-void forget_impulses(Pair& pair);
-// Impulses push as hard as before in substeps that are longer by a factor, ...
-void scale_impulses(Pair& pair, float factor);
-// ... or of which there are so many in a step.
-void change_substeps(Pair& pair, uint32_t substeps);
+void forget_forces(Pair& pair);
 // Of a pair that is swept from now on. A direct solve sets hundreds of times a light body's momentum against as much
 // from its other side, and sweeps that begin with what is left of that throw it out at kilometres a second.
 void leave_block(Pair& pair);

@@ -22,7 +22,8 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
 void evaluate_rows(Team& team, System& system, double frame_left, double frame);
 // Largest |J v + c mu - target| of the equality rows [m/s or rad/s].
 double row_residual(System& system, const JointKernels& kernels);
-// After a substep: impulses of contact rows back into the pairs.
+// Between a pair's forces and its rows' impulses, before a substep and after it.
+void load_contact_rows(System& system);
 void store_contact_rows(const System& system);
 
 // Once a frame and group: contacts by colour into lanes, with effective masses.
@@ -30,6 +31,8 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
                  const ContactKernels& kernels);
 // Once a substep: levers and effective masses of contacts on bodies that turned.
 void turn_lanes(Team& team, System& system, const Group& group, const ContactKernels& kernels);
+// Between the pairs' forces and the impulses in lanes.
+void load_lanes(Team& team, System& system, const Pairs& pairs);
 void store_lanes(Team& team, const System& system, Pairs& pairs);
 
 // Once a frame and group: swept joints by colour into lanes.
@@ -43,9 +46,7 @@ void prepare_joint_lanes(Team& team, System& system, const JointKernels& kernels
 // Once a frame and group: their forces back into the joints.
 void store_joint_lanes(Team& team, const System& system);
 
-// Where the next substep has another length: forces stay, impulses become those of that length.
-void change_length(Team& team, System& system, const Group& group, double h, double frame);
-// Once a frame is over: impulses are of substeps of which so many make a frame.
-void note_substeps(const Group& group, uint32_t substeps, Pairs& pairs);
+// Where the next substep has another length: forces stay.
+void change_length(Team& team, System& system, const Group& group, Pairs& pairs, double h, double frame);
 
 }  // namespace taut

@@ -15,17 +15,25 @@ void clear_lane(LanePoint& p, int lane) {
     p.gap0[lane] = p.gap[lane] = p.normal_mass[lane] = p.peak[lane] = p.restitution[lane] = 0;
 }
 
-void fill_lane(LanePoint& p, int lane, const Levers& levers, float separation, const Impulse& impulse,
-               float restitution) {
+// Impulses of substeps of length h [s].
+void load(float (&impulse)[3][kLanes], int lane, const ContactForce& force, float h) {
+    impulse[0][lane] = h * force.normal;
+    impulse[1][lane] = h * force.tangent1;
+    impulse[2][lane] = h * force.tangent2;
+}
+
+// Of what bears nothing, 0 and not -0, whoever else is in its lanes.
+ContactForce force_of(const float (&impulse)[3][kLanes], int lane, float h) {
+    return {impulse[0][lane] / h + 0.0f, impulse[1][lane] / h + 0.0f, impulse[2][lane] / h + 0.0f};
+}
+
+void fill_lane(LanePoint& p, int lane, const Levers& levers, float separation, float restitution) {
     for (int i = 0; i < 3; ++i) {
         p.ra[i][lane] = static_cast<float>(levers.a.at[i]);
         p.rb[i][lane] = static_cast<float>(levers.b.at[i]);
     }
     p.gap0[lane] = p.gap[lane] = separation;
     p.normal_mass[lane] = 1;  // in use; the kernel puts the mass here
-    p.impulse[0][lane] = impulse.normal;
-    p.impulse[1][lane] = impulse.tangent1;
-    p.impulse[2][lane] = impulse.tangent2;
     p.peak[lane] = 0;
     p.restitution[lane] = restitution;
 }
@@ -42,13 +50,10 @@ void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* p
     }
 }
 
-void fill_rolling(LaneRolling& rolling, int lane, const Pair* pair) {
+void fill_rolling(LaneRolling& rolling, int lane, const Pair* pair, float h) {
     rolling.arm[0][lane] = pair ? pair->spinning_arm() : 0;
     rolling.arm[1][lane] = pair ? pair->rolling_arm() : 0;
-    const bool turns = pair && pair->twists();
-    rolling.impulse[0][lane] = turns ? pair->turning.normal : 0;
-    rolling.impulse[1][lane] = turns ? pair->turning.tangent1 : 0;
-    rolling.impulse[2][lane] = turns ? pair->turning.tangent2 : 0;
+    load(rolling.impulse, lane, pair && pair->twists() ? pair->torque : ContactForce(), h);
 }
 
 Movement movement_of(const Nodes& nodes, uint32_t node) {
@@ -70,7 +75,7 @@ struct PairMovement {
 };
 
 // One pair into one lane of a group; its points into the group's first points.
-void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes) {
+void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes, float h) {
     const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
     g.friction[lane] = pair.friction;
     g.stiffness[lane] = pair.stiffness;
@@ -81,9 +86,11 @@ void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, con
         g.tangent[i][lane] = t1[i];
     }
     const PairMovement moves(pairs, pair, nodes);
-    for (int k = 0; k < pair.manifold.count; ++k)
+    for (int k = 0; k < pair.manifold.count; ++k) {
         fill_lane(g.point[k], lane, on_ball_paths(pairs, nodes, pair, moves.levers(pair, k)),
-                  pair.manifold.points[k].separation, pair.impulse[k], pair.restitution);
+                  pair.manifold.points[k].separation, pair.restitution);
+        load(g.point[k].impulse, lane, pair.force[k], h);
+    }
 }
 
 void fill_axes(LaneRolling& to, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes) {
@@ -126,8 +133,7 @@ void prefetch_pair(const LaneGroup& g, const LaneGroup* next, int lane, const Pa
 
 // The pairs that share_out() chose, into their lanes; next: the group after, or null. What is special about the group
 // is noted in it and has no room yet. Returns whether a pair bounces.
-bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& pairs,
-                const Nodes& nodes) {
+bool fill_group(LaneGroup& g, const LaneGroup* next, float h, Pairs& pairs, const Nodes& nodes) {
     bool bounces = false, driven = false, turns = false, round = false, rolls = false;
     for (int lane = 0; lane < kLanes; ++lane) {
         prefetch_pair(g, next, lane, pairs);
@@ -135,8 +141,7 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, uint32_t substeps, Pairs& p
         if (g.pair[lane] != kNone) {
             Pair& pair = pairs.list[g.pair[lane]];
             leave_block(pair);
-            change_substeps(pair, substeps);
-            fill_pair(g, lane, pairs, pair, nodes);
+            fill_pair(g, lane, pairs, pair, nodes, h);
             filled = static_cast<uint32_t>(pair.manifold.count);
             bounces = bounces || pair.restitution > 0;
             driven = driven || pair.driven;
@@ -168,11 +173,11 @@ void make_special_room(ContactLanes& lanes, LaneGroup& g) {
     }
 }
 
-void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs, const Nodes& nodes) {
+void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs, const Nodes& nodes, float h) {
     for (int lane = 0; lane < kLanes; ++lane) {
         const Pair* pair = pair_of(g, lane, pairs);
         if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair);
-        if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair);
+        if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair, h);
         if (g.has_axes && pair) fill_axes(lanes.rolling[g.rolling], lane, pairs, *pair, nodes);
     }
 }
@@ -184,6 +189,7 @@ bool is_special(const LaneGroup& g) { return g.first_drive != kNoLanes || g.roll
 void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
+    const auto h = static_cast<float>(system.h);
     lanes.drive.clear();
     lanes.rolling.clear();
     share_out(team, system, pairs, group);
@@ -193,7 +199,7 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
         const uint32_t begin = lanes.part[part].begin, end = lanes.part[part].end;
         for (uint32_t i = begin; i < end; ++i) {
             LaneGroup& g = lanes.group[i];
-            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, group.substeps, pairs, nodes))
+            if (fill_group(g, i + 1 < end ? &g + 1 : nullptr, h, pairs, nodes))
                 bounces.store(true, std::memory_order_relaxed);
             if (is_special(g))
                 special.store(true, std::memory_order_relaxed);
@@ -207,7 +213,7 @@ void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, c
     for_lane_parts(team, lanes, [&](uint32_t part) {
         for (uint32_t i = lanes.part[part].begin; i < lanes.part[part].end; ++i) {
             if (!is_special(lanes.group[i])) continue;
-            fill_special(lanes, lanes.group[i], pairs, nodes);
+            fill_special(lanes, lanes.group[i], pairs, nodes, h);
             prepare(i);
         }
     });
@@ -257,31 +263,49 @@ void turn_lanes(Team& team, System& system, const Group& group, const ContactKer
     });
 }
 
-void store_lanes(Team& team, const System& system, Pairs& pairs) {
-    const ContactLanes& lanes = system.contacts;
-    const auto store = [&](const LaneGroup& g, int lane) {
-        Pair& pair = pairs.list[g.pair[lane]];
-        pair.pushed = false;
-        for (int k = 0; k < pair.manifold.count; ++k) {
-            const LanePoint& p = g.point[k];
-            pair.pushed = pair.pushed || p.peak[lane] > 0;
-            // Of what bears nothing, 0 and not -0, whoever else is in its lanes.
-            pair.impulse[k] = {p.impulse[0][lane] + 0.0f, p.impulse[1][lane] + 0.0f, p.impulse[2][lane] + 0.0f};
-        }
-        if (!pair.twists()) return;
-        const float(&turning)[3][kLanes] = lanes.rolling[g.rolling].impulse;
-        pair.turning = {turning[0][lane] + 0.0f, turning[1][lane] + 0.0f, turning[2][lane] + 0.0f};
-        pair.spin_slip = -1;
-    };
+namespace {
+
+// Calls act(group, lane, pair) for all lanes in use, their records asked for ahead.
+template <class Act>
+void for_pairs_in_lanes(Team& team, const ContactLanes& lanes, const Pairs& pairs, const Act& act) {
     for_lane_parts(team, lanes, [&](uint32_t part) {
         const uint32_t end = lanes.part[part].end;
         for (uint32_t i = lanes.part[part].begin; i < end; ++i) {
             const LaneGroup& g = lanes.group[i];
             for (int lane = 0; lane < kLanes; ++lane) {
                 prefetch_pair(g, i + 1 < end ? &g + 1 : nullptr, lane, pairs);
-                if (g.pair[lane] != kNone) store(g, lane);
+                if (g.pair[lane] != kNone) act(g, lane, g.pair[lane]);
             }
         }
+    });
+}
+
+}  // namespace
+
+void load_lanes(Team& team, System& system, const Pairs& pairs) {
+    ContactLanes& lanes = system.contacts;
+    const auto h = static_cast<float>(system.h);
+    for_pairs_in_lanes(team, lanes, pairs, [&](const LaneGroup& g, int lane, uint32_t index) {
+        const Pair& pair = pairs.list[index];
+        for (int k = 0; k < pair.manifold.count; ++k) load(g.point[k].impulse, lane, pair.force[k], h);
+        if (pair.twists()) load(lanes.rolling[g.rolling].impulse, lane, pair.torque, h);
+    });
+}
+
+void store_lanes(Team& team, const System& system, Pairs& pairs) {
+    const ContactLanes& lanes = system.contacts;
+    const auto h = static_cast<float>(system.h);
+    for_pairs_in_lanes(team, lanes, pairs, [&](const LaneGroup& g, int lane, uint32_t index) {
+        Pair& pair = pairs.list[index];
+        pair.pushed = false;
+        for (int k = 0; k < pair.manifold.count; ++k) {
+            const LanePoint& p = g.point[k];
+            pair.pushed = pair.pushed || p.peak[lane] > 0;
+            pair.force[k] = force_of(p.impulse, lane, h);
+        }
+        if (!pair.twists()) return;
+        pair.torque = force_of(lanes.rolling[g.rolling].impulse, lane, h);
+        pair.spin_slip = -1;
     });
 }
 

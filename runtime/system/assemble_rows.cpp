@@ -62,8 +62,8 @@ ContactData contact_data(const System& system, const Nodes& nodes, const Pairs& 
     const NodeMotion &ma = nodes.motion[pair.a], &mb = nodes.motion[pair.b];
     const Vec3 arm_a = a.R * nodes.mass[pair.a].centre, arm_b = b.R * nodes.mass[pair.b].centre;
     const Axles axles = axles_of(pairs, pair, arm_a, arm_b);
-    const Levers levers = on_ball_paths(pairs, nodes, pair,
-                                        levers_of(pair, k, arm_a, axles, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w}));
+    const Levers levers =
+        on_ball_paths(pairs, nodes, pair, levers_of(pair, k, arm_a, axles, {a.x, ma.v, ma.w}, {b.x, mb.v, mb.w}));
     ContactData data;
     data.anchor_a = a.R.transpose() * levers.a.core();
     data.anchor_b = b.R.transpose() * levers.b.core();
@@ -136,12 +136,17 @@ void note_approach(const Vec3& apart, const Vec3& normal, RowBlock& block) {
     block.hits = -apart.dot(normal) > kHardSpeed;
 }
 
+void load(System& system, const RowBlock& block) {
+    double* const impulse = &system.rows.impulse[block.row];
+    impulse[0] = system.h * static_cast<double>(block.contact->normal);
+    impulse[1] = system.h * static_cast<double>(block.contact->tangent1);
+    impulse[2] = system.h * static_cast<double>(block.contact->tangent2);
+}
+
 // What a block of rows carries over.
-void carry(System& system, RowBlock& block, Impulse& impulse) {
-    block.contact = &impulse;
-    system.rows.impulse[block.row] = impulse.normal;
-    system.rows.impulse[block.row + 1] = impulse.tangent1;
-    system.rows.impulse[block.row + 2] = impulse.tangent2;
+void carry(System& system, RowBlock& block, ContactForce& force) {
+    block.contact = &force;
+    load(system, block);
 }
 
 RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
@@ -191,7 +196,7 @@ void add_rolling(System& system, Pair& pair, uint32_t points) {
     block.loaded = points;
     block.loads = static_cast<uint32_t>(pair.manifold.count);
     block.spin_slip = &pair.spin_slip;
-    carry(system, block, pair.turning);
+    carry(system, block, pair.torque);
 }
 
 // Rows of the points of some active pairs; room for their data is reserved.
@@ -211,7 +216,7 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
             block.point = static_cast<uint8_t>(k);
             set_drive(pair, k, block);
             block.pushed = &pair.pushed;
-            carry(system, block, pair.impulse[k]);
+            carry(system, block, pair.force[k]);
         }
         if (pair.turns() && pair.manifold.count > 0) add_rolling(system, pair, points);
     }
@@ -236,12 +241,8 @@ void make_room_for_blocks(System& system) {
 }
 
 // Of pairs that come as rows, at the beginning of a frame.
-void begin_rows(std::span<const uint32_t> active_pairs, uint32_t substeps, Pairs& pairs) {
-    for (uint32_t p : active_pairs) {
-        Pair& pair = pairs.list[pairs.active[p].pair];
-        pair.pushed = false;
-        change_substeps(pair, substeps);
-    }
+void begin_rows(std::span<const uint32_t> active_pairs, Pairs& pairs) {
+    for (uint32_t p : active_pairs) pairs.list[pairs.active[p].pair].pushed = false;
 }
 
 }  // namespace
@@ -273,7 +274,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     reserve_room(rows.span_data, kPoints * (group.span_pairs.size() + group.direct_pairs.size()));
     reserve_room(rows.rolling_data, whole);
     for (const Array<uint32_t>* as_rows : {&group.pairs, &group.span_pairs, &group.direct_pairs})
-        if (contacts_as_rows || as_rows != &group.pairs) begin_rows(*as_rows, group.substeps, pairs);
+        if (contacts_as_rows || as_rows != &group.pairs) begin_rows(*as_rows, pairs);
     if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
     for (const uint32_t p : group.span_pairs) leave_block(pairs.list[pairs.active[p].pair]);
     for (const uint32_t p : group.direct_pairs) pairs.list[pairs.active[p].pair].in_block = true;
@@ -343,14 +344,19 @@ void evaluate_rows(Team& team, System& system, double frame_left, double frame) 
     }
 }
 
+void load_contact_rows(System& system) {
+    for (const RowBlock& block : system.rows.block)
+        if (block.contact) load(system, block);
+}
+
 void store_contact_rows(const System& system) {
     for (const RowBlock& block : system.rows.block) {
         if (!block.contact) continue;
         const double* mu = &system.rows.impulse[block.row];
-        block.contact->normal = static_cast<float>(mu[0]);
+        block.contact->normal = static_cast<float>(mu[0] / system.h);
         if (block.pushed && mu[0] > 0) *block.pushed = true;
-        block.contact->tangent1 = static_cast<float>(mu[1]);
-        block.contact->tangent2 = static_cast<float>(mu[2]);
+        block.contact->tangent1 = static_cast<float>(mu[1] / system.h);
+        block.contact->tangent2 = static_cast<float>(mu[2] / system.h);
     }
 }
 

@@ -45,7 +45,7 @@ struct RowBlock {
     double relaxation[2];            // time d [s]: compliance * damping, likewise
     const Axis* axis;                // of each row, or null: all are locked
     AxisMemory* memory;              // of each row, with axis
-    Impulse* contact;                // what a contact point carries on; null for joints
+    ContactForce* contact;           // what a contact point carries on; null for joints
     bool* pushed;                    // of a contact point: its pair's
     double friction;                 // of a cone
     double drive[2];                 // of a cone: J v that friction drives the tangents to [m/s]

@@ -49,8 +49,8 @@ void add_floats(Hash& hash, const Vec3f& v) {
     for (int i = 0; i < 3; ++i) hash.add(v[i]);
 }
 
-void add_impulse(Hash& hash, const Impulse& impulse) {
-    for (float x : {impulse.normal, impulse.tangent1, impulse.tangent2, impulse.slip}) hash.add(x);
+void add_force(Hash& hash, const ContactForce& force) {
+    for (float x : {force.normal, force.tangent1, force.tangent2, force.slip}) hash.add(x);
 }
 
 void add_motion(const World& world, uint32_t node, Sums& sums) {
@@ -90,7 +90,7 @@ void add_contacts(const World& world, Sums& sums) {
             add_floats(hash, pair.manifold.points[k].position);
             hash.add(pair.manifold.points[k].separation);
             hash.add(uint64_t{pair.manifold.points[k].feature});
-            add_impulse(hash, pair.impulse[k]);
+            add_force(hash, pair.force[k]);
         }
     }
 }
@@ -181,7 +181,7 @@ void add_results(const World& world, Sums& sums) {
     for (const Joint& joint : world.joints.record)
         for (int r = 0; joint.type && r < joint.type->rows; ++r) sums.of(joint).add(joint.lambda[r]);
     for_pairs(world.pairs, [&](const Pair& pair) {
-        for (int k = 0; k < pair.manifold.count; ++k) add_impulse(sums.of(pair), pair.impulse[k]);
+        for (int k = 0; k < pair.manifold.count; ++k) add_force(sums.of(pair), pair.force[k]);
     });
 }
 

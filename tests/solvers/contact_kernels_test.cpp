@@ -282,7 +282,7 @@ void add_surface(Pair& pair, Random& random) {
         pair.spinning = static_cast<float>(0.05 * random.unit());
         pair.rolling = static_cast<float>(0.1 * random.unit());
         const Vec3 carried = 0.01 * random.vector();
-        pair.turning = {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
+        pair.torque = {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
                         static_cast<float>(carried.z())};
     }
     if (random.unit() < 0.5) return;
@@ -322,9 +322,9 @@ void build_pile(Rig& rig, uint64_t seed) {
                 pair.friction = static_cast<float>(random.unit());
                 if (seed % 2 == 0) add_surface(pair, random);
                 for (int k = 0; k < pair.manifold.count; ++k) {
-                    pair.impulse[k].normal = static_cast<float>(random.unit());
-                    pair.impulse[k].tangent1 = static_cast<float>(0.2 * random.unit());
-                    pair.impulse[k].tangent2 = static_cast<float>(-0.2 * random.unit());
+                    pair.force[k].normal = static_cast<float>(240 * random.unit());
+                    pair.force[k].tangent1 = static_cast<float>(48 * random.unit());
+                    pair.force[k].tangent2 = static_cast<float>(-48 * random.unit());
                 }
             }
         }
@@ -335,9 +335,9 @@ std::vector<Vec3> impulses(const Rig& rig) {
     std::vector<Vec3> out;
     for (const Pair& pair : rig.w.pairs.list)
         for (int k = 0; k < pair.manifold.count; ++k)
-            out.push_back(Vec3(pair.impulse[k].normal, pair.impulse[k].tangent1, pair.impulse[k].tangent2));
+            out.push_back(Vec3(pair.force[k].normal, pair.force[k].tangent1, pair.force[k].tangent2));
     for (const Pair& pair : rig.w.pairs.list)
-        out.push_back(Vec3(pair.turning.normal, pair.turning.tangent1, pair.turning.tangent2));
+        out.push_back(Vec3(pair.torque.normal, pair.torque.tangent1, pair.torque.tangent2));
     return out;
 }
 

@@ -39,9 +39,9 @@ private:
     std::mt19937 random_;
 };
 
-float sum_of(const Impulse* impulse, int count) {
+float sum_of(const ContactForce* force, int count) {
     float sum = 0;
-    for (int i = 0; i < count; ++i) sum += impulse[i].normal;
+    for (int i = 0; i < count; ++i) sum += force[i].normal;
     return sum;
 }
 
@@ -53,15 +53,14 @@ TEST(Carry, KeepsTheSumOfWhatRoundShapesCarryAndPullsNowhere) {
             const collision::Manifold old = points.manifold(about, 0);
             Pair last, pair;
             pair.patch = 0.01f;
-            for (int k = 0; k < old.count; ++k) last.impulse[k].normal = points.between(0, 1);
-            const float before = sum_of(last.impulse, old.count);
+            for (int k = 0; k < old.count; ++k) last.force[k].normal = points.between(0, 1);
+            const float before = sum_of(last.force, old.count);
             pair.manifold = points.manifold(about + points.within(0.05), points.heads() ? 0 : 8);
             carry(old, last, pair);
-            EXPECT_NEAR(sum_of(pair.impulse, pair.manifold.count), before, 1e-3f * before)
-                << run << ", " << far << " m";
+            EXPECT_NEAR(sum_of(pair.force, pair.manifold.count), before, 1e-3f * before) << run << ", " << far << " m";
             for (int i = 0; i < pair.manifold.count; ++i) {
-                EXPECT_GE(pair.impulse[i].normal, -1e-3f * before) << run << ", " << far << " m";
-                EXPECT_LE(pair.impulse[i].normal, 1.001f * before) << run << ", " << far << " m";
+                EXPECT_GE(pair.force[i].normal, -1e-3f * before) << run << ", " << far << " m";
+                EXPECT_LE(pair.force[i].normal, 1.001f * before) << run << ", " << far << " m";
             }
         }
     }

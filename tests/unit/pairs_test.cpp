@@ -95,37 +95,19 @@ TEST(OrderSlots, TakesSlotsThatWereGivenBack) {
     scattered.expect_all_slots_once();
 }
 
-TEST(Pair, LeavesABlockWithoutItsImpulses) {
+TEST(Pair, LeavesABlockWithoutItsForces) {
     Pair pair, swept;
     for (Pair* each : {&pair, &swept}) {
-        for (Impulse& impulse : each->impulse) impulse.normal = 500;
-        each->turning.tangent1 = 1;
+        for (ContactForce& force : each->force) force.normal = 500;
+        each->torque.tangent1 = 1;
     }
     pair.in_block = true;
     for (Pair* each : {&pair, &swept}) leave_block(*each);
     EXPECT_FALSE(pair.in_block);
-    EXPECT_EQ(pair.turning.tangent1, 0);
-    EXPECT_EQ(swept.turning.tangent1, 1);
-    for (const Impulse& impulse : pair.impulse) EXPECT_EQ(impulse.normal, 0);
-    for (const Impulse& impulse : swept.impulse) EXPECT_EQ(impulse.normal, 500);
-}
-
-TEST(Pair, PushesAsHardInSubstepsOfAnotherLength) {
-    Pair pair;
-    pair.manifold.count = 2;
-    pair.impulse[1] = {6, 4, -2, 0.5f};
-    pair.turning.tangent2 = 12;
-    change_substeps(pair, 4);
-    EXPECT_EQ(pair.impulse[1].normal, 0) << "it had no length";
-    pair.impulse[1] = {6, 4, -2, 0.5f};
-    pair.turning.tangent2 = 12;
-    change_substeps(pair, 8);
-    EXPECT_EQ(pair.substeps, 8);
-    EXPECT_EQ(pair.impulse[1].normal, 3);
-    EXPECT_EQ(pair.impulse[1].tangent1, 2);
-    EXPECT_EQ(pair.impulse[1].tangent2, -1);
-    EXPECT_EQ(pair.impulse[1].slip, 0.5f);
-    EXPECT_EQ(pair.turning.tangent2, 6);
+    EXPECT_EQ(pair.torque.tangent1, 0);
+    EXPECT_EQ(swept.torque.tangent1, 1);
+    for (const ContactForce& force : pair.force) EXPECT_EQ(force.normal, 0);
+    for (const ContactForce& force : swept.force) EXPECT_EQ(force.normal, 500);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ struct Graph {
             ActivePair& active = pairs.active.emplace_back(ActivePair{touching[i].a, touching[i].b, i, points});
             active.loaded = touching[i].loaded;
             active.in_block = touching[i].in_block;
-            active.borne = touching[i].impulse[0].normal * static_cast<float>(touching[i].substeps);
+            active.borne = touching[i].force[0].normal;
         }
     }
     void build() {

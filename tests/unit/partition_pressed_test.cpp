@@ -86,9 +86,7 @@ struct Row {
     // From one contact on to before another [N].
     void bear(size_t from, size_t to, double force) const {
         for (size_t i = from; i < to; ++i) {
-            Pair& pair = of.touching[first + i];
-            pair.substeps = static_cast<uint16_t>(of.rules.substeps);
-            pair.impulse[0].normal = static_cast<float>(force * of.rules.time_step / of.rules.substeps);
+            of.touching[first + i].force[0].normal = static_cast<float>(force);
         }
     }
 
