@@ -56,7 +56,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     CLI::Option* substeps_flag =
         app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
     CLI::Option* solver_flag =
-        app.add_option("--solver", solver, "block_ldlt, projected_gauss_seidel or accelerated_jacobi");
+        app.add_option("--solver", solver, "one of taut_solver: block_ldlt, projected_gauss_seidel ...");
     app.add_flag("--no-render", no_render, "simulate only");
     app.add_flag("--no-hud", no_hud, "leave out the figures in the picture");
     app.add_flag("--sleep", options.sleep, "let what came to rest sleep; it is drawn darker");

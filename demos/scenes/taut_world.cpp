@@ -121,28 +121,15 @@ taut_result add_body(taut_world world, const Body& body, taut_shape shape, uint6
     return taut_world_add_body(world, &def, out);
 }
 
-constexpr struct {
-    taut_solver solver;
-    const char* name;
-} kSolvers[] = {{TAUT_SOLVER_BLOCK_LDLT, "block_ldlt"},
-                {TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL, "projected_gauss_seidel"},
-                {TAUT_SOLVER_ACCELERATED_JACOBI, "accelerated_jacobi"}};
-
 }  // namespace
 
 taut_solver solver_named(const std::string& name) {
     std::string known;
-    for (const auto& entry : kSolvers) {
-        if (name == entry.name) return entry.solver;
-        known += std::string(" ") + entry.name;
+    for (uint32_t i = 0; const char* each = taut_solver_name(static_cast<taut_solver>(i)); ++i) {
+        if (name == each) return static_cast<taut_solver>(i);
+        known += std::string(" ") + each;
     }
     throw BadScene("no solver is called '" + name + "'; there are:" + known);
-}
-
-const char* solver_name(taut_solver solver) {
-    for (const auto& entry : kSolvers)
-        if (solver == entry.solver) return entry.name;
-    return "unknown";
 }
 
 void check(taut_result result, const char* what) {

@@ -18,9 +18,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-// "block_ldlt", "projected_gauss_seidel", "accelerated_jacobi". Throws BadScene for another name.
+// By the name that taut_solver_name() gives it. Throws BadScene for another.
 taut_solver solver_named(const std::string& name);
-const char* solver_name(taut_solver solver);
 
 // Throws TautError unless result is TAUT_OK.
 void check(taut_result result, const char* what);

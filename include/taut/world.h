@@ -18,9 +18,38 @@ extern "C" {
 typedef enum taut_solver {
     TAUT_SOLVER_BLOCK_LDLT = 0,             /**< joints directly, contacts by sweeps: the default */
     TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL = 1, /**< everything by coloured sweeps */
-    TAUT_SOLVER_ACCELERATED_JACOBI = 2,     /**< everything by accelerated Jacobi */
+    TAUT_SOLVER_ACCELERATED_JACOBI = 2,     /**< all rows at once, with momentum (Frâncu 2016, eq. 6.41, 7.35) */
+    TAUT_SOLVER_JACOBI = 3,                 /**< the same without momentum */
+    TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL = 4, /**< row after row, each at the positions reached (section 6.6.1); SOR with
+                                                 a relaxation above 1 */
+    TAUT_SOLVER_MINIMUM_RESIDUAL = 5,       /**< algorithm 2 */
+    TAUT_SOLVER_CONJUGATE_RESIDUALS = 6,    /**< algorithm 3 */
+    TAUT_SOLVER_CONJUGATE_GRADIENTS = 7,    /**< algorithm 1, on the energy: rigid rows are stiff springs */
     TAUT_SOLVER_MAX = 0x7fffffff
 } taut_solver;
+
+/** How a row's error depends on velocities, for solvers that iterate over rows (from TAUT_SOLVER_ACCELERATED_JACOBI).
+ */
+typedef enum taut_stepping {
+    TAUT_STEPPING_PROJECTION = 0, /**< evaluated at the end of the substep, again in each iteration (eq. 6.26) */
+    TAUT_STEPPING_VELOCITY = 1,   /**< linearised where the substep begins: velocity time stepping (eq. 6.17 to 6.21) */
+    TAUT_STEPPING_MAX = 0x7fffffff
+} taut_stepping;
+
+/** How a contact's friction is bounded, for the same solvers (sections 7.3 to 7.8). */
+typedef enum taut_friction_model {
+    TAUT_FRICTION_CYLINDER = 0, /**< its size by the coefficient times the normal force as it is */
+    TAUT_FRICTION_CONE = 1,     /**< the nearest point of the cone, which changes the normal force too */
+    TAUT_FRICTION_BOX = 2,      /**< both of its components: a square pyramid */
+    TAUT_FRICTION_MAX = 0x7fffffff
+} taut_friction_model;
+
+/** Momentum of TAUT_SOLVER_ACCELERATED_JACOBI. */
+typedef enum taut_momentum {
+    TAUT_MOMENTUM_NESTEROV = 0, /**< eq. 6.42 and 6.43 */
+    TAUT_MOMENTUM_POWER = 1,    /**< eq. 6.39 with a = 1, b = 0.6 */
+    TAUT_MOMENTUM_MAX = 0x7fffffff
+} taut_momentum;
 
 /** A world. */
 typedef struct taut_world_def {
@@ -32,8 +61,8 @@ typedef struct taut_world_def {
                                   where walls are tall or what is heavy rests on what is light, and eight times while
                                   its joints whip about. Default 4 */
     uint32_t fixed_substeps; /**< 1: no island takes more than substeps. Default 0 */
-    uint32_t sweeps;         /**< iterations a substep of sweeps or Jacobi, [0, 1000]; 0: the solver's own (1 and 30).
-                                  Default 0 */
+    uint32_t sweeps;         /**< iterations a substep, [0, 1000]; 0: the solver's own: 1 of sweeps, 60 of conjugate
+                                  gradients, 30 of others. Default 0 */
     uint32_t geometric_stiffness; /**< 0 leaves it out (for comparison only). Default 1 */
     float velocity_filter;        /**< low-pass factor of the velocity that geometric stiffness spares, [0, 1]; 0: plain
                                        implicit Euler damping (Tournier 2015). Default 0.25 */
@@ -71,6 +100,16 @@ typedef struct taut_world_def {
     float restitution_threshold;  /**< approaches up to this speed do not bounce [m/s], [0, 1e4]; nor do those up to
                                        what forces give a body within a substep, g h: what rests would bounce by that
                                        (0.04 m/s, from a height of 0.1 mm, by default). Default 0 */
+    taut_stepping stepping;       /**< default TAUT_STEPPING_PROJECTION */
+    float stabilisation;          /**< gamma: share of their error that rigid joints undo in a substep with the
+                                       solvers that iterate over rows (eq. 6.19), [0, 1]: 1 is position based
+                                       dynamics, for which those must converge. Default 0.2 */
+    float relaxation;             /**< omega: share of an iteration's step that is taken, by the solvers that
+                                       iterate over rows, [0.001, 1.999]. Default 1 */
+    taut_friction_model friction_model; /**< default TAUT_FRICTION_CYLINDER */
+    taut_momentum momentum;             /**< default TAUT_MOMENTUM_NESTEROV */
+    uint32_t fixed_step;                /**< 1: minimum and conjugate residuals take steps of 1/rho, the spectral radius
+                                             by the power method, in place of measured ones. Default 0 */
 } taut_world_def;
 
 /** What taut_world_advance did. */
@@ -81,6 +120,8 @@ typedef struct taut_advance {
 } taut_advance;
 
 TAUT_API void taut_world_def_init(taut_world_def* def);
+/** Name of a solver, such as "block_ldlt"; null beyond the last one. Thread safety: any thread. */
+TAUT_API const char* taut_solver_name(taut_solver solver);
 
 /**
  * Creates a world. Thread safety: any thread.

@@ -15,6 +15,7 @@ constexpr uint32_t kMaxThreads = 64;
 constexpr Range kSleepSpeed{0, 10};             // [m/s]
 constexpr Range kSleepTime{0, 1e3};             // [s]
 constexpr Range kRestitutionThreshold{0, 1e4};  // [m/s]
+constexpr Range kRelaxation{1e-3, 1.999};
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
     check.require(!hooks.allocate == !hooks.free,
@@ -28,7 +29,7 @@ Check& check_hooks(Check& check, const taut_hooks& hooks) {
 
 Check& check_def(Check& check, const taut_world_def& def) {
     check.struct_size(def.struct_size, sizeof def)
-        .choice("solver", def.solver, TAUT_SOLVER_ACCELERATED_JACOBI)
+        .choice("solver", def.solver, static_cast<uint32_t>(solvers().size()) - 1)
         .vector("gravity", def.gravity, kGravity)
         .number("time_step", def.time_step, kTimeStep)
         .count("substeps", def.substeps, 1, kMaxSubsteps)
@@ -45,7 +46,13 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .number("hit_speed", def.hit_speed, kHitSpeed)
         .boolean("continuous", def.continuous)
         .boolean("adaptive_damping", def.adaptive_damping)
-        .number("restitution_threshold", def.restitution_threshold, kRestitutionThreshold);
+        .number("restitution_threshold", def.restitution_threshold, kRestitutionThreshold)
+        .choice("stepping", def.stepping, TAUT_STEPPING_VELOCITY)
+        .number("stabilisation", def.stabilisation, kUnitInterval)
+        .number("relaxation", def.relaxation, kRelaxation)
+        .choice("friction_model", def.friction_model, TAUT_FRICTION_BOX)
+        .choice("momentum", def.momentum, TAUT_MOMENTUM_POWER)
+        .boolean("fixed_step", def.fixed_step);
     return check_hooks(check, def.hooks);
 }
 
@@ -69,6 +76,13 @@ void taut_world_def_init(taut_world_def* def) {
     def->contact_events = TAUT_CONTACT_EVENTS_BEGIN_END;
     def->hit_speed = 1;
     def->continuous = 1;
+    def->stabilisation = 0.2f;
+    def->relaxation = 1;
+}
+
+const char* taut_solver_name(taut_solver solver) {
+    const auto index = static_cast<size_t>(solver);
+    return index < solvers().size() ? solvers()[index]->name : nullptr;
 }
 
 taut_result taut_world_create(const taut_world_def* def, taut_world* out) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
+
 #include "base/math.h"
 
 namespace taut {
+
+constexpr uint32_t kContactRows = 3;  // a push and two tangents
 
 // A contact point between detections: normal and anchors as found, the anchors turning with their bodies.
 struct ContactData {

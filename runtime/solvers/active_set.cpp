@@ -55,8 +55,7 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
         if (j[0] != 0 || j[1] != 0 || j[2] != 0) r.begin = 0;
         r.k += inverse_mass_along(sys_.sweep[node].mass, j);
         if (r.place[n] != kNone) continue;
-        const Velocity& u = sys_.exact[node];
-        r.known += sign * (Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w));
+        r.known += sign * along(j, sys_.exact[node]);
     }
     r.least = r.c = softness * r.k;
     return r;

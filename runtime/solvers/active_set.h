@@ -18,7 +18,7 @@
 #pragma once
 
 #include "solvers/solver.h"
-#include "system/row_algebra.h"
+#include "system/operators.h"
 
 namespace taut {
 

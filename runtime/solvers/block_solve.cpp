@@ -72,9 +72,7 @@ double BlockSolve::known_rate(const RowBlock& block, int r) const {
     double v = 0;
     for (int n = 0; n < block.type->nodes; ++n) {
         if (block.node[n] == 0 || local(block.node[n]) != kNone) continue;
-        const Velocity& u = sys_.exact[block.node[n]];
-        const auto j = jacobian_of(sys_, block, n).row(r);
-        v += j.head<3>().dot(u.v) + j.tail<3>().dot(u.w);
+        v += along(row_of(sys_, block, n, r), sys_.exact[block.node[n]]);
     }
     return v;
 }

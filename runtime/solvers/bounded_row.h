@@ -6,10 +6,9 @@
 #include <cstdint>
 
 #include "constraints/constraint.h"
+#include "constraints/contact.h"
 
 namespace taut {
-
-constexpr uint32_t kContactRows = 3;  // a push and two tangents
 
 struct BoundedRow {
     enum class Kind : uint8_t {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "system/row_algebra.h"
+#include "system/operators.h"
 
 namespace taut {
 
@@ -17,10 +17,7 @@ void curving(const System& system, const RowBlock& block, double* out) {
         const Velocity& u = system.place[node] == kNone ? system.exact[node] : system.start[node];
         const Pose& x = system.pose[node];
         moved[n] = {x.x + h * u.v, rotation_from_vector(h * u.w) * x.R};
-        for (int r = 0; r < rows; ++r) {
-            const auto j = jacobian_of(system, block, n).row(r);
-            straight[r] += h * (j.head<3>().dot(u.v) + j.tail<3>().dot(u.w));
-        }
+        for (int r = 0; r < rows; ++r) straight[r] += h * along(row_of(system, block, n, r), u);
     }
     block.type->evaluate(block.data, moved, out, nullptr);
     for (int r = 0; r < rows; ++r) {

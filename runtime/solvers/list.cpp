@@ -4,7 +4,9 @@
 namespace taut {
 
 std::span<const Solver* const> solvers() {
-    static const Solver* const list[] = {&kBlockLdlt, &kProjectedGaussSeidel, &kAcceleratedJacobi};
+    static const Solver* const list[] = {
+        &kBlockLdlt,       &kProjectedGaussSeidel, &kAcceleratedJacobi, &kJacobi, &kNonlinearGaussSeidel,
+        &kMinimumResidual, &kConjugateResiduals,   &kConjugateGradients};
     return list;
 }
 

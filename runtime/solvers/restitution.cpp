@@ -5,7 +5,7 @@
 
 #include "solvers/solver.h"
 #include "system/lane_parts.h"
-#include "system/row_algebra.h"
+#include "system/operators.h"
 
 namespace taut {
 namespace {

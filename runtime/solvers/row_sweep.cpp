@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "system/row_algebra.h"
+#include "system/operators.h"
 #include "system/soft_contact.h"
 
 namespace taut {
@@ -33,10 +33,7 @@ public:
         }
     }
     RowVector velocity() const {  // J v
-        RowVector v = RowVector::Zero(rows_);
-        for (int i = 0; i < block_.type->nodes; ++i)
-            v += jacobian(i) * velocity_of(system_.sweep[block_.node[i]].velocity);
-        return v;
+        return rates(system_, block_, [&](uint32_t node) { return velocity_of(system_.sweep[node].velocity); });
     }
     RowMatrix effective() const {  // J W J^T
         RowMatrix s = RowMatrix::Zero(rows_, rows_);

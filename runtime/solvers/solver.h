@@ -12,10 +12,22 @@
 #include "solvers/bounded_row.h"
 #include "system/axis_rows.h"
 #include "system/impacts.h"
+#include "system/problem.h"
 #include "system/system.h"
 #include "threads/team.h"
 
 namespace taut {
+
+// How momentum grows over iterations; see jacobi.cpp.
+enum class MomentumRule : uint8_t { nesterov, power };
+
+// Of solvers that iterate over a Problem.
+struct IterationSettings {
+    uint32_t count = 0;     // iterations
+    double relaxation = 1;  // omega: share of each step that is taken
+    MomentumRule momentum = MomentumRule::nesterov;
+    bool fixed_step = false;  // 1 / rho in place of a step measured in each iteration
+};
 
 struct SolverSettings {
     uint32_t sweeps;  // iterations a substep; 0: the solver's own default
@@ -26,6 +38,8 @@ struct SolverSettings {
     const JointKernels* joint_kernels;
     bool adaptive_damping = false;     // |K| in the place of K; see adaptive_damping.h
     double restitution_threshold = 0;  // [m/s]
+    RowSettings rows{};
+    IterationSettings iteration{};
 };
 
 struct SolverReport {
@@ -34,30 +48,12 @@ struct SolverReport {
     double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
 };
 
-// A scalar row of a joint's axis among others that are solved at once.
-struct AxisIterate {
-    AxisRow axis;
-    uint32_t block;                // in Rows
-    int row;                       // of the block
-    double inverse;                // of the split diagonal and c
-    double impulse, previous = 0;  // mu [N s]
-};
-
-// Memory that iterative solvers use during a substep, kept so that steady scenes allocate nothing.
+// Memory that solvers use during a substep, kept so that steady scenes allocate nothing.
 struct SolverScratch {
-    explicit SolverScratch(Memory& memory)
-        : count(memory),
-          inverse(memory),
-          softness(memory),
-          previous(memory),
-          next(memory),
-          bounded(memory),
-          axes(memory) {}
+    explicit SolverScratch(Memory& memory) : problem(memory), bounded(memory) {}
 
-    Array<uint32_t> count;
-    Array<double> inverse, softness, previous, next;
+    ProblemMemory problem;
     Array<BoundedRow> bounded;  // of the group's blocks
-    Array<AxisIterate> axes;
 };
 
 // One substep of one group.
@@ -103,6 +99,7 @@ struct Solver {
 // In the order of taut_solver.
 std::span<const Solver* const> solvers();
 
-extern const Solver kBlockLdlt, kProjectedGaussSeidel, kAcceleratedJacobi;
+extern const Solver kBlockLdlt, kProjectedGaussSeidel, kAcceleratedJacobi, kJacobi, kNonlinearGaussSeidel,
+    kMinimumResidual, kConjugateResiduals, kConjugateGradients;
 
 }  // namespace taut

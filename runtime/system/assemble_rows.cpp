@@ -3,7 +3,7 @@
 
 #include "state/levers.h"
 #include "system/assemble.h"
-#include "system/row_algebra.h"
+#include "system/operators.h"
 #include "system/soft_contact.h"
 
 namespace taut {
@@ -366,11 +366,7 @@ double row_residual(System& system, const JointKernels& kernels) {
     for (const RowBlock& block : system.rows.block) {
         if (block.type->bound != Bound::free || block.in_lanes) continue;
         RowVector r = error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
-        for (int n = 0; n < block.type->nodes; ++n) {
-            NodeVector u;
-            u << system.exact[block.node[n]].v, system.exact[block.node[n]].w;
-            r += jacobian_of(system, block, n) * u;
-        }
+        r += rates(system, block, [&](uint32_t node) { return vector_of(system.exact[node]); });
         for (int i = 0; i < block.type->rows; ++i)
             if (block.locked(i)) largest = std::max(largest, std::abs(r[i]));
     }

@@ -236,7 +236,8 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
 
     const Field fields[] = {FIELD3(Def, gravity, -1e4, 1e4), FIELD(Def, time_step, 1e-4, 0.1),
                             FIELD(Def, velocity_filter, 0, 1), FIELD(Def, sleep_speed, 0, 10),
-                            FIELD(Def, sleep_time, 0, 1e3), FIELD(Def, restitution_threshold, 0, 1e4)};
+                            FIELD(Def, sleep_time, 0, 1e3), FIELD(Def, restitution_threshold, 0, 1e4),
+                            FIELD(Def, stabilisation, 0, 1), FIELD(Def, relaxation, 0.001, 1.999)};
     for (const Field& field : fields) {
         for (double value : {std::nan(""), HUGE_VAL, -HUGE_VAL, below(field, field.lo), above(field, field.hi)}) {
             const Def def = with(good, field, value);
@@ -262,6 +263,7 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         {"sleeping", &Def::sleeping, 0, 1},
         {"continuous", &Def::continuous, 0, 1},
         {"adaptive_damping", &Def::adaptive_damping, 0, 1},
+        {"fixed_step", &Def::fixed_step, 0, 1},
     };
     for (const auto& count : counts) {
         changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });
@@ -270,7 +272,13 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         changed(TAUT_OK, count.name, [&](Def& d) { d.*count.field = count.hi; });
     }
     changed(TAUT_INVALID_ARGUMENT, "solver", [](Def& d) { d.solver = TAUT_SOLVER_MAX; });
-    changed(TAUT_OK, "solver", [](Def& d) { d.solver = TAUT_SOLVER_ACCELERATED_JACOBI; });
+    changed(TAUT_OK, "solver", [](Def& d) { d.solver = TAUT_SOLVER_CONJUGATE_GRADIENTS; });
+    changed(TAUT_INVALID_ARGUMENT, "stepping", [](Def& d) { d.stepping = TAUT_STEPPING_MAX; });
+    changed(TAUT_OK, "stepping", [](Def& d) { d.stepping = TAUT_STEPPING_VELOCITY; });
+    changed(TAUT_INVALID_ARGUMENT, "friction_model", [](Def& d) { d.friction_model = TAUT_FRICTION_MAX; });
+    changed(TAUT_OK, "friction_model", [](Def& d) { d.friction_model = TAUT_FRICTION_BOX; });
+    changed(TAUT_INVALID_ARGUMENT, "momentum", [](Def& d) { d.momentum = TAUT_MOMENTUM_MAX; });
+    changed(TAUT_OK, "momentum", [](Def& d) { d.momentum = TAUT_MOMENTUM_POWER; });
 
     Ledger ledger;
     changed(TAUT_INVALID_ARGUMENT, "hooks.allocate", [&](Def& d) { d.hooks.allocate = ledger.hooks().allocate; });

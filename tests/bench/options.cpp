@@ -37,7 +37,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     CLI::Option* substeps_flag =
         app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
     CLI::Option* solver_flag = app.add_option("--solver", solver,
-                                              "block_ldlt, projected_gauss_seidel or accelerated_jacobi;\n"
+                                              "one of taut_solver: block_ldlt, projected_gauss_seidel ...;\n"
                                               "of ode: step (default with joints) or quickstep");
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");

@@ -10,7 +10,7 @@ public:
     explicit TautEngine(const scenes::Scene& scene) : def_(scene.world), world_(scene) {}
 
     const char* name() const override { return "taut"; }
-    const char* solver() const override { return scenes::solver_name(def_.solver); }
+    const char* solver() const override { return taut_solver_name(def_.solver); }
     uint32_t substeps() const override { return def_.substeps; }
     void step() override { world_.step(); }
 

@@ -1,4 +1,5 @@
-// Small matrices of one row block, for solvers that work row block by row block.
+// Operators of one row block: J u, J^T mu, W p, J W J^T, and what bounds an impulse (project). Every solver that works
+// row block by row block uses these; lanes have them fused (constraints/*_sweep.inl).
 #pragma once
 
 #include "system/axis_rows.h"
@@ -19,6 +20,28 @@ inline Eigen::Map<const RowJacobian> jacobian_of(const System& system, const Row
 // One row of it [6].
 inline const double* row_of(const System& system, const RowBlock& block, int node, int row) {
     return &system.rows.jacobian[block.jacobian + static_cast<uint32_t>((node * block.type->rows + row) * kDof)];
+}
+
+// J u of a block's rows [m/s]; velocity_of(seat) gives a NodeVector.
+template <class VelocityOf>
+RowVector rates(const System& system, const RowBlock& block, VelocityOf&& velocity_of) {
+    RowVector rate = RowVector::Zero(block.type->rows);
+    for (int n = 0; n < block.type->nodes; ++n) rate += jacobian_of(system, block, n) * velocity_of(block.node[n]);
+    return rate;
+}
+
+// The same of one row j [6] of each node: j u.
+inline double along(const double* j, const Velocity& u) { return Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w); }
+inline double rate(const System& system, const RowBlock& block, int row, const Array<Velocity>& velocity) {
+    double sum = 0;
+    for (int n = 0; n < block.type->nodes; ++n) sum += along(row_of(system, block, n, row), velocity[block.node[n]]);
+    return sum;
+}
+
+inline NodeVector vector_of(const Velocity& u) {
+    NodeVector v;
+    v << u.v, u.w;
+    return v;
 }
 
 // |g| of a row that turns, 1 of others: how much faster than its bodies the coordinate turns.
