@@ -10,6 +10,7 @@
 #include "detect/internal_faces.h"
 #include "detect/sensors.h"
 #include "integrate/integrate.h"
+#include "integrate/scheme.h"
 #include "integrate/substeps.h"
 #include "models/cable.h"
 #include "publish/publish.h"
@@ -90,24 +91,26 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
     const double frame = w.def.time_step;
     Substeps part(frame, group.substeps, solver.direct && w.def.fixed_substeps == 0);
-    system.h = part.length();
+    system.scheme.set_length(part.length());
     build_group(w, group, solver, *settings.kernels);
     w.profile.predict_us += watch.lap();
 
-    const bool lends = w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !w.observer;
+    const bool one_step = system.scheme.is_one_step();
+    const bool lends = one_step && w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !w.observer;
     MotionLoan loan(w.team, system, group, w.nodes);
     bool loaded = false, sane = false;  // the nodes, as far as is known
     while (!part.done()) {
         const uint32_t i = part.number();
-        if (part.length() != system.h) change_length(w.team, system, group, w.pairs, part.length(), frame);
+        if (part.length() != system.scheme.h) change_length(w.team, system, group, w.pairs, part.length(), frame);
         if (loaded || !sane) {
             loan.end();
-            loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.h);
+            loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.scheme.h);
         }
         if (lends) loan.begin();
-        find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.h);
+        find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.scheme.h);
         turn_kinematic(system, w.nodes, part.begin());
         predict(w.team, system, group, w.nodes, gravity);
+        if (!one_step) begin_scheme(system, group, w.nodes);
         if (solver.lanes && i > 0) turn_lanes(w.team, system, group, *settings.kernels);
         shift_kinematic(system, w.nodes, part.begin());
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
@@ -138,11 +141,16 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
             solver.settle(substep);
             correct(system, group, w.partition.blocks, w.nodes);
         }
+        if (!one_step) {
+            if (solver.lanes) store_joint_lanes(w.team, system);
+            end_scheme(system, group, w.nodes);
+        }
         tell(w, {Stage::commit, index, i});
         w.profile.commit_us += watch.lap();
         solver.relax(substep);
         w.profile.sweep_us += watch.lap();
         sane = store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
+        if (!one_step) remember_scheme(system, group, w.nodes);
         store_contact_rows(system);
         gather_impulses(system, w.impacts, w.pairs, w.watch);
         tell(w, {Stage::relax, index, i});
@@ -175,7 +183,11 @@ void solve(World& w, Stopwatch& watch) {
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
+    w.system.scheme.kind = static_cast<SchemeKind>(w.def.scheme);
+    w.system.scheme.beta = w.def.newmark_beta;
+    w.system.scheme.gamma = w.def.newmark_gamma;
     begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
+    make_room_for_scheme(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) solve_group(w, i, solver, settings, report, watch);
     if (const uint32_t failures = report.failures; failures > 0)

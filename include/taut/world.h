@@ -36,6 +36,14 @@ typedef enum taut_stepping {
     TAUT_STEPPING_MAX = 0x7fffffff
 } taut_stepping;
 
+/** Time integration of what joints and cables do; contacts act as in implicit Euler in all. */
+typedef enum taut_scheme {
+    TAUT_SCHEME_IMPLICIT_EULER = 0, /**< damps most and bears any force */
+    TAUT_SCHEME_NEWMARK = 1, /**< Frâncu 2016, eq. 6.28 to 6.32: with beta 1/4, gamma 1/2 springs keep their energy */
+    TAUT_SCHEME_BDF2 = 2,    /**< two steps back: damps slow motion little and fast motion much */
+    TAUT_SCHEME_MAX = 0x7fffffff
+} taut_scheme;
+
 /** How a contact's friction is bounded, for the same solvers (sections 7.3 to 7.8). */
 typedef enum taut_friction_model {
     TAUT_FRICTION_CYLINDER = 0, /**< its size by the coefficient times the normal force as it is */
@@ -110,6 +118,9 @@ typedef struct taut_world_def {
     taut_momentum momentum;             /**< default TAUT_MOMENTUM_NESTEROV */
     uint32_t fixed_step;                /**< 1: minimum and conjugate residuals take steps of 1/rho, the spectral radius
                                              by the power method, in place of measured ones. Default 0 */
+    taut_scheme scheme;                 /**< default TAUT_SCHEME_IMPLICIT_EULER */
+    float newmark_beta;                 /**< [0.25, 0.5]. Default 0.25 */
+    float newmark_gamma;                /**< [0.5, 1], at most 2 newmark_beta; above 0.5 it damps. Default 0.5 */
 } taut_world_def;
 
 /** What taut_world_advance did. */

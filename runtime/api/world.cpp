@@ -16,6 +16,7 @@ constexpr Range kSleepSpeed{0, 10};             // [m/s]
 constexpr Range kSleepTime{0, 1e3};             // [s]
 constexpr Range kRestitutionThreshold{0, 1e4};  // [m/s]
 constexpr Range kRelaxation{1e-3, 1.999};
+constexpr Range kNewmarkBeta{0.25, 0.5}, kNewmarkGamma{0.5, 1};
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
     check.require(!hooks.allocate == !hooks.free,
@@ -52,7 +53,12 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .number("relaxation", def.relaxation, kRelaxation)
         .choice("friction_model", def.friction_model, TAUT_FRICTION_BOX)
         .choice("momentum", def.momentum, TAUT_MOMENTUM_POWER)
-        .boolean("fixed_step", def.fixed_step);
+        .boolean("fixed_step", def.fixed_step)
+        .choice("scheme", def.scheme, TAUT_SCHEME_BDF2)
+        .number("newmark_beta", def.newmark_beta, kNewmarkBeta)
+        .number("newmark_gamma", def.newmark_gamma, kNewmarkGamma)
+        .require(def.newmark_gamma <= 2 * def.newmark_beta,
+                 "newmark_gamma: more than 2 newmark_beta, with which steps are not stable");
     return check_hooks(check, def.hooks);
 }
 
@@ -78,6 +84,8 @@ void taut_world_def_init(taut_world_def* def) {
     def->continuous = 1;
     def->stabilisation = 0.2f;
     def->relaxation = 1;
+    def->newmark_beta = 0.25f;
+    def->newmark_gamma = 0.5f;
 }
 
 const char* taut_solver_name(taut_solver solver) {

@@ -199,7 +199,7 @@ void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     if (torque == Vec3::Zero() || nodes.info[node].kind != NodeKind::dynamic) return;
     Velocity& u = system.exact[at];
     const Mat3& R = system.pose[at].R;
-    u.w += system.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
+    u.w += system.scheme.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
     set_sweep_velocity(system.sweep[at].velocity, u);
 }
 
@@ -243,7 +243,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
     const NodeMotion* const motion = motions_of(system, nodes);
-    const Prediction terms{system.h, {gravity.x(), gravity.y(), gravity.z()}, kLeverTurn, gyroscopic_euler};
+    const Prediction terms{system.scheme.h, {gravity.x(), gravity.y(), gravity.z()}, kLeverTurn, gyroscopic_euler};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
@@ -277,7 +277,8 @@ void drop_strikes(System& system, const Impacts& impacts) {
 void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
-    for_batches(team, system, group.nodes, [&](const Batch& batch) { kernels.commit(rows, batch, system.h, rotate); });
+    for_batches(team, system, group.nodes,
+                [&](const Batch& batch) { kernels.commit(rows, batch, system.scheme.h, rotate); });
 }
 
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
@@ -293,7 +294,7 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
 bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes, double velocity_filter) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
-    const Keeping keeping{system.h, kStill, velocity_filter, kMaxSpeed, rotate};
+    const Keeping keeping{system.scheme.h, kStill, velocity_filter, kMaxSpeed, rotate};
     constexpr Bodies kAll = (1u << kBodies) - 1;
     std::atomic<bool> all_sane{true};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {

@@ -38,7 +38,7 @@ void follow_points(const collision::Manifold& now, WatchedPair& watched) {
 Vec3f impulse_of(const WatchedPair& watched, const System& system, const Pair& pair, int k) {
     const ContactForce& force = pair.force[k];
     if (watched.lane_group == kNone)
-        return static_cast<float>(system.h) * Vec3f(force.normal, force.tangent1, force.tangent2);
+        return static_cast<float>(system.scheme.h) * Vec3f(force.normal, force.tangent1, force.tangent2);
     const ContactLanes& lanes = system.contacts;
     const LanePoint& p = lanes.group[watched.lane_group].point[k];
     return {p.impulse[0][watched.lane], p.impulse[1][watched.lane], p.impulse[2][watched.lane]};

@@ -25,8 +25,9 @@ using Kind = BoundedRow::Kind;
 bool ActiveSet::nears_stops(const RowBlock& block) const {
     bool near = false;
     for (int row = 0; row < block.type->rows; ++row)
-        for_each_axis_row(block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h,
-                          [&](const AxisRow& axis) { near = near || (axis.stop && axis.gap < kReach * sys_.h); });
+        for_each_axis_row(
+            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.scheme,
+            [&](const AxisRow& axis) { near = near || (axis.stop && axis.gap < kReach * sys_.scheme.h); });
     return near;
 }
 
@@ -37,7 +38,7 @@ void ActiveSet::gather_stop(BoundedRow& r, const AxisRow& axis, double curved) {
     r.on = axis.gap < 0 || r.mu > 0;
     if (axis.physical) return;
     r.gap += axis.sign * curved;
-    r.target -= axis.sign * curved / sys_.h;
+    r.target -= axis.sign * curved / sys_.scheme.h;
 }
 
 void ActiveSet::gather_axes(uint32_t index) {
@@ -47,7 +48,7 @@ void ActiveSet::gather_axes(uint32_t index) {
     if (nears_stops(block)) curving(sys_, block, curved);
     for (int row = 0; row < block.type->rows; ++row) {
         for_each_axis_row(
-            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.h, [&](AxisRow axis) {
+            block, row, sys_.rows.error[block.row + static_cast<uint32_t>(row)], sys_.scheme, [&](AxisRow axis) {
                 gear(sys_, block, row, axis);
                 BoundedRow& r = add(axis.stop ? Kind::push : Kind::box, index, row, axis.sign, kAxisSoftness);
                 r.least = r.c = std::max(r.least, axis.compliance);
@@ -56,7 +57,7 @@ void ActiveSet::gather_axes(uint32_t index) {
                 r.relaxed_target = axis.relaxed_target;
                 r.limit = axis.limit;
                 r.force = axis.force;
-                r.mu = sys_.h * *axis.force;
+                r.mu = sys_.scheme.impulse(*axis.force);
                 if (axis.stop) {
                     gather_stop(r, axis, curved[row]);
                     return;

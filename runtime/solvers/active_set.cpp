@@ -80,7 +80,7 @@ double ActiveSet::slide(const BoundedRow& lead, const Array<Velocity>& velocity)
 
 // A new contact starts out sliding, at the force that stops its approach: c = |vt| / (friction * that force).
 void ActiveSet::begin_slip(BoundedRow& lead) {
-    const double at_rest = 0.25 * sys_.h * std::sqrt(s_.settings.gravity_squared);
+    const double at_rest = 0.25 * sys_.scheme.h * std::sqrt(s_.settings.gravity_squared);
     double push = 0;
     for (uint32_t k = 0; k < lead.loads; ++k) {
         const BoundedRow& normal = rows()[lead.load + kContactRows * k];
@@ -131,7 +131,8 @@ void ActiveSet::gather_contact(uint32_t index) {
     BoundedRow* r = &rows()[first];
     r[0].gap = sys_.rows.error[block.row];
     r[0].speculative = r[0].gap > (r[0].mu > 0 ? kSpeculative : 0);
-    r[0].target = r[0].speculative ? -r[0].gap / sys_.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.h);
+    r[0].target =
+        r[0].speculative ? -r[0].gap / sys_.scheme.h : std::min(kStopPush, -kStopRate * r[0].gap / sys_.scheme.h);
     r[0].relaxed_target = r[0].speculative ? r[0].target : 0;
     r[0].bounce = rebound_of(r[0], block);
     r[0].on = r[0].gap < 0 || r[0].mu > 0;
@@ -233,7 +234,7 @@ bool ActiveSet::revise() {
         if (r.kind == Kind::box) changed = revise_box(r) || changed;
         if (r.kind != Kind::push) continue;
         const bool before = r.on;
-        r.on = r.goal - r.rate > (before ? 0.0 : kClosing / sys_.h);
+        r.on = r.goal - r.rate > (before ? 0.0 : kClosing / sys_.scheme.h);
         r.mu = r.on ? std::max(0.0, r.held) : 0.0;
         changed = changed || r.on != before;
     }
@@ -296,7 +297,7 @@ void ActiveSet::store() {
     }
     for (BoundedRow& r : rows()) {
         if (r.force)
-            *r.force = static_cast<float>(r.mu / sys_.h);
+            *r.force = static_cast<float>(sys_.scheme.force(r.mu));
         else
             sys_.rows.impulse[sys_.rows.block[r.block].row + r.row] = r.mu;
     }

@@ -63,7 +63,7 @@ double ActiveSet::negligible() const {
         least = std::min(least, s_.nodes.mass[node].mass);
         fastest = std::max(fastest, sys_.start[sys_.at(node)].v.squaredNorm());
     }
-    return least * (kSettledAtRest * sys_.h * sys_.h * s_.settings.gravity_squared + kSettled * fastest);
+    return least * (kSettledAtRest * sys_.scheme.h * sys_.scheme.h * s_.settings.gravity_squared + kSettled * fastest);
 }
 
 void ActiveSet::begin_rounds() {

@@ -64,7 +64,7 @@ double BlockSolve::slow_closing() const {
         for (int r = 0; r < row(j).type->rows; ++r) {
             if (!row(j).locked(r) || !ideal(row(j), r)) continue;
             const double gap = std::abs(error_of(row(j), r)), slow = std::max(kClosingSpeed, kClosingRate * gap);
-            const double speed = row_terms(row(j), r, sys_.h).rate * gap;
+            const double speed = sys_.scheme.row_rate(relaxation_of(row(j), r)) * gap;
             if (speed > slow) part = std::min(part, slow / speed);
         }
     return part;

@@ -95,7 +95,7 @@ void BlockSolve::analyse() {
 
 // Whether each row of a joint gives way so far that the matrix needs no freedom of a node for it.
 bool BlockSolve::gives(const RowBlock& block) const {
-    const RowMatrix c = compliance_of(block, sys_.h);
+    const RowMatrix c = compliance_of(block, sys_.scheme);
     for (int r = 0; r < block.type->rows; ++r)
         if (block.locked(r) && !(c(r, r) > loop_compliance(block, r))) return false;
     return true;
@@ -156,7 +156,7 @@ void BlockSolve::add_stiffness(uint32_t j, const double* force) {
     const RowBlock& block = row(j);
     const ConstraintType& type = *block.type;
     const int width = kDof * type.nodes, first = type.couples_nodes ? 0 : 3;
-    const double hh = sys_.h * sys_.h;
+    const double hh = sys_.scheme.stiffness();
     double k[kDof * kMaxNodes * kDof * kMaxNodes], slow[kDof * kMaxNodes] = {};
     stiffness_of(block, force, k);
     const bool spare = s_.settings.velocity_filter > 0 && b_.memory.guard_left == 0;
@@ -204,7 +204,7 @@ void BlockSolve::add_joint(uint32_t j) {
                           {jacobian + begin * kDof, end - begin, size_of(i), kDof, begin, 0, -1});
         }
     }
-    const RowMatrix c = compliance_of(block, sys_.h);
+    const RowMatrix c = compliance_of(block, sys_.scheme);
     double diagonal[kMaxRows * kMaxRows] = {};
     for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = -1;
     for (int r = 0; r < rows; ++r) {
@@ -252,7 +252,7 @@ void BlockSolve::assemble(bool with_old) {
         if (with_old && meant) add_stiffness(j, row(j).force);
         add_joint(j);
         for (int r = 0; r < row(j).type->rows; ++r)
-            if (row(j).locked(r)) known(nodes_ + j)[r] = row_terms(row(j), r, sys_.h).rate;
+            if (row(j).locked(r)) known(nodes_ + j)[r] = sys_.scheme.row_rate(relaxation_of(row(j), r));
     }
 }
 

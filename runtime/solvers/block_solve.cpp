@@ -136,10 +136,11 @@ void BlockSolve::take_forces() {
     for (uint32_t j = 0; j < joints(); ++j)
         for (int r = 0; r < row(j).type->rows; ++r)
             joint_force(j)[r] =
-                row(j).locked(r) ? b_.solution[(nodes_ + j) * kDof + static_cast<uint32_t>(r)] / sys_.h : 0;
+                row(j).locked(r) ? sys_.scheme.force(b_.solution[(nodes_ + j) * kDof + static_cast<uint32_t>(r)]) : 0;
     for (const BoundedRow& bounded : set.rows())
         if (bounded.force)
-            joint_force(bounded.block - b_.first_row_block)[bounded.row] += bounded.sign * bounded.mu / sys_.h;
+            joint_force(bounded.block - b_.first_row_block)[bounded.row] +=
+                sys_.scheme.force(bounded.sign * bounded.mu);
 }
 
 // True if a joint's stiffness has outgrown the one in the matrix. One freedom of mass m with k in its force and k_old
@@ -154,7 +155,7 @@ bool BlockSolve::outgrown(const RowBlock& block, const double* force) const {
             const Mat3& inertia = sys_.inertia[block.node[n]];
             for (int i = 0; i < size_of(at); ++i) {
                 const double mass = i < 3 ? s_.nodes.mass[b_.nodes[at]].mass : inertia(i - 3, i - 3);
-                if (sys_.h * sys_.h * growth((kDof * n + i) * (width + 1)) > kStable * mass) return true;
+                if (sys_.scheme.stiffness() * growth((kDof * n + i) * (width + 1)) > kStable * mass) return true;
             }
         }
         return false;
@@ -278,7 +279,7 @@ void BlockSolve::finish() {
         for (int r = 0; r < row(j).type->rows; ++r) {
             const double f = joint_force(j)[r];
             row(j).force[r] = f;
-            sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.h * f;
+            sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.scheme.impulse(f);
         }
     if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) filter_lines();
     ++b_.memory.solved;
@@ -309,13 +310,13 @@ double BlockSolve::largest_turn() const {
     constexpr double kSlow = 0.03;  // levers on bodies that turn by less need no look [rad]
     double fastest = 0;
     for (uint32_t i = 0; i < nodes_; ++i) fastest = std::max(fastest, sys_.exact[sys_.at(b_.nodes[i])].w.squaredNorm());
-    const bool slow = sys_.h * sys_.h * fastest <= kSlow * kSlow;
+    const bool slow = sys_.scheme.h * sys_.scheme.h * fastest <= kSlow * kSlow;
     double most = slow && joints() > 0 ? fastest : 0;
     for (uint32_t j = 0; j < joints(); ++j) {
         if (row(j).type->line) most = std::max(most, line_turn(row(j)).squaredNorm());
         if (!slow) most = std::max(most, lever_turn(row(j)));
     }
-    return sys_.h * std::sqrt(most);
+    return sys_.scheme.h * std::sqrt(most);
 }
 
 bool BlockSolve::settle() {

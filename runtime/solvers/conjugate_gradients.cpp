@@ -84,6 +84,7 @@ private:
         sum(curvature_, [&](uint32_t seat) { return direction_[seat].dot(momentum_[seat]); });
         p_.apply(direction_, p_.scratch(1));
         for (const Unit& unit : p_.units()) {
+            if (!unit.solved) continue;
             const RowVector rate = p_.of(unit, p_.scratch(1));
             curvature_[unit.island] += rate.dot(p_.inverse(unit, rate));
         }

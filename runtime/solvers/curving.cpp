@@ -8,7 +8,7 @@ namespace taut {
 
 void curving(const System& system, const RowBlock& block, double* out) {
     constexpr double kTurn = 2 * 3.14159265358979323846;
-    const double h = system.h;
+    const double h = system.scheme.h;
     const int rows = block.type->rows;
     Pose moved[kMaxNodes];
     double straight[kMaxRows] = {};

@@ -79,7 +79,7 @@ EnergyGain energy_gain(const Substep& s, const Block& block, double row_work) {
         if (s.nodes.info[node].kind == NodeKind::dynamic)
             work += 0.5 * (s.system.inertia[i] * (free.w - v0.w)).dot(v0.w + v1.w);
     }
-    const double h = s.system.h, internal = internal_energy(s, block, after);
+    const double h = s.system.scheme.h, internal = internal_energy(s, block, after);
     const double fall = 0.5 * mass * s.settings.gravity_squared * h * h, scale = before + std::abs(work) + fall;
     return {after - before - work, 0.05 * internal + 1e-4 * (240 * h) * (240 * h) * scale, fall};
 }

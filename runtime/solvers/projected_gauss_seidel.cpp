@@ -36,11 +36,12 @@ public:
           nodes_(s_.system.sweep.data()),
           joint_(*s_.settings.joint_kernels),
           contact_(*s_.settings.kernels),
-          soft_(contact_terms(s_.system.h, s_.system.stretch)) {}
+          soft_(contact_terms(s_.system.scheme.h, s_.system.stretch)) {}
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
         if (pass == Pass::warm_start) joint_.warm_start(joints_, begin, end, nodes_);
-        if (is_biased(pass) || pass == Pass::relaxed) joint_.sweep(joints_, begin, end, nodes_);
+        const bool relaxes = pass == Pass::relaxed && s_.system.scheme.is_one_step();  // else springs' laws do not hold
+        if (is_biased(pass) || relaxes) joint_.sweep(joints_, begin, end, nodes_);
         if (pass == Pass::first_correct) joint_.keep(joints_, begin, end);
         if (pass == Pass::first_correct || pass == Pass::correct) joint_.correct(joints_, begin, end, nodes_);
         if (pass == Pass::take_back) joint_.take_back(joints_, begin, end, nodes_);

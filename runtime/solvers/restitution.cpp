@@ -29,7 +29,7 @@ struct Fall {
 
 bool bounces(const Substep& s, double restitution, const Fall& fall) {
     const double least = std::max(s.least_impact(), std::abs(fall.gained));
-    return restitution > 0 && fall.arrives(s.system.h) && fall.squared_speed(s.system.h) > least * least;
+    return restitution > 0 && fall.arrives(s.system.scheme.h) && fall.squared_speed(s.system.scheme.h) > least * least;
 }
 
 Vec3 wide(const float (&p)[3]) { return {p[0], p[1], p[2]}; }
@@ -159,7 +159,7 @@ private:
             gap += side->linear[0].dot(wide(all_.flight[side->at].moved));
             rate += side->linear[0].dot(u.v) + side->angular[0].dot(u.w);
         }
-        const bool pressed = rate < -s_.least_impact() && gap + sys_.h * rate < 0;
+        const bool pressed = rate < -s_.least_impact() && gap + sys_.scheme.h * rate < 0;
         if (!pressed) impacts_.pop_back();
         return pressed;
     }
@@ -184,7 +184,7 @@ private:
         const LaneView view = sys_.contacts.view();
         Array<uint16_t>& found = all_.found;
         found.resize(4 * lanes.group.size());
-        const ImpactTerms terms{static_cast<float>(1 / sys_.h), static_cast<float>(s_.least_impact())};
+        const ImpactTerms terms{static_cast<float>(1 / sys_.scheme.h), static_cast<float>(s_.least_impact())};
         for_lane_parts(s_.team, lanes, [&](uint32_t part) {
             s_.settings.kernels->find_impacts(view, lanes.part[part].begin, lanes.part[part].end, sys_.sweep.data(),
                                               sys_.shift.data(), all_.flight.data(), terms, found.data());
@@ -265,7 +265,7 @@ private:
     void prepare(Impact& impact) {
         Fall fall{impact.gap};
         bool moves = false;
-        double first = sys_.h;  // of its bodies' impacts
+        double first = sys_.scheme.h;  // of its bodies' impacts
         for (Impact::Side* side = impact.side; side < impact.side + impact.sides; ++side) {
             add_to(fall, side->at, side->linear[0], side->angular[0]);
             side->body = body_at(side->at);
@@ -273,7 +273,7 @@ private:
             moves = moves || bodies_[side->body].moves > 0;
             first = std::min(first, bodies_[side->body].time);
         }
-        impact.time = !moves ? 0 : impact.supports ? first : fall.time(sys_.h);
+        impact.time = !moves ? 0 : impact.supports ? first : fall.time(sys_.scheme.h);
         align(impact);
         Mat3 k = Mat3::Zero();
         for (int r = 0; r < 3; ++r) {
@@ -289,7 +289,8 @@ private:
             body.time = std::min(body.time, impact.time);
             impact.approach += side->linear[0].dot(body.before.v) + side->angular[0].dot(body.before.w);
         }
-        if (!moves && fall.gap > 0) impact.restitution = restitution_above(impact, fall.gained / sys_.h * fall.gap);
+        if (!moves && fall.gap > 0)
+            impact.restitution = restitution_above(impact, fall.gained / sys_.scheme.h * fall.gap);
     }
 
     // Levers are of when the contact was found, and its sides have moved on since or have a way to go until they meet:
@@ -340,7 +341,7 @@ private:
             impact.known[r] += side.linear[r].dot(u.v) + side.angular[r].dot(u.w);
             return;
         }
-        const double before = bodies_[side.body].moves * impact.time / sys_.h;
+        const double before = bodies_[side.body].moves * impact.time / sys_.scheme.h;
         impact.known[r] -= (0.5 - before) * side.linear[r].dot(wide(all_.flight[side.at].gained));
         const NodeMass& mass = s_.nodes.mass[sys_.node_at[side.at]];
         const Mat3& R = sys_.pose[side.at].R;  // of now: those of the sweeps may be old
@@ -367,7 +368,7 @@ private:
         if (index == kNone) {
             index = static_cast<uint32_t>(bodies_.size());
             const Velocity& u = sys_.exact[at];
-            bodies_.push_back({at, index, is_held(at) ? 0.0 : 1.0, sys_.h, u, u, Vec3::Zero()});
+            bodies_.push_back({at, index, is_held(at) ? 0.0 : 1.0, sys_.scheme.h, u, u, Vec3::Zero()});
         }
         return index;
     }
@@ -444,7 +445,7 @@ void restitute(Substep& s) { Restitution(s).run(); }
 double rebound(const Substep& s, double restitution, double gap, double rate, double gained) {
     const Fall fall{gap, rate, gained};
     if (!bounces(s, restitution, fall)) return 0;
-    return std::max(0.0, restitution * std::sqrt(fall.squared_speed(s.system.h)) - 0.5 * gained);
+    return std::max(0.0, restitution * std::sqrt(fall.squared_speed(s.system.scheme.h)) - 0.5 * gained);
 }
 
 }  // namespace taut

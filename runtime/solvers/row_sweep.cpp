@@ -117,7 +117,7 @@ void warm_start_rows(Substep& s, uint32_t first, uint32_t count) {
 }
 
 void sweep_rows(Substep& s, uint32_t first, uint32_t count, bool biased) {
-    const SweepTerms soft = contact_terms(s.system.h, s.system.stretch);
+    const SweepTerms soft = contact_terms(s.system.scheme.h, s.system.stretch);
     for (uint32_t i = first; i < first + count; ++i) {
         const RowBlock& block = s.system.rows.block[i];
         RowSweep row(s.system, block);

@@ -78,7 +78,7 @@ struct Substep {
     bool is_too_long() const { return turn > most_turn; }
     // Slower impacts do not bounce [m/s]; see restitution.h.
     double least_impact() const {
-        return std::max(settings.restitution_threshold, std::sqrt(settings.gravity_squared) * system.h);
+        return std::max(settings.restitution_threshold, std::sqrt(settings.gravity_squared) * system.scheme.h);
     }
 };
 

@@ -34,6 +34,7 @@ uint32_t Nodes::add() {
         info[node] = {};
         motion[node] = {};
         clear_load(node);
+        if (node < history.size()) history[node] = {};
         before[node] = {};
         rest[node] = {};
         sleep[node] = {};

@@ -86,6 +86,14 @@ struct Speed {
     Vec3 v = Vec3::Zero(), w = Vec3::Zero();  // of the centre of mass [m/s], world axes [rad/s]
 };
 
+// What schemes of more than one step remember of a node; system/scheme.h.
+struct NodeHistory {
+    Speed velocity;      // at the end of the last substep: what a host sets since then is no force
+    Speed acceleration;  // by springs then [m/s^2, rad/s^2]
+    Speed rate, before;  // BDF2: displacement of the last substep over its length; velocity at its begin
+    double length = 0;   // of the last substep [s]; 0: there was none
+};
+
 // Where the host leads a kinematic node, in the host's time: that of all its calls, of which the steps have yet to take
 // what is left in the accumulator.
 struct KinematicPath {
@@ -109,6 +117,7 @@ struct Nodes {
           load(memory),
           paths(memory),
           before(memory),
+          history(memory),
           rest(memory),
           sleep(memory) {}
 
@@ -146,6 +155,7 @@ struct Nodes {
     Array<NodeLoad> load;     // in the step that is being taken [N]
     Array<KinematicPath> paths;  // sorted by node
     Array<NodePose> before;      // origin pose before the last step
+    Array<NodeHistory> history;  // of all, or of none in worlds whose scheme has one step
     Array<Rest> rest;
     Array<NodeSleep> sleep;
 

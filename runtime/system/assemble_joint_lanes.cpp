@@ -56,8 +56,8 @@ void stiffen(System& system, const Nodes& nodes, uint32_t at, float k, bool filt
     for (float& each : i) each /= node.mass.joint_share;  // of the last substep
     const float xy = std::abs(i[3]), xz = std::abs(i[4]), yz = std::abs(i[5]);
     const float most = std::max({i[0] + xy + xz, i[1] + xy + yz, i[2] + xz + yz});
-    const auto h = static_cast<float>(system.h);
-    const float share = 1 / (1 + h * h * k * most);
+    const auto h = static_cast<float>(system.scheme.h), act = static_cast<float>(system.scheme.act);
+    const float share = 1 / (1 + h * act * k * most);
     node.mass.joint_share = share;
     for (float& each : i) each *= share;
     const uint32_t from = system.node_at[at];
@@ -72,14 +72,14 @@ void store_lane(const System& system, const JointGroup& g, int lane) {
     const JointLanes& lanes = system.joints;
     const RowBlock& block = system.rows.block[g.block[lane]];
     for (uint32_t r = 0; r < g.rows; ++r) {
-        block.force[r] = lanes.row[g.first_row + r].impulse[lane] / system.h;
+        block.force[r] = lanes.row[g.first_row + r].impulse[lane] / system.scheme.act;
         if (!block.stops_angle(static_cast<int>(r))) continue;
         const double c = lanes.coordinate[g.first_row + r].value[lane];
         block.memory[r].angle = static_cast<float>(angle_between_stops(block.axis[r], block.memory[r], c));
     }
     for (uint32_t a = g.first_axis; a < g.first_axis + g.axes; ++a) {
         const LaneAxis& axis = lanes.axis[a];
-        if (axis.force[lane]) *axis.force[lane] = static_cast<float>(axis.impulse[lane] / system.h);
+        if (axis.force[lane]) *axis.force[lane] = static_cast<float>(axis.impulse[lane] / system.scheme.act);
     }
 }
 
@@ -94,9 +94,9 @@ void evaluate_joint_lanes(Team& team, System& system) {
 void stiffen_joints(Team& team, System& system, const Nodes& nodes, const JointKernels& kernels, bool filters) {
     JointLanes& lanes = system.joints;
     if (lanes.group.empty()) return;
-    const auto h = static_cast<float>(system.h);
+    const auto act = static_cast<float>(system.scheme.act);
     team.for_ranges(size_of(lanes.group), kLaneGrain,
-                    [&](uint32_t begin, uint32_t end) { kernels.stiffen(lanes.view(), begin, end, h); });
+                    [&](uint32_t begin, uint32_t end) { kernels.stiffen(lanes.view(), begin, end, act); });
     grow_to(lanes.node_stiffness, system.sweep.size());
     for_each_end(system, [&](uint32_t at, float) { lanes.node_stiffness[at] = 0; });
     for_each_end(system, [&](uint32_t at, float k) { lanes.node_stiffness[at] += k; });
@@ -108,7 +108,7 @@ void stiffen_joints(Team& team, System& system, const Nodes& nodes, const JointK
 
 void prepare_joint_lanes(Team& team, System& system, const JointKernels& kernels) {
     JointLanes& lanes = system.joints;
-    const SweepTerms terms = joint_terms(system.h, system.stretch);
+    const SweepTerms terms = joint_terms(system.scheme.h, system.stretch);
     team.for_ranges(size_of(lanes.group), kLaneGrain, [&](uint32_t begin, uint32_t end) {
         kernels.prepare(lanes.view(), begin, end, system.sweep.data(), static_cast<float>(system.frame_left), terms);
     });

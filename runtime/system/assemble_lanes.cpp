@@ -189,7 +189,7 @@ bool is_special(const LaneGroup& g) { return g.first_drive != kNoLanes || g.roll
 void build_lanes(Team& team, System& system, const Group& group, Pairs& pairs, const Nodes& nodes,
                  const ContactKernels& kernels) {
     ContactLanes& lanes = system.contacts;
-    const auto h = static_cast<float>(system.h);
+    const auto h = static_cast<float>(system.scheme.h);
     lanes.drive.clear();
     lanes.rolling.clear();
     share_out(team, system, pairs, group);
@@ -284,7 +284,7 @@ void for_pairs_in_lanes(Team& team, const ContactLanes& lanes, const Pairs& pair
 
 void load_lanes(Team& team, System& system, const Pairs& pairs) {
     ContactLanes& lanes = system.contacts;
-    const auto h = static_cast<float>(system.h);
+    const auto h = static_cast<float>(system.scheme.h);
     for_pairs_in_lanes(team, lanes, pairs, [&](const LaneGroup& g, int lane, uint32_t index) {
         const Pair& pair = pairs.list[index];
         for (int k = 0; k < pair.manifold.count; ++k) load(g.point[k].impulse, lane, pair.force[k], h);
@@ -294,7 +294,7 @@ void load_lanes(Team& team, System& system, const Pairs& pairs) {
 
 void store_lanes(Team& team, const System& system, Pairs& pairs) {
     const ContactLanes& lanes = system.contacts;
-    const auto h = static_cast<float>(system.h);
+    const auto h = static_cast<float>(system.scheme.h);
     for_pairs_in_lanes(team, lanes, pairs, [&](const LaneGroup& g, int lane, uint32_t index) {
         Pair& pair = pairs.list[index];
         pair.pushed = false;

@@ -138,9 +138,9 @@ void note_approach(const Vec3& apart, const Vec3& normal, RowBlock& block) {
 
 void load(System& system, const RowBlock& block) {
     double* const impulse = &system.rows.impulse[block.row];
-    impulse[0] = system.h * static_cast<double>(block.contact->normal);
-    impulse[1] = system.h * static_cast<double>(block.contact->tangent1);
-    impulse[2] = system.h * static_cast<double>(block.contact->tangent2);
+    impulse[0] = system.scheme.h * static_cast<double>(block.contact->normal);
+    impulse[1] = system.scheme.h * static_cast<double>(block.contact->tangent1);
+    impulse[2] = system.scheme.h * static_cast<double>(block.contact->tangent2);
 }
 
 // What a block of rows carries over.
@@ -314,7 +314,7 @@ void evaluate_joint(System& system, const RowBlock& block, double frame_left, do
     if (block.in_lanes) return;
     for (int r = 0; r < block.type->rows; ++r) {
         const uint32_t row = block.row + static_cast<uint32_t>(r);
-        system.rows.impulse[row] = system.h * block.force[r];
+        system.rows.impulse[row] = system.scheme.impulse(block.force[r]);
         // Damping acts on how fast C changes, drift included.
         const double damped = relaxation_of(block, r) / frame;
         double& error = system.rows.error[row];
@@ -353,10 +353,10 @@ void store_contact_rows(const System& system) {
     for (const RowBlock& block : system.rows.block) {
         if (!block.contact) continue;
         const double* mu = &system.rows.impulse[block.row];
-        block.contact->normal = static_cast<float>(mu[0] / system.h);
+        block.contact->normal = static_cast<float>(mu[0] / system.scheme.h);
         if (block.pushed && mu[0] > 0) *block.pushed = true;
-        block.contact->tangent1 = static_cast<float>(mu[1] / system.h);
-        block.contact->tangent2 = static_cast<float>(mu[2] / system.h);
+        block.contact->tangent1 = static_cast<float>(mu[1] / system.scheme.h);
+        block.contact->tangent2 = static_cast<float>(mu[2] / system.scheme.h);
     }
 }
 
@@ -365,7 +365,7 @@ double row_residual(System& system, const JointKernels& kernels) {
     double largest = kernels.residual(system.joints.view(), 0, groups, system.sweep.data());
     for (const RowBlock& block : system.rows.block) {
         if (block.type->bound != Bound::free || block.in_lanes) continue;
-        RowVector r = error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
+        RowVector r = error_rate_of(system, block) + compliance_of(block, system.scheme) * impulse_of(system, block);
         r += rates(system, block, [&](uint32_t node) { return vector_of(system.exact[node]); });
         for (int i = 0; i < block.type->rows; ++i)
             if (block.locked(i)) largest = std::max(largest, std::abs(r[i]));

@@ -30,14 +30,14 @@ constexpr double kMost = kUnlimited;
 
 // visit(row, AxisRow) for each stop, drive and friction of a block that is swept, with drives at their target.
 template <class Visit>
-void for_each_axis(const RowBlock& block, double h, Visit visit) {
+void for_each_axis(const RowBlock& block, const Scheme& scheme, Visit visit) {
     if (!block.axis) return;
     for (int r = 0; r < block.type->rows; ++r) {
         const auto row = static_cast<uint32_t>(r);
         if (!block.type->swept(row)) continue;
         const Axis& along = block.axis[r];
         const double target = block.angular(r) ? target_angle(along, along.target) : along.target;
-        for_each_axis_row(block, r, target, h, [&](const AxisRow& axis) { visit(row, axis); });
+        for_each_axis_row(block, r, target, scheme, [&](const AxisRow& axis) { visit(row, axis); });
     }
 }
 
@@ -46,7 +46,7 @@ void add_axes(System& system, JointGroup& g, std::span<const uint32_t> blocks) {
     JointLanes& lanes = system.joints;
     bool has[kMaxRows][kParts] = {};
     for (uint32_t b : blocks)
-        for_each_axis(system.rows.block[b], system.h,
+        for_each_axis(system.rows.block[b], system.scheme,
                       [&](uint32_t r, const AxisRow& axis) { has[r][axis.part] = true; });
     g.first_axis = lanes.axis.taken();
     for (uint32_t r = 0; r < g.rows; ++r) {
@@ -112,14 +112,15 @@ void add_colour(System& system, uint32_t begin, uint32_t end, uint32_t width) {
 }
 
 struct Times {
-    double h, frame;  // [s]
+    Scheme scheme;
+    double frame;  // [s]
     SweepTerms soft;
 };
 
 // How soft a locked row is.
 void fill_compliance(System& system, const JointGroup& g, uint32_t r, int lane, const RowBlock& block) {
     const int i = static_cast<int>(r);
-    const double scale = row_terms(block, i, system.h).scale;
+    const double scale = system.scheme.row_compliance(relaxation_of(block, i));
     const auto compliance = [&](uint32_t column) -> float& {
         return system.joints.compliance[g.first_compliance + triangle(r, column)].value[lane];
     };
@@ -138,11 +139,12 @@ void fill_rows(System& system, const JointGroup& g, int lane, const RowBlock& bl
         const bool locked = block.locked(i), rigid = locked && !block.elastic(i);
         LaneRow& row = lanes.row[g.first_row + r];
         row.locked[lane] = locked ? 1 : 0;
-        row.impulse[lane] = locked || block.type->swept(r) ? static_cast<float>(times.h * block.force[r]) : 0;
+        row.impulse[lane] =
+            locked || block.type->swept(r) ? static_cast<float>(times.scheme.impulse(block.force[r])) : 0;
         LaneCoordinate& c = lanes.coordinate[g.first_row + r];
         c.drift[lane] = static_cast<float>(block.drift[r]);
         if (!locked || rigid) continue;
-        c.rate[lane] = static_cast<float>(row_terms(block, i, times.h).rate);
+        c.rate[lane] = static_cast<float>(times.scheme.row_rate(relaxation_of(block, i)));
         c.damped_drift[lane] = static_cast<float>(relaxation_of(block, i) / times.frame * block.drift[r]);
         fill_compliance(system, g, r, lane, block);
     }
@@ -162,38 +164,38 @@ void fill_turn(LaneAxisLaw& law, int lane, bool angular, double near, double at)
 void fill_axis_stop(LaneAxisLaw& law, int lane, const AxisRow& stop, const Axis& axis, const AxisMemory& memory,
                     bool angular, const Times& times) {
     const double relaxation = double(axis.limit_compliance) * axis.limit_damping;
-    const auto yielding = static_cast<float>(1 / (times.h + relaxation));
+    const auto yielding = static_cast<float>(times.scheme.row_rate(relaxation));
     fill_turn(law, lane, angular, reading_middle(axis, memory), stop.sign > 0 ? axis.lower : axis.upper);
     law.open[lane] = times.soft.inv_h;
     law.closed[lane] = stop.physical ? yielding : times.soft.bias_rate;
     law.relaxed[lane] = stop.physical ? yielding : 0;
     law.push[lane] = stop.physical ? static_cast<float>(kMost) : times.soft.push;
-    law.reach[lane] = static_cast<float>(is_driven(axis) ? kMost : kReach * times.h);
+    law.reach[lane] = static_cast<float>(is_driven(axis) ? kMost : kReach * times.scheme.h);
 }
 
 // A drive at its target, or friction.
 void fill_axis_drive(LaneAxisLaw& law, int lane, const AxisRow& drive, const Axis& axis, const AxisMemory& memory,
                      bool angular, const Times& times) {
-    const auto rate = static_cast<float>(times.h * drive.compliance * axis.stiffness);
+    const auto rate = static_cast<float>(times.scheme.impulse(drive.compliance * axis.stiffness));
     const bool between = axis.mode == AxisMode::limited && std::isfinite(axis.lower) && std::isfinite(axis.upper);
     const double target = between && angular ? target_angle(axis, axis.target) : axis.target;
     fill_turn(law, lane, angular, between ? reading_middle(axis, memory) : target, target);
     law.base[lane] = static_cast<float>(drive.target);
     law.open[lane] = law.closed[lane] = law.relaxed[lane] = rate;
     law.push[lane] = law.reach[lane] = static_cast<float>(kMost);
-    law.softness[lane] = static_cast<float>(kDriveSoftness * times.h) * rate;
+    law.softness[lane] = static_cast<float>(kDriveSoftness * times.scheme.h) * rate;
 }
 
 void fill_axes(System& system, const JointGroup& g, int lane, const RowBlock& block, const Times& times) {
     JointLanes& lanes = system.joints;
-    for_each_axis(block, times.h, [&](uint32_t r, const AxisRow& axis) {
+    for_each_axis(block, times.scheme, [&](uint32_t r, const AxisRow& axis) {
         uint32_t at = g.first_axis;
         while (lanes.axis[at].row != r || lanes.axis[at].part != axis.part) ++at;
         LaneAxis& out = lanes.axis[at];
         out.sign[lane] = static_cast<float>(axis.sign);
         out.most[lane] = static_cast<float>(std::min(axis.limit, kMost));
         out.least[lane] = axis.stop ? 0 : -out.most[lane];
-        out.impulse[lane] = static_cast<float>(times.h * *axis.force);
+        out.impulse[lane] = static_cast<float>(times.scheme.impulse(*axis.force));
         out.force[lane] = axis.force;
         LaneAxisLaw& law = lanes.law[at];
         law.filled[lane] = 1;
@@ -298,7 +300,7 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
     }
     for (uint32_t i = first; i < system.rows.joints; ++i)
         for (int n = 0; n < system.rows.block[i].type->nodes; ++n) system.filtered[system.rows.block[i].node[n]] = 1;
-    const Times times{system.h, frame, joint_terms(system.h, system.stretch)};
+    const Times times{system.scheme, frame, joint_terms(system.scheme.h, system.stretch)};
     team.for_ranges(size_of(lanes.group), kLaneGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) fill_group(system, lanes.group[i], times);
     });

@@ -6,7 +6,7 @@ namespace taut {
 void change_length(Team& team, System& system, const Group& group, Pairs& pairs, double h, double frame) {
     store_joint_lanes(team, system);
     store_lanes(team, system, pairs);
-    system.h = h;
+    system.scheme.set_length(h);
     load_contact_rows(system);
     load_lanes(team, system, pairs);
     build_joint_lanes(team, system, group, frame);

@@ -66,20 +66,22 @@ inline RowVector error_of(const System& system, const RowBlock& block) {
     return Eigen::Map<const RowVector>(&system.rows.error[block.row], block.type->rows);
 }
 
-// c = C / (h (h + d)) of elastic rows, zero of rigid ones: see system.h.
-inline RowMatrix compliance_of(const RowBlock& block, double h) {
+// c of elastic rows, zero of rigid ones: see scheme.h.
+inline RowMatrix compliance_of(const RowBlock& block, const Scheme& scheme) {
     const int rows = block.type->rows;
     if (block.compliance_block)
-        return row_terms(block, 0, h).scale * Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows);
+        return scheme.row_compliance(relaxation_of(block, 0)) *
+               Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows);
     RowMatrix c = RowMatrix::Zero(rows, rows);
-    for (int r = 0; r < rows; ++r) c(r, r) = row_terms(block, r, h).scale * block.compliance[block.angular(r)];
+    for (int r = 0; r < rows; ++r)
+        c(r, r) = scheme.row_compliance(relaxation_of(block, r)) * block.compliance[block.angular(r)];
     return c;
 }
 
 // error / (h + d) of each row: -target.
 inline RowVector error_rate_of(const System& system, const RowBlock& block) {
     RowVector e = error_of(system, block);
-    for (int r = 0; r < block.type->rows; ++r) e[r] *= row_terms(block, r, system.h).rate;
+    for (int r = 0; r < block.type->rows; ++r) e[r] *= system.scheme.row_rate(relaxation_of(block, r));
     return e;
 }
 

@@ -22,8 +22,8 @@ Problem::Problem(System& system, ProblemMemory& memory, const RowSettings& setti
       settings_(settings),
       phase_(phase),
       rigid_(rigid),
-      contact_(contact_terms(system.h, system.stretch)),
-      joint_(joint_terms(system.h, system.stretch)) {
+      contact_(contact_terms(system.scheme.h, system.stretch)),
+      joint_(joint_terms(system.scheme.h, system.stretch)) {
     const Rows& rows = s_.rows;
     m_.unit.clear();
     m_.impulse = rows.impulse;
@@ -39,6 +39,7 @@ Problem::Problem(System& system, ProblemMemory& memory, const RowSettings& setti
     for (NodeVectors& each : m_.node_vector) each.resize(s_.pose.size());
     find_islands();
     find_inverses(Masses::split);
+    find_turning();
     for (Vector& each : m_.island) each.assign(islands_, 0.0);
 }
 
@@ -48,7 +49,7 @@ void Problem::add_units() {
     const Rows& rows = s_.rows;
     for (uint32_t b = 0; b < rows.block.size(); ++b) {
         const RowBlock& block = rows.block[b];
-        if (!settings_.linear) {
+        if (block.type->bound == Bound::free && !settings_.linear) {
             Pose poses[kMaxNodes];
             for (int n = 0; n < block.type->nodes; ++n) poses[n] = s_.pose[block.node[n]];
             block.type->evaluate(block.data, poses, &m_.start[block.row], nullptr);
@@ -62,7 +63,23 @@ void Problem::add_units() {
     }
     for (uint32_t b = 0; b < rows.block.size(); ++b)
         if (rows.block[b].axis) add_axes(b);
+    if (phase_ == Phase::relax && !settings_.linear) linearise();
     if (phase_ == Phase::relax && rigid_ == Rigid::soft) keep_impulses();
+    if (phase_ == Phase::relax && !s_.scheme.is_one_step())  // velocities are no more those of springs' laws
+        for (Unit& unit : m_.unit) unit.solved = unit.rigid;
+}
+
+// Velocities relax about the positions reached: J u of rigid rows, and of elastic ones rate_0 + J (u - u_0), so that
+// what is solved stays as it is.
+void Problem::linearise() {
+    const bool moved_by = s_.scheme.is_one_step();  // else u is the velocity at the end, and J is as projection left it
+    if (moved_by) evaluate();
+    for (Unit& unit : m_.unit) {
+        if (unit.linear) continue;
+        const RowVector reached = miss(unit);
+        unit.linear = true;
+        if (!unit.rigid && moved_by) of(unit, m_.target) += reached - miss(unit);
+    }
 }
 
 // Rigid rows that are springs to the solver keep what they bear while velocities relax: r = rate + c (mu - mu_0).
@@ -80,6 +97,7 @@ Unit& Problem::add(uint32_t block, Unit::Law law, int row, int rows) {
     unit.first = s_.rows.block[block].row + static_cast<uint32_t>(row);
     unit.matrix = static_cast<uint32_t>(m_.compliance.size());
     m_.compliance.resize(m_.compliance.size() + static_cast<size_t>(rows * rows), 0.0);
+    unit.linear = settings_.linear || s_.rows.block[block].type->bound != Bound::free;
     m_.unit.push_back(unit);
     return m_.unit.back();
 }
@@ -98,13 +116,13 @@ void Problem::set_locked(Unit& unit) {
     const bool elastic = joint.elastic(0), soft = rigid_ == Rigid::soft;
     unit.rigid = !elastic;
     const RowMatrix own = elastic || !soft ? RowMatrix() : effective(unit);
-    const RowMatrix elasticity = elastic ? compliance_of(joint, s_.h) : RowMatrix();
+    const RowMatrix elasticity = elastic ? compliance_of(joint, s_.scheme) : RowMatrix();
     for (int r = 0; r < unit.rows; ++r) {
         if (!joint.locked(r)) continue;
         const uint32_t at = unit.first + static_cast<uint32_t>(r);
         const double error = s_.rows.error[at];
         if (elastic)
-            m_.target[at] = -row_terms(joint, r, s_.h).rate * error;
+            m_.target[at] = -s_.scheme.row_rate(relaxation_of(joint, r)) * error;
         else if (phase_ == Phase::project)
             m_.target[at] = soft ? -joint_.bias_rate * error : -settings_.stabilisation * joint_.inv_h * error;
         for (int c = 0; c < unit.rows; ++c) {
@@ -158,7 +176,7 @@ void Problem::add_axes(uint32_t index) {
     for (int r = 0; r < joint.type->rows; ++r) {
         if (joint.locked(r)) continue;
         const double error = s_.rows.error[joint.row + static_cast<uint32_t>(r)];
-        for_each_axis_row(joint, r, error, s_.h, [&](AxisRow axis) {
+        for_each_axis_row(joint, r, error, s_.scheme, [&](AxisRow axis) {
             gear(s_, joint, r, axis);
             Unit& unit = add(index, Unit::Law::range, r, 1);
             unit.first = static_cast<uint32_t>(m_.impulse.size());
@@ -166,7 +184,7 @@ void Problem::add_axes(uint32_t index) {
             unit.high = axis.limit;
             unit.low = axis.stop ? 0 : -axis.limit;
             unit.force = axis.force;
-            m_.impulse.push_back(s_.h * static_cast<double>(*axis.force));
+            m_.impulse.push_back(s_.scheme.impulse(static_cast<double>(*axis.force)));
             double target = phase_ == Phase::project ? axis.target : axis.relaxed_target;
             if (axis.stop && !axis.physical && axis.gap <= 0 && phase_ == Phase::project)
                 target = std::min<double>(contact_.push, -contact_.bias_rate * axis.gap);
@@ -259,13 +277,13 @@ void Problem::find_inverses(Masses masses) {
 // ---------------------------------------------------------------- rates and operators
 
 void Problem::evaluate(const Unit& unit) {
-    if (settings_.linear) return;
+    if (unit.linear) return;
     const RowBlock& rows = block(unit);
     Pose poses[kMaxNodes];
     for (int n = 0; n < rows.type->nodes; ++n) {
         const Velocity& u = s_.exact[rows.node[n]];
         const Pose& x = s_.pose[rows.node[n]];
-        poses[n] = {x.x + s_.h * u.v, u.w.isZero(0) ? x.R : Mat3(rotation_from_vector(s_.h * u.w) * x.R)};
+        poses[n] = {x.x + s_.scheme.h * u.v, u.w.isZero(0) ? x.R : Mat3(rotation_from_vector(s_.scheme.h * u.w) * x.R)};
     }
     double c[kMaxRows];
     rows.type->evaluate(rows.data, poses, c, &s_.rows.jacobian[rows.jacobian]);
@@ -273,7 +291,34 @@ void Problem::evaluate(const Unit& unit) {
         const size_t at = rows.row + static_cast<size_t>(r);
         double moved = c[r] - m_.start[at];
         if (rows.angular(r)) moved -= kTurn * std::round(moved / kTurn);
-        m_.rate[at] = moved / s_.h;
+        m_.rate[at] = moved / s_.scheme.h;
+    }
+    turn(unit);
+}
+
+// Springs follow their J to the positions at the end of the substep, so that what is converged is implicit in their
+// directions too, the energy's minimum. As an iteration that is stable for a share of 1 / (1 + h^2 k), k their
+// geometric stiffness over mass; c / (A + c) is no more than that while they are less than twice as long. Impulses of
+// rigid rows stay as they were given: position based dynamics.
+void Problem::find_turning() {
+    m_.applied.clear();
+    if (rigid_ == Rigid::soft) return;  // forces are of the present J there
+    for (Unit& unit : m_.unit) {
+        if (unit.linear || unit.rigid || unit.force) continue;
+        unit.turning = (matrix(m_.inverse, unit) * matrix(m_.compliance, unit)).trace() / unit.rows;
+        unit.applied = static_cast<uint32_t>(m_.applied.size());
+        m_.applied.resize(m_.applied.size() + nodes(unit).size(), NodeVector::Zero());
+    }
+}
+
+void Problem::turn(const Unit& unit) {
+    if (unit.turning == 0) return;
+    for (int n = 0; n < block(unit).type->nodes; ++n) {
+        const uint32_t seat = block(unit).node[n];
+        NodeVector& applied = m_.applied[unit.applied + static_cast<uint32_t>(n)];
+        const NodeVector change = unit.turning * (jacobian(unit, n).transpose() * of(unit, m_.impulse) - applied);
+        applied += change;
+        if (m_.count[seat] > 0) move(seat, response_of(seat, change));
     }
 }
 
@@ -294,13 +339,14 @@ RowVector Problem::miss(const Unit& unit) const {
     RowVector out = of(unit, m_.target);
     for (int r = 0; r < unit.rows; ++r) {
         const int row = unit.row + r;
-        out[r] -= unit.sign *
-                  (settings_.linear ? rate(s_, rows, row, s_.exact) : m_.rate[rows.row + static_cast<size_t>(row)]);
+        out[r] -=
+            unit.sign * (unit.linear ? rate(s_, rows, row, s_.exact) : m_.rate[rows.row + static_cast<size_t>(row)]);
     }
     return masked(unit, out);
 }
 
 RowVector Problem::residual(const Unit& unit) const {
+    if (!unit.solved) return RowVector::Zero(unit.rows);
     return matrix(m_.compliance, unit) * of(unit, m_.impulse) - miss(unit);
 }
 
@@ -348,8 +394,9 @@ void Problem::move(uint32_t seat, const NodeVector& change) {
 void Problem::push(const Unit& unit, const RowVector& change) {
     for (int n = 0; n < block(unit).type->nodes; ++n) {
         const uint32_t seat = block(unit).node[n];
-        if (m_.count[seat] == 0) continue;
-        move(seat, response(s_.sweep[seat].mass, unit.sign * (jacobian(unit, n).transpose() * change)));
+        const NodeVector p = unit.sign * (jacobian(unit, n).transpose() * change);
+        if (unit.turning > 0) m_.applied[unit.applied + static_cast<uint32_t>(n)] += p;
+        if (m_.count[seat] > 0) move(seat, response_of(seat, p));
     }
 }
 
@@ -395,7 +442,7 @@ void Problem::project(Vector& mu) const {
 }
 
 void Problem::find_forces(Vector& mu) const {
-    for (const Unit& unit : m_.unit) of(unit, mu) = inverse(unit, miss(unit));
+    for (const Unit& unit : m_.unit) of(unit, mu) = unit.solved ? inverse(unit, miss(unit)) : of(unit, m_.impulse);
     project(mu);
 }
 
@@ -408,13 +455,13 @@ void Problem::store() {
     for (const Unit& unit : m_.unit) {
         if (!unit.force) continue;
         const double impulse = m_.impulse[unit.first];
-        *unit.force = static_cast<float>(impulse / s_.h);
+        *unit.force = static_cast<float>(s_.scheme.force(impulse));
         rows.impulse[block(unit).row + unit.row] += unit.sign * impulse;
     }
     if (phase_ == Phase::relax) return;
     for (const RowBlock& joint : rows.block)
         for (int r = 0; joint.force && r < joint.type->rows; ++r)
-            joint.force[r] = rows.impulse[joint.row + static_cast<uint32_t>(r)] / s_.h;
+            joint.force[r] = s_.scheme.force(rows.impulse[joint.row + static_cast<uint32_t>(r)]);
 }
 
 }  // namespace taut

@@ -3,9 +3,11 @@
 //   u = u* + W J^T mu,   r = rate(u) - target + c mu   [m/s],   mu in P,   r = 0 where P does not bind
 //
 // (Frâncu 2016, eq. 6.24 and 7.34 in velocities: x = x_n + h u). rate(u) is J u in velocity time stepping (eq. 6.21)
-// and (C(x_n + h u) - C(x_n)) / h, with J at x_n + h u, in position projection (eq. 6.26). P is all of R for locked
-// rows, an interval for stops, drives and frictions of axes, a half line for the normals of contacts, and what
-// project.h gives for friction. c is compliance as system.h states it, or the softness of contacts.
+// and (C(x_n + h u) - C(x_n)) / h, with J at x_n + h u, in position projection (eq. 6.26). Contacts are linear in both,
+// for their normals and points are of one frame: with levers of the end of a substep, spinning bodies that bounced
+// gained up to half of their energy (the thesis mixes the two likewise, section 8.3). P is all of R for locked rows, an
+// interval for stops, drives and frictions of axes, a half line for the normals of contacts, and what project.h gives
+// for friction. c is compliance as scheme.h states it, or the softness of contacts.
 //
 // Impulses lie in one array: those of System::rows first, in their places, then those of axes.
 #pragma once
@@ -43,6 +45,10 @@ struct Unit {
     Law law = Law::free;
     uint8_t row = 0, rows = 1;  // of the block: the first, and how many
     bool rigid = true;          // c is not the row's own
+    bool solved = true;         // else it keeps its impulse
+    bool linear = true;         // rate(u) is J u
+    double turning = 0;         // share of an impulse that follows J to new positions in an evaluation, see turn()
+    uint32_t applied = 0;       // of a unit that turns: its first in ProblemMemory::applied
     uint32_t block = 0;         // in Rows::block
     uint32_t first = 0;         // impulse
     uint32_t matrix = 0;        // of c and of the inverse diagonal: rows x rows, column by column
@@ -66,6 +72,7 @@ struct ProblemMemory {
           parent(m),
           island_of(m),
           seat(m),
+          applied(m),
           node(m),
           node_vector{Array<NodeVector>(m), Array<NodeVector>(m), Array<NodeVector>(m), Array<NodeVector>(m),
                       Array<NodeVector>(m)},
@@ -73,12 +80,13 @@ struct ProblemMemory {
           island{Array<double>(m), Array<double>(m), Array<double>(m), Array<double>(m)} {}
 
     Array<Unit> unit;
-    Array<double> impulse, target;           // rows
-    Array<double> compliance, inverse;       // Unit::matrix
-    Array<double> start, rate;               // C(x_n) and rate(u), rows of System::rows; of position projection
-    Array<uint32_t> count, parent;           // by seat: units on it, and scratch of find_islands()
-    Array<uint32_t> island_of;               // by seat
-    Array<uint32_t> seat;                    // of moving nodes that a unit is on
+    Array<double> impulse, target;      // rows
+    Array<double> compliance, inverse;  // Unit::matrix
+    Array<double> start, rate;          // C(x_n) and rate(u), rows of System::rows; of position projection
+    Array<uint32_t> count, parent;      // by seat: units on it, and scratch of find_islands()
+    Array<uint32_t> island_of;          // by seat
+    Array<uint32_t> seat;               // of moving nodes that a unit is on
+    Array<NodeVector> applied;          // what impulses of units that turn gave to their nodes, J^T mu as it was then
     Array<NodeVector> node, node_vector[5];  // by seat; for a solver
     Array<double> vector[4];                 // rows, for a solver
     Array<double> island[4];                 // islands, for a solver
@@ -148,7 +156,9 @@ private:
     Eigen::Map<const Eigen::MatrixXd> matrix(const Vector& of, const Unit& unit) const {
         return {&of[unit.matrix], unit.rows, unit.rows};
     }
-    bool is_solved(const Unit& unit, int r) const { return unit.law != Unit::Law::free || block(unit).locked(r); }
+    bool is_solved(const Unit& unit, int r) const {
+        return unit.solved && (unit.law != Unit::Law::free || block(unit).locked(r));
+    }
 
     void add_units();
     Unit& add(uint32_t block, Unit::Law law, int row, int rows);
@@ -157,6 +167,7 @@ private:
     void add_axes(uint32_t block);
     void set_row(const Unit& unit, double target, double compliance);
     void set_locked(Unit& unit);
+    void linearise();
     void keep_impulses();
     void find_islands();
     uint32_t root(uint32_t seat);
@@ -170,6 +181,8 @@ private:
         return jacobian_of(s_, block(unit), n).middleRows(unit.row, unit.rows);
     }
     void push(const Unit& unit, const RowVector& change);
+    void find_turning();
+    void turn(const Unit& unit);
 
     System& s_;
     ProblemMemory& m_;

@@ -5,7 +5,8 @@
 //   [ M + h^2 K   -J^T ] [v+]   [ M v + h f + h^2 K s ]      K: positive part of the geometric stiffness
 //   [ J            c   ] [mu] = [ target              ]      s: low-passed velocity, mu = h lambda
 //
-// Row by row, from C lambda = -error - damping C d(error)/dt at the end of the substep (Frâncu 2016, eq. 6.44):
+// and so in other schemes with their times (scheme.h). Row by row, from C lambda = -error - damping C d(error)/dt at
+// the end of the substep (Frâncu 2016, eq. 6.44):
 //   c = C / (h (h + d)),  target = -error / (h + d),  d = C * damping [s]; a rigid row has C = d = 0.
 //
 // Arrays by seat: of each node System::at(node); 0 is the world, which never moves. Seats follow the order in which
@@ -22,6 +23,7 @@
 #include "constraints/span_contact.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
+#include "system/scheme.h"
 
 namespace taut {
 
@@ -119,6 +121,10 @@ struct System {
           kept(memory),
           correction(memory),
           start(memory),
+          ahead(memory),
+          coast(memory),
+          began(memory),
+          by_springs(memory),
           inertia(memory),
           found(memory),
           turned(memory),
@@ -144,7 +150,7 @@ struct System {
 
     uint32_t at(uint32_t node) const { return seat[node + 1]; }  // kNone: the world
 
-    double h = 0;           // substep [s]
+    Scheme scheme;          // of this substep
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
 
     Array<uint32_t> seat;     // by node + 1; begin_frame()
@@ -163,6 +169,8 @@ struct System {
     Array<Velocity> kept;         // v+ without the push of overlaps, of nodes in blocks with bounded rows
     Array<Velocity> correction;   // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
     Array<Velocity> start;        // v before forces, w after the gyroscopic torque, for energy balances; predict()
+    // Of schemes of more than one step, see scheme.h: u*, v~, v_n and accelerations by springs [m/s^2, rad/s^2].
+    Array<Velocity> ahead, coast, began, by_springs;
     Array<Mat3> inertia;          // world axes [kg m^2], of nodes in blocks only; predict()
     Array<Found> found;           // begin_frame(), predict()
     Array<uint8_t> turned;        // 1: so far that levers turn in this substep; predict(), turn_kinematic()
@@ -179,16 +187,9 @@ struct System {
     ContactLanes contacts;  // of the group being solved
 };
 
-// c = scale C, target = -rate error, see above.
-struct RowTerms {
-    double scale, rate;
-};
+// Damping time d of a row [s].
 inline double relaxation_of(const RowBlock& block, int r) {
     return block.relaxation[block.compliance_block ? 0 : block.angular(r)];
-}
-inline RowTerms row_terms(const RowBlock& block, int r, double h) {
-    const double d = relaxation_of(block, r);
-    return {1 / (h * (h + d)), 1 / (h + d)};
 }
 
 }  // namespace taut

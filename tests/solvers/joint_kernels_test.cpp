@@ -32,7 +32,7 @@ struct Mechanism {
 
     explicit Mechanism(uint64_t seed) : team(taut_hooks{}, 1) {
         Random random(seed);
-        system.h = kStep;
+        system.scheme.set_length(kStep);
         system.sweep.resize(1 + kMaxNodes * kJoints);
         system.pose.resize(1 + kMaxNodes * kJoints);
         system.sweep_pose.resize(1 + kMaxNodes * kJoints);

@@ -95,7 +95,7 @@ public:
         w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct, 1.0 / 60, Vec3::Zero(), false});
         begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
         ASSERT_EQ(w.partition.group_count, 1u);
-        w.system.h = h;
+        w.system.scheme.set_length(h);
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
         if (!solver.lanes) return;
         build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
