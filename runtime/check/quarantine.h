@@ -5,17 +5,10 @@
 #include "state/joints.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
+#include "state/sane.h"
 #include "threads/team.h"
 
 namespace taut {
-
-// Speeds beyond this are an error, not motion [m/s, rad/s].
-constexpr double kMaxSpeed = 1e6;
-
-inline bool sane(const NodeMotion& m) {
-    return m.x.allFinite() && m.q.coeffs().allFinite() && m.v.squaredNorm() <= kMaxSpeed * kMaxSpeed &&
-           m.w.squaredNorm() <= kMaxSpeed * kMaxSpeed;
-}
 
 // Freezes the insane nodes of a list, and those that their own load makes so within h, before they drag others along;
 // appends their numbers to frozen. True: some node of the list has a load, and is to be asked again as it moves on.

@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "check/quarantine.h"
 #include "integrate/gyroscopic.h"
 #include "integrate/motion_kernels.h"
 #include "state/levers.h"
+#include "state/sane.h"
 
 namespace taut {
 namespace {

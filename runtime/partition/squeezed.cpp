@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "constraints/soft_contact.h"
 #include "partition/partition.h"
 #include "partition/weights.h"
-#include "system/soft_contact.h"
 
 namespace taut {
 namespace {

@@ -1,10 +1,10 @@
 // Projected Gauss-Seidel by colour: joints and contacts in lanes, what is neither as rows.
 #include "solvers/projected_gauss_seidel.h"
 
+#include "constraints/soft_contact.h"
 #include "solvers/row_sweep.h"
 #include "system/assemble.h"
 #include "system/lane_parts.h"
-#include "system/soft_contact.h"
 
 namespace taut {
 namespace {

@@ -4,8 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "constraints/soft_contact.h"
 #include "system/operators.h"
-#include "system/soft_contact.h"
 
 namespace taut {
 namespace {

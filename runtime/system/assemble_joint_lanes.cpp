@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/soft_contact.h"
 #include "system/assemble.h"
-#include "system/soft_contact.h"
 
 namespace taut {
 namespace {

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/soft_contact.h"
 #include "state/levers.h"
 #include "system/assemble.h"
 #include "system/operators.h"
-#include "system/soft_contact.h"
 
 namespace taut {
 namespace {

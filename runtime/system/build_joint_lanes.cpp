@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "constraints/joint_frames.h"
+#include "constraints/soft_contact.h"
 #include "system/assemble.h"
 #include "system/axis_rows.h"
-#include "system/soft_contact.h"
 
 namespace taut {
 namespace {

@@ -15,7 +15,7 @@
 #include "system/axis_rows.h"
 #include "system/operators.h"
 #include "system/project.h"
-#include "system/soft_contact.h"
+#include "constraints/soft_contact.h"
 
 namespace taut {
 

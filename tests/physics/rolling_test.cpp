@@ -47,7 +47,7 @@ struct Rate {
 };
 constexpr Rate kRates[] = {{60, 4}, {60, 1}, {30, 8}, {120, 2}, {240, 16}};
 
-// How far a soft contact gives way under a weight, 0.405 g h^2 (system/soft_contact.h), with room.
+// How far a soft contact gives way under a weight, 0.405 g h^2 (constraints/soft_contact.h), with room.
 double sag(const Rate& rate) {
     const double h = 1 / (rate.frequency * rate.substeps);
     return 0.5 * kG * h * h;

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "constraints/random.h"
+#include "constraints/soft_contact.h"
 #include "rig.h"
 #include "solvers/projected_gauss_seidel.h"
-#include "system/soft_contact.h"
 
 namespace taut::test {
 namespace {

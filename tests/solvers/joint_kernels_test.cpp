@@ -9,9 +9,9 @@
 
 #include "constraints/instance.h"
 #include "constraints/random.h"
+#include "constraints/soft_contact.h"
 #include "system/assemble.h"
 #include "system/axis_rows.h"
-#include "system/soft_contact.h"
 
 namespace taut::test {
 namespace {
