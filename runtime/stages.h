@@ -1,6 +1,7 @@
 // The stages of a step, and an onlooker between them: how tests find where two runs part.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace taut {
@@ -21,6 +22,12 @@ enum class Stage : uint8_t {
     publish,
     sleep
 };
+
+constexpr const char* name_of(Stage stage) {
+    constexpr const char* kNames[] = {"bounds", "pairs",  "contacts", "partition", "predict", "assemble",
+                                      "solve",  "commit", "relax",    "publish",   "sleep"};
+    return kNames[static_cast<size_t>(stage)];
+}
 
 struct StageEnd {
     Stage stage;

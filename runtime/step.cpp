@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "check/quarantine.h"
+#include "check/validate.h"
 #include "detect/contact_limit.h"
 #include "detect/detect.h"
 #include "detect/impact.h"
@@ -23,6 +24,7 @@ namespace taut {
 namespace {
 
 void tell(World& w, const StageEnd& end) {
+    if constexpr (kValidates) validate(w, end);
     if (w.observer) w.observer->after(w, end);
 }
 

@@ -110,6 +110,9 @@ public:
     // graph of touches alone is kept while that stays.
     void build(Team& team, const Nodes& nodes, const Joints& joints, Pairs& pairs, const PartitionRules& rules);
 
+    // Of a node, in this frame; kNone where forces do not move it.
+    uint32_t island_of(uint32_t node) const { return island_of_[node]; }
+
     Array<Group> groups;  // in ascending order of effort; the first group_count are used
     uint32_t group_count = 0;
     Array<Block> blocks;

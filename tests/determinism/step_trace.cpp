@@ -11,9 +11,6 @@ namespace {
 
 using namespace taut;
 
-constexpr const char* kNames[] = {"bounds", "pairs",  "contacts", "partition", "predict", "assemble",
-                                  "solve",  "commit", "relax",    "publish",   "sleep"};
-
 bool of_substep(Stage stage) { return stage >= Stage::predict && stage <= Stage::relax; }
 
 // Sums of what a stage wrote, by the node that it is about; of a pair that is the first that forces move.
@@ -200,8 +197,6 @@ std::vector<uint64_t> sums_after(const World& world, const StageEnd& end) {
 }
 
 }  // namespace
-
-const char* name_of(Stage stage) { return kNames[static_cast<size_t>(stage)]; }
 
 std::ostream& operator<<(std::ostream& out, const Difference& difference) {
     const StageEnd& end = difference.end;

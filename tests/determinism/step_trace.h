@@ -12,7 +12,7 @@
 
 namespace determinism {
 
-const char* name_of(taut::Stage stage);
+using taut::name_of;
 
 // The first stage of a step after which two runs differ, and in it the first island.
 struct Difference {
