@@ -97,8 +97,8 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
     build_group(w, group, solver, *settings.kernels);
     w.profile.predict_us += watch.lap();
 
-    const bool one_step = system.scheme.is_one_step();
-    const bool lends = one_step && w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !w.observer;
+    const bool one_step = system.scheme.is_one_step(), looks_on = w.observer || w.def.report;
+    const bool lends = one_step && w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !looks_on;
     MotionLoan loan(w.team, system, group, w.nodes);
     bool loaded = false, sane = false;  // the nodes, as far as is known
     while (!part.done()) {
@@ -115,6 +115,8 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         if (!one_step) begin_scheme(system, group, w.nodes);
         if (solver.lanes && i > 0) turn_lanes(w.team, system, group, *settings.kernels);
         shift_kinematic(system, w.nodes, part.begin());
+        const Measured measured{system, group, w.partition, w.nodes, w.pairs, gravity, i};
+        if (w.def.report) w.reports.begin(measured);
         build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
         tell(w, {Stage::predict, index, i});
         w.profile.predict_us += watch.lap();
@@ -134,6 +136,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
             continue;
         }
         if (substep.last) report.residual = std::max(report.residual, row_residual(system, *settings.joint_kernels));
+        if (w.def.report) w.reports.solved(measured);
         tell(w, {Stage::solve, index, i});
         w.profile.sweep_us += watch.lap();
         commit_strikes(system, w.impacts, w.nodes);
@@ -154,6 +157,7 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
         sane = store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
         if (!one_step) remember_scheme(system, group, w.nodes);
         store_contact_rows(system);
+        if (w.def.report) w.reports.end(measured);
         gather_impulses(system, w.impacts, w.pairs, w.watch);
         tell(w, {Stage::relax, index, i});
         w.profile.commit_us += watch.lap();
@@ -231,6 +235,7 @@ void step(World& w) {
     w.partition.build(w.team, w.nodes, w.joints, w.pairs,
                       {w.least_substeps(), w.def.fixed_substeps != 0, solver.direct, w.def.time_step,
                        Vec3(g.x, g.y, g.z), w.team.size() > 1, w.spring_substep});
+    if (w.def.report) w.reports.begin_step(w.partition, w.joints);
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);

@@ -35,6 +35,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       woke(memory),
       moved_before(memory),
       frozen(memory),
+      reports(memory),
       impacts(memory) {
     last_step = def.time_step;
     spring_substep = first_substep = static_cast<double>(def.time_step) / def.substeps;

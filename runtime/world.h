@@ -8,6 +8,7 @@
 #include "partition/partition.h"
 #include "publish/contact_watch.h"
 #include "publish/event_window.h"
+#include "solvers/report.h"
 #include "solvers/solver.h"
 #include "stages.h"
 #include "state/cables.h"
@@ -68,6 +69,8 @@ struct World {
     // results of the last step
     Array<uint32_t> frozen;  // nodes quarantined by the last step
     taut_profile profile{};
+
+    SolveReports reports;  // of the last step, where def.report asks for them
 
     StageObserver* observer = nullptr;  // of tests; null: nobody looks on
 

@@ -48,6 +48,7 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .boolean("continuous", def.continuous)
         .boolean("adaptive_damping", def.adaptive_damping)
         .number("restitution_threshold", def.restitution_threshold, kRestitutionThreshold)
+        .boolean("report", def.report)
         .choice("stepping", def.stepping, TAUT_STEPPING_VELOCITY)
         .number("stabilisation", def.stabilisation, kUnitInterval)
         .number("relaxation", def.relaxation, kRelaxation)

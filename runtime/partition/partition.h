@@ -102,6 +102,9 @@ struct PartitionRules {
     double spring_substep = time_step / substeps;  // for which contacts are as soft as they are; World::spring_substep
 };
 
+// Why an island has rows that are solved directly, as bits; what something kinematic squeezes has none for its loads.
+enum Reason : uint8_t { kByJoint = 1, kByLoad = 2, kByHit = 4, kByTower = 8, kByPress = 16, kSqueezed = 32 };
+
 class Partition {
 public:
     explicit Partition(Memory& memory);
@@ -112,6 +115,8 @@ public:
 
     // Of a node, in this frame; kNone where forces do not move it.
     uint32_t island_of(uint32_t node) const { return island_of_[node]; }
+    // By island, after build().
+    void find_reasons(const Joints& joints, Array<uint8_t>& out) const;
 
     Array<Group> groups;  // in ascending order of effort; the first group_count are used
     uint32_t group_count = 0;

@@ -108,6 +108,12 @@ void publish_profile(World& world) {
     p.blocks = static_cast<uint32_t>(world.partition.blocks.size());
     p.colours = world.partition.colours;
     p.bytes = world.memory.bytes();
+    for (const IslandReport& island : world.reports.islands) {
+        p.yield = std::max(p.yield, static_cast<float>(island.yield));
+        p.solve_residual = std::max(p.solve_residual, static_cast<float>(island.residual));
+        p.linearisation = std::max(p.linearisation, static_cast<float>(island.linearisation));
+        p.energy_gain = std::max(p.energy_gain, static_cast<float>(island.energy));
+    }
 }
 
 }  // namespace taut

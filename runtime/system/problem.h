@@ -12,10 +12,10 @@
 // Impulses lie in one array: those of System::rows first, in their places, then those of axes.
 #pragma once
 
+#include "constraints/soft_contact.h"
 #include "system/axis_rows.h"
 #include "system/operators.h"
 #include "system/project.h"
-#include "constraints/soft_contact.h"
 
 namespace taut {
 

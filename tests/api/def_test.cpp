@@ -264,6 +264,7 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         {"continuous", &Def::continuous, 0, 1},
         {"adaptive_damping", &Def::adaptive_damping, 0, 1},
         {"fixed_step", &Def::fixed_step, 0, 1},
+        {"report", &Def::report, 0, 1},
     };
     for (const auto& count : counts) {
         changed(TAUT_INVALID_ARGUMENT, count.name, [&](Def& d) { d.*count.field = count.lo - 1; });
