@@ -94,8 +94,10 @@ const std::vector<Family>& families() {
     return list;
 }
 
-Scene make_scene(const std::string& name, const Options& options) {
-    for (const Family& family : families()) {
+Scene make_scene(const std::string& name, const Options& options) { return make_scene(name, options, families()); }
+
+Scene make_scene(const std::string& name, const Options& options, const std::vector<Family>& among) {
+    for (const Family& family : among) {
         double n = 1, r = 1;
         if (!match(family.pattern, name, n, r)) continue;
         if (family.largest_n > 0) check_range(name, "N", n, 1, family.largest_n);
@@ -111,7 +113,7 @@ Scene make_scene(const std::string& name, const Options& options) {
         return scene;
     }
     std::string text = "no scene is called '" + name + "'; there are:";
-    for (const Family& family : families()) text += std::string(" ") + family.pattern;
+    for (const Family& family : among) text += std::string(" ") + family.pattern;
     throw BadScene(text + " (N: a count, R: a number)");
 }
 

@@ -28,5 +28,7 @@ const std::vector<Family>& families();
 
 // Builds a scene. Throws BadScene (unknown name, number out of range) or BadFile.
 Scene make_scene(const std::string& name, const Options& options = {});
+// Of some families; likewise.
+Scene make_scene(const std::string& name, const Options& options, const std::vector<Family>& among);
 
 }  // namespace scenes

@@ -43,6 +43,7 @@ public:
     virtual Motion motion(size_t body) const = 0;
     virtual Mass mass(size_t body) const = 0;
     virtual uint64_t state_hash() const = 0;
+    virtual taut_world world() const { return {}; }  // null: not Taut
     virtual SolveTime solve_time() const { return {}; }
     virtual std::vector<StageTime> stage_times() const { return {}; }  // the same stages after every step
     virtual uint32_t asleep() const { return 0; }                      // bodies

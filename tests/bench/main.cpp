@@ -6,10 +6,11 @@
 #include <optional>
 
 #include "heap.h"
+#include "load_scenes.h"
 #include "metrics.h"
 #include "options.h"
-#include "scenes/catalogue.h"
 #include "scenes/taut_world.h"
+#include "solve_report.h"
 #include "step_times.h"
 
 namespace bench {
@@ -42,11 +43,15 @@ struct Subject {
     scenes::Scene scene;
 
     std::unique_ptr<Engine> engine() const { return make_engine(options, scene); }
-    uint32_t steps() const { return options.steps.value_or(scene.steps); }
+    uint32_t steps() const {
+        return options.steps.value_or(static_cast<uint32_t>(std::lround(scene.steps * options.rate / 60)));
+    }
 };
 
 Subject subject(const Options& options) {
-    scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""});
+    scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, ""}, bench_families());
+    if (options.rate != 60) scene.world.time_step = static_cast<float>(1 / options.rate);
+    scene.world.report = options.report.empty() ? 0 : 1;
     if (options.substeps) scene.world.substeps = *options.substeps;
     if (options.solver && options.engine == "taut") scene.world.solver = scenes::solver_named(*options.solver);
     if (!options.geometric_stiffness) scene.world.geometric_stiffness = 0;
@@ -136,12 +141,15 @@ int run(const Options& options) {
     if (!options.cold) warm(ours);
     const std::unique_ptr<Engine> engine = ours.engine();
     Metrics metrics(scene, *engine, ours.steps());
+    std::optional<SolveReportFile> report;
+    if (!options.report.empty()) report.emplace(options.report);
     SolveTime solve;
     StepTimes times = time_steps(*engine, ours.steps(), [&](uint32_t step) {
         const SolveTime last = engine->solve_time();
         solve.microseconds += last.microseconds;
         solve.solves += last.solves;
         metrics.after_step(step);
+        if (report) report->add(engine->world(), step);
     });
     std::optional<Other> other;
     if (!options.beside.empty()) other.emplace(options);

@@ -5,15 +5,16 @@
 #include <cstdio>
 #include <iostream>
 
+#include "load_scenes.h"
 #include "metrics.h"
-#include "scenes/catalogue.h"
+#include "solve_report.h"
 
 namespace bench {
 
 namespace {
 
 void print_scenes() {
-    for (const scenes::Family& family : scenes::families())
+    for (const scenes::Family& family : bench_families())
         if (!family.needs_mesh)
             std::printf("%-22s %4u steps  %s (as in %s)\n", family.pattern, family.steps, family.description,
                         family.example);
@@ -36,6 +37,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--engine", options.engine, "taut; bullet or ode in builds with TAUT_BENCH_PEERS");
     CLI::Option* substeps_flag =
         app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
+    app.add_option("--rate", options.rate, "steps a second; the scene lasts as long")->check(CLI::Range(10.0, 10000.0));
     CLI::Option* solver_flag = app.add_option("--solver", solver,
                                               "one of taut_solver: block_ldlt, projected_gauss_seidel ...;\n"
                                               "of ode: step (default with joints) or quickstep");
@@ -51,8 +53,10 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
         ->check(CLI::IsMember({"one-thread", "bullet", "ode"}));
     app.add_option("--ratio-limit", options.ratio_limit,
                    "fail if the mean step takes more than this part of the other's");
+    app.add_option("--report", options.report,
+                   "FILE.csv: what each island's solves left, beside what was decided for it");
     app.add_flag("--list", list, "print all scenes");
-    app.footer(kFieldHelp);
+    app.footer(std::string(kFieldHelp) + "\n" + kReportHelp);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -65,6 +69,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
         return std::nullopt;
     }
     if (options.scene.empty()) throw scenes::BadScene("--scene NAME is required, see --list");
+    if (!options.report.empty() && options.engine != "taut") throw scenes::BadScene("--report is for taut only");
     if (options.ratio_limit > 0 && options.beside.empty()) throw scenes::BadScene("--ratio-limit asks for --beside");
     if (steps_flag->count() > 0) options.steps = steps;
     if (substeps_flag->count() > 0) options.substeps = substeps;

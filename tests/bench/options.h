@@ -12,6 +12,7 @@ enum ExitCode { kFine = 0, kRunFailed = 1, kBadArguments = 2 };
 struct Options {
     std::string scene, engine = "taut";
     std::optional<uint32_t> steps, substeps;
+    double rate = 60;  // steps a second
     std::optional<std::string> solver;
     uint32_t threads = 1;
     uint64_t seed = 0;
@@ -24,6 +25,7 @@ struct Options {
     uint32_t runs = 1;
     std::string beside;
     double ratio_limit = 0;
+    std::string report;
 };
 
 // Nothing: *exit_code says with what to end. Throws scenes::BadScene for what contradicts itself.

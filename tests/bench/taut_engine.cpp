@@ -39,6 +39,8 @@ public:
         return hash;
     }
 
+    taut_world world() const override { return world_.world; }
+
     SolveTime solve_time() const override {
         taut_profile profile = world_.profile();
         return {static_cast<double>(profile.assemble_us) + static_cast<double>(profile.factor_us), profile.solves};
