@@ -1,6 +1,8 @@
 // The validators of lanes and impulses, by planted flaws.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "check/validate.h"
 #include "rig.h"
 
@@ -75,6 +77,12 @@ TEST_F(ValidateLanes, ImpulsesPushAndStayInTheirCones) {
     ASSERT_TRUE(pulls);
     EXPECT_STREQ(pulls->invariant, "normal impulses are not negative");
     EXPECT_EQ(pulls->index, w.system.contacts.group[0].pair[0]);
+}
+
+TEST_F(ValidateLanes, StepsOfCheckedBuildsAbortWithStageInvariantAndIndex) {
+    validate(w, {Stage::publish});
+    w.nodes.motion[ball_node[1]].v.x() = std::numeric_limits<double>::infinity();
+    EXPECT_DEATH(validate(w, {Stage::publish}), "after publish .* motions are finite: 2");
 }
 
 }  // namespace
