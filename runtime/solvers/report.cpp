@@ -79,11 +79,21 @@ Place place_of(const Rows& rows, uint32_t index) {
     return {index < rows.joints, index < rows.direct || index >= rows.lasting};
 }
 
-// A point of a lane, as the sweeps see it.
-struct PointOfLane {
-    Vec3 ra, rb, n, t1, t2, p;  // p: impulses along these three
-    double gap, mass, tangent_mass;
-    bool hits;
+// A swept contact point.
+struct SweptPoint {
+    Vec3 p = Vec3::Zero();                       // impulses: normal, tangents [N s]
+    double gap = 0, mass = 0, tangent_mass = 0;  // [m], [kg]
+    bool hits = false;
+};
+
+SweptPoint point_of(const System& system, const RowBlock& block, const Evaluated& at) {
+    return {impulse_of(system, block).head<3>(), system.rows.error[block.row], 1 / at.inverse_mass(0),
+            1 / std::max(at.inverse_mass(1), at.inverse_mass(2)), block.hits};
+}
+
+// A point of a lane.
+struct PointOfLane : SweptPoint {
+    Vec3 ra, rb, n, t1, t2;
 
     PointOfLane(const LaneGroup& g, const LanePoint& point, int lane) {
         const auto load = [lane](const float(&from)[3][kLanes]) {
@@ -101,7 +111,7 @@ struct PointOfLane {
 };
 
 // By how much one more biased pass over a normal row would change its J v [m/s]; as in constraints/contact_sweep.inl.
-double normal_change(const PointOfLane& at, double vn, const SweepTerms& terms) {
+double normal_change(const SweptPoint& at, double vn, const SweepTerms& terms) {
     const bool open = at.gap > 0, soft = !open && !at.hits;
     const double bias = open
                             ? at.gap * static_cast<double>(terms.inv_h)
@@ -113,7 +123,7 @@ double normal_change(const PointOfLane& at, double vn, const SweepTerms& terms) 
 }
 
 // Likewise over the tangents, isotropic.
-double friction_change(const PointOfLane& at, const Eigen::Vector2d& slip, double friction) {
+double friction_change(const SweptPoint& at, const Eigen::Vector2d& slip, double friction) {
     const Eigen::Vector2d p(at.p[1], at.p[2]);
     const double most = friction * at.p[0];
     Eigen::Vector2d next = p - at.tangent_mass * slip;
@@ -235,18 +245,30 @@ struct SolveReports::Measure {
             IslandReport* const out = report(block);
             if (!out || block.in_lanes || block.type->bound == Bound::load) continue;
             const Evaluated at(system, block);
-            const bool joint_rows = place_of(system.rows, i).joint;
-            if (joint_rows) {
-                const RowVector left =
-                    error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
-                for (int r = 0; r < block.type->rows; ++r)
-                    if (at.is_gap(r))
-                        out->residual =
-                            std::max(out->residual, system.h * std::abs(left[r] + at.rate(r, system.exact)));
+            const Place place = place_of(system.rows, i);
+            if (place.joint || !place.direct) {
+                const double left = place.joint ? left_of_joint(block, at) : left_of_contact(block, at);
+                out->residual = std::max(out->residual, system.h * left);
             }
-            if (joint_rows || system.rows.impulse[block.row] > 0)
-                out->linearisation = std::max(out->linearisation, at.curved(joint_rows ? block.type->rows : 1));
+            if (place.joint || system.rows.impulse[block.row] > 0)
+                out->linearisation = std::max(out->linearisation, at.curved(place.joint ? block.type->rows : 1));
         }
+    }
+    // Largest |J v + c mu - target| of the rows to keep [m/s].
+    double left_of_joint(const RowBlock& block, const Evaluated& at) const {
+        const RowVector rest =
+            error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
+        double largest = 0;
+        for (int r = 0; r < block.type->rows; ++r)
+            if (at.is_gap(r)) largest = std::max(largest, std::abs(rest[r] + at.rate(r, system.exact)));
+        return largest;
+    }
+    double left_of_contact(const RowBlock& block, const Evaluated& at) const {
+        const SweptPoint point = point_of(system, block, at);
+        const Eigen::Vector2d slip(at.rate(1, system.exact) - block.drive[0],
+                                   at.rate(2, system.exact) - block.drive[1]);
+        return std::max(normal_change(point, at.rate(0, system.exact), contact),
+                        friction_change(point, slip, block.friction));
     }
 
     void add_yield(IslandReport& out, bool direct, bool is_contact, double yield, double margin) const {
