@@ -5,7 +5,7 @@
 
 #include "constraints/soft_contact.h"
 #include "solvers/bounded_row.h"
-#include "system/row_algebra.h"
+#include "system/operators.h"
 
 namespace taut {
 namespace {
@@ -53,12 +53,12 @@ public:
         for (int n = 0; n < block_.type->nodes; ++n) {
             const Pose& at = system_.pose[block_.node[n]];
             const Velocity& u = system_.exact[block_.node[n]];
-            x[n] = {at.x + system_.h * u.v, rotation_from_vector(system_.h * u.w) * at.R};
+            x[n] = {at.x + system_.scheme.h * u.v, rotation_from_vector(system_.scheme.h * u.w) * at.R};
         }
         block_.type->evaluate(block_.data, x, moved, nullptr);
         for (int r = 0; r < first_rows; ++r)
             if (is_gap(r))
-                largest = std::max(largest, std::abs(moved[r] - error_[r] - system_.h * rate(r, system_.exact)));
+                largest = std::max(largest, std::abs(moved[r] - error_[r] - system_.scheme.h * rate(r, system_.exact)));
         return largest;
     }
     // Whether a row is a length to keep.
@@ -144,7 +144,7 @@ double lever_curve(const System& system, const LaneGroup& g, int lane, uint32_t 
         for (int i = 0; i < 3; ++i)
             core[side][i] -= static_cast<double>(axles.rim[k][side][lane] * axles.across[side][i][lane]);
     }
-    return 0.5 * system.h * system.h * std::abs(bent(g.b[lane], core[1]) - bent(g.a[lane], core[0]));
+    return 0.5 * system.scheme.h * system.scheme.h * std::abs(bent(g.b[lane], core[1]) - bent(g.a[lane], core[0]));
 }
 
 // act(group, lane, k) for each point of the swept pairs.
@@ -189,7 +189,7 @@ struct SolveReports::Measure {
     SolveReports& to;
     const Measured& m;
     const System& system = m.system;
-    SweepTerms contact = contact_terms(m.system.h, m.system.stretch), joint = joint_terms(m.system.h, m.system.stretch);
+    SweepTerms contact = contact_terms(m.system.scheme.h, m.system.stretch), joint = joint_terms(m.system.scheme.h, m.system.stretch);
 
     // Of the first of these seats that forces move; null: none, a quarantined body on a fixed one.
     IslandReport* report(std::span<const uint32_t> seats) const {
@@ -218,7 +218,7 @@ struct SolveReports::Measure {
                 Eigen::Vector2d(at.t1.dot(v), at.t2.dot(v)) - drive_of(system.contacts, g, lane, k);
             const double change = std::max(normal_change(at, at.n.dot(v), contact),
                                            friction_change(at, slip, static_cast<double>(g.friction[lane])));
-            out->residual = std::max(out->residual, system.h * change);
+            out->residual = std::max(out->residual, system.scheme.h * change);
             if (at.p[0] > 0) out->linearisation = std::max(out->linearisation, lever_curve(system, g, lane, k, at));
         });
     }
@@ -234,7 +234,7 @@ struct SolveReports::Measure {
                 if (!at.is_gap(i)) continue;
                 const double left =
                     at.rate(i, system.exact) - static_cast<double>(row.bias[lane]) + yielding_of(lanes, g, lane, r);
-                out->residual = std::max(out->residual, system.h * std::abs(left));
+                out->residual = std::max(out->residual, system.scheme.h * std::abs(left));
             }
             out->linearisation = std::max(out->linearisation, at.curved(block.type->rows));
         });
@@ -248,7 +248,7 @@ struct SolveReports::Measure {
             const Place place = place_of(system.rows, i);
             if (place.joint || !place.direct) {
                 const double left = place.joint ? left_of_joint(block, at) : left_of_contact(block, at);
-                out->residual = std::max(out->residual, system.h * left);
+                out->residual = std::max(out->residual, system.scheme.h * left);
             }
             if (place.joint || system.rows.impulse[block.row] > 0)
                 out->linearisation = std::max(out->linearisation, at.curved(place.joint ? block.type->rows : 1));
@@ -257,7 +257,7 @@ struct SolveReports::Measure {
     // Largest |J v + c mu - target| of the rows to keep [m/s].
     double left_of_joint(const RowBlock& block, const Evaluated& at) const {
         const RowVector rest =
-            error_rate_of(system, block) + compliance_of(block, system.h) * impulse_of(system, block);
+            error_rate_of(system, block) + compliance_of(block, system.scheme) * impulse_of(system, block);
         double largest = 0;
         for (int r = 0; r < block.type->rows; ++r)
             if (at.is_gap(r)) largest = std::max(largest, std::abs(rest[r] + at.rate(r, system.exact)));
@@ -348,7 +348,7 @@ struct SolveReports::Measure {
             const NodeLoad& load = m.nodes.load_of(node);
             const Vec3 force = mass.mass * mass.gravity_scale * m.gravity + load.force;
             const double work =
-                force.dot(m.nodes.motion[node].x - system.pose[seat].x) + system.h * load.torque.dot(to.mean_[seat].w);
+                force.dot(m.nodes.motion[node].x - system.pose[seat].x) + system.scheme.h * load.torque.dot(to.mean_[seat].w);
             to.open_[m.partition.island_of(node)].energy -= work;
         }
     }
@@ -416,7 +416,7 @@ void SolveReports::begin(const Measured& m) {
         out.substep = m.substep;
         out.substeps = m.group.substeps;
         out.sweeps = m.group.sweeps;
-        out.h = m.system.h;
+        out.h = m.system.scheme.h;
         ++out.bodies;
         before_[m.system.at(node)] = {m.nodes.motion[node].v, m.nodes.motion[node].w};
     }
