@@ -70,37 +70,35 @@ Box box_of(const btDbvtVolume& volume) {
 
 uint64_t pair_key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 32 | std::max(i, j); }
 
+// Where an id is in the tree. Its box stands in Boxes as well: the node lies somewhere else.
 struct Leaf {
     btDbvtNode* node = nullptr;  // null: no such id
-    Box fat;                     // the node's, which lies somewhere else
-    bool moves = false;
-    bool stale = false;  // its pairs must be found again; listed in State::stale
-    uint8_t stays = 0;   // how often its box changed since it got its place in the tree
-    bool stray = false;  // may be outside its fat box; listed in State::strays
+    uint8_t stays = 0;           // how often its box changed since it got its place in the tree
 };
 
 }  // namespace
 
 struct Broadphase::State {
     explicit State(Memory& memory)
-        : leaves(memory),
-          stale(memory),
+        : boxes(memory),
+          leaves(memory),
           partners(memory),
           found_of(memory),
           strays(memory),
-          pairs(memory),
           fresh(memory),
           gone(memory),
           first_of(memory) {}
 
     void mark(uint32_t id) {
-        if (leaves[id].stale) return;
-        stale.push_back(id);
-        leaves[id].stale = true;
+        if (boxes.of[id].stale) return;
+        boxes.stale.push_back(id);
+        boxes.of[id].stale = true;
     }
+    // Gives a leaf another box, in its place or in a new one.
+    void change(uint32_t id, const btDbvtVolume& volume);
     // From one on those that go down the tree together, before an end.
     std::span<const uint32_t> some_stale(uint32_t next, uint32_t end) const {
-        return std::span(stale).subspan(next, std::min(kAtOnce, end - next));
+        return std::span(boxes.stale).subspan(next, std::min(kAtOnce, end - next));
     }
     void order_stale();
     template <class Report>
@@ -113,9 +111,9 @@ struct Broadphase::State {
     template <class Asks>
     void walk(const Asks& asks, Probe& probe, Visitor& visitor) const;
 
+    Boxes boxes;
     btDbvt tree;
     Array<Leaf> leaves;  // by id
-    Array<uint32_t> stale;
     static constexpr size_t kTogether = 256;     // keys
     static constexpr uint32_t kAtOnce = kLanes;  // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8, kMostRoom = 64;
@@ -128,7 +126,6 @@ struct Broadphase::State {
     };
     Array<Found> found_of;     // by the first stale leaf of those that are looked at together
     Array<uint32_t> strays;    // those that are not any more are listed until the next step
-    Array<uint64_t> pairs;     // sorted
     Array<uint64_t> fresh;     // those of stale leaves now, then those of them that are new; sorted
     Array<uint64_t> gone;      // those of stale leaves before, then those of them that are no more; sorted
     Array<uint32_t> first_of;  // where in a sorted list the keys of an id begin
@@ -143,45 +140,45 @@ void Broadphase::State::order_stale() {
         const btDbvtNode* const leaf = leaves[id].node;
         return leaf ? btVector3(0.5f * (leaf->volume.Mins() + leaf->volume.Maxs())) : btVector3(0, 0, 0);
     };
-    btVector3 lo = middle(stale.front()), hi = lo;
-    for (const uint32_t id : stale) lo.setMin(middle(id)), hi.setMax(middle(id));
+    btVector3 lo = middle(boxes.stale.front()), hi = lo;
+    for (const uint32_t id : boxes.stale) lo.setMin(middle(id)), hi.setMax(middle(id));
     first_of.assign(kCells * kCells * kCells + 1, 0);
-    for (size_t k = 0; k < stale.size(); ++k) {
+    for (size_t k = 0; k < boxes.stale.size(); ++k) {
         uint32_t cell = 0;
         for (int i = 0; i < 3; ++i) {
-            const float along = float(kCells) * (middle(stale[k])[i] - lo[i]) / (hi[i] - lo[i]);
+            const float along = float(kCells) * (middle(boxes.stale[k])[i] - lo[i]) / (hi[i] - lo[i]);
             cell |= kSpread[along > 0 ? uint32_t(std::min(along, float(kCells - 1))) : 0] << i;  // not-a-number: 0
         }
-        partners[k] = uint64_t(cell) << 32 | stale[k];
+        partners[k] = uint64_t(cell) << 32 | boxes.stale[k];
         ++first_of[cell + 1];
     }
     std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
-    for (size_t k = 0, count = stale.size(); k < count; ++k)
-        stale[first_of[partners[k] >> 32]++] = uint32_t(partners[k]);
+    for (size_t k = 0, count = boxes.stale.size(); k < count; ++k)
+        boxes.stale[first_of[partners[k] >> 32]++] = uint32_t(partners[k]);
 }
 
 // Calls report(key) for each leaf whose fat box meets that of one of some stale leaves, at most kAtOnce, and which
 // pairs with it; of two stale leaves the smaller id reports.
 template <class Report>
 void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& report) const {
-    BoxLanes boxes;
+    BoxLanes lanes;
     unsigned asking = 0;
     for (size_t k = 0; k < kAtOnce; ++k) {
         const btDbvtNode* const leaf = k < ids.size() ? leaves[ids[k]].node : nullptr;
         asking |= unsigned(leaf != nullptr) << k;
         for (int i = 0; i < 3; ++i) {
-            boxes.lo[i][k] = leaf ? leaf->volume.Mins()[i] : std::numeric_limits<float>::infinity();
-            boxes.hi[i][k] = leaf ? leaf->volume.Maxs()[i] : -std::numeric_limits<float>::infinity();
+            lanes.lo[i][k] = leaf ? leaf->volume.Mins()[i] : std::numeric_limits<float>::infinity();
+            lanes.hi[i][k] = leaf ? leaf->volume.Maxs()[i] : -std::numeric_limits<float>::infinity();
         }
     }
     const auto found = [&](unsigned met, uint32_t other) {
         for (; met != 0; met &= met - 1) {
             const uint32_t id = ids[size_t(std::countr_zero(met))];
-            const bool reports = other != id && !(leaves[other].stale && other < id);
-            if (reports && (leaves[other].moves || leaves[id].moves)) report(pair_key(id, other));
+            const bool reports = other != id && !(boxes.of[other].stale && other < id);
+            if (reports && (boxes.of[other].moves || boxes.of[id].moves)) report(pair_key(id, other));
         }
     };
-    Descent descent(boxes, found);
+    Descent descent(lanes, found);
     if (asking != 0) descent.begin_at(tree.m_root, asking);
     descent.run();
 }
@@ -206,7 +203,7 @@ void Broadphase::State::find(uint32_t begin, uint32_t end) {
 
 // What find() found, and that for which there was no room; sorted.
 void Broadphase::State::gather_fresh() {
-    const auto number = uint32_t(stale.size());
+    const auto number = uint32_t(boxes.stale.size());
     size_t keys = 0;
     for (uint32_t i = 0; i < number; i = found_of[i].end) keys += found_of[i].count;
     fresh.clear();
@@ -239,13 +236,14 @@ void Broadphase::State::sort_by(const Array<uint64_t>& keys, int bit, Array<uint
 
 // The pairs of stale leaves before. Each key is written, and counted if it is one: which are would be mispredicted.
 void Broadphase::State::gather_gone() {
+    const Array<uint64_t>& all = boxes.pairs;
     gone.clear();
-    for (size_t begin = 0; begin < pairs.size(); begin += kTogether) {
+    for (size_t begin = 0; begin < all.size(); begin += kTogether) {
         uint64_t found[kTogether];
         size_t count = 0;
-        for (const uint64_t key : std::span(pairs).subspan(begin, std::min(kTogether, pairs.size() - begin))) {
+        for (const uint64_t key : std::span(all).subspan(begin, std::min(kTogether, all.size() - begin))) {
             found[count] = key;
-            count += size_t(leaves[uint32_t(key >> 32)].stale) | size_t(leaves[uint32_t(key)].stale);
+            count += size_t(boxes.of[uint32_t(key >> 32)].stale) | size_t(boxes.of[uint32_t(key)].stale);
         }
         gone.insert(gone.end(), found, found + count);
     }
@@ -282,43 +280,44 @@ Broadphase::~Broadphase() {
 void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     State& s = *state_;
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
-    s.strays.reserve(s.leaves.capacity());  // a step takes no memory for them
-    s.stale.reserve(s.leaves.capacity());
+    if (s.boxes.of.size() <= id) s.boxes.of.resize(size_t(id) + 1);
+    reserve_tree();
     s.mark(id);
     const btDbvtVolume volume = fat_volume(tight, Vec3f::Zero());
-    s.leaves[id].node = s.tree.insert(volume, nullptr);
-    s.leaves[id].node->dataAsInt = int(id);
-    s.leaves[id].fat = box_of(volume);
-    s.leaves[id].stays = 0;
-    s.leaves[id].moves = moves;
+    s.boxes.of[id].box = box_of(volume);
+    s.boxes.of[id].moves = moves;
+    set_leaf(id, true);
 }
 
 void Broadphase::remove(uint32_t id) {
-    State& s = *state_;
-    s.mark(id);
-    s.tree.remove(s.leaves[id].node);
-    s.leaves[id].node = nullptr;
-    s.leaves[id].stray = false;
+    state_->mark(id);
+    state_->boxes.of[id].stray = false;
+    set_leaf(id, false);
 }
 
-void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
-    State& s = *state_;
-    s.leaves[id].stray = false;
-    if (holds(id, tight)) return;
-    s.mark(id);
-    btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
-    Leaf& leaf = s.leaves[id];
-    leaf.fat = box_of(volume);
+void Broadphase::State::change(uint32_t id, const btDbvtVolume& volume) {
+    Leaf& leaf = leaves[id];
     if (leaf.stays < kMostStays && may_stay(*leaf.node, volume)) {
         ++leaf.stays;
         return set_in_place(*leaf.node, volume);
     }
     leaf.stays = 0;
-    s.tree.update(leaf.node, volume);
+    btDbvtVolume place = volume;
+    tree.update(leaf.node, place);
+}
+
+void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
+    State& s = *state_;
+    s.boxes.of[id].stray = false;
+    if (holds(id, tight)) return;
+    s.mark(id);
+    const btDbvtVolume volume = fat_volume(tight, displacement * reach_ahead(tight));
+    s.boxes.of[id].box = box_of(volume);
+    s.change(id, volume);
 }
 
 bool Broadphase::holds(uint32_t id, const Box& tight) const {
-    const Box& fat = state_->leaves[id].fat;
+    const Box& fat = state_->boxes.of[id].box;
     int inside = 1;  // without branches: of what moves fast every other one is not
     for (int i = 0; i < 3; ++i) inside &= int(fat.lo[i] <= tight.lo[i]) & int(tight.hi[i] <= fat.hi[i]);
     return inside != 0;
@@ -326,19 +325,66 @@ bool Broadphase::holds(uint32_t id, const Box& tight) const {
 
 void Broadphase::set_moves(uint32_t id, bool moves) {
     State& s = *state_;
-    if (s.leaves[id].moves == moves) return;
+    if (s.boxes.of[id].moves == moves) return;
     s.mark(id);
-    s.leaves[id].moves = moves;
+    s.boxes.of[id].moves = moves;
 }
+
+// ---------------------------------------------------------------- state
+
+Broadphase::Boxes& Broadphase::boxes() { return state_->boxes; }
+const Broadphase::Boxes& Broadphase::boxes() const { return state_->boxes; }
+
+// A step takes no memory for strays and stale ones.
+void Broadphase::reserve_tree() {
+    State& s = *state_;
+    const size_t ids = s.boxes.of.capacity();
+    s.leaves.reserve(ids);
+    s.strays.reserve(ids);
+    s.boxes.stale.reserve(ids);
+}
+
+void Broadphase::start_rebuild() {
+    State& s = *state_;
+    for (size_t id = s.boxes.of.size(); id < s.leaves.size(); ++id) set_leaf(uint32_t(id), false);
+    s.leaves.resize(s.boxes.of.size());
+    for (FatBox& box : s.boxes.of) box.stale = false;
+    for (const uint32_t id : s.boxes.stale) s.boxes.of[id].stale = true;
+    s.strays.clear();
+    s.fresh.clear();
+    s.gone.clear();
+}
+
+// Most leaves have their boxes already, or others nearby.
+void Broadphase::set_leaf(uint32_t id, bool lives) {
+    State& s = *state_;
+    Leaf& leaf = s.leaves[id];
+    if (!lives) {
+        if (leaf.node) s.tree.remove(leaf.node);
+        leaf = {};
+        return;
+    }
+    const FatBox& fat = s.boxes.of[id];
+    const btDbvtVolume volume = tight_volume(fat.box);
+    if (!leaf.node) {
+        leaf.node = s.tree.insert(volume, nullptr);
+        leaf.node->dataAsInt = int(id);
+    } else if (NotEqual(leaf.node->volume, volume)) {
+        s.change(id, volume);
+    }
+    if (fat.stray) s.strays.push_back(id);
+}
+
+// ---------------------------------------------------------------- pairs
 
 uint32_t Broadphase::start_refresh() {
     State& s = *state_;
-    const size_t wanted = s.found_before < State::kMany ? 0 : 3 * s.found_before / (2 * s.stale.size() + 1);
+    const size_t wanted = s.found_before < State::kMany ? 0 : 3 * s.found_before / (2 * s.boxes.stale.size() + 1);
     s.room = uint32_t(std::clamp(wanted, size_t(State::kRoom), size_t(State::kMostRoom)));
-    s.partners.resize(s.stale.size() * s.room);
-    s.found_of.resize(s.stale.size());
-    if (s.stale.size() > State::kAtOnce) s.order_stale();
-    return uint32_t(s.stale.size());
+    s.partners.resize(s.boxes.stale.size() * s.room);
+    s.found_of.resize(s.boxes.stale.size());
+    if (s.boxes.stale.size() > State::kAtOnce) s.order_stale();
+    return uint32_t(s.boxes.stale.size());
 }
 
 void Broadphase::find_pairs(uint32_t begin, uint32_t end) {
@@ -347,7 +393,7 @@ void Broadphase::find_pairs(uint32_t begin, uint32_t end) {
 
 bool Broadphase::finish_refresh() {
     State& s = *state_;
-    if (s.stale.empty()) {
+    if (s.boxes.stale.empty()) {
         s.fresh.clear();
         s.gone.clear();
         return false;
@@ -355,12 +401,12 @@ bool Broadphase::finish_refresh() {
     s.gather_fresh();
     const bool changed = s.find_changes();
     if (changed) {
-        reserve_more(s.pairs, s.fresh.size());
+        reserve_more(s.boxes.pairs, s.fresh.size());
         const auto itself = [](uint64_t key) { return key; };
-        Exchange(s.pairs, {s.gone, s.fresh}, itself, itself).run();
+        Exchange(s.boxes.pairs, {s.gone, s.fresh}, itself, itself).run();
     }
-    for (const uint32_t id : s.stale) s.leaves[id].stale = false;
-    s.stale.clear();
+    for (const uint32_t id : s.boxes.stale) s.boxes.of[id].stale = false;
+    s.boxes.stale.clear();
     return changed;
 }
 
@@ -377,19 +423,19 @@ void Broadphase::let_go() {
     taut::let_go(s.found_of);
 }
 
-std::span<const uint64_t> Broadphase::pairs() const { return state_->pairs; }
+std::span<const uint64_t> Broadphase::pairs() const { return state_->boxes.pairs; }
 std::span<const uint64_t> Broadphase::arrived() const { return state_->fresh; }
 std::span<const uint64_t> Broadphase::departed() const { return state_->gone; }
 
 // ---------------------------------------------------------------- probes
 
 void Broadphase::clear_strays() {
-    for (const uint32_t id : state_->strays) state_->leaves[id].stray = false;
+    for (const uint32_t id : state_->strays) state_->boxes.of[id].stray = false;
     state_->strays.clear();
 }
 
 void Broadphase::note_stray(uint32_t id) {
-    state_->leaves[id].stray = true;
+    state_->boxes.of[id].stray = true;
     state_->strays.push_back(id);
 }
 
@@ -405,7 +451,7 @@ void Broadphase::State::walk(const Asks& asks, Probe& probe, Visitor& visitor) c
                 continue;
             }
             const uint32_t id = uint32_t(node->dataAsInt);
-            if (!leaves[id].stray) visitor.visit(id, probe);
+            if (!boxes.of[id].stray) visitor.visit(id, probe);
         }
         const auto second = [&](const btDbvtNode* parent) { return parent->childs[1 - asks.first(probe, parent)]; };
         while (node != root && node == second(node->parent)) node = node->parent;
@@ -416,7 +462,7 @@ void Broadphase::State::walk(const Asks& asks, Probe& probe, Visitor& visitor) c
 void Broadphase::visit(Probe probe, Visitor& visitor) const {
     const State& s = *state_;
     for (const uint32_t id : s.strays)
-        if (s.leaves[id].stray) visitor.visit(id, probe);
+        if (s.boxes.of[id].stray) visitor.visit(id, probe);
     if (probe.along == Vec3::Zero() && probe.reach == 0)
         s.walk(Overlap(probe), probe, visitor);
     else

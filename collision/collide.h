@@ -34,6 +34,13 @@ struct Shape {
     std::shared_ptr<const Surface> surface = nullptr;  // surface only; size: its scale along x, y, z, none of them 0
 };
 
+// But for hull and surface, which the host's shapes hold.
+template <class Visitor, Like<Shape> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [kind, size, hull, surface] = of;
+    TAUT_FIELDS(visitor, kind, size);
+}
+
 inline bool is_convex(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::surface; }
 
 struct MassProperties {
@@ -88,10 +95,20 @@ struct Placement {
     Vec3 position;   // of the body's origin [m]
     Mat3f rotation;  // world from body
 };
+template <class Visitor, Like<Placement> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [position, rotation] = of;
+    TAUT_FIELDS(visitor, position, rotation);
+}
 
 struct Box {
     Vec3f lo, hi;  // [m], world
 };
+template <class Visitor, Like<Box> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [lo, hi] = of;
+    TAUT_FIELDS(visitor, lo, hi);
+}
 
 // Tight axis-aligned box (exact support of the shape), not grown. A plane's box is +-1e9 on every side.
 Box bounds(const Shape& shape, const Placement& placement);
@@ -146,6 +163,31 @@ public:
     // Of what it worked with, after which the last two are empty.
     void let_go();
 
+    // What of it is state: the tree follows.
+    struct FatBox {
+        Box box = {Vec3f::Zero(), Vec3f::Zero()};
+        bool moves = false;
+        bool stray = false;  // the collider may be outside; see note_stray()
+        bool stale = false;  // its pairs must be found again; listed in Boxes::stale
+    };
+    struct Boxes {
+        explicit Boxes(Memory& memory) : of(memory), stale(memory), pairs(memory) {}
+
+        Array<FatBox> of;       // by id
+        Array<uint32_t> stale;  // ids, of those that are gone as well
+        Array<uint64_t> pairs;  // sorted keys
+    };
+    Boxes& boxes();
+    const Boxes& boxes() const;
+    // Once Boxes hold other ones: the tree's memory for them, which may throw std::bad_alloc, and then its leaves, of
+    // the ids for which lives(id).
+    void reserve_tree();
+    template <class Lives>
+    void rebuild(const Lives& lives) {
+        start_rebuild();
+        for (uint32_t id = 0; id < boxes().of.size(); ++id) set_leaf(id, lives(id));
+    }
+
     // Where bodies are after a step may be outside the fat boxes that foresaw it: such strays keep their leaves, on
     // which the pairs depend, but every probe visits them. Noted anew after each step: those that it does not hold.
     void clear_strays();
@@ -156,9 +198,22 @@ public:
 
 private:
     struct State;
+    void start_rebuild();
+    void set_leaf(uint32_t id, bool lives);
+
     State* state_;
     Memory& memory_;
 };
+template <class Visitor, Like<Broadphase::FatBox> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [box, moves, stray, stale] = of;  // stale: as listed
+    TAUT_FIELDS(visitor, box, moves, stray);
+}
+template <class Visitor, Like<Broadphase::Boxes> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [boxes, stale, pairs] = of;  // boxes: rows of the colliders, world.h
+    TAUT_FIELDS(visitor, stale, pairs);
+}
 
 // ---------------------------------------------------------------- contacts
 
@@ -167,12 +222,23 @@ struct ContactPoint {
     float separation;  // along the normal [m], negative when overlapping
     uint32_t feature;  // the same pair of features keeps its id over frames
 };
+template <class Visitor, Like<ContactPoint> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [position, separation, feature] = of;
+    TAUT_FIELDS(visitor, position, separation, feature);
+}
 
 struct Manifold {
     Vec3f normal;  // unit, from a to b, world axes
     int count = 0;
     ContactPoint points[4];
 };
+template <class Visitor, Like<Manifold> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [normal, count, points] = of;
+    TAUT_FIELDS(visitor, normal, count);
+    for (int k = 0; k < count; ++k) TAUT_FIELDS(visitor, points[k]);
+}
 
 // What a pair remembers between calls: the axis that last separated or touched, and the relative pose it was found at.
 // Zero is a fresh pair; the result of collide() may depend on it only within the tolerance of the axis choice, and it

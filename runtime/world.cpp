@@ -62,7 +62,7 @@ taut_joint World::joint_handle(uint32_t joint) const {
 
 taut_shape World::shape_handle(uint32_t shape) const {
     if (shape == kNone) return {0};
-    return {pack_handle({shape, shapes.ids.generation(shape), id})};
+    return {pack_handle({shape, shapes.generation(shape), id})};
 }
 
 taut_collider World::collider_handle(uint32_t collider) const {

@@ -19,6 +19,7 @@
 #include <taut/sensor.h>
 #include <taut/shape.h>
 #include <taut/sleep.h>
+#include <taut/snapshot.h>
 #include <taut/world.h>
 
 #endif

@@ -164,7 +164,6 @@ taut_result find_collider(const char* call, const char* field, const World& worl
                           uint32_t& collider);
 
 inline const IdPool& pool_of(const World& world, taut_body) { return world.nodes.ids; }
-inline const IdPool& pool_of(const World& world, taut_shape) { return world.shapes.ids; }
 inline const IdPool& pool_of(const World& world, taut_collider) { return world.colliders.ids; }
 inline const IdPool& pool_of(const World& world, taut_joint) { return world.joints.ids; }
 inline const IdPool& pool_of(const World& world, taut_cable) { return world.cables.ids; }
@@ -172,6 +171,9 @@ inline const IdPool& pool_of(const World& world, taut_cable) { return world.cabl
 template <class Handle>
 bool names(const World& world, Handle handle, const HandleBits& bits) {
     return pool_of(world, handle).live(bits.index, bits.generation);
+}
+inline bool names(const World& world, taut_shape, const HandleBits& bits) {
+    return world.shapes.live(bits.index, bits.generation);
 }
 inline bool names(const World& world, taut_joint handle, const HandleBits& bits) {
     return pool_of(world, handle).live(bits.index, bits.generation) && !world.joints.record[bits.index].inner;

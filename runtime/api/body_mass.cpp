@@ -56,11 +56,11 @@ void complete(Check& check, NodeMass& out) {
 // Of the parts, I = sum R I_p R^T + m_p (d.d - d d^T), d from the common centre to the part's (Steiner).
 collision::MassProperties mass_of(const Shapes& shapes, std::span<const ColliderPlan> colliders) {
     if (colliders.size() == 1 && colliders[0].at_origin() && !colliders[0].sensor)
-        return collision::mass_properties(shapes.record[colliders[0].shape].shape,
+        return collision::mass_properties(shapes[colliders[0].shape].shape,
                                           static_cast<double>(colliders[0].traits.density));
     const auto part_of = [&](const ColliderPlan& c) {
         const double density = c.sensor ? 0.0 : static_cast<double>(c.traits.density);
-        collision::MassProperties part = collision::mass_properties(shapes.record[c.shape].shape, density);
+        collision::MassProperties part = collision::mass_properties(shapes[c.shape].shape, density);
         part.centre = c.position + c.rotation * part.centre;
         return part;
     };

@@ -53,7 +53,7 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
                           ColliderPlan& out) {
     const taut_result found = find_shape(check.call(), "shape", world, def.shape, out.shape);
     if (found != TAUT_OK) return found;
-    const collision::ShapeKind shape = world.shapes.record[out.shape].shape.kind;
+    const collision::ShapeKind shape = world.shapes[out.shape].shape.kind;
     check.require(!moves_by_forces(kind) || shape != collision::ShapeKind::plane,
                   "shape is a plane, which only static and kinematic bodies may have");
     check.require(!moves_by_forces(kind) || shape != collision::ShapeKind::surface,
@@ -242,15 +242,15 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         const taut_result made = make_collider(check, world, world.nodes.info[collider.node].kind, def, changed);
         if (made != TAUT_OK) return made;
         world.broadphase.update(index, contact_box(world.nodes, world.shapes, changed), Vec3f::Zero());
-        --world.shapes.record[collider.shape].users;
-        ++world.shapes.record[changed.shape].users;
+        --world.shapes[collider.shape].users;
+        ++world.shapes[changed.shape].users;
         collider = changed;
         world.pairs.forget_place(index);
         wake_about(world, collider.node);
         for_near(world.pairs, [&](NearPair& near) {
             if (near.collider_a() != index && near.collider_b() != index) return;
             near.forget_shapes();
-            if (!collision::has_parts(world.shapes.record[collider.shape].shape)) forget_parts(world.pairs, near);
+            if (!collision::has_parts(world.shapes[collider.shape].shape)) forget_parts(world.pairs, near);
         });
         return TAUT_OK;
     });

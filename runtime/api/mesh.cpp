@@ -94,14 +94,14 @@ taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* 
     check.require(factor.cwiseAbs().minCoeff() >= kLeastScale, "scale has a component below 1e-3 in size");
     if (!check) return check.result();
     return with(check.call(), mesh, Use::write, [&](World& world, uint32_t index) {
-        collision::Shape shape = world.shapes.record[index].shape;
+        collision::Shape shape = world.shapes[index].shape;
         if (!check_surface(check, shape)) return check.result();
         shape.size = shape.size.cwiseProduct(factor);
         const collision::Box box = collision::bounds(shape, {Vec3::Zero(), Mat3f::Identity()});
         check.vector("scaled box", to_vec3(box.lo.cast<double>()), kShapeCoordinate)
             .vector("scaled box", to_vec3(box.hi.cast<double>()), kShapeCoordinate)
             .require(shape.size.cwiseAbs().minCoeff() >= kLeastScale, "scales together are below 1e-3 in size")
-            .require(world.shapes.ids.slots() < kMaxSlots, "too many shapes", TAUT_LIMIT);
+            .require(world.shapes.ids.slots() < Shapes::kInner, "too many shapes", TAUT_LIMIT);
         if (!check) return check.result();
         *out = world.shape_handle(world.shapes.add(std::move(shape)));
         return TAUT_OK;
@@ -112,7 +112,7 @@ taut_result taut_shape_hull_triangles(taut_shape handle, taut_vec3* positions, u
     Check check(__func__);
     if (!check.pointer("count", count)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes.record[index].shape;
+        const collision::Shape& shape = world.shapes[index].shape;
         if (!check.require(shape.kind == collision::ShapeKind::hull, "shape is not a hull")) return check.result();
         return copy_triangles(check, shape, positions, capacity, count);
     });
@@ -122,7 +122,7 @@ taut_result taut_shape_triangles(taut_shape handle, taut_vec3* positions, uint32
     Check check(__func__);
     if (!check.pointer("count", count)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes.record[index].shape;
+        const collision::Shape& shape = world.shapes[index].shape;
         check.require(shape.hull || shape.surface, "shape is neither a hull nor a mesh nor a height field");
         if (!check) return check.result();
         return copy_triangles(check, shape, positions, capacity, count);
@@ -133,7 +133,7 @@ taut_result taut_shape_get_mesh_info(taut_shape handle, taut_mesh_info* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes.record[index].shape;
+        const collision::Shape& shape = world.shapes[index].shape;
         if (!check_surface(check, shape)) return check.result();
         const collision::SurfaceCounts counts = collision::surface_counts(shape);
         *out = {counts.triangles, counts.facets, counts.without_area, counts.duplicates};

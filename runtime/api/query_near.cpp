@@ -70,7 +70,7 @@ taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distan
         const taut_result found = find_collider(check.call(), "b", world, b, other);
         if (found != TAUT_OK) return found;
         const auto is_convex = [&](uint32_t c) {
-            const collision::ShapeKind kind = world.shapes.record[world.colliders.record[c].shape].shape.kind;
+            const collision::ShapeKind kind = world.shapes[world.colliders.record[c].shape].shape.kind;
             return kind != collision::ShapeKind::plane && kind != collision::ShapeKind::surface;
         };
         check.require(is_convex(index) || is_convex(other), "both are planes, meshes or height fields");

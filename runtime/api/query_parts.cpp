@@ -27,7 +27,7 @@ taut_result find_convex(Check& check, const World& world, taut_shape handle, con
     uint32_t index = 0;
     const taut_result found = find_shape(check.call(), "shape", world, handle, index);
     if (found != TAUT_OK) return found;
-    out = &world.shapes.record[index].shape;
+    out = &world.shapes[index].shape;
     return check.require(out->kind != collision::ShapeKind::plane, "shape is a plane")
         .require(out->kind != collision::ShapeKind::surface, "shape is a mesh or height field")
         .result();

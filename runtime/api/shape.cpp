@@ -108,7 +108,7 @@ taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull
         uint32_t index = 0;
         const taut_result found = find_shape(check.call(), "hull", world, def->hull, index);
         if (found != TAUT_OK) return found;
-        const collision::Shape& source = world.shapes.record[index].shape;
+        const collision::Shape& source = world.shapes[index].shape;
         if (!check.require(source.kind == collision::ShapeKind::hull, "hull is a shape of another kind")) {
             return check.result();
         }
@@ -127,7 +127,7 @@ taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull
 taut_result taut_shape_remove(taut_shape handle) {
     const char* call = __func__;
     return with(call, handle, Use::write, [&](World& world, uint32_t shape) {
-        const uint32_t users = world.shapes.record[shape].users;
+        const uint32_t users = world.shapes[shape].users;
         if (users > 0) return refuse(TAUT_IN_USE, "%s: shape is used by %u bodies", call, users);
         world.shapes.remove(shape);
         return TAUT_OK;
@@ -140,7 +140,7 @@ taut_result taut_shape_mass_properties(taut_shape handle, float density, taut_ma
     Check check(__func__);
     if (!check.number("density", density, kDensity).pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes.record[index].shape;
+        const collision::Shape& shape = world.shapes[index].shape;
         check.require(shape.kind != collision::ShapeKind::plane, "shape is a plane, which has no volume")
             .require(shape.kind != collision::ShapeKind::surface,
                      "shape is a mesh or height field, which has no volume");

@@ -14,7 +14,7 @@ bool check_shape_def(Check& check, const Def* def, taut_shape* out) {
 }
 
 inline taut_result insert_shape(const Check& check, World& world, collision::Shape shape, taut_shape* out) {
-    if (world.shapes.ids.slots() >= kMaxSlots) return refuse(TAUT_LIMIT, "%s: too many shapes", check.call());
+    if (world.shapes.ids.slots() >= Shapes::kInner) return refuse(TAUT_LIMIT, "%s: too many shapes", check.call());
     *out = world.shape_handle(world.shapes.add(std::move(shape)));
     return TAUT_OK;
 }

@@ -17,7 +17,7 @@ taut_result read_def(const char* call, ShapeKind kind, const char* refusal, taut
     if (!check.pointer("out", out)) return check.result();
     if (!check.struct_size(out->struct_size, sizeof *out)) return check.result();
     return with(call, handle, Use::read, [&](const World& world, uint32_t index) {
-        const Shape& shape = world.shapes.record[index].shape;
+        const Shape& shape = world.shapes[index].shape;
         if (!check.require(shape.kind == kind, refusal)) return check.result();
         *out = fill(shape.size);
         return TAUT_OK;
@@ -40,7 +40,7 @@ taut_result taut_shape_get_kind(taut_shape handle, taut_shape_kind* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        *out = static_cast<taut_shape_kind>(world.shapes.record[index].shape.kind);
+        *out = static_cast<taut_shape_kind>(world.shapes[index].shape.kind);
         return TAUT_OK;
     });
 }
@@ -92,7 +92,7 @@ taut_result taut_shape_get_bounds(taut_shape handle, taut_vec3* low, taut_vec3* 
     Check check(__func__);
     if (!check.pointer("low", low).pointer("high", high)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const Shape& shape = world.shapes.record[index].shape;
+        const Shape& shape = world.shapes[index].shape;
         if (!check.require(shape.kind != ShapeKind::plane, "shape is a plane, which has no bounds")) {
             return check.result();
         }

@@ -231,7 +231,7 @@ taut_result taut_world_set_pre_solve(taut_world handle, taut_pre_solve_fn pre_so
 taut_result taut_world_get_counts(taut_world handle, uint32_t* bodies, uint32_t* shapes, uint32_t* joints) {
     return with_world(__func__, handle, Use::read, [&](const World& world) {
         if (bodies) *bodies = world.nodes.ids.count();
-        if (shapes) *shapes = world.shapes.ids.count();
+        if (shapes) *shapes = world.shapes.count();
         if (joints) *joints = world.joints.ids.count();
         return TAUT_OK;
     });

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "base/describe.h"
 #include "base/memory.h"
 
 namespace taut {
@@ -49,6 +50,23 @@ public:
     uint32_t generation(uint32_t index) const { return generation_[index]; }
     uint32_t slots() const { return static_cast<uint32_t>(generation_.size()); }
     uint32_t count() const { return live_; }
+
+    // Only generations are listed: which slots are free follows from them. Room for that, before; and after.
+    template <class Visitor, Like<IdPool> Of>
+    friend void describe(Visitor& visitor, Of& of) {
+        TAUT_ASIDE(visitor, of.generation_);
+    }
+    void reserve_free() { free_.reserve(generation_.capacity()); }
+    void find_free() {
+        live_ = 0;
+        free_.clear();
+        for (uint32_t index = 0; index < slots(); ++index) {
+            if (live(index))
+                ++live_;
+            else if (generation_[index] < kMaxGeneration - 1)
+                free_.push_back(index);  // in ascending order they are a heap
+        }
+    }
 
 private:
     static size_t grown(size_t size, size_t capacity) { return size < capacity ? capacity : with_slack(capacity) + 16; }

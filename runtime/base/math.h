@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "base/describe.h"
+
 namespace taut {
 
 using Vec3 = Eigen::Vector3d;
@@ -43,5 +45,10 @@ struct Sym3 {
     }
     static Sym3 of(const Mat3& m) { return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}; }
 };
+template <class Visitor, Like<Sym3> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [xx, yy, zz, xy, xz, yz] = of;
+    TAUT_FIELDS(visitor, xx, yy, zz, xy, xz, yz);
+}
 
 }  // namespace taut

@@ -48,7 +48,7 @@ private:
                  {std::pair(pair.a, pair.collider_b()), std::pair(pair.b, pair.collider_a())}) {
                 const Collider& collider = world_.colliders.record[other];
                 if (world_.nodes.info[mine].cable == kNone || world_.nodes.info[collider.node].cable != kNone) continue;
-                if (is_round(world_.shapes.record[collider.shape].shape.kind)) on_round_[mine] = 1;
+                if (is_round(world_.shapes[collider.shape].shape.kind)) on_round_[mine] = 1;
             }
         });
     }

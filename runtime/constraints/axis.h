@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/describe.h"
+
 namespace taut {
 
 enum class AxisMode : uint8_t { locked, free, limited };
@@ -26,6 +28,13 @@ struct Axis {
     float max_force = 0;                            // of the drive; 0: there is none
     float friction = 0;                             // 0: there is none
 };
+template <class Visitor, Like<Axis> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [mode, around, lower, upper, limit_compliance, limit_damping, stiffness, damping, target, speed, max_force,
+           friction] = of;
+    TAUT_FIELDS(visitor, mode, around, lower, upper, limit_compliance, limit_damping, stiffness, damping, target, speed,
+                max_force, friction);
+}
 
 // What a row of axes carries from substep to substep.
 struct AxisMemory {
@@ -34,6 +43,11 @@ struct AxisMemory {
     // Of an angle with stops: C as it was last read, see angle_between_stops() [rad]; infinite: not yet.
     float angle = std::numeric_limits<float>::infinity();
 };
+template <class Visitor, Like<AxisMemory> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [lower, upper, drive, friction, angle] = of;
+    TAUT_FIELDS(visitor, lower, upper, drive, friction, angle);
+}
 
 // Angle nearest to another, in whole turns from c.
 inline double nearest_turn(double c, double near) {

@@ -22,7 +22,7 @@ constexpr uint32_t kSoon = 4;  // pairs that a loop asks the memory for ahead of
 
 bool has_parts(const Detection& of, const NearPair& near) {
     const auto has = [&](uint32_t collider) {
-        return collision::has_parts(of.shapes.record[of.colliders.record[collider].shape].shape);
+        return collision::has_parts(of.shapes[of.colliders.record[collider].shape].shape);
     };
     return has(near.collider_a()) || has(near.collider_b());
 }

@@ -87,11 +87,11 @@ bool keep_in_leaf(const Nodes& nodes, const Collider& collider, const Shapes& sh
                   const collision::Broadphase& broadphase, Reach& reach) {
     if (collider.node_b == kNone) {
         const BoxMotion motion(nodes, collider, reach.box);
-        if (motion.is_small(shapes.record[collider.shape].margin)) return true;
+        if (motion.is_small(shapes[collider.shape].margin)) return true;
         reach = {motion.after(reach), Vec3f::Zero()};
         if (broadphase.holds(c, reach.box)) return true;
     }
-    reach = {collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)), Vec3f::Zero()};
+    reach = {collision::bounds(shapes[collider.shape].shape, placement_of(nodes, collider)), Vec3f::Zero()};
     return broadphase.holds(c, reach.box);
 }
 
@@ -149,7 +149,7 @@ CentrePose pose_of(const Nodes& nodes, uint32_t node, double elapsed) {
 
 // How far apart a collider gets contact points [m]. One that spans two nodes is as thin as a cable is, and as long.
 float margin_of(const Shapes& shapes, const Collider& collider) {
-    return collider.node_b == kNone ? shapes.record[collider.shape].margin : kContactMargin;
+    return collider.node_b == kNone ? shapes[collider.shape].margin : kContactMargin;
 }
 
 // How far a collider may get in the frame, linear way and turning.
@@ -182,13 +182,13 @@ void make_box(const Nodes& nodes, const Collider& collider, uint32_t c, Shapes& 
     Vec3f least = ahead.cwiseMin(0.0f), most = ahead.cwiseMax(0.0f);
     if (spans) {
         const Vec3 along = nodes.motion[collider.node_b].x - nodes.motion[collider.node].x;
-        shapes.record[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
+        shapes[collider.shape].shape.size.y() = static_cast<float>(0.5 * along.norm());
         const Vec3f ahead_b = reach_of(nodes, collider.node_b, time_step, along_way);
         least = least.cwiseMin(ahead_b);
         most = most.cwiseMax(ahead_b);
         ahead = 0.5f * (ahead + ahead_b);
     }
-    const collision::Box tight = collision::bounds(shapes.record[collider.shape].shape, pairs.placement[c]);
+    const collision::Box tight = collision::bounds(shapes[collider.shape].shape, pairs.placement[c]);
     collision::Box box = grown(tight, pairs.travel[c].margin);
     box.lo += least;
     box.hi += most;
@@ -236,15 +236,15 @@ void place_collider(const Nodes& nodes, const Shapes& shapes, const Collider& co
     stance.velocity = (m.v + m.w.cross(at.position - pose.x)).cast<float>();
     stance.spin = m.w.cast<float>();
     stance.from_node = collider.at_origin() ? Vec3f(Vec3f::Zero()) : Vec3f((pose.q * collider.position).cast<float>());
-    stance.reach = static_cast<float>(shapes.record[collider.shape].reach);
-    stance.size = shapes.record[collider.shape].size;
+    stance.reach = static_cast<float>(shapes[collider.shape].reach);
+    stance.size = shapes[collider.shape].size;
     const float turned = 2 * stance.reach * (stance.turn.coeffs() - was.coeffs()).norm();
     if (stance.placed) pairs.travel[index].way += (at.position - was_at).norm() + static_cast<double>(turned);
     stance.placed = true;
 }
 
 collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Collider& collider) {
-    return grown(collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider)),
+    return grown(collision::bounds(shapes[collider.shape].shape, placement_of(nodes, collider)),
                  margin_of(shapes, collider));
 }
 
@@ -258,7 +258,7 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
             const Collider& collider = colliders.record[c];
             pairs.reach[c].left = false;
             if (collider.node == kNone) continue;
-            pairs.pace[c] = pace_of(nodes, collider, shapes.record[collider.shape], time_step);
+            pairs.pace[c] = pace_of(nodes, collider, shapes[collider.shape], time_step);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
             look_ahead(nodes, shapes, collider, pairs.pace[c], pairs.stance[c], time_step, pairs.travel[c]);
             if (!moves(nodes, collider) || box_holds(pairs.reach[c], pairs.travel[c])) continue;

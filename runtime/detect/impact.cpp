@@ -34,7 +34,7 @@ collision::Motion motion_of(const Nodes& nodes, const Collider& collider, const 
     return {at, at.position + rotation_of(collider, at) * lever, m.v, m.w, record.reach + lever.norm()};
 }
 
-const ShapeRecord& record_of(const Shapes& shapes, const Collider& collider) { return shapes.record[collider.shape]; }
+const ShapeRecord& record_of(const Shapes& shapes, const Collider& collider) { return shapes[collider.shape]; }
 
 // From the origin of a collider's node to the centre that it turns about.
 Vec3 arm_of(const Nodes& nodes, const Collider& collider, const collision::Motion& motion) {

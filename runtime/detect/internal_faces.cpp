@@ -16,7 +16,7 @@ namespace {
 constexpr float kBend = 1e-3f;
 
 const collision::Shape& shape_of(const Detection& of, uint32_t collider) {
-    return of.shapes.record[of.colliders.record[collider].shape].shape;
+    return of.shapes[of.colliders.record[collider].shape].shape;
 }
 
 // Whether more than one collider is on a node.

@@ -134,7 +134,7 @@ void take_over(const Shaped& shaped, const Detection& of, const collision::Manif
 // Whether the axis that parted two last still does.
 bool held_apart(const Detection& of, const PairEnds& pair, const collision::PairCache& cache, NearPair& near) {
     const auto shape = [&](uint32_t c) -> const collision::Shape& {
-        return of.shapes.record[of.colliders.record[c].shape].shape;
+        return of.shapes[of.colliders.record[c].shape].shape;
     };
     const uint32_t a = pair.collider_a(), b = pair.collider_b();
     const collision::Placement &at_a = of.pairs.placement[a], &at_b = of.pairs.placement[b];
@@ -168,8 +168,8 @@ const Pair* find_old(std::span<const Pair> old, const collision::Parts& parts, c
 }  // namespace
 
 Shaped::Shaped(const Detection& of, const PairEnds& pair)
-    : a_(of.shapes.record[of.colliders.record[pair.collider_a()].shape].shape),
-      b_(of.shapes.record[of.colliders.record[pair.collider_b()].shape].shape),
+    : a_(of.shapes[of.colliders.record[pair.collider_a()].shape].shape),
+      b_(of.shapes[of.colliders.record[pair.collider_b()].shape].shape),
       at_a_(&of.pairs.placement[pair.collider_a()]),
       at_b_(&of.pairs.placement[pair.collider_b()]),
       margin_(margin_of(of, pair, of.time)),

@@ -121,13 +121,13 @@ bool reaches_less_far(const Course& one, const Course& other) { return radius_of
 
 Passage passage_of(const Colliders& colliders, const Shapes& shapes, const Array<Course>& courses, uint32_t collider) {
     const Collider& record = colliders.record[collider];
-    return {record, shapes.record[record.shape], courses[collider]};
+    return {record, shapes[record.shape], courses[collider]};
 }
 
 }  // namespace
 
 Course course_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes, const Pace& pace) {
-    const ShapeRecord& record = shapes.record[collider.shape];
+    const ShapeRecord& record = shapes[collider.shape];
     const NodePose& before = nodes.before[collider.node];
     const Vec3 middle = collision::middle(record.shape);
     Course course{before.position,
@@ -180,18 +180,18 @@ Vec3 way_along(const Nodes& nodes, const Collider& collider, const Shapes& shape
     Vec3 way = now.x - before.position;
     if (centre != Vec3::Zero()) way -= before.rotation * centre;
     if ((now.q.coeffs() - before.rotation.coeffs()).squaredNorm() < kTurn * kTurn) return way;
-    const Vec3 middle = collision::middle(shapes.record[collider.shape].shape);
+    const Vec3 middle = collision::middle(shapes[collider.shape].shape);
     const Vec3 lever = collider.position + collider.rotation * middle - centre;
     return way + now.q * lever - before.rotation * lever;
 }
 
 collision::Box bounds_of(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
-    return collision::bounds(shapes.record[collider.shape].shape, placement_of(nodes, collider));
+    return collision::bounds(shapes[collider.shape].shape, placement_of(nodes, collider));
 }
 
 collision::Box box_along(const Nodes& nodes, const Collider& collider, const Shapes& shapes) {
     const collision::Placement before = placement_of(pose_before(nodes, collider));
-    const collision::Box then = collision::bounds(shapes.record[collider.shape].shape, before),
+    const collision::Box then = collision::bounds(shapes[collider.shape].shape, before),
                          now = bounds_of(nodes, collider, shapes);
     return {then.lo.cwiseMin(now.lo), then.hi.cwiseMax(now.hi)};
 }

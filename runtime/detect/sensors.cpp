@@ -16,7 +16,7 @@ using collision::ShapeKind;
 constexpr uint32_t kOverlapGrain = 16;  // overlap tests that a thread takes at a time
 
 bool is_convex(const Shapes& shapes, const Collider& collider) {
-    const ShapeKind kind = shapes.record[collider.shape].shape.kind;
+    const ShapeKind kind = shapes[collider.shape].shape.kind;
     return kind != ShapeKind::plane && kind != ShapeKind::surface;
 }
 
@@ -47,7 +47,7 @@ void add_candidates(const Nodes& nodes, const Colliders& colliders, const Shapes
     const Collider& collider = colliders.record[sensor];
     const collision::Placement at = placement_of(nodes, collider);
     // About its own origin: exact far from the world's.
-    const collision::Box box = collision::bounds(shapes.record[collider.shape].shape, {Vec3::Zero(), at.rotation});
+    const collision::Box box = collision::bounds(shapes[collider.shape].shape, {Vec3::Zero(), at.rotation});
     Found found(nodes, colliders, shapes, sensor, candidates);
     broadphase.visit({at.position, Vec3::Zero(), box.lo.cast<double>(), box.hi.cast<double>()}, found);
 }
@@ -55,7 +55,7 @@ void add_candidates(const Nodes& nodes, const Colliders& colliders, const Shapes
 bool meet(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t sensor, uint32_t visitor) {
     const Collider *a = &colliders.record[sensor], *b = &colliders.record[visitor];
     if (!is_convex(shapes, *a)) std::swap(a, b);
-    return collision::overlap(shapes.record[a->shape].shape, placement_of(nodes, *a), shapes.record[b->shape].shape,
+    return collision::overlap(shapes[a->shape].shape, placement_of(nodes, *a), shapes[b->shape].shape,
                               placement_of(nodes, *b));
 }
 

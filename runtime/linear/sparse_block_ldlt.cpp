@@ -46,9 +46,13 @@ void SparseBlockLdlt::link(uint32_t i, uint32_t j) {
     if (i != j) links_.push_back(static_cast<uint64_t>(std::min(i, j)) << 32 | std::max(i, j));
 }
 
-void SparseBlockLdlt::analyse() {
-    EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
-    order_.assign(elimination.order.begin(), elimination.order.end());
+void SparseBlockLdlt::analyse(std::span<const uint32_t> order) {
+    if (order.empty()) {
+        EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
+        order_.assign(elimination.order.begin(), elimination.order.end());
+    } else {
+        order_.assign(order.begin(), order.end());
+    }
     position_.resize(unknowns());
     for (uint32_t k = 0; k < unknowns(); ++k) position_[order_[k]] = k;
     find_parents();

@@ -39,7 +39,10 @@ public:
     void set_unknown(uint32_t i, int size, bool multiplier, int rows = 6);
     int size(uint32_t i) const { return unknown_[i].size; }
     void link(uint32_t i, uint32_t j);
-    void analyse();
+    // In this order of elimination, or without one as EliminationOrder finds it.
+    void analyse(std::span<const uint32_t> order = {});
+    // As it is eliminated: with it and the same links all comes out the same bit by bit.
+    std::span<const uint32_t> order() const { return order_; }
     bool analysed() const { return analysed_; }
     void forget() { analysed_ = false; }
 

@@ -72,7 +72,7 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     }
     link_to(world, record.node, kNone) = index;
     world.pairs.forget_place(index);
-    ++world.shapes.record[record.shape].users;
+    ++world.shapes[record.shape].users;
     if (!moves_by_forces(world.nodes.info[record.node].kind))
         wake_box(world, contact_box(world.nodes, world.shapes, record));
     return index;
@@ -84,7 +84,7 @@ void remove_collider(World& world, uint32_t collider) {
     const Collider& record = world.colliders.record[collider];
     link_to(world, record.node, collider) = record.next;
     world.broadphase.remove(collider);
-    --world.shapes.record[record.shape].users;
+    --world.shapes[record.shape].users;
     world.colliders.remove(collider);
 }
 

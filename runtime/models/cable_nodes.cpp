@@ -32,7 +32,7 @@ collision::Shape shape_of(const Cable& cable, double length) {
 template <class Add>
 auto with_capsule(World& world, const Cable& cable, double length, Add add) {
     ColliderPlan collider;
-    collider.shape = world.shapes.add(shape_of(cable, length));
+    collider.shape = world.shapes.add_inner(shape_of(cable, length));
     collider.traits.material = cable.material;
     collider.traits.filter = cable.filter;
     try {
@@ -75,7 +75,7 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
     }
     if (!links(cable)) return;
     for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
-        world.shapes.record[world.colliders.record[c].shape].shape = shape_of(cable, length);
+        world.shapes[world.colliders.record[c].shape].shape = shape_of(cable, length);
     });
 }
 

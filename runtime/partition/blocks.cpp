@@ -213,6 +213,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
             for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
             fresh.links.clear();
             fresh.identity.clear();
+            fresh.order.clear();
             fresh.matrix.forget();
             fresh.passing = true;
             fresh.memory = {};
@@ -268,6 +269,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
         if (at == kNone || at >= blocks.size()) continue;
         Block& old = blocks[at];
         if (old.identity == block.identity) {
+            std::swap(old.order, block.order);
             std::swap(old.matrix, block.matrix);
             std::swap(old.places, block.places);
             std::swap(old.solution, block.solution);
@@ -287,7 +289,11 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
             --left;
     }
     blocks.swap(spare_);
-    block_of_.assign(nodes.slots(), kNone);
+    find_block_of(nodes.slots());
+}
+
+void Partition::find_block_of(uint32_t nodes) {
+    block_of_.assign(nodes, kNone);
     for (uint32_t b = 0; b < blocks.size(); ++b)
         for (uint32_t node : blocks[b].nodes) block_of_[node] = b;
 }

@@ -171,6 +171,12 @@ void Partition::list_small() {
     }
 }
 
+void Partition::forget_frame(uint32_t nodes) {
+    graph_.moves.clear();
+    group_count = 0;
+    find_block_of(nodes);
+}
+
 void Partition::forget_blocks(const Joints& joints) {
     blocks.clear();
     block_of_.clear();

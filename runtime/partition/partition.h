@@ -27,18 +27,34 @@ struct BlockMemory {
     uint8_t whips_left = 0;          // frames for which its island is apart from those that need no shorter substeps
     uint8_t hit_left = 0;            // frames for which it takes in its contacts after a hit
 };
+template <class Visitor, Like<BlockMemory> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [excess_energy, solved, guard_left, since_trip, escalated, whips_left, hit_left] = of;
+    TAUT_FIELDS(visitor, excess_energy, solved, guard_left, since_trip, escalated, whips_left, hit_left);
+}
 
 // What a direct solve takes together, with what it remembers over frames.
 struct Block {
     explicit Block(Memory& m)
-        : nodes(m), joints(m), pairs(m), links(m), identity(m), matrix(m), places(m), solution(m), known(m), force(m) {}
+        : nodes(m),
+          joints(m),
+          pairs(m),
+          links(m),
+          identity(m),
+          order(m),
+          matrix(m),
+          places(m),
+          solution(m),
+          known(m),
+          force(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
     Array<uint32_t> pairs;                 // in Pairs::active, of this frame
     Array<uint64_t> links;                 // pairs of its nodes that touch: smaller << 32 | larger
     Array<uint64_t> identity;              // of joints, nodes and links: the graph of the matrix
-    SparseBlockLdlt matrix;                // unknowns: nodes, then joints
+    Array<uint32_t> order;                 // of elimination, from the first solve on, which knows what gives; or empty
+    SparseBlockLdlt matrix;                // unknowns: nodes, then joints; made by the next solve where it is gone
     Array<BlockPlace> places;              // of its nodes and joints in the matrix; see solvers/block_matrix.cpp
     Array<double> solution, known, force;  // scratch of its solve
     bool tower = false;                    // no joints: bodies that stand on each other or are pressed
@@ -56,6 +72,14 @@ struct Block {
     // What its direct solve keeps over substeps; see solvers/block_ldlt.cpp.
     BlockMemory memory;
 };
+template <class Visitor, Like<Block> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [nodes, joints, pairs, links, identity, order, matrix, places, solution, known, force, tower, looped, passing,
+           failed, corrected, mass_ratio, closing, first_row_block, first_contact, contact_count, first_bounded,
+           bounded_count, turn, memory] = of;
+    TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
+    TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
+}
 
 struct Group {
     explicit Group(Memory& memory)
@@ -123,6 +147,16 @@ public:
     Array<Block> blocks;
     uint32_t islands = 0;
     uint32_t colours = 0;  // most of any group
+
+    // All others are found by each frame.
+    template <class Visitor, Like<Partition> Of>
+    friend void describe(Visitor& visitor, Of& of) {
+        TAUT_FIELDS(visitor, of.blocks, of.softened_);
+    }
+    // After a restoration: what was found before does not hold. Throws std::bad_alloc before anything changes where
+    // there is no room for so many nodes.
+    void reserve_nodes(size_t nodes) { block_of_.reserve(nodes); }
+    void forget_frame(uint32_t nodes);
 
 private:
     struct Island {
@@ -206,6 +240,7 @@ private:
     bool join_contact(uint32_t a, uint32_t b);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
+    void find_block_of(uint32_t nodes);
     void forget_blocks(const Joints& joints);
     void choose_substeps(const PartitionRules& rules);
     void make_groups();

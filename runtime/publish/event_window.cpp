@@ -16,14 +16,6 @@ void for_event_lists(World& w, Act&& act) {
     act(w.fell_asleep), act(w.woke);
 }
 
-void forget_events(World& w) {
-    for_event_lists(w, [](auto& list) { list.clear(); });
-    w.contact_points.clear();
-    w.moved.clear();
-    w.window.steps = w.window.dropped_steps = w.window.dropped_contacts = 0;
-    w.window.read = false;
-}
-
 // The first point of the first event that is left of a list, or `none`.
 uint32_t first_point(const Array<taut_contact_event>& events, size_t none) {
     return events.empty() ? static_cast<uint32_t>(none) : events.front().first_point;
@@ -46,6 +38,14 @@ void drop_events(World& w, uint32_t steps) {
 }
 
 }  // namespace
+
+void forget_events(World& world) {
+    for_event_lists(world, [](auto& list) { list.clear(); });
+    world.contact_points.clear();
+    world.moved.clear();
+    world.window.steps = world.window.dropped_steps = world.window.dropped_contacts = 0;
+    world.window.read = false;
+}
 
 void begin_call(World& world) {
     if (world.window.read) forget_events(world);

@@ -5,6 +5,7 @@
 
 namespace taut {
 
+void forget_events(World& world);
 // A call of the host that steps or advances: forgets the events that were read.
 void begin_call(World& world);
 // Around a step: what it publishes comes after what waits to be read, of which the oldest may be dropped.

@@ -15,7 +15,7 @@ using collision::Shape;
 constexpr double kTie = 1e-6;
 
 const Shape& shape_of(const World& world, uint32_t collider) {
-    return world.shapes.record[world.colliders.record[collider].shape].shape;
+    return world.shapes[world.colliders.record[collider].shape].shape;
 }
 Placement placement_of(const World& world, uint32_t collider) {
     return placement_of(world.nodes, world.colliders.record[collider]);

@@ -83,7 +83,7 @@ void wake_box(World& world, const collision::Box& box) {
             const Collider& collider = world.colliders.record[id];
             if (!world.nodes.sleeps(collider.node)) return;
             const collision::Placement at = placement_of(world.nodes, collider);
-            if (overlap(box, collision::bounds(world.shapes.record[collider.shape].shape, at)))
+            if (overlap(box, collision::bounds(world.shapes[collider.shape].shape, at)))
                 wake_island(world, collider.node);
         }
     };

@@ -88,8 +88,10 @@ void BlockSolve::analyse() {
     b_.solution.resize(2 * unknowns());
     b_.known.resize((nodes_ + joints()) * kDof);
     b_.force.resize(joints() * kMaxRows);
-    matrix.analyse();
+    matrix.analyse(b_.order);
     find_places();
+    if (!b_.order.empty()) return;  // it was restored
+    b_.order.assign(matrix.order().begin(), matrix.order().end());
     b_.looped = looped();
 }
 

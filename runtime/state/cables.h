@@ -1,6 +1,7 @@
 // Cables: which nodes and joints a user's cable is made of, in order, and how its ends are being reeled.
 #pragma once
 
+#include "state/colliders.h"
 #include "state/joints.h"
 
 namespace taut {
@@ -12,6 +13,12 @@ struct JointRef {
     uint32_t slot = kNone;
     uint64_t serial = 0;
 };
+template <class Visitor, Like<JointRef> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [slot, serial] = of;
+    TAUT_FIELDS(visitor, slot);
+    TAUT_ASIDE(visitor, serial);
+}
 
 struct CableEnd {
     JointRef joint;           // to what the end is attached to; node[end == 0] of it is the cable's
@@ -23,6 +30,11 @@ struct CableEnd {
     double owed = 0;          // still to be paid out, beside the speed [m]
     double lost = 0;          // where bent segments were joined, not made good yet [m]
 };
+template <class Visitor, Like<CableEnd> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [joint, clamp, reel_speed, wanted_speed, acceleration, paid, owed, lost] = of;
+    TAUT_FIELDS(visitor, joint, clamp, reel_speed, wanted_speed, acceleration, paid, owed, lost);
+}
 
 struct Cable {
     explicit Cable(Memory& memory) : node(memory), joint(memory), bend(memory), length(memory) {}
@@ -48,6 +60,14 @@ struct Cable {
 
     uint32_t segments() const { return static_cast<uint32_t>(length.size()); }
 };
+template <class Visitor, Like<Cable> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [kind, node, joint, bend, length, end, nominal, mass_per_metre, radius, stretch_compliance, stretch_damping,
+           bending_stiffness, bending_damping, gravity_scale, material, filter, self_collision, user_data] = of;
+    TAUT_FIELDS(visitor, kind, node, joint, bend, length, end, nominal, mass_per_metre, radius, stretch_compliance,
+                stretch_damping, bending_stiffness, bending_damping, gravity_scale, material, filter, self_collision);
+    TAUT_ASIDE(visitor, user_data);
+}
 
 struct Cables {
     explicit Cables(Memory& memory) : ids(memory), record(memory) {}
@@ -73,6 +93,12 @@ struct Cables {
     IdPool ids;
     Array<Cable> record;
 };
+template <class Visitor, Like<Cables> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, record] = of;
+    TAUT_ASIDE(visitor, ids);
+    TAUT_ROWS(visitor, ids, record);
+}
 
 inline const Joint* find(const Joints& joints, const JointRef& ref) {
     if (ref.slot == kNone || !joints.record[ref.slot].type) return nullptr;

@@ -20,6 +20,17 @@ namespace taut {
 constexpr uint8_t kAsksPreSolve = 16, kAsksOneWay = 32;
 static_assert((TAUT_CONTACT_EVENTS_ALL & (kAsksPreSolve | kAsksOneWay)) == 0);
 
+template <class Visitor, Like<taut_material> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [friction, restitution, friction_rule, restitution_rule, rolling_friction, spinning_friction] = of;
+    TAUT_FIELDS(visitor, friction, restitution, friction_rule, restitution_rule, rolling_friction, spinning_friction);
+}
+template <class Visitor, Like<taut_filter> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [category, mask, group, reserved] = of;
+    TAUT_FIELDS(visitor, category, mask, group);
+}
+
 struct Collider {
     uint32_t node = kNone;             // kNone: a dead slot
     uint32_t node_b = kNone;           // of a capsule between two particles, which it follows: its other end
@@ -34,6 +45,12 @@ struct Collider {
 
     bool at_origin() const { return position == Vec3::Zero() && rotation.coeffs() == Quat::Identity().coeffs(); }
 };
+template <class Visitor, Like<Collider> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, node_b, shape, next, position, rotation, user_data, asks, sensor, senses_static] = of;
+    TAUT_FIELDS(visitor, node, node_b, shape, next, position, rotation, asks, sensor, senses_static);
+    TAUT_ASIDE(visitor, user_data);
+}
 
 // What few colliders have of their own.
 struct ColliderTraits {
@@ -72,6 +89,11 @@ struct ColliderTraits {
         return words;
     }
 };
+template <class Visitor, Like<ColliderTraits> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [density, material, filter, surface_velocity, surface_spin, one_way] = of;
+    TAUT_FIELDS(visitor, density, material, filter, surface_velocity, surface_spin, one_way);
+}
 
 // All of a collider that is to be.
 struct ColliderPlan : Collider {
@@ -146,6 +168,13 @@ struct Colliders {
     Array<uint32_t> sensors;  // slots, sorted
     uint64_t version = 0;     // counts changes
 };
+template <class Visitor, Like<Colliders> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, record, traits, sensors, version] = of;
+    TAUT_ASIDE(visitor, ids, version);
+    TAUT_ROWS(visitor, ids, record, traits);
+    TAUT_FIELDS(visitor, sensors);
+}
 
 inline bool filters_agree(const taut_filter& a, const taut_filter& b) {
     if (a.group != 0 && a.group == b.group) return a.group > 0;

@@ -56,6 +56,22 @@ struct Joint {
 
     std::span<const uint32_t> nodes() const { return {node, static_cast<size_t>(type ? type->nodes : 0)}; }
 };
+template <class Visitor, Like<Joint> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [type, node, lambda, drift, compliance, damping, angular_compliance, angular_damping, break_force,
+           break_torque, plain, solve, collide_connected, inner, loaded, fresh, slow_turn, user_data, serial, axis,
+           memory, data] = of;
+    TAUT_FIELDS(visitor, type, plain);
+    const int nodes = type ? type->nodes : 0, rows = type ? type->rows : 0;
+    for (int n = 0; n < nodes; ++n) TAUT_FIELDS(visitor, node[n]);
+    for (int r = 0; r < rows; ++r) TAUT_FIELDS(visitor, lambda[r], drift[r]);
+    for (int r = 0; r < rows && !plain; ++r) TAUT_FIELDS(visitor, axis[r], memory[r]);
+    TAUT_FIELDS(visitor, compliance, damping, angular_compliance, angular_damping, break_force, break_torque, solve,
+                collide_connected, inner, loaded, fresh, slow_turn);
+    Bytes own{data, type ? type->data_size : 0};
+    TAUT_FIELDS(visitor, own);
+    TAUT_ASIDE(visitor, user_data, serial);
+}
 
 inline bool ends_on(const Joint& joint, uint32_t node) {
     const auto nodes = joint.nodes();
@@ -97,5 +113,11 @@ struct Joints {
     Array<Joint> record;
     uint64_t version = 1;  // grows whenever the joint graph changes
 };
+template <class Visitor, Like<Joints> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, record, version] = of;
+    TAUT_ASIDE(visitor, ids, version);
+    TAUT_ROWS(visitor, ids, record);
+}
 
 }  // namespace taut

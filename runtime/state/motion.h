@@ -19,6 +19,11 @@ struct Reach {
     bool left = false;   // is outside its fat box
     double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
 };
+template <class Visitor, Like<Reach> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [box, ahead, left, made] = of;  // left: within a step
+    TAUT_FIELDS(visitor, box, ahead, made);
+}
 
 // How a collider's shape stands and moves; place_collider().
 struct Stance {
@@ -28,6 +33,11 @@ struct Stance {
     float reach = 0, size = 0;                             // as in ShapeRecord [m]
     bool placed = false;                                   // else all of this is yet to come
 };
+template <class Visitor, Like<Stance> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [turn, velocity, spin, from_node, reach, size, placed] = of;
+    TAUT_FIELDS(visitor, turn, velocity, spin, from_node, reach, size, placed);
+}
 
 // How far a shape's points may swing about its origin in a time [s] as it turns [m].
 inline float swing_of(const Stance& stance, float time) {
@@ -42,6 +52,11 @@ struct Travel {
     float swing = 0;      // of its furthest point about its origin in the next frame, if forces move it [m]
     float margin = 0;     // how far apart it gets contact points [m]
 };
+template <class Visitor, Like<Travel> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [way, ahead, thickness, swing, margin] = of;
+    TAUT_FIELDS(visitor, way, ahead, thickness, swing, margin);
+}
 
 // How far a collider gets of itself in a frame, for what is looked for along its way; impact.h.
 struct Pace {
@@ -66,6 +81,11 @@ struct Stay {
     uint32_t frames;  // one after another
     bool now;         // in this one too
 };
+template <class Visitor, Like<Stay> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [root, frames, now] = of;  // now: within a step
+    TAUT_FIELDS(visitor, root, frames);
+}
 
 // Nodes that joints tie together, by node; hold_back().
 struct Mechanisms {
@@ -91,5 +111,10 @@ struct Mechanisms {
     Array<uint8_t> put_back;      // the last round in which it was; 0: none
     Array<Stay> stays;            // outlive the step
 };
+template <class Visitor, Like<Mechanisms> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [root, next, first_joint, next_joint, open, ties, drive, any_drives, put_back, stays] = of;
+    TAUT_FIELDS(visitor, stays);  // all else is found by each step
+}
 
 }  // namespace taut

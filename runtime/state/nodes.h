@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+
 #include "base/id_pool.h"
 #include "base/math.h"
-
 #include "state/shared_values.h"
+
 namespace taut {
 
 constexpr uint32_t kNone = UINT32_MAX;  // no node, no collider: the world, or nothing
@@ -31,6 +32,11 @@ struct NodeMotion {
     Vec3 slow_v = Vec3::Zero();  // low-passed v and w, which geometric stiffness spares
     Vec3 slow_w = Vec3::Zero();
 };
+template <class Visitor, Like<NodeMotion> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [x, q, v, w, slow_v, slow_w] = of;
+    TAUT_FIELDS(visitor, x, q, v, w, slow_v, slow_w);
+}
 
 // The velocities of its centre of mass [m/s, rad/s], and the low-passed ones, which start from them.
 inline void set_velocity(NodeMotion& motion, const Vec3& v, const Vec3& w) {
@@ -55,12 +61,24 @@ struct NodeMass {
         return words;
     }
 };
+template <class Visitor, Like<NodeMass> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [mass, inv_mass, inertia, inv_inertia, centre, gravity_scale, isotropic] = of;
+    TAUT_FIELDS(visitor, mass, inv_mass, inertia, inv_inertia, centre, gravity_scale, isotropic);
+}
 
 struct NodeLoad {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]; times a time: [N s], [N m s]
 
     bool any() const { return force != Vec3::Zero() || torque != Vec3::Zero(); }
 };
+template <class Visitor, Like<NodeLoad> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [force, torque] = of;
+    bool any = of.any();  // of most nodes none
+    TAUT_FIELDS(visitor, any);
+    if (any) TAUT_FIELDS(visitor, force, torque);
+}
 
 struct NodeInfo {
     NodeKind kind = NodeKind::dead;
@@ -69,6 +87,12 @@ struct NodeInfo {
     bool continuous = true;     // what moves past its own thickness is looked for along its way; detect/impact.h
     uint64_t user_data = 0;
 };
+template <class Visitor, Like<NodeInfo> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [kind, collider, cable, continuous, user_data] = of;
+    TAUT_FIELDS(visitor, kind, collider, cable, continuous);
+    TAUT_ASIDE(visitor, user_data);
+}
 
 struct NodeSleep {
     double quiet = 0;          // how long it has been slower than the world's sleep_speed [s]
@@ -76,15 +100,31 @@ struct NodeSleep {
     bool can_sleep = true;     // its island may fall asleep
     bool told_asleep = false;  // what events have said
 };
+template <class Visitor, Like<NodeSleep> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [quiet, next, can_sleep, told_asleep] = of;
+    TAUT_FIELDS(visitor, quiet, next, can_sleep);
+    TAUT_ASIDE(visitor, told_asleep);
+}
 
 struct NodePose {  // of the body's origin, for rendering
     Vec3 position = Vec3::Zero();
     Quat rotation = Quat::Identity();
 };
+template <class Visitor, Like<NodePose> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [position, rotation] = of;
+    TAUT_FIELDS(visitor, position, rotation);
+}
 
 struct Speed {
     Vec3 v = Vec3::Zero(), w = Vec3::Zero();  // of the centre of mass [m/s], world axes [rad/s]
 };
+template <class Visitor, Like<Speed> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [v, w] = of;
+    TAUT_FIELDS(visitor, v, w);
+}
 
 // What schemes of more than one step remember of a node; system/scheme.h.
 struct NodeHistory {
@@ -105,6 +145,12 @@ struct KinematicPath {
     NodePose target;
     Speed held;                   // the node's own, while a step tries another
 };
+template <class Visitor, Like<KinematicPath> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, follows, asked, start, speed, target, held] = of;
+    TAUT_FIELDS(visitor, node, follows);
+    if (follows) TAUT_FIELDS(visitor, asked, start, speed, target);
+}
 
 struct Nodes {
     explicit Nodes(Memory& memory)
@@ -164,5 +210,13 @@ private:
 
     static const NodeLoad kNoLoad;
 };
+template <class Visitor, Like<Nodes> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, info, motion, mass, applied, owed, load, paths, before, rest, sleep] = of;  // load: within a step
+    OrNone loads_applied{applied}, loads_owed{owed};
+    TAUT_ASIDE(visitor, ids);
+    TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, rest, sleep);
+    TAUT_FIELDS(visitor, paths);
+}
 
 }  // namespace taut

@@ -83,6 +83,24 @@ void order_slots(Pairs& pairs) {
     }
 }
 
+void reserve_links(Pairs& pairs) { pairs.free.reserve(pairs.list.capacity()); }
+
+void link_records(Pairs& pairs) {
+    pairs.free.clear();
+    pairs.active.clear();
+    pairs.late.clear();
+    pairs.joined_version = 0;
+    pairs.next_ordered = 0;
+    uint32_t slot = 0;
+    const auto count = static_cast<uint32_t>(pairs.list.size());
+    for_near(pairs, [&](NearPair& near) {
+        for (uint32_t* link = &near.pair; slot < count && pairs.list[slot].key == near.key; ++slot) {
+            *link = slot;
+            link = &pairs.list[slot].next;
+        }
+    });
+}
+
 void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const NearPair& near) {
     if (!(near.asks & TAUT_CONTACT_EVENTS_BEGIN_END)) return;
     const auto bits = [&](const IdPool& ids, uint32_t index) {

@@ -26,6 +26,11 @@ struct ContactForce {  // of one contact point [N], in the frame (normal, tangen
     float normal = 0, tangent1 = 0, tangent2 = 0;
     float slip = -1;  // of points in blocks: compliance of sliding friction [1/kg]; 0: sticks; -1: new
 };
+template <class Visitor, Like<ContactForce> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [normal, tangent1, tangent2, slip] = of;
+    TAUT_FIELDS(visitor, normal, tangent1, tangent2, slip);
+}
 
 // Who meets whom.
 struct PairEnds {
@@ -37,6 +42,11 @@ struct PairEnds {
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
     bool spans() const { return a2 != kNone || b2 != kNone; }
 };
+template <class Visitor, Like<PairEnds> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [key, a, b, a2, b2] = of;
+    TAUT_FIELDS(visitor, key, a, b, a2, b2);
+}
 
 // What collision::PairCache begins with, kept of all pairs that are near, and what it ends with, of those with points:
 // shapes that touch alone read it again.
@@ -76,6 +86,17 @@ struct NearPair {
         return {key, a.node, b.node, a.node_b, b.node_b};
     }
 };
+template <class Visitor, Like<NearPair> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [key, cache, clear, pair, asks, filtered, on_surface, against_fixed, fast, arrives, changes, touching, touched,
+           hit, kept, reused, changed] = of;  // pair: the record is found by its key; fast to changes: within a step
+    bool bits[] = {filtered, on_surface, against_fixed, touching, touched, hit, kept, reused, changed};
+    TAUT_FIELDS(visitor, key, cache, clear, asks, bits);
+    if constexpr (!std::is_const_v<Of>) {
+        filtered = bits[0], on_surface = bits[1], against_fixed = bits[2], touching = bits[3], touched = bits[4];
+        hit = bits[5], kept = bits[6], reused = bits[7], changed = bits[8];
+    }
+}
 
 using NearPairs = SegmentedArray<NearPair>;
 
@@ -97,8 +118,15 @@ struct FoundManifold {
     Vec3f position[4];    // of points, from the origin of a's shape [m]
     float separation[4];  // [m]
 };
+template <class Visitor, Like<FoundManifold> Of>
+void describe(Visitor& visitor, Of& of, int points) {
+    auto& [turn, origin, normal, position, separation] = of;
+    TAUT_FIELDS(visitor, turn, origin, normal);
+    for (int k = 0; k < points; ++k) TAUT_FIELDS(visitor, position[k], separation[k]);
+}
 
-struct Pair : PairEnds {
+// What a pair with points has besides its ends.
+struct PairRecord {
     uint32_t part = 0;             // of a surface, see collision::PartManifold; else 0
     uint32_t next = kNone;         // record of the next part, in their order
     collision::Manifold manifold;  // of this frame; positions relative to the origin of node a
@@ -144,6 +172,25 @@ struct Pair : PairEnds {
         return std::max(rolling, rolls_a || rolls_b ? 3.0f / 16 * kLoss * patch : 0);
     }
 };
+template <class Visitor, Like<PairRecord> Of>
+void describe(Visitor& visitor, Of& of, bool kept) {
+    auto& [part, next, manifold, then, round_a, round_b, force, friction, restitution, spinning, rolling, stiffness, patch,
+           torque, spin_slip, drive, drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded,
+           asks, cache, found] = of;  // next: follows from the order of records
+    TAUT_FIELDS(visitor, part, manifold, then, round_a, round_b);
+    for (int k = 0; k < manifold.count; ++k) TAUT_FIELDS(visitor, force[k]);
+    TAUT_FIELDS(visitor, friction, restitution, spinning, rolling, stiffness, patch, torque, spin_slip, drive,
+                drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, asks, cache);
+    if (kept) describe(visitor, found, manifold.count);
+}
+
+struct Pair : PairEnds, PairRecord {};
+// A record and whether its NearPair keeps what was found; of others that means nothing.
+template <class Visitor, Like<Pair> Of>
+void describe(Visitor& visitor, Of& of, bool kept = false) {
+    TAUT_FIELDS(visitor, kept, static_cast<copy_const_t<Of, PairEnds>&>(of));
+    describe(visitor, static_cast<copy_const_t<Of, PairRecord>&>(of), kept);
+}
 
 // The sum of the points' normal forces [N].
 inline float push_of(const collision::Manifold& manifold, const ContactForce* force) {
@@ -214,6 +261,16 @@ struct Carried {
     Vec3 x;         // of centres of mass, axes of a [m]
     Quat q;
 };
+template <class Visitor, Like<Carried> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [key, part, x, q] = of;
+    TAUT_FIELDS(visitor, key, part, x, q);
+}
+template <class Visitor, Like<taut_contact_event> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [body_a, body_b, collider_a, collider_b, first_point, point_count, step, reserved] = of;
+    TAUT_FIELDS(visitor, body_a.bits, body_b.bits, collider_a.bits, collider_b.bits, first_point, point_count, step);
+}
 
 struct Pairs {
     explicit Pairs(Memory& memory)
@@ -353,6 +410,27 @@ template <class SomePairs, class Act>
 void for_pairs(SomePairs& pairs, Act&& act) {
     for_near(pairs, [&](const NearPair& near) { for_parts(pairs, near, act); });
 }
+
+// Which slots records lie in depends on all that was before, and changes no result: they are told in their order, and
+// lie in it after a restoration, before which the lists of their slots mean nothing.
+template <class Visitor, Like<Pairs> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world, asks,
+           joined, joined_version, colliders_version, reach, pace, courses, asked, marks, any_fast, mechanisms, placement,
+           stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts] = of;
+    TAUT_FIELDS(visitor, near, resting, complete, mechanisms, carried);
+    TAUT_ASIDE(visitor, ended, asks, colliders_version);
+    visitor.ordered(list, [&](auto&& act) {
+        for_near(of, [&](const NearPair& pair) {
+            for_parts(of, pair, [&](const Pair& part) { act(part, pair.kept); });
+        });
+    });
+    // reach, placement, stance, travel: rows of the colliders, world.h. joined, pace: found by the next step. All others
+    // are what steps work with.
+}
+// Once a restoration filled it: room for what link_records() makes, which may throw std::bad_alloc, and that.
+void reserve_links(Pairs& pairs);
+void link_records(Pairs& pairs);
 
 // The same without the resting ones.
 template <class SomePairs, class Act>

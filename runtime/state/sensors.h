@@ -17,5 +17,15 @@ struct Sensors {
     Array<uint64_t> candidates;             // scratch: sensor << 32 | visitor whose boxes meet
     Array<uint8_t> meets;                   // scratch: whether their shapes do
 };
+template <class Visitor, Like<taut_sensor_event> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [sensor, visitor_of, sensor_body, visitor_body, step, reserved] = of;
+    TAUT_FIELDS(visitor, sensor.bits, visitor_of.bits, sensor_body.bits, visitor_body.bits, step);
+}
+template <class Visitor, Like<Sensors> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [inside, before, enter, leave, candidates, meets] = of;  // enter, leave: events
+    TAUT_ASIDE(visitor, inside);
+}
 
 }  // namespace taut

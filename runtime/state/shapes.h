@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 
 #include "base/id_pool.h"
 #include "collision/collide.h"
@@ -21,11 +22,56 @@ struct ShapeRecord {
     float margin = kContactMargin;                        // how far apart it gets contact points, at most [m]
     collision::Box box = {Vec3f::Zero(), Vec3f::Zero()};  // about it, in its frame [m]
 };
+// Of shapes inside cables, which have neither hull nor surface.
+template <class Visitor, Like<ShapeRecord> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [shape, users, reach, size, margin, box] = of;  // users: counted anew
+    TAUT_FIELDS(visitor, shape, reach, size, margin, box);
+}
+
+// Those inside cables: state, as they come and go and change while a cable is reeled. They have slots of their own, so
+// that where the host's shapes lie does not depend on them.
+struct InnerShapes {
+    explicit InnerShapes(Memory& memory) : ids(memory), record(memory) {}
+
+    IdPool ids;
+    Array<ShapeRecord> record;
+};
+template <class Visitor, Like<InnerShapes> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, record] = of;
+    TAUT_ASIDE(visitor, ids);
+    TAUT_ROWS(visitor, ids, record);
+}
 
 struct Shapes {
-    explicit Shapes(Memory& memory) : ids(memory), record(memory) {}
+    static constexpr uint32_t kInner = 1u << 27;  // first index of those inside cables
 
-    uint32_t add(collision::Shape shape) {
+    explicit Shapes(Memory& memory) : ids(memory), record(memory), inner(memory) {}
+
+    ShapeRecord& operator[](uint32_t index) { return index < kInner ? record[index] : inner.record[index - kInner]; }
+    const ShapeRecord& operator[](uint32_t index) const { return const_cast<Shapes&>(*this)[index]; }
+    bool live(uint32_t index, uint32_t generation) const {
+        return index < kInner ? ids.live(index, generation) : inner.ids.live(index - kInner, generation);
+    }
+    uint32_t generation(uint32_t index) const {
+        return index < kInner ? ids.generation(index) : inner.ids.generation(index - kInner);
+    }
+    uint32_t count() const { return ids.count() + inner.ids.count(); }
+
+    uint32_t add(collision::Shape shape) { return add(std::move(shape), ids, record); }
+    uint32_t add_inner(collision::Shape shape) { return kInner + add(std::move(shape), inner.ids, inner.record); }
+    void remove(uint32_t index) {
+        (*this)[index] = {};
+        index < kInner ? ids.destroy(index) : inner.ids.destroy(index - kInner);
+    }
+
+    IdPool ids;
+    Array<ShapeRecord> record;
+    InnerShapes inner;
+
+private:
+    static uint32_t add(collision::Shape shape, IdPool& ids, Array<ShapeRecord>& record) {
         ids.reserve_one();
         if (record.capacity() == record.size()) record.reserve(2 * record.size() + 16);
         const uint32_t index = ids.create();
@@ -37,13 +83,11 @@ struct Shapes {
         record[index] = {std::move(shape), 0, reach, size, margin, box};
         return index;
     }
-    void remove(uint32_t index) {
-        record[index] = {};
-        ids.destroy(index);
-    }
-
-    IdPool ids;
-    Array<ShapeRecord> record;
 };
+template <class Visitor, Like<Shapes> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, record, inner] = of;  // the host's shapes: it keeps them, see snapshot.h
+    TAUT_FIELDS(visitor, inner);
+}
 
 }  // namespace taut

@@ -35,6 +35,21 @@ public:
         drop(before);
     }
 
+    // Room for so many different values in all, so that after reset() none of them throws in set().
+    void reserve_as_new(size_t values) {
+        if (values + 2 > held_.size()) reserve_values(values + 2 - held_.size());
+    }
+    bool same(uint32_t slot, uint32_t other) const { return which_[slot] == which_[other]; }
+    // As many slots, all with the default value; takes no memory where reserve() made room.
+    void reset(size_t slots) {
+        held_.clear();
+        free_ = kEnd;
+        first_.assign(first_.size(), kEnd);
+        take({});
+        which_.assign(slots, 0);
+        held_[0].users += static_cast<uint32_t>(slots);
+    }
+
 private:
     struct Held {
         T value;

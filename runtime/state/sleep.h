@@ -15,5 +15,11 @@ struct Sleep {
     Array<uint32_t> root;     // scratch, by node: union-find of islands; roots are the smallest node
     Array<uint8_t> restless;  // scratch, by root: somebody in it may not fall asleep yet
 };
+template <class Visitor, Like<Sleep> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [islands, bodies, recall, changed, root, restless] = of;
+    TAUT_FIELDS(visitor, islands, bodies, recall);
+    TAUT_ASIDE(visitor, changed);
+}
 
 }  // namespace taut

@@ -53,8 +53,8 @@ struct Couple {
         pair.a = 0, pair.b = 1;
     }
 
-    const Shape& shape(uint32_t i) const { return shapes.record[i].shape; }
-    float size() const { return std::min(shapes.record[0].size, shapes.record[1].size); }
+    const Shape& shape(uint32_t i) const { return shapes[i].shape; }
+    float size() const { return std::min(shapes[0].size, shapes[1].size); }
     void place(uint32_t i, const Pose& pose) {
         nodes.motion[i].x = pose.x;
         nodes.motion[i].q = pose.q;
