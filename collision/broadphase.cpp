@@ -113,7 +113,7 @@ struct Broadphase::State {
 
     Boxes boxes;
     btDbvt tree;
-    Array<Leaf> leaves;  // by id
+    Array<Leaf> leaves;                          // by id
     static constexpr size_t kTogether = 256;     // keys
     static constexpr uint32_t kAtOnce = kLanes;  // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8, kMostRoom = 64;

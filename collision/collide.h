@@ -92,8 +92,8 @@ MassProperties mass_properties(const Shape& shape, double density);
 // ---------------------------------------------------------------- bounds and pairs
 
 struct Placement {
-    Vec3 position;   // of the body's origin [m]
-    Mat3f rotation;  // world from body
+    Vec3 position = Vec3::Zero();        // of the body's origin [m]
+    Mat3f rotation = Mat3f::Identity();  // world from body
 };
 template <class Visitor, Like<Placement> Of>
 void describe(Visitor& visitor, Of& of) {
@@ -212,7 +212,8 @@ void describe(Visitor& visitor, Of& of) {
 template <class Visitor, Like<Broadphase::Boxes> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [boxes, stale, pairs] = of;  // boxes: rows of the colliders, world.h
-    TAUT_FIELDS(visitor, stale, pairs);
+    TAUT_FIELDS(visitor, pairs);
+    TAUT_ASIDE(visitor, stale);  // what the next refresh looks at anew, be it that nothing came of it
 }
 
 // ---------------------------------------------------------------- contacts

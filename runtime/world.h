@@ -74,7 +74,8 @@ struct World {
 
     StageObserver* observer = nullptr;  // of tests; null: nobody looks on
 
-    // State too: the substep that soft rows keep the frequency of, whatever becomes of the time step [s]. None is longer.
+    // State too: the substep that soft rows keep the frequency of, whatever becomes of the time step [s]. None is
+    // longer.
     double spring_substep = 0;
     double first_substep = 0;  // that of the def at creation
     uint32_t least_substeps() const;
@@ -90,17 +91,18 @@ struct World {
 // What changes of it after the world's creation.
 template <class Visitor, Like<taut_world_def> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [struct_size, solver, gravity, time_step, substeps, fixed_substeps, sweeps, geometric_stiffness, velocity_filter,
-           max_catch_up, threads, hooks, sleeping, sleep_speed, sleep_time, contact_events, hit_speed, continuous,
-           max_bodies, max_colliders, max_joints, max_contacts, adaptive_damping, restitution_threshold] = of;
+    auto& [struct_size, solver, gravity, time_step, substeps, fixed_substeps, sweeps, geometric_stiffness,
+           velocity_filter, max_catch_up, threads, hooks, sleeping, sleep_speed, sleep_time, contact_events, hit_speed,
+           continuous, max_bodies, max_colliders, max_joints, max_contacts, adaptive_damping, restitution_threshold] =
+        of;
     TAUT_FIELDS(visitor, gravity.x, gravity.y, gravity.z, time_step, substeps, restitution_threshold);
     TAUT_ASIDE(visitor, contact_events, hit_speed);
 }
 
 template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [memory, def, team, id, nodes, shapes, colliders, joints, cables, broadphase, pairs, sleep, sensors, pre_solve,
-           accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
+    auto& [memory, def, team, id, nodes, shapes, colliders, joints, cables, broadphase, pairs, sleep, sensors,
+           pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
            contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke, moved_before, frozen,
            profile, observer, spring_substep, first_substep, impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, cables, broadphase.boxes());

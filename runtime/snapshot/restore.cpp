@@ -322,8 +322,7 @@ taut_result check(const char* call, const World& world, std::span<const std::byt
                       static_cast<unsigned long long>(header.size));
     if (header.checksum != checksum(header, from.subspan(sizeof header)))
         return refuse(TAUT_INVALID_ARGUMENT, "%s: the snapshot is damaged: its checksum differs", call);
-    if (header.world != own.world)
-        return refuse(TAUT_FOREIGN_HANDLE, "%s: the snapshot is of another world", call);
+    if (header.world != own.world) return refuse(TAUT_FOREIGN_HANDLE, "%s: the snapshot is of another world", call);
     return TAUT_OK;
 }
 
@@ -343,6 +342,7 @@ taut_result check_shapes(const char* call, const World& world, Source& source) {
 
 taut_result restore(const char* call, World& world, std::span<const std::byte> from) {
     if (const taut_result whole = check(call, world, from); whole != TAUT_OK) return whole;
+    const Memory::Keeping keeping(world.memory);  // what is staged takes the same again and again
     try {
         Source source{from.data() + sizeof(SnapshotHeader), from.data() + from.size()};
         if (const taut_result there = check_shapes(call, world, source); there != TAUT_OK) return there;

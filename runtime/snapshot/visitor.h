@@ -17,7 +17,9 @@ namespace taut {
 
 // Numbers, enumerations, and Eigen's vectors, rotations and matrices: their bytes are all there is to them.
 template <class T>
-concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires { typename T::Scalar; };
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires {
+    typename T::Scalar;
+};
 
 // Lists inside, which take the world's memory.
 template <class T>

@@ -14,9 +14,11 @@ using Quatf = Eigen::Quaternion<float, Eigen::DontAlign>;
 
 // Where a collider may be until the next frame.
 struct Reach {
-    collision::Box box;  // tight, grown by its contact margin, of which kBoxLag may be used up, and the motion [m]
-    Vec3f ahead;         // the motion, of the middle [m]
-    bool left = false;   // is outside its fat box
+    collision::Box box = {
+        Vec3f::Zero(),
+        Vec3f::Zero()};  // tight, grown by its contact margin, of which kBoxLag may be used up, and the motion [m]
+    Vec3f ahead = Vec3f::Zero();                            // the motion, of the middle [m]
+    bool left = false;                                      // is outside its fat box
     double made = std::numeric_limits<double>::infinity();  // Travel::way then; infinite: to be made anew
 };
 template <class Visitor, Like<Reach> Of>

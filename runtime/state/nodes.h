@@ -138,12 +138,12 @@ struct NodeHistory {
 // what is left in the accumulator.
 struct KinematicPath {
     uint32_t node = kNone;
-    bool follows = false;         // else the node has a velocity, and this means nothing
-    bool asked = false;           // the target waits for the next call, whose end is its time
-    NodePose start;               // at the end of the last call
-    Speed speed;                  // since then
+    bool follows = false;  // else the node has a velocity, and this means nothing
+    bool asked = false;    // the target waits for the next call, whose end is its time
+    NodePose start;        // at the end of the last call
+    Speed speed;           // since then
     NodePose target;
-    Speed held;                   // the node's own, while a step tries another
+    Speed held;  // the node's own, while a step tries another
 };
 template <class Visitor, Like<KinematicPath> Of>
 void describe(Visitor& visitor, Of& of) {
@@ -196,9 +196,9 @@ struct Nodes {
     Array<NodeMotion> motion;
     SharedValues<NodeMass> mass;
     // Of all, or of none while nothing was put on any.
-    Array<NodeLoad> applied;  // by the host, over the time of its next call [N]
-    Array<NodeLoad> owed;     // by its calls over what the accumulator holds of their time [N s]
-    Array<NodeLoad> load;     // in the step that is being taken [N]
+    Array<NodeLoad> applied;     // by the host, over the time of its next call [N]
+    Array<NodeLoad> owed;        // by its calls over what the accumulator holds of their time [N s]
+    Array<NodeLoad> load;        // in the step that is being taken [N]
     Array<KinematicPath> paths;  // sorted by node
     Array<NodePose> before;      // origin pose before the last step
     Array<NodeHistory> history;  // of all, or of none in worlds whose scheme has one step

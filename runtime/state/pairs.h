@@ -88,8 +88,9 @@ struct NearPair {
 };
 template <class Visitor, Like<NearPair> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [key, cache, clear, pair, asks, filtered, on_surface, against_fixed, fast, arrives, changes, touching, touched,
-           hit, kept, reused, changed] = of;  // pair: the record is found by its key; fast to changes: within a step
+    auto& [key, cache, clear, pair, asks, filtered, on_surface, against_fixed, fast, arrives, changes, touching,
+           touched, hit, kept, reused, changed] =
+        of;  // pair: the record is found by its key; fast to changes: within a step
     bool bits[] = {filtered, on_surface, against_fixed, touching, touched, hit, kept, reused, changed};
     TAUT_FIELDS(visitor, key, cache, clear, asks, bits);
     if constexpr (!std::is_const_v<Of>) {
@@ -174,9 +175,9 @@ struct PairRecord {
 };
 template <class Visitor, Like<PairRecord> Of>
 void describe(Visitor& visitor, Of& of, bool kept) {
-    auto& [part, next, manifold, then, round_a, round_b, force, friction, restitution, spinning, rolling, stiffness, patch,
-           torque, spin_slip, drive, drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded,
-           asks, cache, found] = of;  // next: follows from the order of records
+    auto& [part, next, manifold, then, round_a, round_b, force, friction, restitution, spinning, rolling, stiffness,
+           patch, torque, spin_slip, drive, drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block,
+           loaded, asks, cache, found] = of;  // next: follows from the order of records
     TAUT_FIELDS(visitor, part, manifold, then, round_a, round_b);
     for (int k = 0; k < manifold.count; ++k) TAUT_FIELDS(visitor, force[k]);
     TAUT_FIELDS(visitor, friction, restitution, spinning, rolling, stiffness, patch, torque, spin_slip, drive,
@@ -310,9 +311,10 @@ struct Pairs {
     // Of a new collider in a slot, or of one that gets another shape.
     void forget_place(uint32_t collider) {
         if (collider >= stance.size()) return;
+        placement[collider] = {};
         stance[collider] = {};
         travel[collider] = {};
-        reach[collider].made = std::numeric_limits<double>::infinity();
+        reach[collider] = {};
     }
 
     NearPairs near;                   // sorted by key
@@ -415,18 +417,17 @@ void for_pairs(SomePairs& pairs, Act&& act) {
 // lie in it after a restoration, before which the lists of their slots mean nothing.
 template <class Visitor, Like<Pairs> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world, asks,
-           joined, joined_version, colliders_version, reach, pace, courses, asked, marks, any_fast, mechanisms, placement,
-           stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts] = of;
-    TAUT_FIELDS(visitor, near, resting, complete, mechanisms, carried);
-    TAUT_ASIDE(visitor, ended, asks, colliders_version);
+    auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world,
+           asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, any_fast, mechanisms,
+           placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts] = of;
+    TAUT_FIELDS(visitor, near, resting, mechanisms, carried);
+    TAUT_ASIDE(visitor, complete, ended, asks, colliders_version);
     visitor.ordered(list, [&](auto&& act) {
-        for_near(of, [&](const NearPair& pair) {
-            for_parts(of, pair, [&](const Pair& part) { act(part, pair.kept); });
-        });
+        for_near(of,
+                 [&](const NearPair& pair) { for_parts(of, pair, [&](const Pair& part) { act(part, pair.kept); }); });
     });
-    // reach, placement, stance, travel: rows of the colliders, world.h. joined, pace: found by the next step. All others
-    // are what steps work with.
+    // reach, placement, stance, travel: rows of the colliders, world.h. joined, pace: found by the next step. All
+    // others are what steps work with.
 }
 // Once a restoration filled it: room for what link_records() makes, which may throw std::bad_alloc, and that.
 void reserve_links(Pairs& pairs);

@@ -47,6 +47,18 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              uint64_t out;
              return taut_world_get_state_hash(w, &out);
          }},
+        {"taut_world_snapshot_size",
+         [](taut_world w) {
+             uint64_t out;
+             return taut_world_snapshot_size(w, &out);
+         }},
+        {"taut_world_save",
+         [](taut_world w) {
+             static unsigned char buffer[1 << 18];
+             uint64_t out;
+             return taut_world_save(w, buffer, sizeof buffer, &out);
+         }},
+        {"taut_world_restore", [&p](taut_world w) { return taut_world_restore(w, p.saved.data(), p.saved.size()); }},
         {"taut_world_get_profile",
          [](taut_world w) {
              taut_profile out;

@@ -67,7 +67,7 @@ public:
             &Driver::step,           &Driver::step,
             &Driver::step,           &Driver::step,
             &Driver::advance,        &Driver::replace_world,
-            &Driver::check_counts,
+            &Driver::check_counts,   &Driver::save_or_restore,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

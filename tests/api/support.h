@@ -10,6 +10,7 @@
 #include <functional>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include <taut/taut.h>
 
@@ -96,6 +97,18 @@ inline taut_events events_of(taut_world world) {
     taut_events out;
     EXPECT_OK(taut_world_get_events(world, &out));
     return out;
+}
+
+inline std::vector<unsigned char> save(taut_world world) {
+    uint64_t size = 0, written = 0;
+    EXPECT_OK(taut_world_snapshot_size(world, &size));
+    std::vector<unsigned char> bytes(size);
+    EXPECT_OK(taut_world_save(world, bytes.data(), size, &written));
+    EXPECT_EQ(written, size);
+    return bytes;
+}
+inline taut_result restore(taut_world world, const std::vector<unsigned char>& bytes) {
+    return taut_world_restore(world, bytes.data(), bytes.size());
 }
 
 struct Counts {
@@ -257,6 +270,7 @@ struct Populated {
         uint32_t count = 0;
         EXPECT_EQ(taut_body_get_colliders(crate, &collider, 1, &count), TAUT_OK) << taut_last_error();
         for (int i = 0; i < 3; ++i) EXPECT_EQ(taut_world_step(world), TAUT_OK) << taut_last_error();
+        saved = save(world);
     }
     ~Populated() { taut_world_destroy(world); }
     Populated(const Populated&) = delete;
@@ -267,6 +281,7 @@ struct Populated {
     taut_body ground, crate, lift, wedge, bob;
     taut_collider collider;  // of the crate
     taut_joint ball, rod;
+    std::vector<unsigned char> saved;  // it as made
 };
 
 }  // namespace taut_test

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <random>
 
+#include "determinism/step_trace.h"
 #include "scenes/running_scene.h"
 
 namespace {
@@ -106,7 +107,9 @@ TEST_P(AfterAnyHistory, AnEmptiedWorldIsAsNew) {
         for (int step = 0; step < kSteps; ++step) {
             fresh.step();
             used.step();
-            ASSERT_EQ(hash_of(used.world), hash_of(fresh.world)) << "seed " << seed << ", step " << step;
+            ASSERT_EQ(hash_of(used.world), hash_of(fresh.world))
+                << "seed " << seed << ", step " << step << ": "
+                << determinism::first_difference(used.world, fresh.world);
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "api/access.h"
+#include "snapshot/compare.h"
 
 namespace determinism {
 namespace {
@@ -251,6 +252,11 @@ void observe(taut_world handle, StageObserver* observer) {
     const Hold hold(world_of(handle), Use::write);
     ASSERT_NE(hold.world(), nullptr);
     hold.world()->observer = observer;
+}
+
+std::string first_difference(taut_world one, taut_world other) {
+    const Hold hold_one(world_of(one), Use::read), hold_other(world_of(other), Use::read);
+    return taut::first_difference(*hold_one.world(), *hold_other.world());
 }
 
 TracedScene::TracedScene(scenes::Scene plan, StageObserver* instead) : RunningScene(std::move(plan)) {

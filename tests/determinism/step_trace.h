@@ -60,4 +60,7 @@ public:
 // The world behind a handle, which nothing else may use meanwhile.
 void observe(taut_world handle, taut::StageObserver* observer);
 
+// The first field in which the states of two worlds differ.
+std::string first_difference(taut_world one, taut_world other);
+
 }  // namespace determinism

@@ -1,4 +1,4 @@
-// Calls of world.h, event.h, pre_solve.h, profile.h and lint.h.
+// Calls of world.h, snapshot.h, event.h, pre_solve.h, profile.h and lint.h.
 #pragma once
 
 #include "event_watch.h"
@@ -22,6 +22,7 @@ protected:
         if (taut_world_create(&def, &out) != TAUT_OK) expect(false, taut_last_error());
         worlds_[w] = out;
         watch_[w] = {};
+        saved_[w] = {};
     }
 
     void replace_world() {
@@ -69,6 +70,14 @@ protected:
         expect(out.steps <= 4 && out.dropped >= 0, "steps beyond the limit");
         expect_all_finite();
         if (out.steps > 0) watch_step(w);
+    }
+
+    void save_or_restore() {
+        const size_t w = pick_world();
+        if (saved_[w].bytes.empty() || one_in(2))
+            save_world(w);
+        else
+            restore_world(w);
     }
 
     void read_events() {
@@ -158,6 +167,57 @@ private:
         return host.byte() % (host.one_in(16) ? 3 : 2);
     }
 
+    // A snapshot, with what was known then.
+    struct Saved {
+        std::vector<unsigned char> bytes;
+        uint64_t hash = 0;
+        EventWatch watch;
+        size_t bodies = 0, cable_bodies = 0, colliders = 0, joints = 0, cable_joints = 0, cables = 0;
+    };
+    void save_world(size_t w) {
+        uint64_t size = 0;
+        if (!ask("taut_world_snapshot_size", [&] { return taut_world_snapshot_size(worlds_[w], &size); })) return;
+        std::vector<unsigned char> bytes(one_in(8) ? size / 2 : size);
+        if (!ask("taut_world_save", [&] { return taut_world_save(worlds_[w], bytes.data(), bytes.size(), &size); }))
+            return;
+        saved_[w] = {bytes,
+                     hash(w),
+                     watch_[w],
+                     bodies_.size(),
+                     cable_bodies_.size(),
+                     colliders_.size(),
+                     joints_.size(),
+                     cable_joints_.size(),
+                     cables_.size()};
+    }
+    // Now and then what is damaged, or in the wrong world.
+    void restore_world(size_t w) {
+        const Saved& saved = saved_[w];
+        std::vector<unsigned char> bytes = saved.bytes;
+        const bool spoiled = one_in(4);
+        if (spoiled && one_in(2))
+            bytes.resize(word() % bytes.size());
+        else if (spoiled)
+            bytes[word() % bytes.size()] ^= static_cast<unsigned char>(1 << byte() % 8);
+        const size_t to = one_in(8) ? 1 - w : w;
+        const unsigned char none = 0;
+        const void* const buffer = bytes.empty() ? &none : bytes.data();
+        if (!run("taut_world_restore", [&] { return taut_world_restore(worlds_[to], buffer, bytes.size()); })) return;
+        expect(!spoiled && to == w, "a damaged or foreign snapshot that was restored");
+        expect(hash(w) == saved.hash, "a restored world that is another");
+        watch_[w] = saved.watch;
+        // Handles of what was added since are given again.
+        const auto forget = [&](auto& known, size_t first) {
+            const auto from = known.begin() + static_cast<std::ptrdiff_t>(first);
+            known.erase(std::remove_if(from, known.end(), [&](const auto& one) { return one.world == w; }),
+                        known.end());
+        };
+        forget(bodies_, saved.bodies), forget(cable_bodies_, saved.cable_bodies);
+        forget(colliders_, saved.colliders), forget(cables_, saved.cables);
+        forget(joints_, saved.joints), forget(cable_joints_, saved.cable_joints);
+        saved_[1 - w] = {};  // where its own begin in these lists is not known any more
+    }
+
     std::vector<taut_body> bodies_of(size_t w) const {
         std::vector<taut_body> out;
         for (const auto* known : {&bodies_, &cable_bodies_})
@@ -176,6 +236,7 @@ private:
     }
 
     EventWatch watch_[2];
+    Saved saved_[2];
 };
 
 }  // namespace taut_test
