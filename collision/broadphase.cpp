@@ -70,18 +70,13 @@ Box box_of(const btDbvtVolume& volume) {
 
 uint64_t pair_key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 32 | std::max(i, j); }
 
-// Where an id is in the tree. Its box stands in Boxes as well: the node lies somewhere else.
-struct Leaf {
-    btDbvtNode* node = nullptr;  // null: no such id
-    uint8_t stays = 0;           // how often its box changed since it got its place in the tree
-};
-
 }  // namespace
 
 struct Broadphase::State {
     explicit State(Memory& memory)
         : boxes(memory),
           leaves(memory),
+          stays(memory),
           partners(memory),
           found_of(memory),
           strays(memory),
@@ -113,7 +108,8 @@ struct Broadphase::State {
 
     Boxes boxes;
     btDbvt tree;
-    Array<Leaf> leaves;                          // by id
+    Array<btDbvtNode*> leaves;  // by id, or null; their boxes stand in boxes as well: these lie somewhere else
+    Array<uint8_t> stays;       // by id: how often its box changed since it got its place in the tree
     static constexpr size_t kTogether = 256;     // keys
     static constexpr uint32_t kAtOnce = kLanes;  // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8, kMostRoom = 64;
@@ -137,7 +133,7 @@ void Broadphase::State::order_stale() {
     constexpr uint32_t kCells = 8;                                      // along each axis
     constexpr uint32_t kSpread[kCells] = {0, 1, 8, 9, 64, 65, 72, 73};  // a number's bits, two zeros between them
     const auto middle = [&](uint32_t id) {
-        const btDbvtNode* const leaf = leaves[id].node;
+        const btDbvtNode* const leaf = leaves[id];
         return leaf ? btVector3(0.5f * (leaf->volume.Mins() + leaf->volume.Maxs())) : btVector3(0, 0, 0);
     };
     btVector3 lo = middle(boxes.stale.front()), hi = lo;
@@ -164,7 +160,7 @@ void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& rep
     BoxLanes lanes;
     unsigned asking = 0;
     for (size_t k = 0; k < kAtOnce; ++k) {
-        const btDbvtNode* const leaf = k < ids.size() ? leaves[ids[k]].node : nullptr;
+        const btDbvtNode* const leaf = k < ids.size() ? leaves[ids[k]] : nullptr;
         asking |= unsigned(leaf != nullptr) << k;
         for (int i = 0; i < 3; ++i) {
             lanes.lo[i][k] = leaf ? leaf->volume.Mins()[i] : std::numeric_limits<float>::infinity();
@@ -279,6 +275,7 @@ Broadphase::~Broadphase() {
 
 void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     State& s = *state_;
+    if (s.stays.size() <= id) s.stays.resize(size_t(id) + 1);
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
     if (s.boxes.of.size() <= id) s.boxes.of.resize(size_t(id) + 1);
     reserve_tree();
@@ -296,14 +293,13 @@ void Broadphase::remove(uint32_t id) {
 }
 
 void Broadphase::State::change(uint32_t id, const btDbvtVolume& volume) {
-    Leaf& leaf = leaves[id];
-    if (leaf.stays < kMostStays && may_stay(*leaf.node, volume)) {
-        ++leaf.stays;
-        return set_in_place(*leaf.node, volume);
+    if (stays[id] < kMostStays && may_stay(*leaves[id], volume)) {
+        ++stays[id];
+        return set_in_place(*leaves[id], volume);
     }
-    leaf.stays = 0;
+    stays[id] = 0;
     btDbvtVolume place = volume;
-    tree.update(leaf.node, place);
+    tree.update(leaves[id], place);
 }
 
 void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
@@ -340,6 +336,7 @@ void Broadphase::reserve_tree() {
     State& s = *state_;
     const size_t ids = s.boxes.of.capacity();
     s.leaves.reserve(ids);
+    s.stays.reserve(ids);
     s.strays.reserve(ids);
     s.boxes.stale.reserve(ids);
 }
@@ -348,6 +345,7 @@ void Broadphase::start_rebuild() {
     State& s = *state_;
     for (size_t id = s.boxes.of.size(); id < s.leaves.size(); ++id) set_leaf(uint32_t(id), false);
     s.leaves.resize(s.boxes.of.size());
+    s.stays.resize(s.boxes.of.size());
     for (FatBox& box : s.boxes.of) box.stale = false;
     for (const uint32_t id : s.boxes.stale) s.boxes.of[id].stale = true;
     s.strays.clear();
@@ -358,18 +356,19 @@ void Broadphase::start_rebuild() {
 // Most leaves have their boxes already, or others nearby.
 void Broadphase::set_leaf(uint32_t id, bool lives) {
     State& s = *state_;
-    Leaf& leaf = s.leaves[id];
+    btDbvtNode*& leaf = s.leaves[id];
+    if (!lives || !leaf) s.stays[id] = 0;
     if (!lives) {
-        if (leaf.node) s.tree.remove(leaf.node);
-        leaf = {};
+        if (leaf) s.tree.remove(leaf);
+        leaf = nullptr;
         return;
     }
     const FatBox& fat = s.boxes.of[id];
     const btDbvtVolume volume = tight_volume(fat.box);
-    if (!leaf.node) {
-        leaf.node = s.tree.insert(volume, nullptr);
-        leaf.node->dataAsInt = int(id);
-    } else if (NotEqual(leaf.node->volume, volume)) {
+    if (!leaf) {
+        leaf = s.tree.insert(volume, nullptr);
+        leaf->dataAsInt = int(id);
+    } else if (NotEqual(leaf->volume, volume)) {
         s.change(id, volume);
     }
     if (fat.stray) s.strays.push_back(id);

@@ -152,9 +152,11 @@ private:
     }
     template <class List>
     void element(OrNone<List>& column, uint32_t slot, uint32_t) {
+        bool any;
+        plain(&any, sizeof any);
+        if (!any) return;
         typename List::value_type value{};
         one(value);
-        if (!value.any()) return;
         if (column.array.empty()) column.array.resize(slots_);
         column.array[slot] = value;
     }
@@ -274,7 +276,11 @@ private:
     }
     template <class List>
     void element(OrNone<List>& column, bool, const Slots& slots) {
-        if (try_out<typename List::value_type>().any()) column.array.reserve(slots.count);
+        bool any;
+        source_.take(&any, sizeof any);
+        if (!any) return;
+        try_out<typename List::value_type>();
+        column.array.reserve(slots.count);
     }
 
     Staging& staging_;

@@ -129,8 +129,9 @@ private:
     }
     template <class List>
     void element(const OrNone<List>& column, uint32_t slot, uint32_t) {
-        const typename List::value_type none{};
-        this->self().one(column.array.empty() ? none : column.array[slot]);
+        const bool any = slot < column.array.size() && column.array[slot].any();
+        this->self().plain(&any, sizeof any);
+        if (any) this->self().one(column.array[slot]);
     }
 };
 

@@ -31,10 +31,7 @@ public:
     }
 
     // J v of a node.
-    double rate(int r, int n, const Velocity& u) const {
-        const double* j = jacobian_ + (n * rows_ + r) * kDof;
-        return Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w);
-    }
+    double rate(int r, int n, const Velocity& u) const { return along(jacobian_ + (n * rows_ + r) * kDof, u); }
     double rate(int r, const Array<Velocity>& velocity) const {
         double sum = 0;
         for (int n = 0; n < block_.type->nodes; ++n) sum += rate(r, n, velocity[block_.node[n]]);

@@ -132,7 +132,14 @@ struct NodeHistory {
     Speed acceleration;  // by springs then [m/s^2, rad/s^2]
     Speed rate, before;  // BDF2: displacement of the last substep over its length; velocity at its begin
     double length = 0;   // of the last substep [s]; 0: there was none
+
+    bool any() const { return length != 0; }
 };
+template <class Visitor, Like<NodeHistory> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [velocity, acceleration, rate, before, length] = of;
+    TAUT_FIELDS(visitor, velocity, acceleration, rate, before, length);
+}
 
 // Where the host leads a kinematic node, in the host's time: that of all its calls, of which the steps have yet to take
 // what is left in the accumulator.
@@ -212,10 +219,10 @@ private:
 };
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, info, motion, mass, applied, owed, load, paths, before, rest, sleep] = of;  // load: within a step
-    OrNone loads_applied{applied}, loads_owed{owed};
+    auto& [ids, info, motion, mass, applied, owed, load, paths, before, history, rest, sleep] = of;  // load: within a step
+    OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
     TAUT_ASIDE(visitor, ids);
-    TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, rest, sleep);
+    TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);
     TAUT_FIELDS(visitor, paths);
 }
 

@@ -3,6 +3,7 @@
 
 #include <taut/event.h>
 
+#include "base/describe.h"
 #include "base/memory.h"
 
 namespace taut {

@@ -1,6 +1,7 @@
 // What a world remembers about its sleeping islands; each node's share is in Nodes::rest and Nodes::sleep.
 #pragma once
 
+#include "base/describe.h"
 #include "base/memory.h"
 
 namespace taut {
