@@ -240,7 +240,7 @@ nlohmann::ordered_json Run::json() const {
     double frames = figures_.frames;
     nlohmann::ordered_json json;
     json["scene"] = scene_.name;
-    json["solver"] = scenes::solver_name(scene_.world.solver);
+    json["solver"] = taut_solver_name(scene_.world.solver);
     json["frames"] = figures_.frames;
     json["threads"] = scene_.world.threads;
     json["bodies"] = profile_.bodies;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -90,6 +91,23 @@ inline uint64_t hash_of(taut_world world) {
     uint64_t hash = 0;
     EXPECT_EQ(taut_world_get_state_hash(world, &hash), TAUT_OK) << taut_last_error();
     return hash;
+}
+
+// Where bodies are and how they move: what a step that fails leaves as it was, though it may have foreseen boxes.
+inline std::vector<double> motion_of(std::initializer_list<taut_body> bodies) {
+    std::vector<double> out;
+    for (const taut_body body : bodies) {
+        taut_pose pose;
+        taut_vec3 v, w;
+        EXPECT_EQ(taut_body_get_pose(body, &pose), TAUT_OK) << taut_last_error();
+        EXPECT_EQ(taut_body_get_velocity(body, &v, &w), TAUT_OK) << taut_last_error();
+        const taut_pos& x = pose.position;
+        const taut_quat& q = pose.rotation;
+        for (const double number : {x.x, x.y, x.z}) out.push_back(number);
+        for (const float number : {q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z})
+            out.push_back(static_cast<double>(number));
+    }
+    return out;
 }
 
 // Of the steps since they were read last.

@@ -147,12 +147,12 @@ TEST(Advance, KeepsItsTimeWhenAStepFails) {
     Ledger ledger;
     Populated p(ledger.hooks());
     for (int i = 0; i < 60; ++i) add_body(p.world, body_def(TAUT_BODY_DYNAMIC, p.box, 0.4 * i, 0.5, 0));
-    const uint64_t hash = hash_of(p.world);
+    const std::vector<double> before = motion_of({p.crate, p.wedge, p.bob});
     ledger.fail_from = ledger.calls + 1;
     taut_advance out = {77, 0, 0};
     ASSERT_EQ(taut_world_advance(p.world, 3.0 / 60, &out), TAUT_OUT_OF_MEMORY);
     EXPECT_EQ(out.steps, 77u);
-    EXPECT_EQ(hash_of(p.world), hash);
+    EXPECT_EQ(motion_of({p.crate, p.wedge, p.bob}), before);
     ledger.fail_from = UINT64_MAX;
     ASSERT_OK(taut_world_advance(p.world, 3.0 / 60, &out));
     EXPECT_EQ(out.steps, 3u);
