@@ -121,9 +121,9 @@ typedef struct taut_world_def {
     taut_scheme scheme;                 /**< default TAUT_SCHEME_IMPLICIT_EULER */
     float newmark_beta;                 /**< [0.25, 0.5]. Default 0.25 */
     float newmark_gamma;                /**< [0.5, 1], at most 2 newmark_beta; above 0.5 it damps. Default 0.5 */
-    uint32_t report;              /**< 1: each step measures what its solves leave, for taut_profile: yield,
-                                       solve_residual, linearisation and energy_gain. Changes no result; a step of
-                                       many contacts takes several times as long. Default 0 */
+    uint32_t report;                    /**< 1: each step measures what its solves leave, for taut_profile: yield,
+                                             solve_residual, linearisation and energy_gain. Changes no result; a step of
+                                             many contacts takes several times as long. Default 0 */
 } taut_world_def;
 
 /** What taut_world_advance did. */

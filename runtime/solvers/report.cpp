@@ -186,7 +186,8 @@ struct SolveReports::Measure {
     SolveReports& to;
     const Measured& m;
     const System& system = m.system;
-    SweepTerms contact = contact_terms(m.system.scheme.h, m.system.stretch), joint = joint_terms(m.system.scheme.h, m.system.stretch);
+    SweepTerms contact = contact_terms(m.system.scheme.h, m.system.stretch),
+               joint = joint_terms(m.system.scheme.h, m.system.stretch);
 
     // Of the first of these seats that forces move; null: none, a quarantined body on a fixed one.
     IslandReport* report(std::span<const uint32_t> seats) const {
@@ -344,8 +345,8 @@ struct SolveReports::Measure {
             const NodeMass& mass = m.nodes.mass[node];
             const NodeLoad& load = m.nodes.load_of(node);
             const Vec3 force = mass.mass * mass.gravity_scale * m.gravity + load.force;
-            const double work =
-                force.dot(m.nodes.motion[node].x - system.pose[seat].x) + system.scheme.h * load.torque.dot(to.mean_[seat].w);
+            const double work = force.dot(m.nodes.motion[node].x - system.pose[seat].x) +
+                                system.scheme.h * load.torque.dot(to.mean_[seat].w);
             to.open_[m.partition.island_of(node)].energy -= work;
         }
     }

@@ -48,7 +48,9 @@ struct Collider {
 template <class Visitor, Like<Collider> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [node, node_b, shape, next, position, rotation, user_data, asks, sensor, senses_static] = of;
-    TAUT_FIELDS(visitor, node, node_b, shape, next, position, rotation, asks, sensor, senses_static);
+    auto decides = static_cast<uint8_t>(asks & (kAsksPreSolve | kAsksOneWay));  // events change no motion
+    TAUT_FIELDS(visitor, node, node_b, shape, next, position, rotation, decides, sensor, senses_static);
+    TAUT_ASIDE(visitor, asks);
     TAUT_ASIDE(visitor, user_data);
 }
 

@@ -219,7 +219,8 @@ private:
 };
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, info, motion, mass, applied, owed, load, paths, before, history, rest, sleep] = of;  // load: within a step
+    auto& [ids, info, motion, mass, applied, owed, load, paths, before, history, rest, sleep] =
+        of;  // load: within a step
     OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
     TAUT_ASIDE(visitor, ids);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);

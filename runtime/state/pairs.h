@@ -92,7 +92,8 @@ void describe(Visitor& visitor, Of& of) {
            touched, hit, kept, reused, changed] =
         of;  // pair: the record is found by its key; fast to changes: within a step
     bool bits[] = {filtered, on_surface, against_fixed, touching, touched, hit, kept, reused, changed};
-    TAUT_FIELDS(visitor, key, cache, clear, asks, bits);
+    TAUT_FIELDS(visitor, key, cache, clear, bits);
+    TAUT_ASIDE(visitor, asks);  // what decides motion its colliders ask for too
     if constexpr (!std::is_const_v<Of>) {
         filtered = bits[0], on_surface = bits[1], against_fixed = bits[2], touching = bits[3], touched = bits[4];
         hit = bits[5], kept = bits[6], reused = bits[7], changed = bits[8];
@@ -181,7 +182,8 @@ void describe(Visitor& visitor, Of& of, bool kept) {
     TAUT_FIELDS(visitor, part, manifold, then, round_a, round_b);
     for (int k = 0; k < manifold.count; ++k) TAUT_FIELDS(visitor, force[k]);
     TAUT_FIELDS(visitor, friction, restitution, spinning, rolling, stiffness, patch, torque, spin_slip, drive,
-                drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, asks, cache);
+                drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, cache);
+    TAUT_ASIDE(visitor, asks);
     if (kept) describe(visitor, found, manifold.count);
 }
 

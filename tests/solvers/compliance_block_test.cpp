@@ -76,6 +76,7 @@ TEST(ComplianceBlock, IsReachedByEverySweepingSolver) {
         Eigen::Matrix<double, 6, 6, Eigen::RowMajor> blocks[3];
         build(rig, blocks, 3, 7);
         rig.settings.sweeps = 1000;
+        rig.settings.rows.linear = true;
         rig.begin(*solver);
         rig.predict();
         const DenseSubstep exact = solve_dense(rig, {});
