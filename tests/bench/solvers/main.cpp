@@ -47,6 +47,7 @@ scenes::Scene hanging_net() {
             scenes::Body body;
             body.position = {double(kSpacing * float(i)), 0, double(kSpacing * float(j))};
             body.mass = 0.01f;
+            body.kind = TAUT_BODY_PARTICLE;
             scene.bodies.push_back(body);
         }
     for (int i = 0; i < kSide; ++i)
