@@ -57,6 +57,12 @@ void Partition::unite(std::span<const uint32_t> all) {
     }
 }
 
+// After this no graph is as it was: nodes move or do not, and 2 is neither. Takes no memory; a list that never had any is
+// of a world in which nothing was built.
+static void forget(TouchGraph& graph) {
+    if (graph.moves.capacity() > 0) graph.moves.assign(1, uint8_t{2});
+}
+
 void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pairs& pairs, const PartitionRules& rules) {
     static constexpr Part kOfFrame[] = {&Partition::find_places, &Partition::weigh};
     // In this order two threads have as much to do.
@@ -73,7 +79,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pair
             run(team, kOfFrame, nodes);
         }
     } catch (...) {  // out of memory: what follows from the graph may not be there
-        graph_.moves.clear();
+        forget(graph_);
         throw;
     }
     soften_squeezed(nodes, pairs, rules);
@@ -172,7 +178,7 @@ void Partition::list_small() {
 }
 
 void Partition::forget_frame(uint32_t nodes) {
-    graph_.moves.clear();
+    forget(graph_);
     group_count = 0;
     find_block_of(nodes);
 }
