@@ -2,7 +2,7 @@
 // are conjugate,
 //   z = D^-1 r,  delta = z . A z,  beta = min(delta / delta_before, 1),  d = z + beta d
 //   p = A d,  alpha = (p . z) / (p . D^-1 p),  mu <- proj(mu - alpha d)
-// alpha is clamped to what the diagonal's masses allow; where an island's step would lead uphill, d starts again from
+// beta stays below 1 and alpha is not negative; where an island's step would lead uphill, d starts again from
 // z. With the option of fixed steps alpha = 1 / rho(D^-1 A). All by islands.
 #include "solvers/row_solver.h"
 #include "solvers/spectral_radius.h"

@@ -52,7 +52,7 @@ private:
         for (int i = 0; i < 20; ++i) {
             taut_body_def def;
             taut_body_def_init(&def);
-            def.shape = world.shapes[0];
+            if (!world.shapes.empty()) def.shape = world.shapes[0];  // scenes of cables have none
             def.kind = TAUT_BODY_STATIC;
             def.position = {0.4 * i, 1, 0};
             taut_body body{};
