@@ -1,22 +1,18 @@
-// Bend of a line through three points.  C = u_2 - u_1 [rad], u = d/|d|, d_1 = p_b - p_a, d_2 = p_c - p_b, p = x + R s:
+// Bend of a line through three points.  C = u_2 - u_1 [rad], u = d/|d|, d_1 = p_1 - p_0, d_2 = p_2 - p_1:
 // of size 2 sin(angle/2), across the line where that is small. With angular compliance span/EI the energy is that of a
-// beam of which `span` metres bend at p_b,  EI/(2 span) |C|^2 = EI/span (1 - cos angle), and the moment EI/span sin.
-// J_a = P_1/l_1 B_a, J_b = -(P_1/l_1 + P_2/l_2) B_b, J_c = P_2/l_2 B_c,  P = I - u u^T, B = (I, -hat r);
-// K = sum over both stretches of B^T T B + lever parts, T the stiffness_of_bend of lambda . u(d):
+// beam of which `span` metres bend at p_1,  EI/(2 span) |C|^2 = EI/span (1 - cos angle), and the moment EI/span sin.
+// j_0 = P_1/l_1, j_1 = -(P_1/l_1 + P_2/l_2), j_2 = P_2/l_2,  P = I - u u^T;
+// k = sum over both stretches of T, the stiffness of lambda . u(d) between its ends:
 //   T = ((u.q) P + u q_p^T + q_p u^T)/l^2,  q_p = P q,  q = lambda at d_2 and -lambda at d_1.
 #include "constraints/bend.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "constraints/constraint.h"
-#include "constraints/lever.h"
+#include "constraints/point_element.h"
 #include "constraints/random.h"
 
 namespace taut {
 namespace {
-
-using PointJacobian = Eigen::Matrix<double, 3, kDof>;
 
 struct Stretch {
     Vec3 u;
@@ -29,36 +25,8 @@ Stretch stretch_of(const Vec3& d) {
     return {Vec3::UnitX(), 1e-12};
 }
 
-struct Points {
-    Points(const BendData& bend, const Pose* x) {
-        const Vec3* anchor[3] = {&bend.anchor_a, &bend.anchor_b, &bend.anchor_c};
-        for (int n = 0; n < 3; ++n) r[n] = x[n].R * *anchor[n];
-        for (int s = 0; s < 2; ++s) stretch[s] = stretch_of((x[s + 1].x - x[s].x) + (r[s + 1] - r[s]));
-    }
-    PointJacobian moves_with(int n) const {
-        PointJacobian b;
-        b << Mat3::Identity(), -hat(r[n]);
-        return b;
-    }
-
-    Vec3 r[3];
-    Stretch stretch[2];
-};
-
 // How u turns with its d.
 Mat3 turning(const Stretch& s) { return (Mat3::Identity() - s.u * s.u.transpose()) / s.length; }
-
-void evaluate_bend(const void* data, const Pose* x, double* error, double* jacobian) {
-    const Points p(*static_cast<const BendData*>(data), x);
-    Vec3::Map(error) = p.stretch[1].u - p.stretch[0].u;
-    if (!jacobian) return;
-    const Mat3 first = turning(p.stretch[0]), second = turning(p.stretch[1]);
-    const Mat3 part[3] = {first, -(first + second), second};
-    for (int n = 0; n < 3; ++n) {
-        set_block(jacobian, 3, n, 0, part[n]);
-        set_block(jacobian, 3, n, 3, -part[n] * hat(p.r[n]));
-    }
-}
 
 // T of q. In the plane of u and q_p it is [0 a; a b]/l^2, a = |q_p|, b = u.q, and b/l^2 across that plane.
 Mat3 stretch_stiffness(const Stretch& s, const Vec3& q, Curvature part) {
@@ -75,32 +43,46 @@ Mat3 stretch_stiffness(const Stretch& s, const Vec3& q, Curvature part) {
     return scale * (larger * e * e.transpose() + std::max(b, 0.0) * w * w.transpose());
 }
 
-void stiffness_of_bend(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
-    const Points p(*static_cast<const BendData*>(data), x);
-    Eigen::Map<Eigen::Matrix<double, 3 * kDof, 3 * kDof, Eigen::RowMajor>> sum(k);
-    sum.setZero();
-    for (int s = 0; s < 2; ++s) {
-        const Vec3 q = (s == 0 ? -1 : 1) * Vec3::Map(lambda), pull = turning(p.stretch[s]) * q;
-        const Mat3 t = stretch_stiffness(p.stretch[s], q, part);
-        for (int n = s; n <= s + 1; ++n) {
-            for (int m = s; m <= s + 1; ++m)
-                sum.block<kDof, kDof>(kDof * n, kDof * m) +=
-                    (n == m ? 1 : -1) * p.moves_with(n).transpose() * t * p.moves_with(m);
-            sum.block<3, 3>(kDof * n + 3, kDof * n + 3) += lever_stiffness(n == s ? -pull : pull, p.r[n], part);
+struct Bend {
+    static constexpr int kRows = 3, kPoints = 3;
+    static constexpr uint8_t kAngular = 0b111;
+    struct Data {};
+
+    static void evaluate(const Data&, const Vec3* p, double* error, double* jacobian) {
+        const Stretch first = stretch_of(p[1] - p[0]), second = stretch_of(p[2] - p[1]);
+        Vec3::Map(error) = second.u - first.u;
+        if (!jacobian) return;
+        Eigen::Map<Eigen::Matrix<double, 9, 3, Eigen::RowMajor>> j(jacobian);
+        j.topRows<3>() = turning(first);
+        j.bottomRows<3>() = turning(second);
+        j.middleRows<3>(3) = -(j.topRows<3>() + j.bottomRows<3>());
+    }
+
+    static void stiffness(const Data&, const Vec3* p, const double* lambda, Curvature part, double* k) {
+        Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> sum(k);
+        for (int s = 0; s < 2; ++s) {
+            const Vec3 q = (s == 0 ? -1 : 1) * Vec3::Map(lambda);
+            const Mat3 t = stretch_stiffness(stretch_of(p[s + 1] - p[s]), q, part);
+            for (int n = s; n <= s + 1; ++n)
+                for (int m = s; m <= s + 1; ++m) sum.block<3, 3>(3 * n, 3 * m) += (n == m ? 1 : -1) * t;
         }
     }
-}
+};
+
+static_assert(sizeof(Anchored<Bend>) == sizeof(BendData));
 
 void sample_bend(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& bend = *static_cast<BendData*>(data);
     bend = {random.vector(), random.vector(), random.vector()};
-    random.poses(x, 3);
+    random.poses(x, Bend::kPoints);
 }
+
+void sample_points(uint64_t seed, void*, Pose* x) { Random(seed).poses(x, Bend::kPoints); }
 
 }  // namespace
 
-const ConstraintType kBend{
-    "bend", 3, 3, sizeof(BendData), Bound::free, true, 0b111, evaluate_bend, stiffness_of_bend, nullptr, sample_bend};
+constinit const ConstraintType kBend = anchored_type<Bend>("bend", sample_bend);
+constinit const ElementType kBendElement = point_element<Bend>("bend of points", sample_points);
 
 }  // namespace taut

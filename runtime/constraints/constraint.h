@@ -50,7 +50,7 @@ struct LaneScalar;
 struct ConstraintType {
     const char* name;
     int rows;          // 1 to 6
-    int nodes;         // 1 to 4
+    int nodes;         // 1 to 4; of elements to 8
     size_t data_size;  // of plain numbers without gaps between them: its bytes are hashed and saved
     Bound bound;
     bool couples_nodes;  // K has blocks between different nodes, beside the diagonal ones

@@ -1,93 +1,72 @@
-// Distance.  C = |d| - length [m], d = p_b - p_a, p = x + R s;  u = d/|d|;
-// J_b = (u^T, (r_b x u)^T), J_a = -(u^T, (r_a x u)^T);
-// K = B^T (-lambda/|d|) (I - u u^T) B + lever parts,  B = (-I, hat r_a, I, -hat r_b)
-//                                                     (Tournier et al. 2015, eq. 14 and 18; levers eq. 22)
-// lambda < 0 is tension; the first part is positive only then.
+// Distance between two points.  C = |d| - length [m], d = p_1 - p_0;  j_1 = u^T = d^T/|d|, j_0 = -u^T;
+// k_11 = k_00 = -k_01 = (-lambda/|d|) (I - u u^T)                     (Tournier et al. 2015, eq. 14 and 18)
+// lambda < 0 is tension; k is positive only then. Between particles the element type "link", between points of bodies
+// the joint "distance".
 #include "constraints/distance.h"
 
-#include <algorithm>
-
-#include "constraints/constraint.h"
-#include "constraints/lever.h"
+#include "constraints/point_element.h"
 #include "constraints/random.h"
 
 namespace taut {
 namespace {
 
-struct Span {
-    Vec3 ra, rb, u;
-    double length;
+struct Distance {
+    static constexpr int kRows = 1, kPoints = 2;
+    static constexpr uint8_t kAngular = 0;
+    struct Data {
+        double length;
+    };
+
+    static Vec3 unit(const Vec3& d, double length) {
+        return length > 1e-12 ? Vec3(d / length) : Vec3(Vec3::UnitX());  // any direction will do to part them again
+    }
+
+    static void evaluate(const Data& rod, const Vec3* p, double* error, double* jacobian) {
+        const Vec3 d = p[1] - p[0];
+        const double length = d.norm();
+        *error = length - rod.length;
+        if (!jacobian) return;
+        const Vec3 u = unit(d, length);
+        Vec3::Map(jacobian) = -u;
+        Vec3::Map(jacobian + 3) = u;
+    }
+
+    static void stiffness(const Data&, const Vec3* p, const double* lambda, Curvature part, double* k) {
+        if (part == Curvature::positive && *lambda >= 0) return;
+        const Vec3 d = p[1] - p[0];
+        const double length = d.norm();
+        const Vec3 u = unit(d, length);
+        const Mat3 t = -*lambda / std::max(length, 1e-12) * (Mat3::Identity() - u * u.transpose());
+        Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> out(k);
+        out.block<3, 3>(0, 0) = out.block<3, 3>(3, 3) = t;
+        out.block<3, 3>(0, 3) = out.block<3, 3>(3, 0) = -t;
+    }
+
+    static Vec3 line(const Data&, const Vec3* p) {
+        const Vec3 d = p[1] - p[0];
+        const double length = d.norm();
+        return std::max(length, 1e-12) * unit(d, length);
+    }
 };
 
-Span span_of(const DistanceData& rod, const Pose* x) {
-    Span s;
-    s.ra = x[0].R * rod.anchor_a;
-    s.rb = x[1].R * rod.anchor_b;
-    const Vec3 d = (x[1].x - x[0].x) + (s.rb - s.ra);
-    s.length = d.norm();
-    s.u = s.length > 1e-12 ? Vec3(d / s.length) : Vec3(Vec3::UnitX());  // any direction will do to part them again
-    return s;
-}
-
-void evaluate_distance(const void* data, const Pose* x, double* error, double* jacobian) {
-    const auto& rod = *static_cast<const DistanceData*>(data);
-    const Span s = span_of(rod, x);
-    *error = s.length - rod.length;
-    if (!jacobian) return;
-    Vec3::Map(jacobian) = -s.u;
-    Vec3::Map(jacobian + 3) = -s.ra.cross(s.u);
-    Vec3::Map(jacobian + 6) = s.u;
-    Vec3::Map(jacobian + 9) = s.rb.cross(s.u);
-}
-
-void stiffness_of_distance(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
-    const auto& rod = *static_cast<const DistanceData*>(data);
-    const Span s = span_of(rod, x);
-    std::fill(k, k + 12 * 12, 0.0);
-    const Vec3 f = *lambda * s.u;
-    add_block(k, 3, 3, lever_stiffness(-f, s.ra, part));
-    add_block(k, 9, 9, lever_stiffness(f, s.rb, part));
-    if (part == Curvature::positive && *lambda >= 0) return;
-    const Mat3 t = -*lambda / std::max(s.length, 1e-12) * (Mat3::Identity() - s.u * s.u.transpose());
-    add_block(k, 0, 0, t);
-    add_block(k, 0, 6, -t);
-    add_block(k, 6, 0, -t);
-    add_block(k, 6, 6, t);
-    if (s.ra.isZero(0) && s.rb.isZero(0)) return;  // between particles
-    const Mat3 a = hat(s.ra), b = hat(s.rb), ta = t * a, tb = t * b;
-    const Mat3 lever[4][4] = {{Mat3::Zero(), -ta, Mat3::Zero(), tb},
-                              {-ta.transpose(), a.transpose() * ta, ta.transpose(), -a.transpose() * tb},
-                              {Mat3::Zero(), ta, Mat3::Zero(), -tb},
-                              {tb.transpose(), -b.transpose() * ta, -tb.transpose(), b.transpose() * tb}};
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) add_block(k, 3 * i, 3 * j, lever[i][j]);
-}
-
-Line line(const void* data, const Pose* x) {
-    const Span s = span_of(*static_cast<const DistanceData*>(data), x);
-    return {std::max(s.length, 1e-12) * s.u, s.ra, s.rb};
-}
+static_assert(sizeof(Anchored<Distance>) == sizeof(DistanceData));
 
 void sample_distance(uint64_t seed, void* data, Pose* x) {
     Random random(seed);
     auto& rod = *static_cast<DistanceData*>(data);
     rod = {random.vector(), random.vector(), 0.5 + random.unit()};
-    random.poses(x, 2);
+    random.poses(x, Distance::kPoints);
+}
+
+void sample_link(uint64_t seed, void* data, Pose* x) {
+    Random random(seed);
+    *static_cast<double*>(data) = 0.5 + random.unit();
+    random.poses(x, Distance::kPoints);
 }
 
 }  // namespace
 
-const ConstraintType kDistance{"distance",
-                               1,
-                               2,
-                               sizeof(DistanceData),
-                               Bound::free,
-                               true,
-                               0,
-                               evaluate_distance,
-                               stiffness_of_distance,
-                               nullptr,
-                               sample_distance,
-                               line};
+constinit const ConstraintType kDistance = anchored_type<Distance>("distance", sample_distance);
+constinit const ElementType kLinkElement = point_element<Distance>("link", sample_link);
 
 }  // namespace taut

@@ -154,8 +154,8 @@ struct JointLanes {
     LanePlaces<LaneFrames> frames;
     LanePlaces<LaneScalar> jacobian, factor, compliance;
     LanePlaces<LaneStiffness> stiffness;  // one for each group
-    Array<uint32_t> colour_begin;         // first group of each colour, and one past the last
-    Array<float> node_stiffness;          // by seat [N m], -1: applied; stiffen_joints()
+    Array<uint32_t> colour_begin;  // first group of each colour, of joints, then of elements; and one past the last
+    Array<float> node_stiffness;   // by seat [N m], -1: applied; stiffen_joints()
 
     JointView view() {
         return {group.data(),    row.data(),    coordinate.data(), axis.data(),     law.data(),

@@ -5,7 +5,8 @@
 namespace taut {
 
 constexpr int kMaxRows = 6;
-constexpr int kMaxNodes = 4;
-constexpr int kDof = 6;  // columns of J a node; a particle leaves the last three zero
+constexpr int kMaxNodes = 8;  // of an element
+constexpr int kMaxEnds = 4;   // of a joint or contact
+constexpr int kDof = 6;       // columns of J a node; a particle leaves the last three zero
 
 }  // namespace taut

@@ -1,0 +1,53 @@
+#include "constraints/element.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace taut {
+namespace {
+
+using Error = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
+using Modulus = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+constexpr int kMostFreedoms = kMaxNodes * kDof;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostFreedoms, kMostFreedoms>;
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMostFreedoms>;
+
+// One element of a batch.
+ElementBatch one_of(const ElementType& type, const ElementBatch& batch, uint32_t i) {
+    return {1, batch.node + size_t{i} * static_cast<uint32_t>(type.row.nodes), nullptr,
+            batch.data + size_t{batch.index(i)} * static_cast<uint32_t>(type.numbers), batch.x};
+}
+
+}  // namespace
+
+void element_energy(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, double* energy) {
+    const int rows = type.row.rows;
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        Error c(rows);
+        type.evaluate(one_of(type, batch, i), c.data(), nullptr, type.freedoms);
+        energy[i] = 0.5 * c.dot(Modulus(d.material, rows, rows) * c) / d.softness[batch.index(i)];
+    }
+}
+
+void positive_sum(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
+                  double* k) {
+    const int rows = type.row.rows, nodes = type.row.nodes, width = nodes * type.freedoms;
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        const ElementBatch one = one_of(type, batch, i);
+        double error[kMaxRows], jacobian[kMaxRows * kMostFreedoms];
+        type.evaluate(one, error, jacobian, type.freedoms);
+        Jacobian j(rows, width);
+        for (int n = 0; n < nodes; ++n)
+            j.middleCols(n * type.freedoms, type.freedoms) =
+                Eigen::Map<const Jacobian>(jacobian + n * rows * type.freedoms, rows, type.freedoms);
+        Square sum(width, width);
+        type.stiffness(one, lambda + size_t{i} * static_cast<uint32_t>(rows), Curvature::raw, sum.data());
+        sum = (0.5 * (sum + sum.transpose())).eval();
+        sum += j.transpose() * (Modulus(d.material, rows, rows) / d.softness[batch.index(i)]) * j;
+        const Eigen::SelfAdjointEigenSolver<Square> eigen(sum);
+        Eigen::Map<Square>(k + size_t{i} * static_cast<uint32_t>(width * width), width, width) =
+            eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+    }
+}
+
+}  // namespace taut

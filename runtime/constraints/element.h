@@ -1,0 +1,59 @@
+// Elements: constraints by the thousand, of which cables, cloth and solids are made. An element type answers for a
+// whole batch of instances, at any positions that a solver asks about,
+//   C(x) [m, rad or 1],   J = dC/dx,   K = -dJ^T/dx lambda
+// as constraint types do for one (constraint.h), and W = 1/2 C^T D C [J] with D the inverse of its compliance. Its row
+// form is a constraint type: any solver takes an element as rows of that. Adding one is its file and a line in
+// list.cpp.
+#pragma once
+
+#include <span>
+
+#include "constraints/constraint.h"
+
+namespace taut {
+
+// Some elements of one type, at poses that x holds.
+struct ElementBatch {
+    uint32_t count = 0;
+    const uint32_t* node = nullptr;     // [count][nodes], indices into x
+    const uint32_t* element = nullptr;  // [count], index of each in data; null: 0, 1, ...
+    const double* data = nullptr;       // [elements][numbers]
+    const Pose* x = nullptr;
+
+    uint32_t index(uint32_t i) const { return element ? element[i] : i; }
+};
+
+struct ElementType {
+    const char* name;
+    int freedoms;        // of each node: 3, of whose pose x alone is read, or 6
+    int numbers;         // of data of an element, all doubles
+    ConstraintType row;  // the same element as one constraint, with its numbers as data
+
+    // error: [count][rows]. jacobian: [count][nodes][rows][columns], may be null; columns are the freedoms or more, and
+    // those beyond stay as they are.
+    void (*evaluate)(const ElementBatch& batch, double* error, double* jacobian, int columns);
+    // lambda: [count][rows]. k: [count][nodes freedoms][nodes freedoms], row-major, overwritten.
+    void (*stiffness)(const ElementBatch& batch, const double* lambda, Curvature part, double* k);
+};
+
+// Every type there is; tests, hash and snapshots loop over it.
+std::span<const ElementType* const> element_types();
+
+extern const ElementType kLinkElement;  // distance between two points
+extern const ElementType kBendElement;  // bend of a line through three points
+
+// D of some elements: [rows][rows] of the material, over the softness of each.
+struct ElementStiffness {
+    const double* material;
+    const double* softness;  // [elements]
+};
+
+// W = 1/2 C^T D C of each [J].
+void element_energy(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, double* energy);
+
+// Positive part of the sum J^T D J + K, the matrix of a Newton step on W where lambda = -D C: symmetric, positive
+// semi-definite and, in any direction, no less than the sum. k as of ElementType::stiffness.
+void positive_sum(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
+                  double* k);
+
+}  // namespace taut
