@@ -127,7 +127,7 @@ double overrun_of(const Joint& joint, const double* values, int row) {
 JointError error_of(const Joint& joint, const JointReading& reading) { return error_at(joint, reading.value); }
 
 double gap_of(const Nodes& nodes, const Joint& joint) {
-    Pose pose[kMaxNodes];
+    Pose pose[kMaxEnds];
     poses_of(nodes, joint, pose);
     if (holds_anchors(joint)) {
         const Vec3 lever_a = pose[0].R * anchor_of(joint, 0), lever_b = pose[1].R * anchor_of(joint, 1);

@@ -18,9 +18,9 @@ Pose pose_of(const Nodes& nodes, uint32_t node);
 Vec3 world_anchor(const Nodes& nodes, const Joint& joint, int end);
 
 struct JointReading {
-    Pose pose[kMaxNodes];
-    double value[kMaxRows] = {};                        // coordinates [m or rad]
-    double jacobian[kMaxNodes * kMaxRows * kDof] = {};  // [end][row][6]
+    Pose pose[kMaxEnds];
+    double value[kMaxRows] = {};                       // coordinates [m or rad]
+    double jacobian[kMaxEnds * kMaxRows * kDof] = {};  // [end][row][6]
 };
 
 JointReading read_joint(const Nodes& nodes, const Joint& joint);

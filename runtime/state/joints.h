@@ -21,8 +21,8 @@ enum class JointSolve : uint8_t {
 struct Joint {
     static constexpr size_t kDataSize = 128;
 
-    const ConstraintType* type = nullptr;                     // null: dead slot
-    uint32_t node[kMaxNodes] = {kNone, kNone, kNone, kNone};  // as many as the type has; kNone: the world
+    const ConstraintType* type = nullptr;                    // null: dead slot
+    uint32_t node[kMaxEnds] = {kNone, kNone, kNone, kNone};  // as many as the type has; kNone: the world
     double lambda[kMaxRows] = {};   // force of the last substep, stops and drives included [N, N m]
     double drift[kMaxRows] = {};    // of C since the last step, by a change of length or anchors: it comes bit by
                                     // bit over the substeps of the next one, and so without a kick
@@ -84,10 +84,10 @@ inline void forget_angles(Joint& joint) {
 }
 
 // Between nodes that sleep; worlds without sleeping have none.
-inline bool asleep(const Nodes& nodes, const Joint& joint) {
-    const auto ends = joint.nodes();
+inline bool asleep(const Nodes& nodes, std::span<const uint32_t> ends) {
     return std::any_of(ends.begin(), ends.end(), [&](uint32_t node) { return node != kNone && nodes.sleeps(node); });
 }
+inline bool asleep(const Nodes& nodes, const Joint& joint) { return asleep(nodes, joint.nodes()); }
 
 struct Joints {
     explicit Joints(Memory& memory) : ids(memory), record(memory) {}

@@ -89,33 +89,38 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, root, frames);
 }
 
-// Nodes that joints tie together, by node; hold_back().
+// A joint by its slot, set kNone, or an element of a set.
+struct ConstraintRef {
+    uint32_t set = kNone, index = kNone;
+};
+
+// Nodes that joints and elements tie together, by node; hold_back().
 struct Mechanisms {
     explicit Mechanisms(Memory& memory)
         : root(memory),
           next(memory),
-          first_joint(memory),
-          next_joint(memory),
+          first_tie(memory),
+          tie(memory),
           open(memory),
           ties(memory),
           drive(memory),
           put_back(memory),
           stays(memory) {}
 
-    Array<uint32_t> root;         // the least of them; empty: not found yet
-    Array<uint32_t> next;         // of the ring of them
-    Array<uint32_t> first_joint;  // of a root, or kNone
-    Array<uint32_t> next_joint;   // by joint: the next one of its mechanism, or kNone
-    Array<uint32_t> open;         // scratch: joints to be closed
-    Array<uint8_t> ties;          // of a root; detect/mechanism.h
-    Array<float> drive;           // of a root; detect/mechanism.h [kg]
-    bool any_drives = false;      // any of them others, in this step
-    Array<uint8_t> put_back;      // the last round in which it was; 0: none
-    Array<Stay> stays;            // outlive the step
+    Array<uint32_t> root;       // the least of them; empty: not found yet
+    Array<uint32_t> next;       // of the ring of them
+    Array<uint32_t> first_tie;  // by node, of a root: its first in tie; the next node's is where they end
+    Array<ConstraintRef> tie;   // root by root, joints before elements
+    Array<ConstraintRef> open;  // scratch: to be closed
+    Array<uint8_t> ties;        // of a root; detect/mechanism.h
+    Array<float> drive;         // of a root; detect/mechanism.h [kg]
+    bool any_drives = false;    // any of them others, in this step
+    Array<uint8_t> put_back;    // the last round in which it was; 0: none
+    Array<Stay> stays;          // outlive the step
 };
 template <class Visitor, Like<Mechanisms> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [root, next, first_joint, next_joint, open, ties, drive, any_drives, put_back, stays] = of;
+    auto& [root, next, first_tie, tie, open, ties, drive, any_drives, put_back, stays] = of;
     TAUT_FIELDS(visitor, stays);  // all else is found by each step
 }
 
