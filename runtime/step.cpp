@@ -39,16 +39,14 @@ void remember_poses(Team& team, Nodes& nodes) {
 }
 
 // How old contacts, found once a frame, are on average over the substeps that they serve [s].
-double mean_age(const World& w) {
-    return 0.5 * (1 - 1.0 / w.least_substeps()) * static_cast<double>(w.def.time_step);
-}
+double mean_age(const World& w) { return 0.5 * (1 - 1.0 / w.least_substeps()) * static_cast<double>(w.def.time_step); }
 
 void detect(World& w, Stopwatch& watch) {
     const double lead = mean_age(w);
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     tell(w, {Stage::bounds});
-    update_pairs(w.team, w.nodes, w.colliders, w.joints, w.broadphase, w.pairs);
+    update_pairs(w.team, w.nodes, w.colliders, w.joints, w.elements, w.broadphase, w.pairs);
     retire_pairs(w);
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
@@ -70,7 +68,7 @@ void detect(World& w, Stopwatch& watch) {
 
 // Rows and lanes of a group for the frame.
 void build_group(World& w, const Group& group, const Solver& solver, const ContactKernels& kernels) {
-    build_rows(w.system, group, w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
+    build_rows(w.system, group, w.partition.blocks, w.joints, w.elements, w.pairs, w.nodes, !solver.lanes);
     if (solver.lanes) {
         build_lanes(w.team, w.system, group, w.pairs, w.nodes, kernels);
         build_joint_lanes(w.team, w.system, group, w.def.time_step);
@@ -174,25 +172,25 @@ void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSet
 void solve(World& w, Stopwatch& watch) {
     const Solver& solver = *solvers()[w.def.solver];
     const taut_vec3 g = w.def.gravity;
-    const SolverSettings settings{w.def.sweeps,
-                                  w.def.geometric_stiffness != 0,
-                                  w.def.velocity_filter,
-                                  double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
-                                  &contact_kernels(),
-                                  &joint_kernels(),
-                                  w.def.adaptive_damping != 0,
-                                  w.def.restitution_threshold,
-                                  {static_cast<FrictionModel>(w.def.friction_model),
-                                   w.def.stepping == TAUT_STEPPING_VELOCITY, w.def.stabilisation},
-                                  {0, w.def.relaxation, static_cast<MomentumRule>(w.def.momentum),
-                                   w.def.fixed_step != 0}};
+    const SolverSettings settings{
+        w.def.sweeps,
+        w.def.geometric_stiffness != 0,
+        w.def.velocity_filter,
+        double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
+        &contact_kernels(),
+        &joint_kernels(),
+        w.def.adaptive_damping != 0,
+        w.def.restitution_threshold,
+        {static_cast<FrictionModel>(w.def.friction_model), w.def.stepping == TAUT_STEPPING_VELOCITY,
+         w.def.stabilisation},
+        {0, w.def.relaxation, static_cast<MomentumRule>(w.def.momentum), w.def.fixed_step != 0}};
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
     w.system.scheme.kind = static_cast<SchemeKind>(w.def.scheme);
     w.system.scheme.beta = w.def.newmark_beta;
     w.system.scheme.gamma = w.def.newmark_gamma;
-    begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
+    begin_frame(w.team, w.system, w.partition, w.nodes, w.joints.ids.count() > 0 || w.elements.ids.count() > 0);
     make_room_for_scheme(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) solve_group(w, i, solver, settings, report, watch);
@@ -200,10 +198,11 @@ void solve(World& w, Stopwatch& watch) {
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (!w.frozen.empty()) {
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%zu bodies quarantined: their motion was not finite", w.frozen.size());
-        drop_bad_impulses(w.pairs, w.joints);
+        drop_bad_impulses(w.pairs, w.joints, w.elements);
         ++w.joints.version;  // blocks lose the frozen nodes
     }
     for (Joint& joint : w.joints.record) std::fill(joint.drift, joint.drift + kMaxRows, 0.0);
+    for (ElementSet& set : w.elements.set) std::ranges::fill(set.drift, 0.0);
     commit_kinematic(w.system, w.nodes, w.def.time_step);
     w.profile.factor_us = report.direct_us;
     w.profile.sweep_us -= report.direct_us;
@@ -230,16 +229,16 @@ void step(World& w) {
     detect(w, watch);
     watch_contacts(w.nodes, w.pairs, w.watch);
     const Solver& solver = *solvers()[w.def.solver];
-    note_loads(w.joints, w.nodes);
+    note_loads(w.joints, w.elements, w.nodes);
     const taut_vec3 g = w.def.gravity;
-    w.partition.build(w.team, w.nodes, w.joints, w.pairs,
+    w.partition.build(w.team, w.nodes, w.joints, w.elements, w.pairs,
                       {w.least_substeps(), w.def.fixed_substeps != 0, solver.direct, w.def.time_step,
                        Vec3(g.x, g.y, g.z), w.team.size() > 1, w.spring_substep});
-    if (w.def.report) w.reports.begin_step(w.partition, w.joints);
+    if (w.def.report) w.reports.begin_step(w.partition, w.joints, w.elements);
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
-    hold_back(w.team, w.colliders, w.shapes, w.joints, w.pairs, w.broadphase, w.nodes);
+    hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, w.pairs, w.broadphase, w.nodes);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.window.steps, w.sensors);
     w.nodes.load.clear();

@@ -14,6 +14,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       shapes(memory),
       colliders(memory),
       joints(memory),
+      elements(memory),
       cables(memory),
       broadphase(memory),
       pairs(memory),

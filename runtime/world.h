@@ -40,6 +40,7 @@ struct World {
     Shapes shapes;
     Colliders colliders;
     Joints joints;
+    Elements elements;
     Cables cables;
     collision::Broadphase broadphase;
     Pairs pairs;
@@ -102,11 +103,11 @@ void describe(Visitor& visitor, Of& of) {
 
 template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [memory, def, team, id, nodes, shapes, colliders, joints, cables, broadphase, pairs, sleep, sensors,
+    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, broadphase, pairs, sleep, sensors,
            pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
            contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke, moved_before, frozen,
            profile, reports, observer, spring_substep, first_substep, impacts] = of;
-    TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, cables, broadphase.boxes());
+    TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);
     TAUT_ASIDE(visitor, sensors, last_step);

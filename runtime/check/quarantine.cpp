@@ -65,7 +65,7 @@ bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uin
     return found.loaded;
 }
 
-void drop_bad_impulses(Pairs& pairs, Joints& joints) {
+void drop_bad_impulses(Pairs& pairs, Joints& joints, Elements& elements) {
     const auto drop = [](ContactForce& p) {
         if (!(std::isfinite(p.normal) && std::isfinite(p.tangent1) && std::isfinite(p.tangent2))) p = {};
     };
@@ -81,6 +81,9 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints) {
         }
         if (bad) std::fill(joint.memory, joint.memory + kMaxRows, AxisMemory{});
     }
+    for (ElementSet& set : elements.set)
+        for (double& force : set.lambda)
+            if (!std::isfinite(force)) force = 0;
 }
 
 }  // namespace taut

@@ -2,7 +2,7 @@
 // the rest of the world goes on.
 #pragma once
 
-#include "state/joints.h"
+#include "state/elements.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "state/sane.h"
@@ -15,6 +15,6 @@ namespace taut {
 bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
 
 // Carried impulses and forces that are not finite become zero.
-void drop_bad_impulses(Pairs& pairs, Joints& joints);
+void drop_bad_impulses(Pairs& pairs, Joints& joints, Elements& elements);
 
 }  // namespace taut

@@ -49,16 +49,16 @@ MaybeFlaw near_flaw(const NearPairs& list, const Pairs& pairs, const Colliders& 
 }
 
 // Nodes that move twice among those of a colour; nodes_of(item) of each item.
-template <class NodesOf>
-MaybeFlaw colour_flaw(std::span<const uint32_t> items, std::span<const uint32_t> colour_begin, const Nodes& nodes,
+template <class Item, class NodesOf>
+MaybeFlaw colour_flaw(const Array<Item>& items, std::span<const uint32_t> colour_begin, const Nodes& nodes,
                       NodesOf&& nodes_of) {
     std::vector<uint8_t>& met = counts(nodes.slots());
     for (size_t colour = 0; colour + 2 < colour_begin.size(); ++colour) {
-        const auto of_colour = items.subspan(colour_begin[colour], colour_begin[colour + 1] - colour_begin[colour]);
-        for (const uint32_t item : of_colour)
+        const std::span of_colour(items.data() + colour_begin[colour], items.data() + colour_begin[colour + 1]);
+        for (const Item& item : of_colour)
             for (const uint32_t node : nodes_of(item))
                 if (moving(nodes, node) && met[node]++ > 0) return Flaw{"a colour has a moving node once", node};
-        for (const uint32_t item : of_colour)
+        for (const Item& item : of_colour)
             for (const uint32_t node : nodes_of(item))
                 if (node != kNone) met[node] = 0;
     }
@@ -113,7 +113,7 @@ MaybeFlaw joint_lanes_flaw(const System& system, const Group& group) {
         for (uint32_t n = 0; n < g.nodes; ++n) sides[n] = g.node[n];
         if (meets_twice(system, {sides, g.nodes})) return Flaw{"a lane group of joints has a moving node once", i};
     }
-    if (used != group.joints.size()) return Flaw{"lanes hold each swept joint once", used};
+    if (used != group.joints.size() + group.elements.size()) return Flaw{"lanes hold each swept joint once", used};
     return std::nullopt;
 }
 
@@ -149,7 +149,11 @@ constexpr Invariant kInvariants[] = {
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_pairs(w.partition, w.pairs, w.nodes); }},
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_joints(w.partition, w.joints, w.nodes); }},
     {Stage::partition,
-     [](const World& w, const StageEnd&) { return validate_colours(w.partition, w.pairs, w.joints, w.nodes); }},
+     [](const World& w, const StageEnd&) { return validate_elements(w.partition, w.elements, w.nodes); }},
+    {Stage::partition,
+     [](const World& w, const StageEnd&) {
+         return validate_colours(w.partition, w.pairs, w.joints, w.elements, w.nodes);
+     }},
     {Stage::assemble,
      [](const World& w, const StageEnd& end) {
          const bool built = end.substep == 0 && solvers()[w.def.solver]->lanes;
@@ -158,7 +162,7 @@ constexpr Invariant kInvariants[] = {
     {Stage::relax, [](const World& w, const StageEnd&) { return validate_impulses(w.system); }},
     {Stage::publish, [](const World& w, const StageEnd&) { return validate_nodes(w.nodes); }},
     {Stage::publish, [](const World& w, const StageEnd&) { return validate_contact_forces(w.pairs); }},
-    {Stage::publish, [](const World& w, const StageEnd&) { return validate_joint_forces(w.joints); }},
+    {Stage::publish, [](const World& w, const StageEnd&) { return validate_joint_forces(w.joints, w.elements); }},
 };
 
 [[noreturn]] void stop(const StageEnd& end, const Flaw& flaw) {
@@ -247,7 +251,29 @@ MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, cons
     return std::nullopt;
 }
 
-MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const Joints& joints, const Nodes& nodes) {
+MaybeFlaw validate_elements(const Partition& partition, const Elements& elements, const Nodes& nodes) {
+    std::vector<size_t> first(1, 0);
+    for (const ElementSet& set : elements.set) first.push_back(first.back() + (set.type ? set.size() : 0));
+    std::vector<uint8_t>& listed = counts(first.back());
+    const auto list = [&](const auto& all) {
+        for (const ElementRef& each : all) ++listed[first[each.set] + each.element];
+    };
+    for (uint32_t g = 0; g < partition.group_count; ++g) list(partition.groups[g].elements);
+    for (const Block& block : partition.blocks) list(block.elements);
+    for (size_t s = 0; s < elements.set.size(); ++s) {
+        const ElementSet& set = elements.set[s];
+        for (uint32_t e = 0; set.type && e < set.size(); ++e) {
+            const auto ends = set.nodes_of(e);
+            if (listed[first[s] + e] != (mover(nodes, ends) != kNone ? 1 : 0))
+                return Flaw{"elements are solved once", first[s] + e};
+            if (!in_one_island(partition, nodes, ends)) return Flaw{"elements are within an island", first[s] + e};
+        }
+    }
+    return std::nullopt;
+}
+
+MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const Joints& joints,
+                           const Elements& elements, const Nodes& nodes) {
     for (uint32_t g = 0; g < partition.group_count; ++g) {
         const Group& group = partition.groups[g];
         const MaybeFlaw found = either(colour_flaw(group.pairs, group.pair_colour_begin, nodes,
@@ -257,6 +283,10 @@ MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const
                                                               [&](uint32_t j) { return joints.record[j].nodes(); });
                                        });
         if (found) return found;
+        const MaybeFlaw of_elements =
+            colour_flaw(group.elements, group.element_colour_begin, nodes,
+                        [&](const ElementRef& of) { return elements.set[of.set].nodes_of(of.element); });
+        if (of_elements) return of_elements;
     }
     return std::nullopt;
 }
@@ -285,13 +315,16 @@ MaybeFlaw validate_contact_forces(const Pairs& pairs) {
     return std::nullopt;
 }
 
-MaybeFlaw validate_joint_forces(const Joints& joints) {
+MaybeFlaw validate_joint_forces(const Joints& joints, const Elements& elements) {
     for (size_t j = 0; j < joints.record.size(); ++j) {
         const Joint& joint = joints.record[j];
         if (joint.type && !std::all_of(joint.lambda, joint.lambda + joint.type->rows,
                                        [](double force) { return std::isfinite(force); }))
             return Flaw{"joint forces are finite", j};
     }
+    for (size_t s = 0; s < elements.set.size(); ++s)
+        if (!std::ranges::all_of(elements.set[s].lambda, [](double force) { return std::isfinite(force); }))
+            return Flaw{"forces of elements are finite", s};
     return std::nullopt;
 }
 

@@ -6,7 +6,7 @@
 
 #include "stages.h"
 #include "state/colliders.h"
-#include "state/joints.h"
+#include "state/elements.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 
@@ -42,8 +42,11 @@ MaybeFlaw validate_members(const Partition& partition, const Nodes& nodes);
 MaybeFlaw validate_pairs(const Partition& partition, const Pairs& pairs, const Nodes& nodes);
 // Every joint with such a node solved exactly once, its nodes in one island. Index: joint.
 MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, const Nodes& nodes);
+// Likewise every element. Index: of those of all sets, one after the other.
+MaybeFlaw validate_elements(const Partition& partition, const Elements& elements, const Nodes& nodes);
 // No node that forces move twice in a colour but the last. Index: node.
-MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const Joints& joints, const Nodes& nodes);
+MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const Joints& joints,
+                           const Elements& elements, const Nodes& nodes);
 // Lanes of contacts and swept joints: no node that moves twice in a lane group, as many lanes in use as the group has
 // swept pairs and joints. Index: lane group.
 MaybeFlaw validate_lanes(const System& system, const Group& group);
@@ -51,9 +54,9 @@ MaybeFlaw validate_lanes(const System& system, const Group& group);
 // ones the former alone. What is not finite is contained after the substeps (quarantine.h) and passes. Index: in
 // Pairs::list.
 MaybeFlaw validate_impulses(const System& system);
-// Forces between steps: finite, normal ones not negative. Index: in active, or joint.
+// Forces between steps: finite, normal ones not negative. Index: in active, or joint, or set of elements.
 MaybeFlaw validate_contact_forces(const Pairs& pairs);
-MaybeFlaw validate_joint_forces(const Joints& joints);
+MaybeFlaw validate_joint_forces(const Joints& joints, const Elements& elements);
 
 // All that hold after a stage. Aborts at a flaw, with a text that names stage, invariant and index.
 void validate(const World& world, const StageEnd& end);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "detect/mechanism.h"
-#include "state/joint_reading.h"
+#include "state/constraint_view.h"
 
 namespace taut {
 namespace {
@@ -22,29 +22,29 @@ Pose pose_before(const Nodes& nodes, uint32_t node) {
 }
 
 // What leads a joint goes on.
-bool is_led(const Nodes& nodes, const Joint& joint) {
+bool is_led(const Nodes& nodes, const ConstraintView& joint) {
     return std::ranges::any_of(
-        joint.nodes(), [&](uint32_t node) { return node != kNone && nodes.info[node].kind == NodeKind::kinematic; });
+        joint.nodes, [&](uint32_t node) { return node != kNone && nodes.info[node].kind == NodeKind::kinematic; });
 }
 
-// A joint at the present poses, and those of its rows that are to be closed.
+// A joint or element at the present poses, and those of its rows that are to be closed.
 class Closing {
 public:
-    Closing(Nodes& nodes, const Joint& joint) : nodes_(nodes), joint_(joint) {
+    Closing(Nodes& nodes, const ConstraintView& joint) : nodes_(nodes), joint_(joint) {
         Pose before[kMaxNodes];
         double value[kMaxRows];
-        for (int end = 0; end < joint.type->nodes; ++end) before[end] = pose_before(nodes, joint.node[end]);
+        for (size_t end = 0; end < joint.nodes.size(); ++end) before[end] = pose_before(nodes, joint.nodes[end]);
         joint.type->evaluate(joint.data, before, value, nullptr);
         for (int row = 0; row < joint.type->rows; ++row)
-            closes_[row] = is_rigid(joint, row) && std::abs(value[row]) < kWide;
+            closes_[row] = joint.is_rigid(row) && std::abs(value[row]) < kWide;
     }
 
     // Of these rows that are no angles, the most [m].
     double gap() const {
-        const JointReading reading = read_joint(nodes_, joint_);
-        double most = 0;
+        double value[kMaxRows], most = 0;
+        joint_.read(nodes_, value);
         for (int row = 0; row < joint_.type->rows; ++row)
-            if (closes_[row] && !is_angle(joint_, row)) most = std::max(most, std::abs(reading.value[row]));
+            if (closes_[row] && !joint_.is_angle(row)) most = std::max(most, std::abs(value[row]));
         return most;
     }
     void close() {
@@ -54,16 +54,29 @@ public:
 
 private:
     void close(int row) {
-        const JointReading reading = read_joint(nodes_, joint_);
-        const double inverse = inverse_mass_of(nodes_, joint_, reading, row);
+        Pose pose[kMaxNodes];
+        double value[kMaxRows], jacobian[kMaxNodes * kMaxRows * kDof];
+        joint_.poses(nodes_, pose);
+        joint_.type->evaluate(joint_.data, pose, value, jacobian);
+        const auto along = [&](size_t end) {
+            return jacobian + (end * static_cast<size_t>(joint_.type->rows) + static_cast<size_t>(row)) * kDof;
+        };
+        const auto moves = [&](uint32_t node) { return node != kNone && nodes_.solved(node); };
+        double inverse = 0;  // J W J^T
+        for (size_t end = 0; end < joint_.nodes.size(); ++end) {
+            if (!moves(joint_.nodes[end])) continue;
+            const NodeMass& mass = nodes_.mass[joint_.nodes[end]];
+            const Vec3 j = Vec3::Map(along(end)), turn = pose[end].R.transpose() * Vec3::Map(along(end) + 3);
+            inverse += mass.inv_mass * j.dot(j) + turn.dot(mass.inv_inertia.matrix() * turn);
+        }
         if (!(inverse > 0)) return;
-        const double impulse = -reading.value[row] / inverse;
-        for (int end = 0; end < joint_.type->nodes; ++end) {
-            const uint32_t node = joint_.node[end];
-            if (node == kNone || !nodes_.solved(node)) continue;
-            const double* j = reading.jacobian + (end * joint_.type->rows + row) * kDof;
+        const double impulse = -value[row] / inverse;
+        for (size_t end = 0; end < joint_.nodes.size(); ++end) {
+            const uint32_t node = joint_.nodes[end];
+            if (!moves(node)) continue;
+            const double* j = along(end);
             const NodeMass& mass = nodes_.mass[node];
-            const Mat3& R = reading.pose[end].R;
+            const Mat3& R = pose[end].R;
             const Vec3 turn = R * (mass.inv_inertia.matrix() * (R.transpose() * Vec3::Map(j + 3)));
             NodeMotion& m = nodes_.motion[node];
             m.x += impulse * mass.inv_mass * Vec3::Map(j);
@@ -72,7 +85,7 @@ private:
     }
 
     Nodes& nodes_;
-    const Joint& joint_;
+    const ConstraintView& joint_;
     bool closes_[kMaxRows] = {};
 };
 
@@ -80,12 +93,13 @@ private:
 
 void Mechanism::close_joints() {
     all_.open.clear();
-    for (uint32_t j = all_.first_joint[root_]; j != kNone; j = all_.next_joint[j])
-        if (!is_led(nodes_, joints_.record[j])) all_.open.push_back(j);
+    for (uint32_t i = all_.first_tie[root_]; i < all_.first_tie[root_ + 1]; ++i)
+        if (!is_led(nodes_, view_of(joints_, elements_, all_.tie[i]))) all_.open.push_back(all_.tie[i]);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         bool any = false;
-        for (const uint32_t j : all_.open) {
-            Closing joint(nodes_, joints_.record[j]);
+        for (const ConstraintRef& tie : all_.open) {
+            const ConstraintView view = view_of(joints_, elements_, tie);
+            Closing joint(nodes_, view);
             if (joint.gap() < kClosed) continue;
             joint.close();
             any = true;

@@ -22,19 +22,23 @@ bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pa
            filters_agree(colliders.traits[pair.collider_a()].filter, colliders.traits[pair.collider_b()].filter);
 }
 
-// Keys of nodes that a joint forbids to collide, sorted.
-void refresh_joined(const Joints& joints, Pairs& pairs) {
-    if (pairs.joined_version == joints.version) return;
+// Keys of nodes that a joint or element forbids to collide, sorted.
+void refresh_joined(const Joints& joints, const Elements& elements, Pairs& pairs) {
+    const uint64_t version = joints.version + elements.version;  // neither ever falls
+    if (pairs.joined_version == version) return;
     pairs.joined.clear();
-    for (const Joint& joint : joints.record) {
-        if (joint.collide_connected) continue;
-        const auto nodes = joint.nodes();
+    const auto join = [&](std::span<const uint32_t> nodes) {
         for (size_t b = 0; b < nodes.size(); ++b)
             for (size_t a = 0; a < b; ++a)
                 if (nodes[a] != kNone && nodes[b] != kNone) pairs.joined.push_back(pair_key(nodes[a], nodes[b]));
-    }
+    };
+    for (const Joint& joint : joints.record)
+        if (!joint.collide_connected) join(joint.nodes());
+    for_each_element(elements, [&](const ElementSet& set, uint32_t, std::span<const uint32_t> nodes) {
+        if (!set.collide_connected) join(nodes);
+    });
     std::sort(pairs.joined.begin(), pairs.joined.end());
-    pairs.joined_version = joints.version;
+    pairs.joined_version = version;
 }
 
 bool moves(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.info[node].kind != NodeKind::fixed; }
@@ -299,8 +303,8 @@ NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& p
 }
 
 void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
-                  collision::Broadphase& broadphase, Pairs& pairs) {
-    refresh_joined(joints, pairs);
+                  const Elements& elements, collision::Broadphase& broadphase, Pairs& pairs) {
+    refresh_joined(joints, elements, pairs);
     team.for_ranges(broadphase.start_refresh(), kGrain,
                     [&](uint32_t begin, uint32_t end) { broadphase.find_pairs(begin, end); });
     const bool was_complete = pairs.complete;

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "state/colliders.h"
-#include "state/joints.h"
+#include "state/elements.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
@@ -38,7 +38,7 @@ NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& p
 
 // Pair records after the broadphase's pairs: old ones kept, new ones asked whether they may collide.
 void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Joints& joints,
-                  collision::Broadphase& broadphase, Pairs& pairs);
+                  const Elements& elements, collision::Broadphase& broadphase, Pairs& pairs);
 
 // Manifolds of all pairs in the list at the present poses, or where contacts move over their surfaces as they will be
 // in a lead time [s]; impulses follow their features.

@@ -195,12 +195,12 @@ bool go_back(const Couple& pair, const Excess& excess, uint8_t round, Mechanism&
 
 // Parts a pair that had passed; what stands has the last word. Whether it did.
 bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, const Shapes& shapes,
-          const Joints& joints, uint8_t round, Pairs& pairs, Nodes& nodes) {
+          const Joints& joints, const Elements& elements, uint8_t round, Pairs& pairs, Nodes& nodes) {
     if (!(excess.share > 0)) return false;
     Mechanisms& mechanisms = pairs.mechanisms;
-    if (mechanisms.root.empty()) find_mechanisms(nodes, joints, mechanisms);
+    if (mechanisms.root.empty()) find_mechanisms(nodes, joints, elements, mechanisms);
     const uint32_t a = pair.a.collider.node, b = pair.b.collider.node;
-    Mechanism of_a(nodes, joints, mechanisms, a), of_b(nodes, joints, mechanisms, b);
+    Mechanism of_a(nodes, joints, elements, mechanisms, a), of_b(nodes, joints, elements, mechanisms, b);
     if (of_a.has(b)) return false;
     const bool may_drive = round < kMostRounds;
     if (may_drive && of_b.goes_along_with(of_a))
@@ -229,8 +229,8 @@ bool anew(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, 
 }
 
 // Puts back what passed, one after the other; what was put back already is asked again. Whether anything was.
-bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints& joints, uint8_t round, Pairs& pairs,
-                 Nodes& nodes) {
+bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints& joints, const Elements& elements,
+                 uint8_t round, Pairs& pairs, Nodes& nodes) {
     for (uint8_t& mark : pairs.marks) mark &= static_cast<uint8_t>(~kMoved);
     bool any = false;
     for (const uint32_t i : pairs.picked) {
@@ -243,7 +243,7 @@ bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints&
         }
         if (!ask) continue;
         const Couple pair(colliders, shapes, pairs.courses, asked);
-        any = part(pair, excess_of(nodes, pair), colliders, shapes, joints, round, pairs, nodes) || any;
+        any = part(pair, excess_of(nodes, pair), colliders, shapes, joints, elements, round, pairs, nodes) || any;
     }
     return any;
 }
@@ -263,8 +263,8 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
 
 // Who passed is found for all pairs at once, after the first round for those alone of which a side was put back in the
 // last. They are put back one after the other, where those of which a side was put back already are asked again.
-void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints, Pairs& pairs,
-               collision::Broadphase& broadphase, Nodes& nodes) {
+void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints,
+               const Elements& elements, Pairs& pairs, collision::Broadphase& broadphase, Nodes& nodes) {
     Mechanisms& mechanisms = pairs.mechanisms;
     mechanisms.root.clear();
     mechanisms.any_drives = false;
@@ -283,7 +283,7 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
         if (round == 1 || astray.newly || pairs.late.size() > late) ask_pairs(team, pairs);
         pick_striding(team, pairs);
         find_passed(team, nodes, colliders, shapes, pairs);
-        again = part_passed(colliders, shapes, joints, round, pairs, nodes);
+        again = part_passed(colliders, shapes, joints, elements, round, pairs, nodes);
     }
     let_go(pairs.late);
     end_stays(mechanisms);

@@ -16,6 +16,29 @@ bool drives(const Nodes& nodes, uint32_t node) {
     return nodes.info[node].kind == NodeKind::kinematic && (m.v != Vec3::Zero() || m.w != Vec3::Zero());
 }
 
+// Into Mechanisms::tie, by the root that root_of(ends) says, in the order of these; kNone is left out.
+template <class RootOf>
+void list_ties(const Joints& joints, const Elements& elements, Mechanisms& of, RootOf&& root_of) {
+    const auto for_refs = [&](auto&& act) {
+        for (uint32_t j = 0; j < joints.record.size(); ++j) act(joints.record[j].nodes(), ConstraintRef{kNone, j});
+        for (uint32_t s = 0; s < elements.set.size(); ++s)
+            for (uint32_t e = 0; elements.set[s].type && e < elements.set[s].size(); ++e)
+                if (elements.set[s].lives(e)) act(elements.set[s].nodes_of(e), ConstraintRef{s, e});
+    };
+    // Counts two places on, so that what is filled below ends as where each begins.
+    of.first_tie.assign(of.root.size() + 2, 0);
+    for_refs([&](std::span<const uint32_t> ends, ConstraintRef) {
+        if (const uint32_t root = root_of(ends); root != kNone) ++of.first_tie[root + 2];
+    });
+    std::partial_sum(of.first_tie.begin(), of.first_tie.end(), of.first_tie.begin());
+    of.open.clear();
+    reserve_more(of.open, of.first_tie.back());
+    of.tie.resize(of.first_tie.back());
+    for_refs([&](std::span<const uint32_t> ends, ConstraintRef ref) {
+        if (const uint32_t root = root_of(ends); root != kNone) of.tie[of.first_tie[root + 1]++] = ref;
+    });
+}
+
 }  // namespace
 
 bool Mechanism::may_stay() {
@@ -32,7 +55,7 @@ void end_stays(Mechanisms& of) {
     for (Stay& stay : of.stays) stay.now = false;
 }
 
-void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
+void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& of) {
     const uint32_t slots = nodes.slots();
     Array<uint32_t>& root = of.root;
     root.resize(slots);
@@ -42,15 +65,15 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
         return node;
     };
     const auto held = [&](uint32_t node) { return node == kNone || !nodes.solved(node); };
-    for (const Joint& joint : joints.record) {
+    for_each_tie(joints, elements, [&](std::span<const uint32_t> ends) {
         uint32_t last = kNone;
-        for (const uint32_t node : joint.nodes()) {
+        for (const uint32_t node : ends) {
             if (held(node)) continue;
             const uint32_t one = find(node), other = last == kNone ? one : find(last);
             root[std::max(one, other)] = std::min(one, other);
             last = node;
         }
-    }
+    });
     of.next.resize(slots);
     std::iota(of.next.begin(), of.next.end(), 0u);
     for (uint32_t node = 0; node < slots; ++node) {
@@ -63,21 +86,15 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of) {
         of.any_drives = of.any_drives || drives(nodes, node);
     }
     of.ties.assign(slots, 0);
-    for (const Joint& joint : joints.record) {
-        const auto ends = joint.nodes();
+    for_each_tie(joints, elements, [&](std::span<const uint32_t> ends) {
         const bool anchored = std::any_of(ends.begin(), ends.end(), held);
         for (const uint32_t node : ends)
             if (!held(node)) of.ties[root[node]] |= anchored ? kJointed | kAnchored : kJointed;
-    }
-    of.first_joint.assign(slots, kNone);
-    of.next_joint.assign(joints.record.size(), kNone);
-    of.open.clear();
-    reserve_more(of.open, joints.record.size());
-    for (uint32_t j = static_cast<uint32_t>(joints.record.size()); j-- > 0;) {
-        const auto ends = joints.record[j].nodes();
+    });
+    list_ties(joints, elements, of, [&](std::span<const uint32_t> ends) {
         const auto end = std::find_if_not(ends.begin(), ends.end(), held);
-        if (end != ends.end()) of.next_joint[j] = std::exchange(of.first_joint[root[*end]], j);
-    }
+        return end == ends.end() ? kNone : root[*end];
+    });
     of.put_back.assign(slots, 0);
 }
 

@@ -1,7 +1,7 @@
 // What is put back as one where something passed.
 #pragma once
 
-#include "state/joints.h"
+#include "state/elements.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 
@@ -18,7 +18,7 @@ constexpr float kOfKinematic = 1e-10f * kKinematic;
 constexpr double kWhole = 0.99;  // such a share is all of the way
 constexpr uint8_t kRounds = 3;   // where a mechanism was put back, other parts of it may have passed
 
-void find_mechanisms(const Nodes& nodes, const Joints& joints, Mechanisms& of);
+void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& of);
 
 // After all rounds: forgets the stays of mechanisms that did not stay in this frame, and those that lasted too long.
 void end_stays(Mechanisms& of);
@@ -26,9 +26,10 @@ void end_stays(Mechanisms& of);
 // A body and what joints tie to it, which stay as they are against each other.
 class Mechanism {
 public:
-    Mechanism(Nodes& nodes, const Joints& joints, Mechanisms& all, uint32_t node)
+    Mechanism(Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& all, uint32_t node)
         : nodes_(nodes),
           joints_(joints),
+          elements_(elements),
           all_(all),
           root_(all.root[node]),
           moves_(nodes.solved(node)),
@@ -108,6 +109,7 @@ private:
 
     Nodes& nodes_;
     const Joints& joints_;
+    const Elements& elements_;
     Mechanisms& all_;
     uint32_t root_;
     bool moves_, kinematic_;

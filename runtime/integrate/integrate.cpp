@@ -205,11 +205,11 @@ void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
 
 }  // namespace
 
-void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, const Joints& joints) {
+void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, bool tied) {
     const uint32_t slots = nodes.slots();
     system.make_room(slots);
     grow_to(system.start, system.pose.size());
-    system.sweep_pose.resize(joints.ids.count() > 0 ? slots + 1 : 0);
+    system.sweep_pose.resize(tied ? slots + 1 : 0);
     take_seats(system, partition, nodes);
     system.kinematic.clear();
     for (uint32_t node = 0; node < slots; ++node)

@@ -48,7 +48,8 @@ RowVector spring_force(const RowBlock& block, const double* error, bool is_new) 
     if (block.compliance_block && is_new)
         return -Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows)
                     .llt()
-                    .solve(Eigen::Map<const RowVector>(error, rows));
+                    .solve(Eigen::Map<const RowVector>(error, rows)) /
+               block.block_scale;
     for (int r = 0; r < rows; ++r)
         if (block.locked(r) && block.elastic(r))
             force[r] = is_new ? -error[r] / block.compliance[block.angular(r)] : block.force[r];

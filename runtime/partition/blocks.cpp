@@ -1,6 +1,7 @@
 // Which joints are solved directly, together with which contacts.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "detect/approach.h"
 #include "partition/movers.h"
@@ -35,8 +36,8 @@ constexpr uint8_t kSweptAfter = 10, kSweptFor = 15;
 
 constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
 
-bool by_load(const Joint& joint) { return joint.solve == JointSolve::by_load; }
-uint8_t loaded_after(const Joint& joint) { return by_load(joint) ? kSweptAfter : kLoadedAfter; }
+bool by_load(JointSolve solve) { return solve == JointSolve::by_load; }
+uint8_t loaded_after(JointSolve solve) { return by_load(solve) ? kSweptAfter : kLoadedAfter; }
 
 // By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
 // infinite where it sank in or carries what sweeps do not hold.
@@ -56,23 +57,30 @@ double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_st
     return fastest > 0 && inverse > 0 ? fastest / inverse : 0;
 }
 
+// Frames under or since a load, after one more of them.
+uint8_t note_load(const Nodes& nodes, const ConstraintType& type, std::span<const uint32_t> ends, const double* lambda,
+                  JointSolve solve, uint8_t loaded) {
+    double squared = 0, lighter = 1e300;
+    for (int r = 0; r < type.rows; ++r)
+        if (!(type.angular >> r & 1)) squared += lambda[r] * lambda[r];
+    for (uint32_t node : ends)
+        if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
+    const double most = (by_load(solve) ? kSweptLoad : kLoad) * lighter;
+    const int after = loaded_after(solve), then = after + (by_load(solve) ? kSweptFor : kLoadedFor);
+    if (squared > most * most) return static_cast<uint8_t>(loaded + 1 < after ? loaded + 1 : then);
+    return loaded > after ? loaded - 1 : 0;
+}
+
 }  // namespace
 
-void note_loads(Joints& joints, const Nodes& nodes) {
-    for (Joint& joint : joints.record) {
-        if (!joint.type || asleep(nodes, joint)) continue;
-        double squared = 0, lighter = 1e300;
-        for (int r = 0; r < joint.type->rows; ++r)
-            if (!(joint.type->angular >> r & 1)) squared += joint.lambda[r] * joint.lambda[r];
-        for (uint32_t node : joint.nodes())
-            if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
-        const double most = (by_load(joint) ? kSweptLoad : kLoad) * lighter;
-        const int after = loaded_after(joint), then = after + (by_load(joint) ? kSweptFor : kLoadedFor);
-        if (squared > most * most)
-            joint.loaded = static_cast<uint8_t>(joint.loaded + 1 < after ? joint.loaded + 1 : then);
-        else
-            joint.loaded = joint.loaded > after ? joint.loaded - 1 : 0;
-    }
+void note_loads(Joints& joints, Elements& elements, const Nodes& nodes) {
+    for (Joint& joint : joints.record)
+        if (joint.type && !asleep(nodes, joint))
+            joint.loaded = note_load(nodes, *joint.type, joint.nodes(), joint.lambda, joint.solve, joint.loaded);
+    for_each_element(elements, [&](ElementSet& set, uint32_t e, std::span<const uint32_t> ends) {
+        if (!asleep(nodes, ends))
+            set.loaded[e] = note_load(nodes, set.type->row, ends, set.lambda_of(e), set.solve, set.loaded[e]);
+    });
 }
 
 // False if the block would grow too much; the contact is swept then.
@@ -93,14 +101,16 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     return true;
 }
 
-// Components of the graph of direct joints and the contacts that they take in. Symbolic work happens at a block's
+// Components of the graph of direct ties and the contacts that they take in. Symbolic work happens at a block's
 // first solve.
-void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs,
+void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs,
                              const PartitionRules& rules) {
     const uint32_t slots = nodes.slots();
     for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
     for (size_t j = 0; j < joints.record.size(); ++j)
         if (joints.record[j].solve != JointSolve::swept) unite(graph_.ties[j]);
+    for (uint32_t e = 0; e < element_.size(); ++e)
+        if (elements.set[element_[e].set].solve != JointSolve::swept) unite(movers_of(e));
     core_.assign(slots, 0);
     component_.assign(slots, Component{});
     pair_in_block_.assign(pairs.active.size(), 0);
@@ -112,7 +122,7 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
         component.least = std::min(component.least, nodes.mass[i].mass);
         component.most = std::max(component.most, nodes.mass[i].mass);
     }
-    choose_direct(nodes, joints);
+    choose_direct(nodes, joints, elements);
     find_hit(nodes, pairs, rules);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const auto ends = pairs.active[p].nodes();
@@ -131,37 +141,50 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Pai
     }
     take_pressed();
     take_between(nodes, pairs);
-    fill_blocks(nodes, joints, pairs);
+    fill_blocks(nodes, joints, elements, pairs);
     recall_blocks(nodes, joints);
 }
 
-// Joints that blocks own, but for nets with too many loops and for mechanisms that sweeps hold as well.
-void Partition::choose_direct(const Nodes& nodes, const Joints& joints) {
-    auto end = [&](const Joint& joint) { return mover(nodes, joint.nodes()); };
-    auto may = [&](const Joint& joint) { return joint.solve != JointSolve::swept && end(joint) != kNone; };
-    for (const Joint& joint : joints.record) {
-        if (!may(joint)) continue;
-        Component& c = component_[find(end(joint))];
-        ++c.joints;
-        const bool loaded = joint.loaded >= loaded_after(joint), direct = joint.solve == JointSolve::direct;
+// What ties of each component ask for.
+void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements) {
+    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded) {
+        if (solve == JointSolve::swept || end == kNone) return;
+        Component& c = component_[find(end)];
+        ++c.ties;
+        const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
         c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
         c.always = c.always || direct;
+    };
+    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded);
+    for (uint32_t e = 0; e < element_.size(); ++e) {
+        const ElementSet& set = elements.set[element_[e].set];
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element]);
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
             Component& c = component_[find(node)];
-            c.direct = c.direct || c.joints > 0;
+            c.direct = c.direct || c.ties > 0;
         }
-    auto is_block = [](const Component& c) { return c.direct && c.joints <= c.nodes + kMostLoops; };
-    joint_in_block_.assign(joints.record.size(), 0);
-    for (size_t j = 0; j < joints.record.size(); ++j) {
-        const Joint& joint = joints.record[j];
-        if (!may(joint) || !is_block(component_[find(end(joint))])) continue;
-        joint_in_block_[j] = 1;
-        for (uint32_t node : joint.nodes())
+}
+
+// Ties that blocks own, but for nets with too many loops and for mechanisms that sweeps hold as well.
+void Partition::choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements) {
+    weigh_ties(nodes, joints, elements);
+    auto is_block = [](const Component& c) { return c.direct && c.ties <= c.nodes + kMostLoops; };
+    const auto take = [&](std::span<const uint32_t> ends, JointSolve solve) -> uint8_t {
+        const uint32_t end = mover(nodes, ends);
+        if (solve == JointSolve::swept || end == kNone || !is_block(component_[find(end)])) return 0;
+        for (uint32_t node : ends)
             if (moving(nodes, node)) core_[node] = kHeld;
-    }
+        return 1;
+    };
+    joint_in_block_.resize(joints.record.size());
+    for (size_t j = 0; j < joints.record.size(); ++j)
+        joint_in_block_[j] = take(joints.record[j].nodes(), joints.record[j].solve);
+    element_in_block_.resize(element_.size());
+    for (uint32_t e = 0; e < element_.size(); ++e)
+        element_in_block_[e] = take(movers_of(e), elements.set[element_[e].set].solve);
     for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
     for (uint32_t i = nodes.slots(); i-- > 0;) {  // other nodes stand alone; their root is smallest, so last
         if (is_block(component_[parent_[i]])) continue;
@@ -200,34 +223,55 @@ void Partition::find_hit(const Nodes& nodes, const Pairs& pairs, const Partition
     }
 }
 
-// Into spare_: nodes, joints, pairs and the identity of each block's graph.
-void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
-    Memory& memory = *blocks.get_allocator().memory;
-    uint32_t count = 0;
-    auto block_at = [&](uint32_t node) -> Block& {
-        uint32_t& block = component_[find(node)].block;
-        if (block == kNone) {
-            block = count++;
-            if (spare_.size() < count) spare_.emplace_back(memory);
-            Block& fresh = spare_[block];
-            for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
-            fresh.links.clear();
-            fresh.identity.clear();
-            fresh.order.clear();
-            fresh.matrix.forget();
-            fresh.passing = true;
-            fresh.memory = {};
-        }
-        return spare_[block];
-    };
+// The block of a node's component, in spare_.
+Block& Partition::block_at(uint32_t node) {
+    uint32_t& block = component_[find(node)].block;
+    if (block == kNone) {
+        block = filled_++;
+        if (spare_.size() < filled_) spare_.emplace_back(*blocks.get_allocator().memory);
+        Block& fresh = spare_[block];
+        for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
+        fresh.elements.clear();
+        fresh.condensed = 0;
+        fresh.links.clear();
+        fresh.identity.clear();
+        fresh.order.clear();
+        fresh.matrix.forget();
+        fresh.passing = true;
+        fresh.memory = {};
+    }
+    return spare_[block];
+}
+
+// Elements of one form into their blocks, each marked once with the sets that it has elements of.
+void Partition::fill_elements(const Elements& elements, ElementForm form) {
+    for (uint32_t e = 0; e < element_.size(); ++e) {
+        const ElementSet& set = elements.set[element_[e].set];
+        if (!element_in_block_[e] || set.form != form) continue;
+        const auto ends = movers_of(e);
+        const uint32_t node = *std::ranges::find_if(ends, [](uint32_t end) { return end != kNone; });
+        Block& block = block_at(node);
+        block.elements.push_back(element_[e]);
+        block.condensed += form == ElementForm::energy;
+        block.passing = block.passing && by_load(set.solve);
+        if (std::exchange(component_[find(node)].set, element_[e].set) != element_[e].set)
+            block.identity.push_back(set.serial << 32 | (set.version & UINT32_MAX));
+    }
+}
+
+// Into spare_: nodes, ties, pairs and the identity of each block's graph.
+void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs) {
+    filled_ = 0;
     for (uint32_t j = 0; j < joints.record.size(); ++j) {
         const Joint& joint = joints.record[j];
         if (!joint_in_block_[j]) continue;
         Block& block = block_at(mover(nodes, joint.nodes()));
         block.joints.push_back(j);
         block.identity.push_back(joint.mark());
-        block.passing = block.passing && by_load(joint);
+        block.passing = block.passing && by_load(joint.solve);
     }
+    fill_elements(elements, ElementForm::rows);
+    fill_elements(elements, ElementForm::energy);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         if (!pair_in_block_[p]) continue;
         const auto ends = pairs.active[p].nodes();
@@ -239,7 +283,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);
-    while (spare_.size() > count) spare_.pop_back();
+    while (spare_.size() > filled_) spare_.pop_back();
     for (Block& block : spare_) {
         double least = 1e300, most = 0;
         for (uint32_t node : block.nodes) {
@@ -249,7 +293,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
         }
         block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
         block.mass_ratio = most / least;
-        block.tower = block.joints.empty();
+        block.tower = block.joints.empty() && block.elements.empty();
         block.passing = block.passing && !block.tower && block.mass_ratio < kSweptMassRatio;
     }
 }
@@ -258,7 +302,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Pair
 void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
     block_of_.resize(nodes.slots(), kNone);
     auto remembers = [&](const Block& old, const Block& block) {
-        const uint64_t mark = block.tower
+        const uint64_t mark = block.joints.empty()
                                   ? static_cast<uint64_t>(block.nodes[0]) << 32 | nodes.ids.generation(block.nodes[0])
                                   : joints.record[block.joints[0]].mark();
         return old.tower == block.tower &&
@@ -272,6 +316,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
             std::swap(old.order, block.order);
             std::swap(old.matrix, block.matrix);
             std::swap(old.places, block.places);
+            std::swap(old.first_place, block.first_place);
             std::swap(old.solution, block.solution);
             std::swap(old.known, block.known);
             std::swap(old.force, block.force);

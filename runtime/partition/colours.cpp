@@ -104,6 +104,13 @@ void Partition::colour_joints() {
         joint_colour_[j] = joint_in_block_[j] ? kUncoloured : take_colour(graph_.ties[j]);
 }
 
+// As if no block took any.
+void Partition::colour_elements() {
+    std::fill(used_.begin(), used_.end(), 0);
+    element_colour_.resize(element_.size());
+    for (uint32_t e = 0; e < element_.size(); ++e) element_colour_[e] = take_colour(movers_of(e));
+}
+
 // Puts items_ in the order of their ranks, (colour * kKinds + kind) * kSlices + place, with take(at, rank, item).
 // Returns how many colours there are.
 template <class RankOf, class Take>
@@ -151,6 +158,18 @@ void Partition::list_joints(uint32_t g) {
     const uint32_t used = sort_by_rank(
         group.joint_colour_begin, [&](uint32_t j) { return rank(joint_colour_[j], 0, graph_.ties[j]); },
         [&](uint32_t at, uint32_t, uint32_t j) { group.joints[at] = j; });
+    colours = std::max(colours, used);
+}
+
+void Partition::list_swept_elements(uint32_t g) {
+    Group& group = groups[g];
+    items_.clear();
+    for (uint32_t e = 0; e < element_.size(); ++e)
+        if (!element_in_block_[e] && is_in(g, movers_of(e))) items_.push_back(e);
+    group.elements.resize(items_.size());
+    const uint32_t used = sort_by_rank(
+        group.element_colour_begin, [&](uint32_t e) { return rank(element_colour_[e], 0, movers_of(e)); },
+        [&](uint32_t at, uint32_t, uint32_t e) { group.elements[at] = element_[e]; });
     colours = std::max(colours, used);
 }
 
@@ -209,6 +228,7 @@ void Partition::distribute(const Pairs& pairs, bool by_place) {
     colours = 0;
     for (uint32_t g = 0; g < group_count; ++g) {
         list_joints(g);
+        list_swept_elements(g);
         list_pairs(g, pairs);
     }
 }

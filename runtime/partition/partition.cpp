@@ -17,6 +17,11 @@ Partition::Partition(Memory& memory)
       core_(memory),
       pair_in_block_(memory),
       joint_in_block_(memory),
+      element_(memory),
+      element_begin_(memory),
+      element_node_(memory),
+      element_colour_(memory),
+      element_in_block_(memory),
       block_of_(memory),
       spare_(memory),
       pair_colour_(memory),
@@ -57,22 +62,25 @@ void Partition::unite(std::span<const uint32_t> all) {
     }
 }
 
-// After this no graph is as it was: nodes move or do not, and 2 is neither. Takes no memory; a list that never had any is
-// of a world in which nothing was built.
+// After this no graph is as it was: nodes move or do not, and 2 is neither. Takes no memory; a list that never had any
+// is of a world in which nothing was built.
 static void forget(TouchGraph& graph) {
     if (graph.moves.capacity() > 0) graph.moves.assign(1, uint8_t{2});
 }
 
-void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pairs& pairs, const PartitionRules& rules) {
+void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements, Pairs& pairs,
+                      const PartitionRules& rules) {
     static constexpr Part kOfFrame[] = {&Partition::find_places, &Partition::weigh};
     // In this order two threads have as much to do.
     static constexpr Part kOfGraph[] = {&Partition::find_levels, &Partition::find_places, &Partition::unite_touching,
                                         &Partition::colour_touches, &Partition::weigh};
     try {
-        if (graph_.update(team, nodes, joints, pairs)) {
+        if (graph_.update(team, nodes, joints, elements, pairs)) {
             make_room();
+            list_elements(elements);
             note_ties();
             run(team, kOfGraph, nodes);
+            colour_elements();
             number_islands();
             list_small();
         } else {
@@ -92,7 +100,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, Pair
     }
     const bool any = std::any_of(island_.begin(), island_.end(), [](const Island& i) { return i.tower || i.jointed; });
     if (rules.direct && (any || !presses_.empty()))
-        build_blocks(nodes, joints, pairs, rules);
+        build_blocks(nodes, joints, elements, pairs, rules);
     else
         forget_blocks(joints);
     choose_substeps(rules);
@@ -132,12 +140,32 @@ void Partition::note_ties() {
     for (const TouchGraph::Tie& tie : graph_.ties)
         for (const uint32_t node : tie)
             if (node != kNone) tied_[node] = 1;
+    for (const uint32_t node : element_node_)
+        if (node != kNone) tied_[node] = 1;
+}
+
+void Partition::list_elements(const Elements& elements) {
+    element_.clear();
+    element_node_.clear();
+    element_begin_.assign(1, 0);
+    for (uint32_t s = 0; s < elements.set.size(); ++s) {
+        const ElementSet& set = elements.set[s];
+        for (uint32_t e = 0; set.type && e < set.size(); ++e) {
+            const auto nodes = set.nodes_of(e);
+            const auto moves = [&](uint32_t node) { return graph_.mover(node) != kNone; };
+            if (std::ranges::none_of(nodes, moves)) continue;
+            element_.push_back({s, e});
+            for (const uint32_t node : nodes) element_node_.push_back(graph_.mover(node));
+            element_begin_.push_back(static_cast<uint32_t>(element_node_.size()));
+        }
+    }
 }
 
 // Union-find over all that ties and touches.
 void Partition::unite_touching(const Nodes&) {
     for (uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
     for (const TouchGraph::Tie& tie : graph_.ties) unite(tie);
+    for (uint32_t e = 0; e < element_.size(); ++e) unite(movers_of(e));
     for (const TouchGraph::Tie& span : graph_.spans) unite(span);
     for (const auto& [a, b] : graph_.touches)
         if (a != kNone && b != kNone) unite(a, b);
@@ -161,6 +189,8 @@ void Partition::number_islands() {
     for (const TouchGraph::Tie& tie : graph_.ties)
         for (const uint32_t node : tie)
             if (node != kNone) island_[island_of_[node]].jointed = true;
+    for (const uint32_t node : element_node_)
+        if (node != kNone) island_[island_of_[node]].jointed = true;
 }
 
 // The touches of islands that a block may hold.
@@ -188,6 +218,7 @@ void Partition::forget_blocks(const Joints& joints) {
     block_of_.clear();
     pair_in_block_.assign(graph_.touches.size(), 0);
     joint_in_block_.assign(joints.record.size(), 0);
+    element_in_block_.assign(element_.size(), 0);
 }
 
 }  // namespace taut

@@ -38,33 +38,38 @@ struct Block {
     explicit Block(Memory& m)
         : nodes(m),
           joints(m),
+          elements(m),
           pairs(m),
           links(m),
           identity(m),
           order(m),
           matrix(m),
           places(m),
+          first_place(m),
           solution(m),
           known(m),
           force(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
+    Array<ElementRef> elements;            // ascending, those in energy form last
+    uint32_t condensed = 0;                // how many those are
     Array<uint32_t> pairs;                 // in Pairs::active, of this frame
     Array<uint64_t> links;                 // pairs of its nodes that touch: smaller << 32 | larger
     Array<uint64_t> identity;              // of joints, nodes and links: the graph of the matrix
     Array<uint32_t> order;                 // of elimination, from the first solve on, which knows what gives; or empty
     SparseBlockLdlt matrix;                // unknowns: nodes, then joints; made by the next solve where it is gone
-    Array<BlockPlace> places;              // of its nodes and joints in the matrix; see solvers/block_matrix.cpp
+    Array<BlockPlace> places;              // of its nodes and ties in the matrix; see solvers/block_matrix.cpp
+    Array<uint32_t> first_place;           // of each tie
     Array<double> solution, known, force;  // scratch of its solve
-    bool tower = false;                    // no joints: bodies that stand on each other or are pressed
+    bool tower = false;                    // no ties: bodies that stand on each other or are pressed
     bool looped = false;                   // more joints than a tree
     bool passing = false;                  // direct while a load lasts that sweeps hold as well: it may turn far
     bool failed = false;                   // this substep's matrix could not be factored
     bool corrected = false;                // this substep's positions get a correction
     double mass_ratio = 1;                 // heaviest over lightest node
     double closing = 1;                    // part of its joints' gaps that this substep closes
-    uint32_t first_row_block = 0;          // its joints' rows in System::rows, of this frame
+    uint32_t first_row_block = 0;          // its ties' rows in System::rows, of this frame
     uint32_t first_contact = 0, contact_count = 0;  // its contacts' rows, of this substep
     uint32_t first_bounded = 0, bounded_count = 0;  // its bounded rows in SolverScratch, of this substep
     float turn = 0;                                 // of its joints' levers and lines in this substep, at most [rad]
@@ -74,9 +79,9 @@ struct Block {
 };
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [nodes, joints, pairs, links, identity, order, matrix, places, solution, known, force, tower, looped, passing,
-           failed, corrected, mass_ratio, closing, first_row_block, first_contact, contact_count, first_bounded,
-           bounded_count, turn, memory] = of;
+    auto& [nodes, joints, elements, condensed, pairs, links, identity, order, matrix, places, first_place, solution,
+           known, force, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
+           contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }
@@ -89,6 +94,8 @@ struct Group {
           pair_place(memory),
           joints(memory),
           joint_colour_begin(memory),
+          elements(memory),
+          element_colour_begin(memory),
           blocks(memory),
           direct_pairs(memory),
           span_pairs(memory) {}
@@ -101,6 +108,8 @@ struct Group {
     Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
     Array<uint8_t> pair_place;                 // of each of pairs, below kSlices
     Array<uint32_t> joints, joint_colour_begin;
+    Array<ElementRef> elements;  // with colours of their own
+    Array<uint32_t> element_colour_begin;
     Array<uint32_t> blocks;        // index into Partition::blocks
     Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
     Array<uint32_t> span_pairs;    // swept ones with a side of two nodes, which lanes do not take
@@ -108,7 +117,7 @@ struct Group {
 
 // Once a frame: which joints carry more than contacts on their bodies could stand in sweeps. A block takes its contacts
 // in while one of its joints has done so for three frames, and for a second after.
-void note_loads(Joints& joints, const Nodes& nodes);
+void note_loads(Joints& joints, Elements& elements, const Nodes& nodes);
 constexpr uint8_t kLoadedAfter = 3, kLoadedFor = 60;  // frames
 
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
@@ -135,12 +144,13 @@ public:
 
     // Rebuilds islands, groups and colours from the joints and touching pairs of this frame; what follows from the
     // graph of touches alone is kept while that stays.
-    void build(Team& team, const Nodes& nodes, const Joints& joints, Pairs& pairs, const PartitionRules& rules);
+    void build(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements, Pairs& pairs,
+               const PartitionRules& rules);
 
     // Of a node, in this frame; kNone where forces do not move it.
     uint32_t island_of(uint32_t node) const { return island_of_[node]; }
     // By island, after build().
-    void find_reasons(const Joints& joints, Array<uint8_t>& out) const;
+    void find_reasons(const Joints& joints, const Elements& elements, Array<uint8_t>& out) const;
 
     Array<Group> groups;  // in ascending order of effort; the first group_count are used
     uint32_t group_count = 0;
@@ -177,10 +187,11 @@ private:
     };
 
     struct Component {  // of the graph of blocks, by root
-        uint32_t nodes = 1, joints = 0, grown = 0, block = UINT32_MAX;
+        uint32_t nodes = 1, ties = 0, grown = 0, block = UINT32_MAX;
+        uint32_t set = UINT32_MAX;       // of elements, the last that its block was marked with
         double least = 1e300, most = 0;  // mass of its nodes [kg]
         bool loaded = false;             // takes in its contacts
-        bool direct = false;             // its joints make a block
+        bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
         bool hit = false;                // in this frame
     };
@@ -217,12 +228,15 @@ private:
 
     void make_room();
     void note_ties();
+    void list_elements(const Elements& elements);
+    void colour_elements();
     void number_islands();
     void find_loads(const Nodes& nodes);
     void find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     void find_walls(const Nodes& nodes, const Pairs& pairs, double sag, const Vec3f& up);
     void find_towers(const PartitionRules& rules);
-    void build_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs, const PartitionRules& rules);
+    void build_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs,
+                      const PartitionRules& rules);
     Vec3f normal_from(const Pairs& pairs, uint32_t node, uint32_t pair) const;
     void add_press(const Press& press);
     void list_small();
@@ -233,12 +247,15 @@ private:
     void soften(const Nodes& nodes, const Squeeze& last, double most, double furthest, Pairs& pairs);
     void find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void push_on(const Nodes& nodes, const Pairs& pairs);
-    void choose_direct(const Nodes& nodes, const Joints& joints);
+    void weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements);
+    void choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements);
     void take_pressed();
     void take_between(const Nodes& nodes, const Pairs& pairs);
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     bool join_contact(uint32_t a, uint32_t b);
-    void fill_blocks(const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    Block& block_at(uint32_t node);
+    void fill_elements(const Elements& elements, ElementForm form);
+    void fill_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
     void find_block_of(uint32_t nodes);
     void forget_blocks(const Joints& joints);
@@ -250,6 +267,7 @@ private:
     void distribute(const Pairs& pairs, bool by_place);
     void list_nodes(bool by_place);
     void list_joints(uint32_t group);
+    void list_swept_elements(uint32_t group);
     void list_pairs(uint32_t group, const Pairs& pairs);
     void list_spans(const Pairs& pairs);
     template <class RankOf, class Take>
@@ -263,6 +281,10 @@ private:
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
     void unite(std::span<const uint32_t> all);  // those that are not kNone
+    std::span<const uint32_t> movers_of(uint32_t element) const {
+        const uint32_t begin = element_begin_[element];
+        return {&element_node_[begin], element_begin_[element + 1] - begin};
+    }
 
     TouchGraph graph_;
     Walls walls_;
@@ -274,8 +296,14 @@ private:
     Array<uint8_t> core_;            // by slot: whether and how it is in a block
     Array<uint8_t> pair_in_block_;   // by index in Pairs::active
     Array<uint8_t> joint_in_block_;  // by slot
-    Array<uint32_t> block_of_;       // by slot: its block in the last frame, or kNone
+    // Elements on something that moves, set by set; made where the graph changes.
+    Array<ElementRef> element_;
+    Array<uint32_t> element_begin_, element_node_;  // of each its nodes, kNone in place of those that do not move
+    Array<uint8_t> element_colour_;
+    Array<uint8_t> element_in_block_;  // of this frame
+    Array<uint32_t> block_of_;         // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
+    uint32_t filled_ = 0;                          // of spare_
     Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot
     bool all_coloured_ = false;                    // no pair was left out in pair_colour_
     double lightest_ = 0;                          // of the nodes [kg]

@@ -3,15 +3,16 @@
 
 namespace taut {
 
-void Partition::find_reasons(const Joints& joints, Array<uint8_t>& out) const {
+void Partition::find_reasons(const Joints& joints, const Elements& elements, Array<uint8_t>& out) const {
     out.assign(island_.size(), 0);
     for (const Block& block : blocks) {
         uint32_t root = block.nodes[0];
         while (parent_[root] != root) root = parent_[root];
         const Component& component = component_[root];
         const uint32_t island = island_of_[block.nodes[0]];
-        for (const uint32_t j : block.joints)
-            out[island] |= joints.record[j].solve == JointSolve::direct ? kByJoint : kByLoad;
+        const auto reason = [](JointSolve solve) { return solve == JointSolve::direct ? kByJoint : kByLoad; };
+        for (const uint32_t j : block.joints) out[island] |= reason(joints.record[j].solve);
+        for (const ElementRef& e : block.elements) out[island] |= reason(elements.set[e.set].solve);
         if (block.pairs.empty()) continue;
         if (island_[island].tower) out[island] |= kByTower;
         if (component.hit || block.memory.hit_left > 0) out[island] |= kByHit;

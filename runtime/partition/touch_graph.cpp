@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 namespace taut {
 namespace {
@@ -61,9 +62,11 @@ bool TouchGraph::update_ties(Team& team, const Joints& joints) {
     });
 }
 
-bool TouchGraph::update(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs) {
+bool TouchGraph::update(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements,
+                        const Pairs& pairs) {
     const bool moves_changed = update_moves(team, nodes), touches_changed = update_touches(team, pairs);
-    return update_ties(team, joints) || moves_changed || touches_changed;
+    const bool elements_changed = std::exchange(elements_version_, elements.version) != elements.version;
+    return update_ties(team, joints) || moves_changed || touches_changed || elements_changed;
 }
 
 }  // namespace taut

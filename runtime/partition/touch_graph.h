@@ -5,7 +5,7 @@
 #include <array>
 #include <span>
 
-#include "state/joints.h"
+#include "state/elements.h"
 #include "state/pairs.h"
 #include "threads/team.h"
 
@@ -25,7 +25,7 @@ public:
     explicit TouchGraph(Memory& memory) : moves(memory), movers(memory), touches(memory), spans(memory), ties(memory) {}
 
     // As it is in this frame. False: just as in the last one.
-    bool update(Team& team, const Nodes& nodes, const Joints& joints, const Pairs& pairs);
+    bool update(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs);
 
     // Ends that forces move; kNone in place of all others.
     struct Touch {
@@ -33,20 +33,22 @@ public:
         uint32_t other(uint32_t end) const { return end == a ? b : a; }
         bool operator==(const Touch&) const = default;
     };
-    using Tie = std::array<uint32_t, kMaxNodes>;
+    using Tie = std::array<uint32_t, kMaxEnds>;
 
     Array<uint8_t> moves;    // by slot of a node: forces move it, and it is awake
     Array<uint32_t> movers;  // slots of those, ascending
     Array<Touch> touches;    // by index in Pairs::active
     Array<Tie> spans;        // all ends of the pairs with a side of two nodes; with any, each frame counts as changed
-    Array<Tie> ties;         // by slot of a joint
+    Array<Tie> ties;         // by slot of a joint; elements keep their own, which move by their version
+
+    uint32_t mover(uint32_t node) const { return node != kNone && moves[node] ? node : kNone; }
 
 private:
     bool update_moves(Team& team, const Nodes& nodes);
     bool update_touches(Team& team, const Pairs& pairs);
     bool update_ties(Team& team, const Joints& joints);
 
-    uint32_t mover(uint32_t node) const { return node != kNone && moves[node] ? node : kNone; }
+    uint64_t elements_version_ = 0;
 };
 
 }  // namespace taut

@@ -26,25 +26,24 @@ bool overloaded(const Nodes& nodes, const Joint& joint) {
 // Bodies tied by joints, by slot of a node: what static and kinematic bodies hold on either side moves apart.
 class Assemblies {
 public:
-    Assemblies(Memory& memory, const Nodes& nodes, const Joints& joints)
+    Assemblies(Memory& memory, const Nodes& nodes, const Joints& joints, const Elements& elements)
         : nodes_(nodes), parent_(nodes.slots(), 0, memory) {
         for (uint32_t node = 0; node < nodes.slots(); ++node) parent_[node] = node;
-        for (const Joint& joint : joints.record) {
-            const uint32_t first = mover(joint);
-            for (const uint32_t node : joint.nodes())
+        for_each_tie(joints, elements, [&](std::span<const uint32_t> ends) {
+            const uint32_t first = mover(ends);
+            for (const uint32_t node : ends)
                 if (moves(node)) unite(first, node);
-        }
+        });
     }
     // Slot of one of its nodes, kNone if nothing of the joint moves.
     uint32_t of(const Joint& joint) {
-        const uint32_t node = mover(joint);
+        const uint32_t node = mover(joint.nodes());
         return node == kNone ? kNone : find(node);
     }
 
 private:
     bool moves(uint32_t node) const { return node != kNone && moves_by_forces(nodes_.info[node].kind); }
-    uint32_t mover(const Joint& joint) const {
-        const auto ends = joint.nodes();
+    uint32_t mover(std::span<const uint32_t> ends) const {
         const auto at = std::find_if(ends.begin(), ends.end(), [&](uint32_t node) { return moves(node); });
         return at == ends.end() ? kNone : *at;
     }
@@ -71,7 +70,7 @@ void keep_worst(World& world, Array<uint32_t>& overloaded) {
     constexpr double kAlike = 1e-6;  // rounding of a solve
     if (overloaded.size() < 2) return;
     const Joints& joints = world.joints;
-    Assemblies assemblies(world.memory, world.nodes, joints);
+    Assemblies assemblies(world.memory, world.nodes, joints, world.elements);
     Array<Overload> all(world.memory);
     for (const uint32_t index : overloaded)
         all.push_back({assemblies.of(joints.record[index]), index, load_ratio(world.nodes, joints.record[index])});

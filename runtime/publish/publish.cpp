@@ -1,8 +1,9 @@
 #include "publish/publish.h"
 
 #include <algorithm>
+#include <cmath>
 
-#include "state/joint_reading.h"
+#include "state/constraint_view.h"
 #include "threads/gather.h"
 
 namespace taut {
@@ -18,11 +19,15 @@ taut_pose public_pose(const Vec3& position, const Quat& q) {
 
 // How much there is, and how wrong it is.
 struct Tally {
-    uint32_t points = 0, bodies = 0, joints = 0;
+    uint32_t points = 0, bodies = 0, joints = 0, elements = 0;
     float penetration = 0, joint_error = 0;
 
     static Tally sum(const Tally& a, const Tally& b) {
-        return {a.points + b.points, a.bodies + b.bodies, a.joints + b.joints, std::max(a.penetration, b.penetration),
+        return {a.points + b.points,
+                a.bodies + b.bodies,
+                a.joints + b.joints,
+                a.elements + b.elements,
+                std::max(a.penetration, b.penetration),
                 std::max(a.joint_error, b.joint_error)};
     }
 };
@@ -52,9 +57,23 @@ Tally tally(World& world) {
         if (asleep(world.nodes, joint)) return;
         t.joint_error = std::max(t.joint_error, static_cast<float>(gap_of(world.nodes, joint)));
     };
+    const auto add_set = [&](Tally& t, const ElementSet& set) {
+        for (uint32_t e = 0; set.type && e < set.size(); ++e) {
+            if (!set.lives(e)) continue;
+            ++t.elements;
+            if (asleep(world.nodes, set.nodes_of(e))) continue;
+            double value[kMaxRows], squared = 0;
+            view_of(set, e).read(world.nodes, value);
+            for (int r = 0; r < set.type->row.rows; ++r)
+                if (!(set.type->row.angular >> r & 1)) squared += value[r] * value[r];
+            t.joint_error = std::max(t.joint_error, static_cast<float>(std::sqrt(squared)));
+        }
+    };
     const Tally of_pairs = tally(world.team, world.pairs.active, add_pair);
     const Tally of_nodes = tally(world.team, world.nodes.info, add_node);
-    return Tally::sum(Tally::sum(of_pairs, of_nodes), tally(world.team, world.joints.record, add_joint));
+    const Tally of_ties =
+        Tally::sum(tally(world.team, world.joints.record, add_joint), tally(world.team, world.elements.set, add_set));
+    return Tally::sum(Tally::sum(of_pairs, of_nodes), of_ties);
 }
 
 bool has_moved(const Nodes& nodes, uint32_t node) {
@@ -103,6 +122,7 @@ void publish_profile(World& world) {
     p.penetration = counts.penetration;
     p.bodies = counts.bodies;
     p.joints = counts.joints;
+    p.elements = counts.elements;
     p.joint_error = counts.joint_error;
     p.islands = world.partition.islands;
     p.blocks = static_cast<uint32_t>(world.partition.blocks.size());

@@ -65,7 +65,7 @@ void disturb(World& world) {
     };
     for (const ActivePair& active : world.pairs.active)
         if (touches_closely(world.pairs.list[active.pair])) pass_on(active.nodes());
-    for (const Joint& joint : world.joints.record) pass_on(joint.nodes());
+    for_each_tie(world.joints, world.elements, pass_on);
 }
 
 // A kinematic node that stands still sleeps by itself, and wakes when the host moves it. True: another one moves.
@@ -109,7 +109,7 @@ void find_islands(World& world) {
     Array<uint32_t>& root = world.sleep.root;
     root.resize(world.nodes.slots());
     for (uint32_t node = 0; node < root.size(); ++node) root[node] = node;
-    for (const Joint& joint : world.joints.record) unite(world, joint.nodes());
+    for_each_tie(world.joints, world.elements, [&](std::span<const uint32_t> ends) { unite(world, ends); });
     for (const Pair& pair : world.pairs.list) {
         const uint32_t sides[] = {pair.a, pair.b, pair.a2, pair.b2};
         if (touches_closely(pair)) unite(world, sides);

@@ -1,5 +1,7 @@
 #include "sleep/wake.h"
 
+#include <algorithm>
+
 #include "detect/detect.h"
 #include "sleep/sleep.h"
 
@@ -35,9 +37,10 @@ void wake_neighbours(World& world, uint32_t node) {
         if (!ends_on(node)(pair) || !touches_closely(pair)) return;
         for (uint32_t side : {pair.a, pair.b, pair.a2, pair.b2}) wake_island(world, side);
     });
-    for (const Joint& joint : world.joints.record)
-        if (ends_on(joint, node))
-            for (uint32_t end : joint.nodes()) wake_island(world, end);
+    for_each_tie(world.joints, world.elements, [&](std::span<const uint32_t> ends) {
+        if (std::ranges::find(ends, node) == ends.end()) return;
+        for (const uint32_t end : ends) wake_island(world, end);
+    });
 }
 
 bool overlap(const collision::Box& a, const collision::Box& b) {

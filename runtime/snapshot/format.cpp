@@ -35,6 +35,7 @@ public:
         element<T>();
     }
     void visit(const ConstraintType* const&) { hash_.add(uint64_t{constraint_types().size()}); }
+    void visit(const ElementType* const&) { hash_.add(uint64_t{element_types().size()}); }
     template <class... Columns>
     void rows(const char* names, const IdPool&, const Columns&... columns) {
         fields(names);

@@ -46,7 +46,7 @@ struct Staged {
     Array<T> list;
     const std::byte* end = nullptr;
 };
-using Staging = std::tuple<Staged<Cable>, Staged<Block>>;
+using Staging = std::tuple<Staged<ElementSet>, Staged<Cable>, Staged<Block>>;
 
 template <class Self>
 class Reader : public Visitor<Self> {
@@ -57,6 +57,12 @@ public:
 
     void visit(const ConstraintType*& type) {
         const auto types = constraint_types();
+        uint8_t index;
+        this->self().plain(&index, sizeof index);
+        type = index < types.size() ? types[index] : nullptr;
+    }
+    void visit(const ElementType*& type) {
+        const auto types = element_types();
         uint8_t index;
         this->self().plain(&index, sizeof index);
         type = index < types.size() ? types[index] : nullptr;
@@ -285,7 +291,7 @@ private:
 
     Staging& staging_;
     Restore restore_;
-    std::array<Slots, 8> slots_{};
+    std::array<Slots, 9> slots_{};
     size_t pools_ = 0;
     size_t values_ = 0;  // of the shared ones that are read
 };
@@ -353,7 +359,7 @@ taut_result restore(const char* call, World& world, std::span<const std::byte> f
         Source source{from.data() + sizeof(SnapshotHeader), from.data() + from.size()};
         if (const taut_result there = check_shapes(call, world, source); there != TAUT_OK) return there;
         Source again = source;
-        Staging staging{world.memory, world.memory};
+        Staging staging{world.memory, world.memory, world.memory};
         MakeRoom room(source, staging);
         describe(room, world);
         if (source.left() > 0) throw Damaged();

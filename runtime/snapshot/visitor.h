@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "base/segmented_array.h"
-#include "constraints/constraint.h"
+#include "constraints/element.h"
 #include "state/nodes.h"
 #include "state/shared_values.h"
 
@@ -23,7 +23,7 @@ concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires {
 
 // Lists inside, which take the world's memory.
 template <class T>
-concept Nested = std::is_constructible_v<T, Memory&>;
+concept Nested = !Plain<T> && std::is_constructible_v<T, Memory&>;
 
 template <class Self>
 class Visitor {
@@ -99,6 +99,11 @@ public:
     }
     void visit(const ConstraintType* const& type) {
         const auto types = constraint_types();
+        const auto index = static_cast<uint8_t>(std::ranges::find(types, type) - types.begin());
+        this->self().plain(&index, sizeof index);
+    }
+    void visit(const ElementType* const& type) {
+        const auto types = element_types();
         const auto index = static_cast<uint8_t>(std::ranges::find(types, type) - types.begin());
         this->self().plain(&index, sizeof index);
     }

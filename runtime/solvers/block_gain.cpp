@@ -26,9 +26,9 @@ bool BlockSolve::ideal(const RowBlock& block, int r) const {
 }
 
 // Work of the locked rows that are not ideal, at the mean of the velocities before and after [J].
-double BlockSolve::joint_work() const {
+double BlockSolve::tie_work() const {
     double sum = 0;
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
         for (int r = 0; r < block.type->rows; ++r) {
             if (!block.locked(r) || ideal(block, r)) continue;
@@ -60,7 +60,7 @@ double BlockSolve::energy_between(const Array<Velocity>& a, const Array<Velocity
 // The largest part of the joints' gaps, 0 to 1, that closes slowly.
 double BlockSolve::slow_closing() const {
     double part = 1;
-    for (uint32_t j = 0; j < joints(); ++j)
+    for (uint32_t j = 0; j < ties(); ++j)
         for (int r = 0; r < row(j).type->rows; ++r) {
             if (!row(j).locked(r) || !ideal(row(j), r)) continue;
             const double gap = std::abs(error_of(row(j), r)), slow = std::max(kClosingSpeed, kClosingRate * gap);
@@ -73,7 +73,7 @@ double BlockSolve::slow_closing() const {
 void BlockSolve::solve_closing(double part) {
     b_.closing = part;
     solve_known();
-    gained_ = energy_gain(s_, b_, set.work() + joint_work());
+    gained_ = energy_gain(s_, b_, set.work() + tie_work());
 }
 
 // Where a solution that closes wide gaps gains energy, solves on the same factor for one that does not: first without
@@ -83,11 +83,11 @@ void BlockSolve::solve_closing(double part) {
 // linear in the part a of the gaps that is closed, and with q the energy of their difference between a = 0 and a = 1
 //   gain(a) = gain(0) + (gain(1) - gain(0) - q) a + q a^2
 void BlockSolve::limit_gain() {
-    if (joints() == 0) return;
+    if (ties() == 0) return;
     const double slow = slow_closing();
     const bool wide = slow < kWide * b_.closing;
     if (!is_guarded(b_) && !wide) return;
-    gained_ = energy_gain(s_, b_, set.work() + joint_work());
+    gained_ = energy_gain(s_, b_, set.work() + tie_work());
     const double most = wide ? 1 : may_burst(b_);
     if (!gained_.excessive(most) || slow >= b_.closing) return;
     const EnergyGain first = gained_;  // what the guard hears of

@@ -47,7 +47,8 @@ void give_to_sweeps(Substep& s, const Block& block) {
 void move_freely(Substep& s, const Block& block) { copy_velocities(s.system, block, s.system.free, s.system.exact); }
 
 bool has_sweeps(const Substep& s) {
-    return !s.system.contacts.group.empty() || !s.group.joints.empty() || !s.group.span_pairs.empty();
+    return !s.system.contacts.group.empty() || !s.group.joints.empty() || !s.group.elements.empty() ||
+           !s.group.span_pairs.empty();
 }
 
 void finish(Substep& s, Block& block, BlockSolve& solve) {

@@ -1,4 +1,5 @@
 // The numbers of a block's matrix: masses, joints and stiffness into its entries, bounded rows on top of them.
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "solvers/adaptive_damping.h"
@@ -9,11 +10,14 @@ namespace {
 
 constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
-// Block::places: diagonals of the nodes, then so many of each joint, those that its type has.
-constexpr uint32_t kPairs = kMaxNodes * (kMaxNodes - 1) / 2, kPlaces = 1 + kMaxNodes + kPairs;
-constexpr uint32_t kDiagonal = 0, kJacobian = 1, kCoupling = 1 + kMaxNodes;
-
-uint32_t coupling(int n, int m) { return kCoupling + static_cast<uint32_t>(n * (n - 1) / 2 + m); }  // m < n
+// Block::places: diagonals of the nodes; then of each tie its own diagonal, those of its Jacobians and of the couplings
+// between its nodes.
+uint32_t places_of(const ConstraintType& type) { return static_cast<uint32_t>(1 + type.nodes * (type.nodes + 1) / 2); }
+constexpr uint32_t kDiagonal = 0;
+uint32_t of_jacobian(int n) { return 1 + static_cast<uint32_t>(n); }
+uint32_t coupling(const ConstraintType& type, int n, int m) {  // m < n
+    return static_cast<uint32_t>(1 + type.nodes + n * (n - 1) / 2 + m);
+}
 
 int locked_rows(const RowBlock& block) {
     int count = 0;
@@ -59,7 +63,7 @@ private:
     }
 
     int nodes_, first_ = 3;
-    double sum_[kMaxNodes][kMaxNodes][kDof * kDof];
+    double sum_[kMaxEnds][kMaxEnds][kDof * kDof];
 };
 
 }  // namespace
@@ -67,16 +71,18 @@ private:
 void BlockSolve::analyse() {
     SparseBlockLdlt& matrix = b_.matrix;
     if (matrix.analysed()) return;
-    matrix.begin(nodes_ + joints());
+    matrix.begin(nodes_ + multipliers());
     for (uint32_t i = 0; i < nodes_; ++i)
         matrix.set_unknown(i, s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6, false);
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const ConstraintType& type = *row(j).type;
-        matrix.set_unknown(nodes_ + j, row(j).held() > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
+        const bool multiplies = j < multipliers();
+        if (multiplies)
+            matrix.set_unknown(nodes_ + j, row(j).held() > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
-            matrix.link(nodes_ + j, i);
+            if (multiplies) matrix.link(nodes_ + j, i);
             for (int m = 0; m < n && (type.couples_nodes || row(j).axis); ++m) {
                 const uint32_t k = local(row(j).node[m]);
                 if (k != kNone) matrix.link(i, k);
@@ -86,8 +92,8 @@ void BlockSolve::analyse() {
     for (uint64_t link : b_.links)
         matrix.link(local(sys_.at(static_cast<uint32_t>(link >> 32))), local(sys_.at(static_cast<uint32_t>(link))));
     b_.solution.resize(2 * unknowns());
-    b_.known.resize((nodes_ + joints()) * kDof);
-    b_.force.resize(joints() * kMaxRows);
+    b_.known.resize((nodes_ + ties()) * kDof);
+    b_.force.resize(ties() * kMaxRows);
     matrix.analyse(b_.order);
     find_places();
     if (!b_.order.empty()) return;  // it was restored
@@ -107,28 +113,32 @@ bool BlockSolve::gives(const RowBlock& block) const {
 // loop by contacts. Then nodes are not eliminated from leaf to root, and two joints may come right after the body
 // between them, which cannot part them: it has no freedom for all their rows.
 bool BlockSolve::looped() const {
-    if (!b_.links.empty() && joints() > 1) return true;
+    if (!b_.links.empty() && multipliers() > 1) return true;
     bool held = false;
-    for (uint32_t j = 0; j < joints(); ++j)
+    for (uint32_t j = 0; j < multipliers(); ++j)
         for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;
-    return joints() + 1 > nodes_ + (held ? 1u : 0u);
+    return multipliers() + 1 > nodes_ + (held ? 1u : 0u);
 }
 
-BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[nodes_ + j * kPlaces + which]; }
+BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[b_.first_place[j] + which]; }
 
 void BlockSolve::find_places() {
-    b_.places.assign(nodes_ + joints() * kPlaces, {});
+    b_.first_place.resize(ties());
+    uint32_t count = nodes_;
+    for (uint32_t j = 0; j < ties(); ++j) count = (b_.first_place[j] = count) + places_of(*row(j).type);
+    b_.places.assign(count, {});
     for (uint32_t i = 0; i < nodes_; ++i) b_.places[i] = b_.matrix.place(i, i);
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
-        place(j, kDiagonal) = b_.matrix.place(nodes_ + j, nodes_ + j);
+        const bool multiplies = j < multipliers();
+        if (multiplies) place(j, kDiagonal) = b_.matrix.place(nodes_ + j, nodes_ + j);
         for (int n = 0; n < block.type->nodes; ++n) {
             const uint32_t i = local(block.node[n]);
             if (i == kNone) continue;
-            place(j, kJacobian + static_cast<uint32_t>(n)) = b_.matrix.place(nodes_ + j, i);
+            if (multiplies) place(j, of_jacobian(n)) = b_.matrix.place(nodes_ + j, i);
             for (int m = 0; m < n && (block.type->couples_nodes || block.axis); ++m) {
                 const uint32_t k = local(block.node[m]);
-                if (k != kNone) place(j, coupling(n, m)) = b_.matrix.place(i, k);
+                if (k != kNone) place(j, coupling(*block.type, n, m)) = b_.matrix.place(i, k);
             }
         }
     }
@@ -177,7 +187,7 @@ void BlockSolve::add_stiffness(uint32_t j, const double* force) {
                 known(to)[first + r] += hh * sum;
             }
             if (m <= n && rows > 0 && columns > 0)  // particles do not turn
-                b_.matrix.add(m == n ? b_.places[to] : place(j, coupling(n, m)),
+                b_.matrix.add(m == n ? b_.places[to] : place(j, coupling(type, n, m)),
                               {part, rows, columns, width, first, first, hh});
         }
     }
@@ -192,7 +202,7 @@ double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
 }
 
 // The locked rows; the place of a row that is not, but comes before one that is, is taken by mu = 0.
-void BlockSolve::add_joint(uint32_t j) {
+void BlockSolve::add_rows(uint32_t j) {
     const RowBlock& block = row(j);
     const int rows = block.held(), padded = size_of(nodes_ + j);
     for (int n = 0; n < block.type->nodes; ++n) {
@@ -202,7 +212,7 @@ void BlockSolve::add_joint(uint32_t j) {
         for (int begin = 0, end; begin < rows; begin = end + 1) {  // locked rows that follow each other
             for (end = begin; end < rows && block.locked(end);) ++end;
             if (end == begin) continue;
-            b_.matrix.add(place(j, kJacobian + static_cast<uint32_t>(n)),
+            b_.matrix.add(place(j, of_jacobian(n)),
                           {jacobian + begin * kDof, end - begin, size_of(i), kDof, begin, 0, -1});
         }
     }
@@ -217,11 +227,31 @@ void BlockSolve::add_joint(uint32_t j) {
     b_.matrix.add(place(j, kDiagonal), {diagonal, padded, padded, padded});
 }
 
-// Of two nodes of a bounded row. Contacts come and go, places of joints are known.
+// J^T J / c onto the nodes of a tie without multipliers.
+void BlockSolve::add_condensed(uint32_t j) {
+    const RowBlock& block = row(j);
+    const RowMatrix stiffness = compliance_of(block, sys_.scheme).inverse();
+    for (int n = 0; n < block.type->nodes; ++n) {
+        const uint32_t i = local(block.node[n]);
+        if (i == kNone) continue;
+        const Eigen::Matrix<double, kDof, Eigen::Dynamic, 0, kDof, kMaxRows> force =
+            jacobian_of(sys_, block, n).transpose() * stiffness;
+        for (int m = 0; m <= n; ++m) {
+            const uint32_t k = local(block.node[m]);
+            if (k == kNone) continue;
+            const Eigen::Matrix<double, kDof, kDof, Eigen::RowMajor> sum = force * jacobian_of(sys_, block, m);
+            b_.matrix.add(n == m ? b_.places[i] : place(j, coupling(*block.type, n, m)),
+                          {sum.data(), size_of(i), size_of(k), kDof});
+        }
+    }
+}
+
+// Of two nodes of a bounded row. Contacts come and go, places of ties are known.
 BlockPlace BlockSolve::place(const BoundedRow& row, int n, int m) {
     if (n == m) return b_.places[row.place[n]];
     const uint32_t j = row.block - b_.first_row_block;
-    return j < joints() ? place(j, coupling(n, m)) : b_.matrix.place(row.place[n], row.place[m]);
+    return j < ties() ? place(j, coupling(*sys_.rows.block[row.block].type, n, m))
+                      : b_.matrix.place(row.place[n], row.place[m]);
 }
 
 // B^T B / c of the rows that are on; rows on the same nodes follow each other and go into the matrix together.
@@ -230,7 +260,7 @@ void BlockSolve::add_bounded() {
     for (size_t i = 0, end; i < rows.size(); i = end) {
         const BoundedRow& first = rows[i];
         const auto beside = [&](const BoundedRow& row) {
-            return std::equal(first.place, first.place + kMaxNodes, row.place);
+            return std::equal(first.place, first.place + kMaxEnds, row.place);
         };
         for (end = i + 1; end < rows.size() && beside(rows[end]);) ++end;
         const auto some = rows.subspan(i, end - i);
@@ -249,17 +279,17 @@ void BlockSolve::assemble(bool with_old) {
     b_.matrix.clear();
     std::fill(b_.known.begin(), b_.known.end(), 0.0);
     for (uint32_t i = 0; i < nodes_; ++i) add_mass(i);
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const bool meant = !row(j).fresh || b_.memory.solved > 0;
         if (with_old && meant) add_stiffness(j, row(j).force);
-        add_joint(j);
+        j < multipliers() ? add_rows(j) : add_condensed(j);
         for (int r = 0; r < row(j).type->rows; ++r)
             if (row(j).locked(r)) known(nodes_ + j)[r] = sys_.scheme.row_rate(relaxation_of(row(j), r));
     }
 }
 
 void BlockSolve::add_new_stiffness() {
-    for (uint32_t j = 0; j < joints(); ++j) add_stiffness(j, joint_force(j));
+    for (uint32_t j = 0; j < ties(); ++j) add_stiffness(j, tie_force(j));
 }
 
 }  // namespace taut

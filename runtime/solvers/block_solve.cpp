@@ -1,5 +1,6 @@
 #include "solvers/block_solve.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -58,7 +59,7 @@ void BlockSolve::slow_velocities(const RowBlock& block, double* slow) const {
 }
 
 void BlockSolve::filter_lines() {
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
         if (!block.type->line) continue;
         const Vec3 turn = line_turn(block);
@@ -77,7 +78,28 @@ double BlockSolve::known_rate(const RowBlock& block, int r) const {
     return v;
 }
 
-// M (v* + contact changes) + h^2 K s + B^T goal / c for nodes, -closing target for joints.
+// J^T x / -c of a tie without multipliers, x its known side.
+void BlockSolve::add_condensed_force(uint32_t j) {
+    const RowBlock& block = row(j);
+    const int rows = block.type->rows;
+    const RowVector x = Eigen::Map<const RowVector>(&b_.solution[(nodes_ + j) * kDof], rows);
+    const RowVector mu = -(compliance_of(block, sys_.scheme).inverse() * x);
+    for (int n = 0; n < block.type->nodes; ++n)
+        if (const uint32_t i = local(block.node[n]); i != kNone)
+            NodeVector::Map(&b_.solution[i * kDof]) += jacobian_of(sys_, block, n).transpose() * mu;
+}
+
+// mu = -(x + J v) / c in the place of x.
+void BlockSolve::find_condensed_impulse(uint32_t j) {
+    const RowBlock& block = row(j);
+    Eigen::Map<RowVector> x(&b_.solution[(nodes_ + j) * kDof], block.type->rows);
+    for (int n = 0; n < block.type->nodes; ++n)
+        if (const uint32_t i = local(block.node[n]); i != kNone)
+            x += jacobian_of(sys_, block, n) * NodeVector::Map(&b_.solution[i * kDof]);
+    x = (-(compliance_of(block, sys_.scheme).inverse() * x)).eval();
+}
+
+// M (v* + contact changes) + h^2 K s + B^T goal / c for nodes, -closing target for ties.
 void BlockSolve::right_hand_side() {
     for (uint32_t i = 0; i < nodes_; ++i) {
         const uint32_t node = b_.nodes[i];
@@ -87,7 +109,7 @@ void BlockSolve::right_hand_side() {
         Vec3::Map(x + 3).setZero();
         if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[sys_.at(node)] * u.w + Vec3::Map(known(i) + 3);
     }
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
         double* x = &b_.solution[(nodes_ + j) * kDof];
         std::fill(x, x + kDof, 0.0);
@@ -98,6 +120,7 @@ void BlockSolve::right_hand_side() {
             const double part = b_.closing < 1 && ideal(block, r) ? b_.closing : 1;
             x[r] = part * known(nodes_ + j)[r] * error_of(block, r) + (meets_known ? known_rate(block, r) : 0.0);
         }
+        if (j >= multipliers()) add_condensed_force(j);
     }
     for (const BoundedRow& bounded : set.rows()) {
         if (!bounded.on) continue;
@@ -115,6 +138,7 @@ void BlockSolve::right_hand_side() {
 void BlockSolve::solve_linear() {
     right_hand_side();
     b_.matrix.solve(b_.solution.data());
+    for (uint32_t j = multipliers(); j < ties(); ++j) find_condensed_impulse(j);
 }
 
 void BlockSolve::solve_known() {
@@ -133,14 +157,13 @@ void BlockSolve::take_solution() {
 
 // Of locked rows from their multipliers, of all others from their bounded rows.
 void BlockSolve::take_forces() {
-    for (uint32_t j = 0; j < joints(); ++j)
+    for (uint32_t j = 0; j < ties(); ++j)
         for (int r = 0; r < row(j).type->rows; ++r)
-            joint_force(j)[r] =
+            tie_force(j)[r] =
                 row(j).locked(r) ? sys_.scheme.force(b_.solution[(nodes_ + j) * kDof + static_cast<uint32_t>(r)]) : 0;
     for (const BoundedRow& bounded : set.rows())
         if (bounded.force)
-            joint_force(bounded.block - b_.first_row_block)[bounded.row] +=
-                sys_.scheme.force(bounded.sign * bounded.mu);
+            tie_force(bounded.block - b_.first_row_block)[bounded.row] += sys_.scheme.force(bounded.sign * bounded.mu);
 }
 
 // True if a joint's stiffness has outgrown the one in the matrix. One freedom of mass m with k in its force and k_old
@@ -168,14 +191,14 @@ bool BlockSolve::outgrown(const RowBlock& block, const double* force) const {
 
 bool BlockSolve::force_grew() const {
     double largest = 0;
-    for (uint32_t j = 0; j < joints(); ++j) largest = std::max(largest, squared(joint_force(j), row(j).type->rows));
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) largest = std::max(largest, squared(tie_force(j), row(j).type->rows));
+    for (uint32_t j = 0; j < ties(); ++j) {
         const int rows = row(j).type->rows;
         double change[kMaxRows];
-        for (int r = 0; r < rows; ++r) change[r] = joint_force(j)[r] - row(j).force[r];
+        for (int r = 0; r < rows; ++r) change[r] = tie_force(j)[r] - row(j).force[r];
         const double least = (kGrowth - 1) * (kGrowth - 1) * squared(row(j).force, rows);
-        if (squared(change, rows) > least && squared(joint_force(j), rows) > kNegligible * kNegligible * largest &&
-            outgrown(row(j), joint_force(j)))
+        if (squared(change, rows) > least && squared(tie_force(j), rows) > kNegligible * kNegligible * largest &&
+            outgrown(row(j), tie_force(j)))
             return true;
     }
     return false;
@@ -232,7 +255,7 @@ bool BlockSolve::factor_rounds() {
 bool BlockSolve::solve_first() {
     ++s_.report.solves;
     b_.closing = 1;
-    const bool guarded = b_.memory.guard_left > 0, stiffened = s_.settings.geometric_stiffness && joints() > 0;
+    const bool guarded = b_.memory.guard_left > 0, stiffened = s_.settings.geometric_stiffness && ties() > 0;
     assemble(stiffened);
     if (!factor_rounds()) return false;
     take_forces();
@@ -268,16 +291,15 @@ void BlockSolve::solve_relaxed() {
 }
 
 void BlockSolve::finish() {
-    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness && joints() > 0)
-        guard_energy(s_, b_, gained_);
+    if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness && ties() > 0) guard_energy(s_, b_, gained_);
     if (!set.empty()) {
         if (!relaxed_) solve_relaxed();
         take_forces();
         set.store();
     }
-    for (uint32_t j = 0; j < joints(); ++j)
+    for (uint32_t j = 0; j < ties(); ++j)
         for (int r = 0; r < row(j).type->rows; ++r) {
-            const double f = joint_force(j)[r];
+            const double f = tie_force(j)[r];
             row(j).force[r] = f;
             sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.scheme.impulse(f);
         }
@@ -311,8 +333,8 @@ double BlockSolve::largest_turn() const {
     double fastest = 0;
     for (uint32_t i = 0; i < nodes_; ++i) fastest = std::max(fastest, sys_.exact[sys_.at(b_.nodes[i])].w.squaredNorm());
     const bool slow = sys_.scheme.h * sys_.scheme.h * fastest <= kSlow * kSlow;
-    double most = slow && joints() > 0 ? fastest : 0;
-    for (uint32_t j = 0; j < joints(); ++j) {
+    double most = slow && ties() > 0 ? fastest : 0;
+    for (uint32_t j = 0; j < ties(); ++j) {
         if (row(j).type->line) most = std::max(most, line_turn(row(j)).squaredNorm());
         if (!slow) most = std::max(most, lever_turn(row(j)));
     }
@@ -322,7 +344,7 @@ double BlockSolve::largest_turn() const {
 bool BlockSolve::settle() {
     bool open = false;
     std::fill(b_.solution.begin(), b_.solution.end(), 0.0);
-    for (uint32_t j = 0; j < joints(); ++j) {
+    for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
         const int rows = block.type->rows;
         Pose poses[kMaxNodes];

@@ -1,5 +1,6 @@
-// The matrix of one block: its nodes and the multipliers of its joints' locked rows. Bounded rows (active_set.h) are
-// folded into the nodes.
+// The matrix of one block: its nodes and the multipliers of the locked rows of its ties, which are joints and elements.
+// Bounded rows (active_set.h) and those of elements in energy form are folded into the nodes:
+// J^T J / c stands for -J^T mu, mu = (target - J v) / c.
 //
 //   [ M + h^2 K + B^T B / c   -J^T ] [v+]   [ M v* + contact impulses + h^2 K s + B^T goal / c ]
 //   [ -J                       -c  ] [mu] = [ -target                                          ]
@@ -41,7 +42,9 @@ public:
 
 private:
     const RowBlock& row(uint32_t j) const { return sys_.rows.block[b_.first_row_block + j]; }
-    uint32_t joints() const { return static_cast<uint32_t>(b_.joints.size()); }
+    // Joints, then elements; those with multipliers first.
+    uint32_t ties() const { return static_cast<uint32_t>(b_.joints.size() + b_.elements.size()); }
+    uint32_t multipliers() const { return ties() - b_.condensed; }
     uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
     int size_of(uint32_t i) const { return b_.matrix.size(i); }                   // 3: a particle
     bool looped() const;
@@ -56,7 +59,8 @@ private:
     void add_mass(uint32_t i);
     void stiffness_of(const RowBlock& block, const double* force, double* k) const;
     void add_stiffness(uint32_t j, const double* force);
-    void add_joint(uint32_t j);
+    void add_rows(uint32_t j);
+    void add_condensed(uint32_t j);
     void add_bounded();
     double loop_compliance(const RowBlock& block, int r) const;
 
@@ -74,6 +78,8 @@ private:
     double error_of(const RowBlock& block, int r) const {
         return sys_.rows.error[block.row + static_cast<uint32_t>(r)];
     }
+    void add_condensed_force(uint32_t j);
+    void find_condensed_impulse(uint32_t j);
     void solve_linear();
     void solve_known();
     void take_solution();
@@ -83,7 +89,7 @@ private:
 
     // block_gain.cpp
     bool ideal(const RowBlock& block, int r) const;
-    double joint_work() const;
+    double tie_work() const;
     double energy_between(const Array<Velocity>& a, const Array<Velocity>& b) const;
     double slow_closing() const;
     void solve_closing(double part);
@@ -92,14 +98,14 @@ private:
     void limit_push();
     void limit_bounce();
 
-    size_t unknowns() const { return (nodes_ + joints()) * kDof; }
+    size_t unknowns() const { return (nodes_ + ties()) * kDof; }
     // The second half of Block::solution: while rounds go on the iterate (active_set.h), then the iterate less the
     // solution of the last round.
     double* iterate() { return b_.solution.data() + unknowns(); }
-    // Of a node h^2 K s, of a joint how fast its rows close their gaps [1/s].
+    // Of a node h^2 K s, of a tie how fast its rows close their gaps [1/s].
     double* known(uint32_t i) { return &b_.known[i * kDof]; }
-    double* joint_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
-    const double* joint_force(uint32_t j) const { return &b_.force[j * kMaxRows]; }
+    double* tie_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
+    const double* tie_force(uint32_t j) const { return &b_.force[j * kMaxRows]; }
 
     Substep& s_;
     System& sys_;

@@ -87,7 +87,8 @@ public:
     // Joints, rows, then contacts, colour by colour, backward if asked.
     void add_joints(Pass pass, bool backward = false) {
         if (s_.system.joints.group.empty()) return;
-        for (uint32_t k = 0; k < kMaxColours; ++k) add_joints_of(pass, backward ? kMaxColours - 1 - k : k);
+        const auto colours = static_cast<uint32_t>(s_.system.joints.colour_begin.size()) - 1;
+        for (uint32_t k = 0; k < colours; ++k) add_joints_of(pass, backward ? colours - 1 - k : k);
     }
     void add_rows_and_contacts(Pass pass, bool backward = false) {
         add_rows(pass);
@@ -139,8 +140,8 @@ private:
         if (insides > 0) add({&Program::insides_part, pass, colour}, through_alone_, false);
     }
     static bool is_small(uint32_t colour, uint32_t groups) {
-        constexpr uint32_t kSmall = 1;  // lane groups
-        return colour + 1 == kMaxColours || groups <= kSmall;
+        constexpr uint32_t kSmall = 1;                               // lane groups
+        return (colour + 1) % kMaxColours == 0 || groups <= kSmall;  // overflow
     }
     // After all that came before, and before all that comes.
     void add_alone(Piece piece, bool single = false) {
@@ -198,7 +199,8 @@ private:
     uint32_t begin_of(uint32_t part, uint32_t count) const { return begin_of_part(part, s_.team.size(), count); }
 
     static constexpr uint32_t kMostPasses = kRelaxSweeps;
-    static constexpr uint32_t kMost = kMostPasses * (3 * kMaxColours + 1) + kMaxColours + 1;
+    // Colours of joints, of elements, and of contacts twice.
+    static constexpr uint32_t kMost = kMostPasses * (4 * kMaxColours + 1) + 2 * kMaxColours + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;

@@ -394,10 +394,10 @@ struct SolveReports::Measure {
     }
 };
 
-void SolveReports::begin_step(const Partition& partition, const Joints& joints) {
+void SolveReports::begin_step(const Partition& partition, const Joints& joints, const Elements& elements) {
     islands.clear();
     rows.clear();
-    partition.find_reasons(joints, reasons_);
+    partition.find_reasons(joints, elements, reasons_);
     open_.assign(partition.islands, {});
 }
 

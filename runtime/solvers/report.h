@@ -54,7 +54,7 @@ public:
     explicit SolveReports(Memory& memory)
         : islands(memory), rows(memory), reasons_(memory), open_(memory), before_(memory), mean_(memory) {}
 
-    void begin_step(const Partition& partition, const Joints& joints);
+    void begin_step(const Partition& partition, const Joints& joints, const Elements& elements);
     // Before forces act; once more where a substep is taken again.
     void begin(const Measured& m);
     // After the solve, before positions move.

@@ -13,8 +13,8 @@ inline uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.
 
 // Once a frame and group: which rows there are, in the order that the solver wants them: block by block when joints
 // are solved directly, colour by colour when they are swept; contact points after them when they come as rows.
-void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Pairs& pairs,
-                const Nodes& nodes, bool contacts_as_rows);
+void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Elements& elements,
+                Pairs& pairs, const Nodes& nodes, bool contacts_as_rows);
 // Once a substep: rows of the contacts that blocks own, after those of joints, at system.pose.
 void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes);
 // Once a substep: C and J at system.pose; impulses from the forces of the last substep. frame_left: share of the
@@ -35,7 +35,7 @@ void turn_lanes(Team& team, System& system, const Group& group, const ContactKer
 void load_lanes(Team& team, System& system, const Pairs& pairs);
 void store_lanes(Team& team, const System& system, Pairs& pairs);
 
-// Once a frame and group: swept joints by colour into lanes.
+// Once a frame and group: swept joints and elements by colour into lanes.
 void build_joint_lanes(Team& team, System& system, const Group& group, double frame);
 // Once a substep, after evaluate_rows(): C and J of their rows;
 void evaluate_joint_lanes(Team& team, System& system);

@@ -34,12 +34,51 @@ void add_joint(System& system, Joint& joint, bool in_lanes) {
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
     block.compliance_block = joint.type->compliance ? joint.type->compliance(joint.data) : nullptr;
+    block.block_scale = 1;
     block.relaxation[0] = block.compliance_block ? joint.damping : joint.compliance * joint.damping;
     block.relaxation[1] = joint.angular_compliance * joint.angular_damping;
     block.axis = joint.plain ? nullptr : joint.axis;
     block.memory = joint.memory;
     block.fresh = joint.fresh;
     joint.fresh = false;
+}
+
+void add_element(System& system, ElementSet& set, uint32_t e, bool in_lanes) {
+    const ConstraintType& type = set.type->row;
+    const uint32_t first = static_cast<uint32_t>(system.rows.element_node.size());
+    for (const uint32_t node : set.nodes_of(e)) system.rows.element_node.push_back(system.at(node));
+    system.rows.element.push_back(e);
+    RowBlock& block = add_block(system, type, in_lanes);
+    block.data = set.data_of(e);
+    block.force = set.lambda_of(e);
+    block.drift = set.drift_of(e);
+    block.slow_turn = set.slow_turn.empty() ? nullptr : &set.slow_turn[e];
+    std::copy_n(&system.rows.element_node[first], type.nodes, block.node);
+    block.compliance_block = set.coupled ? set.compliance : nullptr;
+    block.block_scale = set.softness[e];
+    block.compliance[0] = block.compliance[1] = set.coupled ? 0 : set.softness[e] * set.compliance[0];
+    block.relaxation[0] = block.relaxation[1] = set.relaxation;
+    block.batched = true;
+    block.condensed = set.form == ElementForm::energy;
+    block.fresh = set.fresh[e] != 0;
+    set.fresh[e] = 0;
+}
+
+// Elements in this order, those of one set that follow each other in runs of at most so many.
+void add_elements(System& system, Elements& elements, std::span<const ElementRef> list, bool in_lanes) {
+    constexpr uint32_t kMostOfRun = 64;
+    Rows& rows = system.rows;
+    uint32_t set = kNone;
+    for (const ElementRef& ref : list) {
+        ElementSet& of = elements.set[ref.set];
+        if (ref.set != set || rows.run.back().count == kMostOfRun)
+            rows.run.push_back({of.type, of.data.data(), static_cast<uint32_t>(rows.block.size()), 0,
+                                static_cast<uint32_t>(rows.element.size()),
+                                static_cast<uint32_t>(rows.element_node.size())});
+        set = ref.set;
+        add_element(system, of, ref.element, in_lanes);
+        ++rows.run.back().count;
+    }
 }
 
 // Of a contact point, world axes.
@@ -164,9 +203,9 @@ RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
 RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& data) {
     RowBlock& block = add_block(system, kSpanContact);
     block.data = &data;
-    const uint32_t nodes[kMaxNodes] = {pair.a, pair.b, pair.a2, pair.b2};
+    const uint32_t nodes[kMaxEnds] = {pair.a, pair.b, pair.a2, pair.b2};
     Vec3 apart = Vec3::Zero();
-    for (int n = 0; n < kMaxNodes; ++n) {
+    for (int n = 0; n < kMaxEnds; ++n) {
         block.node[n] = system.at(nodes[n]);
         apart += data.weight[n] * velocity_at(system, block.node[n], system.pose[block.node[n]].R * data.anchor[n]);
     }
@@ -247,10 +286,13 @@ void begin_rows(std::span<const uint32_t> active_pairs, Pairs& pairs) {
 
 }  // namespace
 
-void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Pairs& pairs,
-                const Nodes& nodes, bool contacts_as_rows) {
+void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Elements& elements,
+                Pairs& pairs, const Nodes& nodes, bool contacts_as_rows) {
     Rows& rows = system.rows;
     rows.block.clear();
+    rows.run.clear();
+    rows.element.clear();
+    rows.element_node.clear();
     rows.error.clear();
     rows.impulse.clear();
     rows.jacobian.clear();
@@ -264,9 +306,11 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
             system.place[at] = i;
         }
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j], false);
+        add_elements(system, elements, blocks[b].elements, false);
     }
     rows.direct = static_cast<uint32_t>(rows.block.size());
     for (uint32_t j : group.joints) add_joint(system, joints.record[j], !contacts_as_rows);
+    add_elements(system, elements, group.elements, !contacts_as_rows);
     rows.joints = static_cast<uint32_t>(rows.block.size());
     constexpr size_t kPoints = 4;
     const size_t whole = (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size();
@@ -307,10 +351,8 @@ void evaluate(System& system, const RowBlock& block, const Pose* poses) {
     block.type->evaluate(block.data, poses, &system.rows.error[block.row], &system.rows.jacobian[block.jacobian]);
 }
 
-void evaluate_joint(System& system, const RowBlock& block, double frame_left, double frame) {
-    Pose poses[kMaxNodes];
-    poses_of(system, block, poses);
-    evaluate(system, block, poses);
+// What a joint or element carries on, and its error for what of its drift has come.
+void begin_substep(System& system, const RowBlock& block, double frame_left, double frame) {
     if (block.in_lanes) return;
     for (int r = 0; r < block.type->rows; ++r) {
         const uint32_t row = block.row + static_cast<uint32_t>(r);
@@ -325,6 +367,14 @@ void evaluate_joint(System& system, const RowBlock& block, double frame_left, do
     }
 }
 
+void evaluate_run(System& system, const ElementRun& run) {
+    Rows& rows = system.rows;
+    const RowBlock& first = rows.block[run.first];
+    run.type->evaluate(
+        {run.count, &rows.element_node[run.node], &rows.element[run.element], run.data, system.pose.data()},
+        &rows.error[first.row], &rows.jacobian[first.jacobian], kDof);
+}
+
 }  // namespace
 
 void evaluate_rows(Team& team, System& system, double frame_left, double frame) {
@@ -332,8 +382,22 @@ void evaluate_rows(Team& team, System& system, double frame_left, double frame) 
     system.frame_left = frame_left;
     Rows& rows = system.rows;
     team.for_ranges(rows.joints, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i)
-            if (!rows.block[i].evaluated_in_lanes()) evaluate_joint(system, rows.block[i], frame_left, frame);
+        Pose poses[kMaxNodes];
+        for (uint32_t i = begin; i < end; ++i) {
+            const RowBlock& block = rows.block[i];
+            if (block.evaluated_in_lanes() || block.batched) continue;
+            poses_of(system, block, poses);
+            evaluate(system, block, poses);
+            begin_substep(system, block, frame_left, frame);
+        }
+    });
+    team.for_ranges(static_cast<uint32_t>(rows.run.size()), 1, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const ElementRun& run = rows.run[i];
+            evaluate_run(system, run);
+            for (uint32_t b = run.first; b < run.first + run.count; ++b)
+                begin_substep(system, rows.block[b], frame_left, frame);
+        }
     });
     size_t next_rolling = 0;  // their data are in the order of their blocks
     for (size_t i = rows.joints; i < rows.block.size(); ++i) {

@@ -128,7 +128,7 @@ void fill_compliance(System& system, const JointGroup& g, uint32_t r, int lane, 
         compliance(r) = static_cast<float>(scale * block.compliance[block.angular(i)]);
     else
         for (uint32_t k = 0; k <= r; ++k)
-            compliance(k) = static_cast<float>(scale * block.compliance_block[r * g.rows + k]);
+            compliance(k) = static_cast<float>(scale * block.block_scale * block.compliance_block[r * g.rows + k]);
 }
 
 // Which rows of a lane are locked, and what they carry.
@@ -297,6 +297,12 @@ void build_joint_lanes(Team& team, System& system, const Group& group, double fr
     for (uint32_t c = 0; c < kMaxColours; ++c) {
         const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;  // the overflow colour: one joint at a time
         add_colour(system, first + group.joint_colour_begin[c], first + group.joint_colour_begin[c + 1], width);
+    }
+    const uint32_t elements = first + size_of(group.joints);
+    for (uint32_t c = 0; c < kMaxColours; ++c) {
+        const uint32_t width = c + 1 == kMaxColours ? 1 : kLanes;
+        add_colour(system, elements + group.element_colour_begin[c], elements + group.element_colour_begin[c + 1],
+                   width);
     }
     for (uint32_t i = first; i < system.rows.joints; ++i)
         for (int n = 0; n < system.rows.block[i].type->nodes; ++n) system.filtered[system.rows.block[i].node[n]] = 1;

@@ -26,9 +26,9 @@ struct Impact {  // rows: normal, tangent 1, tangent 2
     uint32_t pair;  // index into Pairs::list
     int point;
     bool supports;  // without restitution
-    float* peak;   // of a point in lanes: its largest normal impulse; else null
-    bool* pushed;  // of a row: its pair's; else null
-    Side side[kMaxNodes];
+    float* peak;    // of a point in lanes: its largest normal impulse; else null
+    bool* pushed;   // of a row: its pair's; else null
+    Side side[kMaxEnds];
     int sides;
     double gap;  // at the start of the substep [m]
     double restitution, friction;
@@ -73,10 +73,10 @@ struct Impacts {
     // of a round
     Array<Impact> impact;  // cluster by cluster, in the order of pairs and points
     Array<ImpactBody> body;
-    Array<uint32_t> body_of;  // by seat: index into body, or kNone
-    Array<uint8_t> held;      // by seat: 1: joints hold it; empty: not looked for yet
-    Array<uint16_t> found;    // of four points of each lane group: a bit for each lane with an impact
-    Array<uint16_t> joined;   // likewise: that supports one
+    Array<uint32_t> body_of;     // by seat: index into body, or kNone
+    Array<uint8_t> held;         // by seat: 1: joints hold it; empty: not looked for yet
+    Array<uint16_t> found;       // of four points of each lane group: a bit for each lane with an impact
+    Array<uint16_t> joined;      // likewise: that supports one
     Array<uint8_t> joined_rows;  // by row block: 1: it supports one
 };
 

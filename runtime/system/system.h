@@ -18,6 +18,7 @@
 #include "constraints/constraint.h"
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
+#include "constraints/element.h"
 #include "constraints/joint_lanes.h"
 #include "constraints/rolling.h"
 #include "constraints/span_contact.h"
@@ -32,34 +33,37 @@ struct Velocity {
     Vec3 v = Vec3::Zero(), w = Vec3::Zero();
 };
 
-// One constraint's rows. Offsets point into the arrays of Rows.
+// The rows of one joint, element or contact point. Offsets point into the arrays of Rows.
 struct RowBlock {
     const ConstraintType* type;
     const void* data;
     double* force;                   // lambda of the last substep, then of this one [N]; type->rows
     Vec3* slow_turn;                 // of joints whose type has a line
-    const double* drift;             // of joints: what of C is still to come within the frame is left out
+    const double* drift;             // of joints and elements: what of C is still to come within the frame is left out
     uint32_t node[kMaxNodes];        // indices into arrays by seat; unused ones 0
     uint32_t row;                    // first row
     uint32_t jacobian;               // first entry of [node][row][6]
     double compliance[2];            // of each row, and of each that is an angle [m/N, rad/(N m)], 0: rigid
-    const double* compliance_block;  // [rows][rows] in its place, or null
-    double relaxation[2];            // time d [s]: compliance * damping, likewise
-    const Axis* axis;                // of each row, or null: all are locked
-    AxisMemory* memory;              // of each row, with axis
-    ContactForce* contact;           // what a contact point carries on; null for joints
-    bool* pushed;                    // of a contact point: its pair's
-    double friction;                 // of a cone
-    double drive[2];                 // of a cone: J v that friction drives the tangents to [m/s]
-    double arm[2];                   // of a load: spinning, rolling [m]
-    uint32_t loaded, loads;          // of a load: first row of its contact points, each of three; how many there are
-    float* spin_slip;                // of a load: what spinning carries on; rolling is in contact
-    double restitution;              // of a cone
-    bool hits;                       // of a cone: approached faster than kHardSpeed before the frame's forces
-    bool fresh;                      // lambda of the last substep means nothing yet
-    bool in_lanes;                   // a swept joint: bias, targets and impulses are in System::joints
-    uint8_t point;                   // of a cone: which point
-    uint32_t pair;                   // of which pair, an index into Pairs::list
+    const double* compliance_block;  // [rows][rows] in its place, or null; times
+    double block_scale;
+    double relaxation[2];    // time d [s]: compliance * damping, likewise
+    const Axis* axis;        // of each row, or null: all are locked
+    AxisMemory* memory;      // of each row, with axis
+    ContactForce* contact;   // what a contact point carries on; null for joints
+    bool* pushed;            // of a contact point: its pair's
+    double friction;         // of a cone
+    double drive[2];         // of a cone: J v that friction drives the tangents to [m/s]
+    double arm[2];           // of a load: spinning, rolling [m]
+    uint32_t loaded, loads;  // of a load: first row of its contact points, each of three; how many there are
+    float* spin_slip;        // of a load: what spinning carries on; rolling is in contact
+    double restitution;      // of a cone
+    bool hits;               // of a cone: approached faster than kHardSpeed before the frame's forces
+    bool fresh;              // lambda of the last substep means nothing yet
+    bool in_lanes;           // a swept joint or element: bias, targets and impulses are in System::joints
+    bool batched;            // an element: evaluated by its run
+    bool condensed;          // an element whose rows a direct solve folds into its nodes
+    uint8_t point;           // of a cone: which point
+    uint32_t pair;           // of which pair, an index into Pairs::list
 
     bool angular(int r) const { return (type->angular >> r & 1) != 0; }
     bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }
@@ -74,9 +78,21 @@ struct RowBlock {
     bool stops_angle(int r) const { return axis && axis[r].mode == AxisMode::limited && angular(r); }
 };
 
+// Elements of one set whose rows follow each other.
+struct ElementRun {
+    const ElementType* type;
+    const double* data;     // of the set
+    uint32_t first, count;  // in Rows::block
+    uint32_t element;       // first in Rows::element, of as many
+    uint32_t node;          // first in Rows::element_node
+};
+
 struct Rows {
     explicit Rows(Memory& memory)
         : block(memory),
+          run(memory),
+          element(memory),
+          element_node(memory),
           error(memory),
           jacobian(memory),
           impulse(memory),
@@ -84,13 +100,15 @@ struct Rows {
           span_data(memory),
           rolling_data(memory) {}
 
-    // First the rows that stay for the frame: those of joints, of blocks before swept ones, then those of swept
-    // contacts that come as rows. After them the contacts of blocks, new in each substep.
+    // First the rows that stay for the frame: those of joints and elements, of blocks before swept ones, then those of
+    // swept contacts that come as rows. After them the contacts of blocks, new in each substep.
     uint32_t direct = 0, joints = 0, lasting = 0;  // in block: where each of these ends
     uint32_t lasting_spans = 0;                    // in span_data
     Array<RowBlock> block;
-    Array<double> error;               // C(x) [m or rad]           rows; assemble()
-    Array<double> jacobian;            // dC/dx                     assemble()
+    Array<ElementRun> run;
+    Array<uint32_t> element, element_node;  // of runs: index in the set; seats
+    Array<double> error;                    // C(x) [m or rad]           rows; assemble()
+    Array<double> jacobian;                 // dC/dx                     assemble()
     Array<double> impulse;             // mu = h lambda [N s]       rows; solvers; before a solve: of the last substep
     Array<ContactData> data;           // of contact rows: where a solver takes all as rows, and those of blocks
     Array<SpanContactData> span_data;  // of contacts with a side of two nodes
@@ -163,12 +181,12 @@ struct System {
     float stretch = 1;  // length of substeps over the one that soft rows keep the frequency of; soft_contact.h
 
     // by seat; of those for nodes in blocks all or, where no block ever was, none
-    Array<Pose> pose;             // at the start of the substep; predict()
-    Array<Velocity> exact;        // predict(): v* = v + h a; solvers: v+
-    Array<Velocity> free;         // v* with contact impulses, of nodes in blocks; block_ldlt
-    Array<Velocity> kept;         // v+ without the push of overlaps, of nodes in blocks with bounded rows
-    Array<Velocity> correction;   // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
-    Array<Velocity> start;        // v before forces, w after the gyroscopic torque, for energy balances; predict()
+    Array<Pose> pose;            // at the start of the substep; predict()
+    Array<Velocity> exact;       // predict(): v* = v + h a; solvers: v+
+    Array<Velocity> free;        // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> kept;        // v+ without the push of overlaps, of nodes in blocks with bounded rows
+    Array<Velocity> correction;  // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
+    Array<Velocity> start;       // v before forces, w after the gyroscopic torque, for energy balances; predict()
     // Of schemes of more than one step, see scheme.h: u*, v~, v_n and accelerations by springs [m/s^2, rad/s^2].
     Array<Velocity> ahead, coast, began, by_springs;
     Array<Mat3> inertia;          // world axes [kg m^2], of nodes in blocks only; predict()

@@ -92,11 +92,12 @@ public:
     // As at the start of a frame of one group: partition, rows, lanes.
     void begin(const Solver& with) {
         solver = with;
-        w.partition.build(w.team, w.nodes, w.joints, w.pairs, {1, true, solver.direct, 1.0 / 60, Vec3::Zero(), false});
-        begin_frame(w.team, w.system, w.partition, w.nodes, w.joints);
+        w.partition.build(w.team, w.nodes, w.joints, w.elements, w.pairs,
+                          {1, true, solver.direct, 1.0 / 60, Vec3::Zero(), false});
+        begin_frame(w.team, w.system, w.partition, w.nodes, true);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.scheme.set_length(h);
-        build_rows(w.system, group(), w.partition.blocks, w.joints, w.pairs, w.nodes, !solver.lanes);
+        build_rows(w.system, group(), w.partition.blocks, w.joints, w.elements, w.pairs, w.nodes, !solver.lanes);
         if (!solver.lanes) return;
         build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
         build_joint_lanes(w.team, w.system, group(), h);

@@ -31,8 +31,8 @@ protected:
         rules.by_place = GetParam() > 1;
         find_active();
         for (ActivePair& pair : pairs.active) pair.points = 1 + engine() % 4;
-        partition.build(threads_, nodes, joints, pairs, rules);
-        begin_frame(threads_, system_, partition, nodes, joints);
+        partition.build(threads_, nodes, joints, elements, pairs, rules);
+        begin_frame(threads_, system_, partition, nodes, true);
         share_out(threads_, system_, pairs, partition.groups[0]);
     }
     const ContactLanes& lanes() const { return system_.contacts; }

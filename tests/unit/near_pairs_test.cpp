@@ -59,6 +59,7 @@ protected:
     Nodes nodes{memory};
     Colliders colliders{memory};
     Joints joints{memory};
+    Elements elements{memory};
     Pairs pairs{memory};
     collision::Broadphase broadphase{memory};
 
@@ -76,7 +77,7 @@ TEST_P(JumpingBoxes, AreListedAsTheBroadphaseHasThem) {
     for (uint32_t step = 0; step < 60 && !HasFailure(); ++step) {
         jump(most[step % 5]);
         if (step % 7 == 3) forget_some();
-        update_pairs(team, nodes, colliders, joints, broadphase, pairs);
+        update_pairs(team, nodes, colliders, joints, elements, broadphase, pairs);
         look();
         EXPECT_GT(pairs.near.size(), 300u) << "more than one block of the list";
     }
@@ -85,17 +86,17 @@ TEST_P(JumpingBoxes, AreListedAsTheBroadphaseHasThem) {
 
 TEST_P(JumpingBoxes, LeaveAnEmptyListAndComeBack) {
     Team team{taut_hooks{}, 2};
-    update_pairs(team, nodes, colliders, joints, broadphase, pairs);
+    update_pairs(team, nodes, colliders, joints, elements, broadphase, pairs);
     look();
     for (uint32_t i = 0; i < kBodies; ++i) {
         const Vec3f far = Vec3f(static_cast<float>(10 + 2 * i), 0, 0);
         broadphase.update(i, {far, far + Vec3f::Ones()}, Vec3f::Zero());
     }
-    update_pairs(team, nodes, colliders, joints, broadphase, pairs);
+    update_pairs(team, nodes, colliders, joints, elements, broadphase, pairs);
     EXPECT_TRUE(pairs.near.empty());
     look();
     jump(3 * kBodies);
-    update_pairs(team, nodes, colliders, joints, broadphase, pairs);
+    update_pairs(team, nodes, colliders, joints, elements, broadphase, pairs);
     look();
     team.rest();
 }

@@ -14,6 +14,7 @@ struct Graph {
     Team team{taut_hooks{}, 1};
     Nodes nodes{memory};
     Joints joints{memory};
+    Elements elements{memory};
     std::vector<Pair> touching;  // find_active() brings them to pairs
     Pairs pairs{memory};
     Partition partition{memory};
@@ -66,7 +67,7 @@ struct Graph {
     }
     void build() {
         find_active();
-        partition.build(team, nodes, joints, pairs, rules);
+        partition.build(team, nodes, joints, elements, pairs, rules);
         for (uint32_t i = 0; i < touching.size(); ++i) touching[i].loaded = pairs.list[i].loaded;
     }
     // As if the blocks had been solved.

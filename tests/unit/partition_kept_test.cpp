@@ -101,8 +101,8 @@ protected:
         for (ActivePair& pair : pairs.active) pair.points = points_;
         if (!pairs.active.empty()) pairs.active[0].a2 = second_;
         Partition fresh(memory);
-        partition.build(helped, nodes, joints, pairs, rules);
-        fresh.build(team, nodes, joints, pairs, rules);
+        partition.build(helped, nodes, joints, elements, pairs, rules);
+        fresh.build(team, nodes, joints, elements, pairs, rules);
         expect_same(partition, fresh);
     }
 
@@ -143,14 +143,14 @@ TEST_P(ChangingGraph, IsWholeAgainAfterMemoryRanOut) {
         find_active();
         scarce.left = any(frame < 3 ? 12 : 3);
         try {
-            kept.build(team, nodes, joints, pairs, rules);
+            kept.build(team, nodes, joints, elements, pairs, rules);
         } catch (const std::bad_alloc&) {
             ++refused;
         }
         scarce.left = UINT32_MAX;
-        kept.build(team, nodes, joints, pairs, rules);
+        kept.build(team, nodes, joints, elements, pairs, rules);
         Partition fresh(memory);
-        fresh.build(team, nodes, joints, pairs, rules);
+        fresh.build(team, nodes, joints, elements, pairs, rules);
         expect_same(kept, fresh);
     }
     EXPECT_GT(refused, 0u);

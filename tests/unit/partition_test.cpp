@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "unit/partition_graph.h"
 #include "starts.h"
+#include "unit/partition_graph.h"
 
 namespace taut::test {
 namespace {
@@ -394,7 +394,7 @@ TEST_F(PartitionTest, OnlyLoadedBlocksTakeTheirContactsIn) {
     touch(a, ground);
     auto taken_in = [&](double force) {
         joints.record[j].lambda[1] = force;
-        note_loads(joints, nodes);
+        note_loads(joints, elements, nodes);
         build();
         return partition.blocks[0].pairs.size();
     };
@@ -453,7 +453,7 @@ TEST_F(PartitionTest, JointsSolvedByLoadAreABlockOnlyWhileTheyNeedIt) {
     };
     auto expect_after = [&](int frames, double force, size_t blocks, size_t swept) {
         joints.record[other].lambda[0] = force;
-        for (int i = 0; i < frames; ++i) note_loads(joints, nodes);
+        for (int i = 0; i < frames; ++i) note_loads(joints, elements, nodes);
         expect(blocks, swept);
     };
     expect_after(9, 1001, 0, 2);

@@ -9,7 +9,7 @@ namespace {
 struct Reasons : testing::Test, Graph {
     uint8_t of(uint32_t node) {
         Array<uint8_t> reasons(memory);
-        partition.find_reasons(joints, reasons);
+        partition.find_reasons(joints, elements, reasons);
         return reasons[partition.island_of(node)];
     }
 };

@@ -46,9 +46,9 @@ TEST_F(Validate, SoundWorldHasNoFlaw) {
     EXPECT_FALSE(validate_members(partition, nodes));
     EXPECT_FALSE(validate_pairs(partition, pairs, nodes));
     EXPECT_FALSE(validate_joints(partition, joints, nodes));
-    EXPECT_FALSE(validate_colours(partition, pairs, joints, nodes));
+    EXPECT_FALSE(validate_colours(partition, pairs, joints, elements, nodes));
     EXPECT_FALSE(validate_contact_forces(pairs));
-    EXPECT_FALSE(validate_joint_forces(joints));
+    EXPECT_FALSE(validate_joint_forces(joints, elements));
 }
 
 TEST_F(Validate, NodesAreFiniteAndUnit) {
@@ -116,7 +116,7 @@ TEST_F(Validate, ColoursHaveNodesOnce) {
     auto& begin = group().pair_colour_begin;
     ASSERT_LT(begin[1], begin[2]) << "a tower takes two colours";
     begin[1] = begin[2];
-    const MaybeFlaw found = validate_colours(partition, pairs, joints, nodes);
+    const MaybeFlaw found = validate_colours(partition, pairs, joints, elements, nodes);
     ASSERT_TRUE(found);
     EXPECT_STREQ(found->invariant, "a colour has a moving node once");
 }
@@ -127,7 +127,7 @@ TEST_F(Validate, ForcesAreFiniteAndPush) {
     pairs.list[pairs.active[0].pair].force[0].tangent2 = kNotANumber;
     expect_flaw(validate_contact_forces(pairs), "contact forces are finite", 0);
     joints.record[joint].lambda[2] = static_cast<double>(kNotANumber);
-    expect_flaw(validate_joint_forces(joints), "joint forces are finite", joint);
+    expect_flaw(validate_joint_forces(joints, elements), "joint forces are finite", joint);
 }
 
 }  // namespace
