@@ -1,7 +1,8 @@
 /**
  * @file cable.h
- * Cables: a row of particles or of rigid links, made, reeled and read as one thing. The parts are ordinary bodies
- * and joints of the world, which all other calls may read, push and attach to.
+ * Cables: a row of particles or of rigid links, made, reeled and read as one thing. The parts are ordinary bodies of
+ * the world, which all other calls may read, push and attach to. What holds an end is an ordinary joint, and so is what
+ * ties links to each other; segments of particles are elements of the cable alone, and cost no joint.
  * Each function here: thread safety: one thread at a time per world, not inside a step.
  */
 #ifndef TAUT_CABLE_H
@@ -85,9 +86,17 @@ TAUT_API taut_result taut_world_add_cable(taut_world world, const taut_cable_def
 /**
  * Removes a cable with all its bodies and joints, and every other joint on its bodies.
  * Its bodies cannot be removed one by one: taut_body_remove then returns TAUT_IN_USE. Its joints can: taking one out
- * cuts the cable there, and taking out an end's joint, or removing the body that it is attached to, lets the end go.
+ * cuts a cable of links there, and taking out an end's joint, or removing the body that it is attached to, lets the end
+ * go.
  */
 TAUT_API taut_result taut_cable_remove(taut_cable cable);
+/**
+ * Cuts a cable: of particles the segment goes, with its shape at the next step; of links what ties the link to the
+ * next. Nothing changes where it is cut already.
+ * @param segment below the number of segments, of links below that less one.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_cable_cut(taut_cable cable, uint32_t segment);
 /** 1 if the handle names a live cable, else 0. */
 TAUT_API int32_t taut_cable_is_valid(taut_cable cable);
 TAUT_API taut_result taut_cable_get_user_data(taut_cable cable, uint64_t* out);

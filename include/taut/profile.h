@@ -40,14 +40,14 @@ typedef struct taut_profile {
     uint32_t guard_trips; /**< blocks on which the energy guard tripped */
     /* quality */
     float residual;       /**< largest remaining joint velocity error of the last substep, J v - target [m/s] */
-    float joint_error;    /**< largest joint error after the step [m] */
+    float joint_error;    /**< largest error of a joint or element after the step [m] */
     float penetration;    /**< deepest overlap found by the step [m] */
     uint64_t bytes;       /**< held from the allocator */
     uint64_t allocations; /**< calls of the allocator during the step */
     uint32_t awake;       /**< of the bodies; counts and quality above, but for bodies and joints, are theirs alone */
     uint32_t sleeping_islands;
     uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved */
-    uint32_t reserved;         /**< zero */
+    uint32_t elements;         /**< of cables of particles, which have no joint a segment */
     /* what the solves of the step left, largest of all islands and substeps; 0 unless taut_world_def.report is 1 */
     float yield;          /**< by which a swept contact or rigid joint gives way under its force, s h^2 w |f| [m]: h
                                the substep, w the inverse mass along the row, s 0.4 for contacts and 0.025 for joints */

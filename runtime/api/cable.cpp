@@ -226,6 +226,17 @@ taut_result taut_cable_remove(taut_cable handle) {
     });
 }
 
+taut_result taut_cable_cut(taut_cable handle, uint32_t segment) {
+    Check check(__func__);
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        const Cable& cable = world.cables.record[index];
+        const uint32_t last = cable.segments() - (cable.kind == CableKind::links ? 1 : 0);
+        if (!check.require(segment < last, "segment is beyond the last that can be cut")) return check.result();
+        cut_cable(world, index, segment);
+        return TAUT_OK;
+    });
+}
+
 int32_t taut_cable_is_valid(taut_cable handle) { return is_valid(handle); }
 
 taut_result taut_cable_get_user_data(taut_cable handle, uint64_t* out) {

@@ -59,7 +59,7 @@ private:
         uint32_t at = 0;
         for (uint32_t point = 1; point < cable.segments(); ++point) {
             if (!on_round_[cable.node[point - 1]] && !on_round_[cable.node[point]]) continue;
-            if (!find(world_.joints, cable.joint[point - 1])) continue;
+            if (!is_whole(world_, cable, point - 1)) continue;
             const double bend = bend_at_point(world_, cable, point);
             if (bend > most) most = bend, at = point;
         }

@@ -21,8 +21,8 @@ void add_parts(World& world, uint32_t index, std::span<const Vec3> points, const
     const auto segments = static_cast<uint32_t>(points.size()) - 1;
     const uint32_t count = links(cable) ? segments : segments + 1;
     cable.node.reserve(count);
-    cable.joint.reserve(segments);
     cable.length.reserve(segments);
+    links(cable) ? cable.joint.reserve(segments) : add_sets(world, cable);
     for (uint32_t i = 0; i < segments; ++i) cable.length.push_back((points[i + 1] - points[i]).norm());
     cable.nominal = cable_length(cable) / segments;
 
@@ -41,12 +41,15 @@ void add_parts(World& world, uint32_t index, std::span<const Vec3> points, const
     }
     for (uint32_t i = 0; i < segments && !links(cable); ++i)
         add_segment(world, cable, cable.node[i], cable.node[i + 1], cable.length[i]);
-    for (uint32_t i = 0; i + 1 < count; ++i) cable.joint.push_back(add_joint(world, make_inner_joint(cable, i)));
+    for (uint32_t i = 0; i + 1 < count; ++i)
+        if (links(cable))
+            cable.joint.push_back(add_joint(world, make_inner_joint(cable, i)));
+        else
+            insert_segment(world, cable, i);
     for (int e = 0; e < 2; ++e)
         if (tie[e].attached) cable.end[e].joint = add_joint(world, make_end_joint(world, cable, e, tie[e]));
     if (links(cable) || cable.bending_stiffness == 0) return;
-    cable.bend.reserve(segments - 1);
-    for (uint32_t point = 1; point < segments; ++point) cable.bend.push_back(add_joint(world, make_bend(cable, point)));
+    for (uint32_t point = 1; point < segments; ++point) insert_bend(world, cable, point);
     for (int e = 0; e < 2; ++e)
         if (tie[e].clamped) cable.end[e].clamp = add_joint(world, make_clamp(world, cable, e, tie[e]));
 }
@@ -56,9 +59,8 @@ void add_parts(World& world, uint32_t index, std::span<const Vec3> points, const
 CableParts parts_of(const Cable& plan, uint32_t segments, const CableTie (&tie)[2]) {
     const size_t held = size_t{tie[0].attached} + size_t{tie[1].attached};
     if (links(plan)) return {segments, segments, segments - 1 + held};
-    const size_t clamps = size_t{tie[0].clamped} + size_t{tie[1].clamped};
-    const size_t bends = plan.bending_stiffness > 0 ? segments - 1 + clamps : 0;
-    return {segments + 1, segments, segments + held + bends};
+    const size_t clamps = plan.bending_stiffness > 0 ? size_t{tie[0].clamped} + size_t{tie[1].clamped} : 0;
+    return {segments + 1, segments, held + clamps};
 }
 
 uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points, const CableTie (&tie)[2]) {
@@ -85,6 +87,8 @@ void remove_cable(World& world, uint32_t index) {
         const auto nodes = world.joints.record[joint].nodes();
         if (std::any_of(nodes.begin(), nodes.end(), own)) world.joints.remove(joint);
     }
+    for (const uint32_t set : {world.cables.record[index].stretch, world.cables.record[index].bending})
+        if (set != kNone) world.elements.remove(set);
     for (uint32_t node : world.cables.record[index].node) drop_cable_node(world, node);
     world.cables.remove(index);
 }
@@ -97,8 +101,10 @@ void drop_loose_parts(World& world) {
     };
     for (Cable& cable : world.cables.record) {
         if (links(cable) || cable.segments() == 0) continue;
-        auto cut = [&](uint32_t segment) { return !find(world.joints, cable.joint[segment]); };
-        for (uint32_t i = 0; i < cable.bend.size(); ++i) drop(cable.bend[i], cut(i) || cut(i + 1));
+        auto cut = [&](uint32_t segment) { return !is_whole(world, cable, segment); };
+        for (uint32_t i = 0; cable.bending != kNone && i + 1 < cable.segments(); ++i)
+            if (bending_of(world, cable).lives(i) && (cut(i) || cut(i + 1)))
+                world.elements.kill(bending_of(world, cable), i);
         for (uint32_t i = 0; i < cable.segments(); ++i) {
             const uint32_t collider = world.nodes.info[cable.node[i]].collider;
             if (cut(i) && collider != kNone) drop_capsule(world, collider);
@@ -108,6 +114,21 @@ void drop_loose_parts(World& world) {
             drop(end.clamp, !find(world.joints, end.joint) || cut(e == 0 ? 0 : cable.segments() - 1));
         }
     }
+}
+
+bool is_whole(const World& world, const Cable& cable, uint32_t segment) {
+    return segment_ref(world, cable, segment).index != kNone;
+}
+
+void cut_cable(World& world, uint32_t index, uint32_t segment) {
+    const Cable& cable = world.cables.record[index];
+    const ConstraintRef ref = segment_ref(world, cable, segment);
+    if (ref.index == kNone) return;
+    const auto ends = view_of(world, ref).nodes;
+    // What may fail comes first: the two may collide from now on.
+    forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(ends[0], ends[1]));
+    for (const uint32_t node : ends) wake(world, node);
+    ref.set == kNone ? world.joints.remove(ref.index) : world.elements.kill(world.elements.set[ref.set], ref.index);
 }
 
 }  // namespace taut

@@ -1,7 +1,8 @@
-// Cables: a user's description -> nodes and joints, and the changes of both while the cable is reeled.
+// Cables: a user's description -> nodes, joints and elements, and the changes of these while the cable is reeled.
 //
 // Segment i lies between points i and i + 1. Particles: node i is point i with the mass of half of the segments beside
-// it; joint i holds the distance of segment i, and with bending stiffness bend i resists at point i + 1. Links: node i
+// it; element i of its set of links holds the distance of segment i, and with bending stiffness bend i of another set
+// resists at point i + 1; what holds an end is a joint, and so is the bend where that is clamped. Links: node i
 // is segment i, a capsule along its y axis; joint i holds link i + 1 to link i, as a ball or, with bending stiffness
 // EI, as a fixed joint whose angular compliance is that of the cable between the two middles:
 //   angle = moment * span / EI,   gap = force * span * stretch_compliance
@@ -37,6 +38,11 @@ CableParts parts_of(const Cable& plan, uint32_t segments, const CableTie (&tie)[
 uint32_t add_cable(World& world, const Cable& plan, std::span<const Vec3> points, const CableTie (&tie)[2]);
 // Throws std::bad_alloc with nothing changed.
 void remove_cable(World& world, uint32_t cable);
+
+// Whether a segment is still tied: of particles, or between link i and the next.
+bool is_whole(const World& world, const Cable& cable, uint32_t segment);
+// Where it is, from the next step on.
+void cut_cable(World& world, uint32_t cable, uint32_t segment);
 
 // Point 0 to segments(), and the tension of a segment [N].
 Vec3 cable_point(const World& world, const Cable& cable, uint32_t point);

@@ -1,7 +1,10 @@
 // What a cable is made of, for the files that make, change and read cables.
 #pragma once
 
+#include <array>
+
 #include "models/cable.h"
+#include "state/constraint_view.h"
 
 namespace taut {
 
@@ -38,20 +41,35 @@ double span_before(const Cable& cable, uint32_t i);
 double span_after(const Cable& cable, uint32_t i);
 
 void set_softness(const Cable& cable, Joint& joint, double span);
-// Length and softness of a segment of particles.
-void set_segment(const Cable& cable, Joint& joint, double length);
-// Joint i with its data, between nodes whose segments have their lengths.
+// Joint i between links, with its data, whose segments have their lengths.
 Joint make_inner_joint(const Cable& cable, uint32_t i);
 // What holds end e.
 Joint make_end_joint(const World& world, const Cable& cable, int e, const CableTie& tie);
 
-// Of particles: what bends at a point. An end's is there where it is clamped.
-inline JointRef bend_at(const Cable& c, uint32_t point) {
-    if (point == 0) return c.end[0].clamp;
-    if (point == c.segments()) return c.end[1].clamp;
-    return c.bend.empty() ? JointRef{} : c.bend[point - 1];
+// ---------------------------------------------------------------- elements, of particles
+
+inline ElementSet& stretch_of(World& world, const Cable& c) { return world.elements.set[c.stretch]; }
+inline ElementSet& bending_of(World& world, const Cable& c) { return world.elements.set[c.bending]; }
+// Empty sets of a cable's own, with its material.
+void add_sets(World& world, Cable& cable);
+// Segment i with its length, and the bend at a point, into their sets; there is room.
+void insert_segment(World& world, const Cable& cable, uint32_t i);
+void insert_bend(World& world, const Cable& cable, uint32_t point);
+// Nodes, length and softness of segment i after changes beside it.
+void set_segment(World& world, const Cable& cable, uint32_t i);
+
+// What holds segment i: its element, or the joint after link i. None: it was cut.
+ConstraintRef segment_ref(const World& world, const Cable& cable, uint32_t i);
+// What bends at a point of particles. An end's is there where it is clamped.
+ConstraintRef bend_at(const World& world, const Cable& cable, uint32_t point);
+ConstraintRef ref_of(const World& world, const JointRef& joint);
+inline ConstraintView view_of(const World& world, const ConstraintRef& ref) {
+    return ref.index == kNone ? ConstraintView{} : view_of(world.joints, world.elements, ref);
 }
-Joint make_bend(const Cable& cable, uint32_t point);
+// [rows]
+double* lambda_of(World& world, const ConstraintRef& ref);
+double* drift_of(World& world, const ConstraintRef& ref);
+
 // The bend at a clamped end: the body that holds the end has a point a segment behind it.
 Joint make_clamp(const World& world, const Cable& cable, int e, const CableTie& tie);
 // Nodes and softness of the bend at a point, if there is one, after changes beside it.

@@ -13,8 +13,7 @@ Vec3 cable_point(const World& world, const Cable& cable, uint32_t point) {
 
 double cable_tension(const World& world, const Cable& cable, uint32_t segment) {
     if (!links(cable)) {
-        const Joint* joint = find(world.joints, cable.joint[segment]);
-        return joint ? -joint->lambda[0] : 0;
+        return -world.elements.set[cable.stretch].lambda_of(segment)[0];
     }
     // lambda is the force on the node towards end 1; the middle has the mean of both ends.
     Vec3 pull = Vec3::Zero();

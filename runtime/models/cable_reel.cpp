@@ -11,9 +11,9 @@ namespace {
 
 // Of the nominal segment. Apart enough that a segment just cut or joined is far from the other threshold.
 constexpr double kDivide = 1.6, kJoin = 0.4;
-constexpr double kMostPaid = 0.5;  // in a step; the speed that asks for it may have been set for shorter ones
+constexpr double kMostPaid = 0.5;   // in a step; the speed that asks for it may have been set for shorter ones
 constexpr double kRounding = 1e-6;  // by which a speed in the world's range may be above that
-constexpr double kMakeGood = 0.1;  // of what passes an end, towards what was lost
+constexpr double kMakeGood = 0.1;   // of what passes an end, towards what was lost
 
 template <class T>
 void make_room(Array<T>& list) {
@@ -22,36 +22,36 @@ void make_room(Array<T>& list) {
 
 }  // namespace
 
-Kept::Kept(World& world, const JointRef& ref) : world_(world), ref_(ref) {
-    const Joint* joint = find(world.joints, ref);
-    if (!joint) return;
-    const JointReading now = read_joint(world.nodes, *joint);
-    for (int r = 0; r < joint->type->rows; ++r) error_[r] = now.value[r] - joint->drift[r];
-    compliance_[0] = joint->compliance;
-    compliance_[1] = joint->angular_compliance;
+Kept::Kept(World& world, const ConstraintRef& ref) : world_(world), ref_(ref) {
+    const ConstraintView view = view_of(world, ref);
+    if (!view) return;
+    view.read(world.nodes, error_);
+    for (int r = 0; r < view.type->rows; ++r) error_[r] -= view.drift[r];
+    std::copy_n(view.compliance, 2, compliance_);
 }
 
-void Kept::let_go() const {
-    Joint* joint = find(world_.joints, ref_);
-    if (!joint) return;
-    const JointReading reading = read_joint(world_.nodes, *joint);
-    const double now[2] = {joint->compliance, joint->angular_compliance};
-    for (int r = 0; r < joint->type->rows; ++r) {
-        const int angle = is_angle(*joint, r);
-        const double growth = compliance_[angle] > 0 ? now[angle] / compliance_[angle] : 1;
-        joint->drift[r] = reading.value[r] - growth * error_[r];
+void Kept::let_go(const ConstraintRef& now) const {
+    const ConstraintView view = view_of(world_, now);
+    if (!view) return;
+    double value[kMaxRows];
+    view.read(world_.nodes, value);
+    double* const drift = drift_of(world_, now);
+    for (int r = 0; r < view.type->rows; ++r) {
+        const double before = compliance_[view.is_angle(r)];
+        const double growth = before > 0 ? view.compliance_of(r) / before : 1;
+        drift[r] = value[r] - growth * error_[r];
     }
 }
 
 bool Reel::tied() const {
-    return find(world_.joints, end_.joint) && moves(outer()) && (links() || (moves(second()) && segment_joint()));
+    return find(world_.joints, end_.joint) && moves(outer()) && (links() || (moves(second()) && is_whole()));
 }
 
 bool Reel::can_join() const {
-    if (c_.segments() < 2 || !moves(second()) || !segment_joint()) return false;
+    if (c_.segments() < 2 || !moves(second()) || !is_whole()) return false;
     if (links()) return true;
     const uint32_t third = e_ == 0 ? c_.node[2] : c_.node[c_.node.size() - 3];
-    return moves(third) && find(world_.joints, e_ == 0 ? c_.joint[1] : c_.joint[c_.joint.size() - 2]);
+    return moves(third) && taut::is_whole(world_, c_, e_ == 0 ? 1 : at() - 1);
 }
 
 void Reel::fit() {
@@ -109,21 +109,20 @@ void Reel::reserve_ended_of(std::initializer_list<uint32_t> nodes) {
     });
 }
 
-uint32_t Reel::add_parts(const NodeMotion& m, double share, std::span<JointRef> joints) {
+uint32_t Reel::add_parts(const NodeMotion& m, double share, JointRef* joint) {
     make_room(c_.node);
     make_room(c_.joint);
-    make_room(c_.bend);
     make_room(c_.length);
+    for (const uint32_t set : {c_.stretch, c_.bending})
+        if (set != kNone) reserve_elements(world_.elements.set[set], 1);
     const uint32_t node = add_cable_node(world_, index_, m, share);
-    size_t made = 0;
     try {
         if (!links()) add_segment(world_, c_, node, e_ == 0 ? second() : outer(), c_.nominal);
-        for (; made < joints.size(); ++made) {
-            joints[made].slot = world_.joints.add(Joint{});
-            joints[made].serial = world_.joints.record[joints[made].slot].serial;
+        if (joint) {
+            joint->slot = world_.joints.add(Joint{});
+            joint->serial = world_.joints.record[joint->slot].serial;
         }
     } catch (...) {
-        while (made > 0) world_.joints.remove(joints[--made].slot);
         drop_cable_node(world_, node);  // no pairs yet: does not throw
         throw;
     }
@@ -136,15 +135,16 @@ Joint& Reel::place_joint(const JointRef& ref, Joint joint) {
     return world_.joints.record[ref.slot] = joint;
 }
 
-void Reel::blend(const JointRef& ref, double weight, double* force) const {
-    const Joint* joint = find(world_.joints, ref);
-    for (int r = 0; joint && r < joint->type->rows; ++r) force[r] += weight * joint->lambda[r];
+void Reel::blend(const ConstraintRef& ref, double weight, double* force) const {
+    const ConstraintView view = view_of(world_, ref);
+    for (int r = 0; view && r < view.type->rows; ++r) force[r] += weight * view.lambda[r];
 }
 
-void Reel::load(Joint& joint, const double* force) {
-    for (int r = 0; r < joint.type->rows; ++r) {
-        joint.lambda[r] = force[r];
-        joint.drift[r] = row_compliance(joint, r) * force[r];
+void Reel::load(const ConstraintRef& ref, const double* force) {
+    const ConstraintView view = view_of(world_, ref);
+    for (int r = 0; r < view.type->rows; ++r) {
+        lambda_of(world_, ref)[r] = force[r];
+        drift_of(world_, ref)[r] = view.compliance_of(r) * force[r];
     }
 }
 

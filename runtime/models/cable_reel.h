@@ -9,15 +9,18 @@
 
 namespace taut {
 
-// A joint before a change, to be let go after it.
+// A joint or element before a change, to be let go after it.
 class Kept {
 public:
-    Kept(World& world, const JointRef& ref);
-    void let_go() const;
+    Kept(World& world, const ConstraintRef& ref);
+    Kept(World& world, const JointRef& joint) : Kept(world, ref_of(world, joint)) {}
+    // Where it is now.
+    void let_go(const ConstraintRef& now) const;
+    void let_go() const { let_go(ref_); }
 
 private:
     World& world_;
-    JointRef ref_;
+    ConstraintRef ref_;
     double error_[kMaxRows] = {}, compliance_[2] = {};
 };
 
@@ -49,7 +52,8 @@ private:
     uint32_t second() const { return e_ == 0 ? c_.node[1] : c_.node[c_.node.size() - 2]; }
     NodeMotion& motion(uint32_t node) const { return world_.nodes.motion[node]; }
     bool moves(uint32_t node) const { return moves_by_forces(world_.nodes.info[node].kind); }
-    bool segment_joint() const { return find(world_.joints, e_ == 0 ? c_.joint.front() : c_.joint.back()); }
+    // Whether the end segment and the next are tied.
+    bool is_whole() const { return taut::is_whole(world_, c_, links() && e_ == 1 ? at() - 1 : at()); }
 
     template <class T>
     void insert(Array<T>& list, const T& value, uint32_t from_end) {
@@ -62,13 +66,13 @@ private:
 
     // Room for the end events of pairs on nodes that go or change.
     void reserve_ended_of(std::initializer_list<uint32_t> nodes);
-    // A node and the slots of joints; all that may fail when a segment is cut.
-    uint32_t add_parts(const NodeMotion& m, double share, std::span<JointRef> joints);
+    // A node, the slot of a joint if one is asked for and room for elements; all that may fail when a segment is cut.
+    uint32_t add_parts(const NodeMotion& m, double share, JointRef* joint);
     Joint& place_joint(const JointRef& ref, Joint joint);
-    // So many shares of a joint's force onto `force`.
-    void blend(const JointRef& ref, double weight, double* force) const;
-    // Drift by which a joint that is straight now soon gives way as this force asks.
-    static void load(Joint& joint, const double* force);
+    // So many shares of its force onto `force`.
+    void blend(const ConstraintRef& ref, double weight, double* force) const;
+    // Drift by which what is straight now soon gives way as this force asks.
+    void load(const ConstraintRef& ref, const double* force);
     // Joints of someone else on a node that goes away with it; forgotten pairs have their room.
     void remove_joints_of(uint32_t node);
 

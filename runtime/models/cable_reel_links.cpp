@@ -51,19 +51,20 @@ void Reel::divide_link() {
     const Vec3 out = outward(motion(old));
     reserve_ended_of({old});
     JointRef ref;
-    const uint32_t node = add_parts(moved(motion(old), 0.5 * n * out), rest, {&ref, 1});
+    const uint32_t node = add_parts(moved(motion(old), 0.5 * n * out), rest, &ref);
 
     const Kept outer_joint(world_, end_.joint), inner_joint(world_, inner(at()));
     double force[kMaxRows] = {};  // at the cut
-    blend(inner(at()), rest / l, force);
-    blend(end_.joint, n / l, force);
+    blend(ref_of(world_, inner(at())), rest / l, force);
+    blend(ref_of(world_, end_.joint), n / l, force);
     shift_centre(world_, old, -0.5 * rest * out);
     length() = n;
     insert(c_.node, node, 0);
     insert(c_.length, rest, 0);
     insert(c_.joint, ref, 0);
     const uint32_t outer_link = at(), inner_link = e_ == 0 ? 1 : outer_link - 1;
-    load(place_joint(ref, make_inner_joint(c_, std::min(outer_link, inner_link))), force);
+    place_joint(ref, make_inner_joint(c_, std::min(outer_link, inner_link)));
+    load(ref_of(world_, ref), force);
     set_cable_mass(world_, c_, inner_link);
     retie(inner_link);
     retie(outer_link);

@@ -1,8 +1,8 @@
-// Cables: which nodes and joints a user's cable is made of, in order, and how its ends are being reeled.
+// Cables: which nodes, joints and elements a user's cable is made of, in order, and how its ends are being reeled.
 #pragma once
 
 #include "state/colliders.h"
-#include "state/joints.h"
+#include "state/elements.h"
 
 namespace taut {
 
@@ -37,13 +37,14 @@ void describe(Visitor& visitor, Of& of) {
 }
 
 struct Cable {
-    explicit Cable(Memory& memory) : node(memory), joint(memory), bend(memory), length(memory) {}
+    explicit Cable(Memory& memory) : node(memory), joint(memory), length(memory) {}
 
     CableKind kind = CableKind::particles;
-    Array<uint32_t> node;   // points, or links
-    Array<JointRef> joint;  // between node i and node i + 1
-    Array<JointRef> bend;   // of particles with bending stiffness: at point i + 1
-    Array<double> length;   // of each segment, unstretched [m]
+    Array<uint32_t> node;      // points, or links
+    Array<JointRef> joint;     // of links, between node i and node i + 1
+    uint32_t stretch = kNone;  // of particles: element set of the segments, in order
+    uint32_t bending = kNone;  // of particles with bending stiffness: that of the bends, i at point i + 1
+    Array<double> length;      // of each segment, unstretched [m]
     CableEnd end[2];
     double nominal = 0;             // length of a segment that is cut off when paying out [m]
     double mass_per_metre = 0;      // [kg/m]
@@ -62,10 +63,12 @@ struct Cable {
 };
 template <class Visitor, Like<Cable> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, node, joint, bend, length, end, nominal, mass_per_metre, radius, stretch_compliance, stretch_damping,
-           bending_stiffness, bending_damping, gravity_scale, material, filter, self_collision, user_data] = of;
-    TAUT_FIELDS(visitor, kind, node, joint, bend, length, end, nominal, mass_per_metre, radius, stretch_compliance,
-                stretch_damping, bending_stiffness, bending_damping, gravity_scale, material, filter, self_collision);
+    auto& [kind, node, joint, stretch, bending, length, end, nominal, mass_per_metre, radius, stretch_compliance,
+           stretch_damping, bending_stiffness, bending_damping, gravity_scale, material, filter, self_collision,
+           user_data] = of;
+    TAUT_FIELDS(visitor, kind, node, joint, stretch, bending, length, end, nominal, mass_per_metre, radius,
+                stretch_compliance, stretch_damping, bending_stiffness, bending_damping, gravity_scale, material,
+                filter, self_collision);
     TAUT_ASIDE(visitor, user_data);
 }
 

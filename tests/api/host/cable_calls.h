@@ -78,6 +78,7 @@ protected:
         const float most = count_bodies(cable) > 24 ? 0.0f : 1.0f;
         const float speed = real(-2, 2 * most), acceleration = real(0, 10), metres = real(-1, most);
         run("taut_cable_set_reel_speed", [&] { return taut_cable_set_reel_speed(cable, end, speed, acceleration); });
+        if (one_in(20)) run("taut_cable_cut", [&] { return taut_cable_cut(cable, byte() % 8); });
         if (one_in(2)) run("taut_cable_reel", [&] { return taut_cable_reel(cable, end, metres); });
         if (taut_cable_is_valid(cable) && one_in(4)) keep_parts(cable, world_of(cables_, cable, w));
     }

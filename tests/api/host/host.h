@@ -228,7 +228,9 @@ private:
         const taut_result result = act();
         call_ = name;
         expect(result >= TAUT_OK && result <= TAUT_UNSUPPORTED, "a result that is none");
-        expect(result != TAUT_LOCKED && result != TAUT_UNSUPPORTED, "a result that nothing here calls for");
+        const bool may_be_of_others = std::strcmp(name, "taut_world_restore") == 0;  // a flipped bit of the version
+        expect(result != TAUT_LOCKED && (result != TAUT_UNSUPPORTED || may_be_of_others),
+               "a result that nothing here calls for");
         if (result != TAUT_OK)
             expect(std::strstr(taut_last_error(), name) == taut_last_error(), "a text that does not name the call");
         if (result != TAUT_OK || pure)
