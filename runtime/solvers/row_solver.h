@@ -30,7 +30,7 @@ void run_phase(Substep& s, Phase phase) {
     Problem problem(s.system, s.scratch.problem, s.settings.rows, phase, rigid);
     IterationSettings settings = s.settings.iteration;
     settings.count = s.settings.sweeps ? s.settings.sweeps : default_count;
-    if (phase == Phase::project) problem.warm_start();
+    if (phase == Phase::project) problem.warm_start(settings.count);
     iterate(problem, settings);
     problem.store();
 }

@@ -39,7 +39,6 @@ Problem::Problem(System& system, ProblemMemory& memory, const RowSettings& setti
     for (NodeVectors& each : m_.node_vector) each.resize(s_.pose.size());
     find_islands();
     find_inverses(Masses::split);
-    find_turning();
     for (Vector& each : m_.island) each.assign(islands_, 0.0);
 }
 
@@ -293,33 +292,7 @@ void Problem::evaluate(const Unit& unit) {
         if (rows.angular(r)) moved -= kTurn * std::round(moved / kTurn);
         m_.rate[at] = moved / s_.scheme.h;
     }
-    turn(unit);
-}
-
-// Springs follow their J to the positions at the end of the substep, so that what is converged is implicit in their
-// directions too, the energy's minimum. As an iteration that is stable for a share of 1 / (1 + h^2 k), k their
-// geometric stiffness over mass; c / (A + c) is no more than that while they are less than twice as long. Impulses of
-// rigid rows stay as they were given: position based dynamics.
-void Problem::find_turning() {
-    m_.applied.clear();
-    if (rigid_ == Rigid::soft) return;  // forces are of the present J there
-    for (Unit& unit : m_.unit) {
-        if (unit.linear || unit.rigid || unit.force) continue;
-        unit.turning = (matrix(m_.inverse, unit) * matrix(m_.compliance, unit)).trace() / unit.rows;
-        unit.applied = static_cast<uint32_t>(m_.applied.size());
-        m_.applied.resize(m_.applied.size() + nodes(unit).size(), NodeVector::Zero());
-    }
-}
-
-void Problem::turn(const Unit& unit) {
-    if (unit.turning == 0) return;
-    for (int n = 0; n < block(unit).type->nodes; ++n) {
-        const uint32_t seat = block(unit).node[n];
-        NodeVector& applied = m_.applied[unit.applied + static_cast<uint32_t>(n)];
-        const NodeVector change = unit.turning * (jacobian(unit, n).transpose() * of(unit, m_.impulse) - applied);
-        applied += change;
-        if (m_.count[seat] > 0) move(seat, response_of(seat, change));
-    }
+    turn(unit, poses);
 }
 
 void Problem::evaluate() {
@@ -395,15 +368,8 @@ void Problem::push(const Unit& unit, const RowVector& change) {
     for (int n = 0; n < block(unit).type->nodes; ++n) {
         const uint32_t seat = block(unit).node[n];
         const NodeVector p = unit.sign * (jacobian(unit, n).transpose() * change);
-        if (unit.turning > 0) m_.applied[unit.applied + static_cast<uint32_t>(n)] += p;
+        if (unit.turning != kNone) m_.applied[unit.applied + static_cast<uint32_t>(n)] += p;
         if (m_.count[seat] > 0) move(seat, response_of(seat, p));
-    }
-}
-
-void Problem::warm_start() {
-    for (const Unit& unit : m_.unit) {
-        of(unit, m_.impulse) = masked(unit, of(unit, m_.impulse));
-        push(unit, of(unit, m_.impulse));
     }
 }
 

@@ -47,8 +47,8 @@ struct Unit {
     bool rigid = true;          // c is not the row's own
     bool solved = true;         // else it keeps its impulse
     bool linear = true;         // rate(u) is J u
-    double turning = 0;         // share of an impulse that follows J to new positions in an evaluation, see turn()
-    uint32_t applied = 0;       // of a unit that turns: its first in ProblemMemory::applied
+    uint32_t turning = kNone;   // in ProblemMemory::turning, of a unit whose impulses follow J
+    uint32_t applied = 0;       // of such a unit: its first in ProblemMemory::applied
     uint32_t block = 0;         // in Rows::block
     uint32_t first = 0;         // impulse
     uint32_t matrix = 0;        // of c and of the inverse diagonal: rows x rows, column by column
@@ -57,6 +57,13 @@ struct Unit {
     double low = 0, high = 0;
     uint32_t load = 0, loads = 0;  // normals whose impulses bound it: the first, and how many, kContactRows apart
     float* force = nullptr;        // of an axis: carried [N]
+};
+
+// Geometric stiffness K of a unit whose impulses follow J: see turning.cpp.
+struct Turning {
+    double elastic = 0;               // share of an evaluation that its compliance alone makes stable
+    double direction[kMaxRows] = {};  // of the impulse that pull and push are of, or zero
+    double pull = 0, push = 0;        // h t tr(W K) of K's positive and negative part, per impulse [1/(N s)]
 };
 
 struct ProblemMemory {
@@ -72,6 +79,7 @@ struct ProblemMemory {
           parent(m),
           island_of(m),
           seat(m),
+          turning(m),
           applied(m),
           node(m),
           node_vector{Array<NodeVector>(m), Array<NodeVector>(m), Array<NodeVector>(m), Array<NodeVector>(m),
@@ -86,6 +94,7 @@ struct ProblemMemory {
     Array<uint32_t> count, parent;      // by seat: units on it, and scratch of find_islands()
     Array<uint32_t> island_of;          // by seat
     Array<uint32_t> seat;               // of moving nodes that a unit is on
+    Array<Turning> turning;             // of units that turn
     Array<NodeVector> applied;          // what impulses of units that turn gave to their nodes, J^T mu as it was then
     Array<NodeVector> node, node_vector[5];  // by seat; for a solver
     Array<double> vector[4];                 // rows, for a solver
@@ -105,8 +114,8 @@ public:
     Vector& scratch(int i) { return m_.vector[i]; }
     Vector& island_scratch(int i) { return m_.island[i]; }
 
-    // u += W J^T mu, of what the last substep left.
-    void warm_start();
+    // u += W J^T mu, of what the last substep left and so many evaluations can turn.
+    void warm_start(uint32_t evaluations);
     // Rates and, in position projection, J at x_n + h u: of all units, or of one.
     void evaluate();
     void evaluate(const Unit& unit);
@@ -156,6 +165,11 @@ private:
     Eigen::Map<const Eigen::MatrixXd> matrix(const Vector& of, const Unit& unit) const {
         return {&of[unit.matrix], unit.rows, unit.rows};
     }
+    // Geometric stiffness of a unit's impulse: h t tr(W |K|), and the share of K's positive part in it.
+    struct Stiffness {
+        double size = 0, positive = 1;
+        double stable_share() const { return 1 / (1 + size); }
+    };
     bool is_solved(const Unit& unit, int r) const {
         return unit.solved && (unit.law != Unit::Law::free || block(unit).locked(r));
     }
@@ -182,7 +196,9 @@ private:
     }
     void push(const Unit& unit, const RowVector& change);
     void find_turning();
-    void turn(const Unit& unit);
+    Stiffness stiffness(const Unit& unit, const Pose* poses);
+    double trace_of_stiffness(const Unit& unit, const Pose* poses, const RowVector& force) const;
+    void turn(const Unit& unit, const Pose* poses);
 
     System& s_;
     ProblemMemory& m_;
