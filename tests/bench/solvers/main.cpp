@@ -1,6 +1,6 @@
-// taut-solvers FOLDER: how fast every solver of rows converges, on one substep each of a hanging net of cables, 3000
-// grains, 2000 boxes and a bridge (Frâncu 2016, figures 6.1, 6.3, 8.8 to 8.10, tables 8.1 and 8.3). All start from the
-// same velocities and impulses; FOLDER/solvers.csv holds what each leaves after n iterations, and the time it took.
+// taut-solvers FOLDER: how fast every solver of rows converges, on one substep each of a hanging net, 3000 grains, 2000
+// boxes and a bridge (Frâncu 2016, figures 6.1, 6.3, 8.8 to 8.10, tables 8.1 and 8.3). All start from the same
+// velocities and impulses; FOLDER/solvers.csv holds what each leaves after n iterations, and the time it took.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

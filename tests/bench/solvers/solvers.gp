@@ -1,7 +1,7 @@
 # Error left against iterations and against time, for every solver.
 eval picture(1180, 1080)
 set output "solvers.png"
-set multiplot layout 4, 2 margins 0.08, 0.72, 0.05, 0.96 spacing 0.1, 0.075
+set multiplot layout 4, 2 margins 0.08, 0.72, 0.05, 0.96 spacing 0.1, 0.09
 set logscale xy
 set format y "10^{%T}"
 names = "gauss_seidel sor_1.2 jacobi accelerated_jacobi_nesterov accelerated_jacobi_power minimum_residual minimum_residual_fixed conjugate_residuals conjugate_gradients"
@@ -17,7 +17,10 @@ do for [s in "net grains3000 boxes2000 bridge"] {
     unset ylabel
     set xlabel "time of the substep, ms"
     set title ""
-    if (s eq "net") { set key at graph 1.04, graph 1 left top Left reverse noenhanced }
-    plot for [i = 1:9] of(s, word(names, i)) using 5:4 with linespoints lc rgb colour[i] lw 2 pt 7 ps 0.5 title word(names, i)
+    # The legend beside the first two scenes, for a key is no higher than its plot.
+    first = s eq "net" ? 1 : 6
+    if (s eq "net" || s eq "grains3000") { set key at graph 1.04, graph 1 left top Left reverse noenhanced }
+    plot for [i = 1:9] of(s, word(names, i)) using 5:4 with linespoints lc rgb colour[i] lw 2 pt 7 ps 0.5 \
+        title (i >= first && i < first + 5 ? word(names, i) : "")
 }
 unset multiplot
