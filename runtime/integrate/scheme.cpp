@@ -49,7 +49,7 @@ RowVector spring_force(const RowBlock& block, const double* error, bool is_new) 
         return -Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows)
                     .llt()
                     .solve(Eigen::Map<const RowVector>(error, rows)) /
-               block.block_scale;
+               block.compliance[0];
     for (int r = 0; r < rows; ++r)
         if (block.locked(r) && block.elastic(r))
             force[r] = is_new ? -error[r] / block.compliance[block.angular(r)] : block.force[r];

@@ -316,7 +316,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
             std::swap(old.order, block.order);
             std::swap(old.matrix, block.matrix);
             std::swap(old.places, block.places);
-            std::swap(old.first_place, block.first_place);
+            block.stride = old.stride;
             std::swap(old.solution, block.solution);
             std::swap(old.known, block.known);
             std::swap(old.force, block.force);

@@ -45,7 +45,6 @@ struct Block {
           order(m),
           matrix(m),
           places(m),
-          first_place(m),
           solution(m),
           known(m),
           force(m) {}
@@ -60,7 +59,7 @@ struct Block {
     Array<uint32_t> order;                 // of elimination, from the first solve on, which knows what gives; or empty
     SparseBlockLdlt matrix;                // unknowns: nodes, then joints; made by the next solve where it is gone
     Array<BlockPlace> places;              // of its nodes and ties in the matrix; see solvers/block_matrix.cpp
-    Array<uint32_t> first_place;           // of each tie
+    uint32_t stride = 0;                   // of these, from tie to tie
     Array<double> solution, known, force;  // scratch of its solve
     bool tower = false;                    // no ties: bodies that stand on each other or are pressed
     bool looped = false;                   // more joints than a tree
@@ -79,8 +78,8 @@ struct Block {
 };
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [nodes, joints, elements, condensed, pairs, links, identity, order, matrix, places, first_place, solution,
-           known, force, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
+    auto& [nodes, joints, elements, condensed, pairs, links, identity, order, matrix, places, stride, solution, known,
+           force, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
            contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve

@@ -11,7 +11,7 @@ namespace {
 constexpr double kLoopCompliance = 1e-7;  // of a row's own effective inverse mass: makes redundant loops solvable
 
 // Block::places: diagonals of the nodes; then of each tie its own diagonal, those of its Jacobians and of the couplings
-// between its nodes.
+// between its nodes, with room for the type that has most.
 uint32_t places_of(const ConstraintType& type) { return static_cast<uint32_t>(1 + type.nodes * (type.nodes + 1) / 2); }
 constexpr uint32_t kDiagonal = 0;
 uint32_t of_jacobian(int n) { return 1 + static_cast<uint32_t>(n); }
@@ -120,13 +120,12 @@ bool BlockSolve::looped() const {
     return multipliers() + 1 > nodes_ + (held ? 1u : 0u);
 }
 
-BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[b_.first_place[j] + which]; }
+BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[nodes_ + j * b_.stride + which]; }
 
 void BlockSolve::find_places() {
-    b_.first_place.resize(ties());
-    uint32_t count = nodes_;
-    for (uint32_t j = 0; j < ties(); ++j) count = (b_.first_place[j] = count) + places_of(*row(j).type);
-    b_.places.assign(count, {});
+    b_.stride = 0;
+    for (uint32_t j = 0; j < ties(); ++j) b_.stride = std::max(b_.stride, places_of(*row(j).type));
+    b_.places.assign(nodes_ + ties() * b_.stride, {});
     for (uint32_t i = 0; i < nodes_; ++i) b_.places[i] = b_.matrix.place(i, i);
     for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);

@@ -34,7 +34,7 @@ void add_joint(System& system, Joint& joint, bool in_lanes) {
     block.compliance[0] = joint.compliance;
     block.compliance[1] = joint.angular_compliance;
     block.compliance_block = joint.type->compliance ? joint.type->compliance(joint.data) : nullptr;
-    block.block_scale = 1;
+    if (block.compliance_block) block.compliance[0] = 1;
     block.relaxation[0] = block.compliance_block ? joint.damping : joint.compliance * joint.damping;
     block.relaxation[1] = joint.angular_compliance * joint.angular_damping;
     block.axis = joint.plain ? nullptr : joint.axis;
@@ -55,8 +55,7 @@ void add_element(System& system, ElementSet& set, uint32_t e, bool in_lanes) {
     block.slow_turn = set.slow_turn.empty() ? nullptr : &set.slow_turn[e];
     std::copy_n(&system.rows.element_node[first], type.nodes, block.node);
     block.compliance_block = set.coupled ? set.compliance : nullptr;
-    block.block_scale = set.softness[e];
-    block.compliance[0] = block.compliance[1] = set.coupled ? 0 : set.softness[e] * set.compliance[0];
+    block.compliance[0] = block.compliance[1] = set.softness[e] * (set.coupled ? 1 : set.compliance[0]);
     block.relaxation[0] = block.relaxation[1] = set.relaxation;
     block.batched = true;
     block.condensed = set.form == ElementForm::energy;

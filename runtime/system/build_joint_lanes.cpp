@@ -128,7 +128,7 @@ void fill_compliance(System& system, const JointGroup& g, uint32_t r, int lane, 
         compliance(r) = static_cast<float>(scale * block.compliance[block.angular(i)]);
     else
         for (uint32_t k = 0; k <= r; ++k)
-            compliance(k) = static_cast<float>(scale * block.block_scale * block.compliance_block[r * g.rows + k]);
+            compliance(k) = static_cast<float>(scale * block.compliance[0] * block.compliance_block[r * g.rows + k]);
 }
 
 // Which rows of a lane are locked, and what they carry.

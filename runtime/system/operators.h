@@ -70,7 +70,7 @@ inline RowVector error_of(const System& system, const RowBlock& block) {
 inline RowMatrix compliance_of(const RowBlock& block, const Scheme& scheme) {
     const int rows = block.type->rows;
     if (block.compliance_block)
-        return scheme.row_compliance(relaxation_of(block, 0)) * block.block_scale *
+        return scheme.row_compliance(relaxation_of(block, 0)) * block.compliance[0] *
                Eigen::Map<const RowMatrix>(block.compliance_block, rows, rows);
     RowMatrix c = RowMatrix::Zero(rows, rows);
     for (int r = 0; r < rows; ++r)

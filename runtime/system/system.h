@@ -44,26 +44,25 @@ struct RowBlock {
     uint32_t row;                    // first row
     uint32_t jacobian;               // first entry of [node][row][6]
     double compliance[2];            // of each row, and of each that is an angle [m/N, rad/(N m)], 0: rigid
-    const double* compliance_block;  // [rows][rows] in its place, or null; times
-    double block_scale;
-    double relaxation[2];    // time d [s]: compliance * damping, likewise
-    const Axis* axis;        // of each row, or null: all are locked
-    AxisMemory* memory;      // of each row, with axis
-    ContactForce* contact;   // what a contact point carries on; null for joints
-    bool* pushed;            // of a contact point: its pair's
-    double friction;         // of a cone
-    double drive[2];         // of a cone: J v that friction drives the tangents to [m/s]
-    double arm[2];           // of a load: spinning, rolling [m]
-    uint32_t loaded, loads;  // of a load: first row of its contact points, each of three; how many there are
-    float* spin_slip;        // of a load: what spinning carries on; rolling is in contact
-    double restitution;      // of a cone
-    bool hits;               // of a cone: approached faster than kHardSpeed before the frame's forces
-    bool fresh;              // lambda of the last substep means nothing yet
-    bool in_lanes;           // a swept joint or element: bias, targets and impulses are in System::joints
-    bool batched;            // an element: evaluated by its run
-    bool condensed;          // an element whose rows a direct solve folds into its nodes
-    uint8_t point;           // of a cone: which point
-    uint32_t pair;           // of which pair, an index into Pairs::list
+    const double* compliance_block;  // [rows][rows] in its place, times compliance[0]; or null
+    double relaxation[2];            // time d [s]: compliance * damping, likewise
+    const Axis* axis;                // of each row, or null: all are locked
+    AxisMemory* memory;              // of each row, with axis
+    ContactForce* contact;           // what a contact point carries on; null for joints
+    bool* pushed;                    // of a contact point: its pair's
+    double friction;                 // of a cone
+    double drive[2];                 // of a cone: J v that friction drives the tangents to [m/s]
+    double arm[2];                   // of a load: spinning, rolling [m]
+    uint32_t loaded, loads;          // of a load: first row of its contact points, each of three; how many there are
+    float* spin_slip;                // of a load: what spinning carries on; rolling is in contact
+    double restitution;              // of a cone
+    bool hits;                       // of a cone: approached faster than kHardSpeed before the frame's forces
+    bool fresh;                      // lambda of the last substep means nothing yet
+    bool in_lanes;                   // a swept joint or element: bias, targets and impulses are in System::joints
+    bool batched;                    // an element: evaluated by its run
+    bool condensed;                  // an element whose rows a direct solve folds into its nodes
+    uint8_t point;                   // of a cone: which point
+    uint32_t pair;                   // of which pair, an index into Pairs::list
 
     bool angular(int r) const { return (type->angular >> r & 1) != 0; }
     bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }

@@ -40,6 +40,7 @@ struct Mechanism {
         system.filtered.resize(1 + kMaxNodes * kJoints);
         group.joint_colour_begin.assign(kMaxColours + 1, kJoints);
         group.joint_colour_begin[0] = 0;
+        group.element_colour_begin.assign(kMaxColours + 1, 0);
         std::vector<const ConstraintType*> types;
         for (const ConstraintType* type : constraint_types())
             if (type->bound == Bound::free) types.push_back(type);
