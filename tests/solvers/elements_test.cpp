@@ -21,7 +21,7 @@ struct Chain : Rig {
             body(2, Vec3(0.1, 0.2, 0.15), Vec3(0.3 * kPoints, 0.1, 0), Quat::Identity(), Vec3(0, 0, 1));
         ball(kNone, point[0], Vec3::Zero(), Vec3::Zero());
         ball(point.back(), end, Vec3::Zero(), Vec3(-0.3, 0, 0), 1e-6);
-        settings.sweeps = 20000;
+        settings.sweeps = 2000;
     }
     void step(const Solver& with, int substeps = 3) {
         for (int i = 0; i < substeps; ++i) {
