@@ -6,7 +6,8 @@ namespace taut {
 namespace {
 
 using Error = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
-using Modulus = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+using Modulus =
+    Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>>;
 
 constexpr int kMostFreedoms = kMaxNodes * kDof;
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostFreedoms, kMostFreedoms>;

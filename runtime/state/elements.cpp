@@ -25,10 +25,11 @@ void for_columns(ElementSet& of, Act&& act) {
 
 void set_compliance(ElementSet& set, std::span<const double> compliance, double relaxation) {
     const int rows = set.type->row.rows;
-    using Block = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxRows>;
+    using Block = Eigen::Map<Matrix>;
     std::copy(compliance.begin(), compliance.end(), set.compliance);
     const Block c(set.compliance, rows, rows);
-    set.coupled = c != c(0, 0) * Eigen::MatrixXd::Identity(rows, rows);
+    set.coupled = c != c(0, 0) * Matrix::Identity(rows, rows);
     if (c(0, 0) > 0)
         Block(set.stiffness, rows, rows) = c.inverse();
     else
