@@ -44,10 +44,12 @@ void positive_sum(const ElementType& type, const ElementBatch& batch, const Elem
         Square sum(width, width);
         type.stiffness(one, lambda + size_t{i} * static_cast<uint32_t>(rows), Curvature::raw, sum.data());
         sum = (0.5 * (sum + sum.transpose())).eval();
-        sum += j.transpose() * (Modulus(d.material, rows, rows) / d.softness[batch.index(i)]) * j;
+        const Jacobian force = Modulus(d.material, rows, rows).lazyProduct(j) / d.softness[batch.index(i)];
+        sum += j.transpose().lazyProduct(force);
         const Eigen::SelfAdjointEigenSolver<Square> eigen(sum);
         Eigen::Map<Square>(k + size_t{i} * static_cast<uint32_t>(width * width), width, width) =
-            eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+            Square(eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal())
+                .lazyProduct(eigen.eigenvectors().transpose());
     }
 }
 
