@@ -21,7 +21,7 @@ struct Chain : Rig {
             body(2, Vec3(0.1, 0.2, 0.15), Vec3(0.3 * kPoints, 0.1, 0), Quat::Identity(), Vec3(0, 0, 1));
         ball(kNone, point[0], Vec3::Zero(), Vec3::Zero());
         ball(point.back(), end, Vec3::Zero(), Vec3(-0.3, 0, 0), 1e-6);
-        settings.sweeps = 2000;
+        settings.sweeps = 300;
     }
     void step(const Solver& with, int substeps = 3) {
         for (int i = 0; i < substeps; ++i) {
@@ -152,7 +152,7 @@ const ElementType kCloud{
 TEST_P(EverySolverOf, HoldsAnElementOfEightNodes) {
     Rig rig;
     rig.gravity.setZero();
-    rig.settings.sweeps = 200;
+    rig.settings.sweeps = 60;
     std::vector<uint32_t> node;
     for (int i = 0; i < 8; ++i) {
         const Vec3 at(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
