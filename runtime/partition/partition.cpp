@@ -21,6 +21,7 @@ Partition::Partition(Memory& memory)
       element_begin_(memory),
       element_node_(memory),
       element_colour_(memory),
+      incidence_(memory),
       element_in_block_(memory),
       block_of_(memory),
       spare_(memory),
@@ -159,6 +160,7 @@ void Partition::list_elements(const Elements& elements) {
             element_begin_.push_back(static_cast<uint32_t>(element_node_.size()));
         }
     }
+    incidence_.build(static_cast<uint32_t>(graph_.moves.size()), element_begin_, element_node_);
 }
 
 // Union-find over all that ties and touches.

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "linear/sparse_block_ldlt.h"
+#include "partition/incidence.h"
 #include "partition/touch_graph.h"
 #include "partition/walls.h"
 
@@ -148,6 +149,9 @@ public:
 
     // Of a node, in this frame; kNone where forces do not move it.
     uint32_t island_of(uint32_t node) const { return island_of_[node]; }
+    // Elements on something that moves, in the order of incidence(); valid after build().
+    std::span<const ElementRef> elements() const { return element_; }
+    const Incidence& incidence() const { return incidence_; }
     // By island, after build().
     void find_reasons(const Joints& joints, const Elements& elements, Array<uint8_t>& out) const;
 
@@ -299,6 +303,7 @@ private:
     Array<ElementRef> element_;
     Array<uint32_t> element_begin_, element_node_;  // of each its nodes, kNone in place of those that do not move
     Array<uint8_t> element_colour_;
+    Incidence incidence_;
     Array<uint8_t> element_in_block_;  // of this frame
     Array<uint32_t> block_of_;         // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
