@@ -36,8 +36,7 @@ double BlockSolve::tie_work() const {
             for (int n = 0; n < block.type->nodes; ++n) {
                 if (local(block.node[n]) == kNone) continue;
                 const Velocity &v0 = sys_.start[block.node[n]], &v1 = sys_.exact[block.node[n]];
-                const auto jacobian = jacobian_of(sys_, block, n).row(r);
-                rate += 0.5 * (jacobian.head<3>().dot(v0.v + v1.v) + jacobian.tail<3>().dot(v0.w + v1.w));
+                rate += 0.5 * along(row_of(sys_, block, n, r), {v0.v + v1.v, v0.w + v1.w});
             }
             sum += b_.solution[(nodes_ + j) * kDof + static_cast<uint32_t>(r)] * rate;
         }

@@ -16,8 +16,7 @@ double rate(const Impact& impact, int row, const Array<ImpactBody>& bodies) {
     double sum = impact.known[row];
     for (const Impact::Side* side = impact.side; side < impact.side + impact.sides; ++side) {
         if (side->body == kNone) continue;
-        const Velocity& u = bodies[side->body].u;
-        sum += side->linear[row].dot(u.v) + side->angular[row].dot(u.w);
+        sum += side->rate(row, bodies[side->body].u);
     }
     return sum;
 }

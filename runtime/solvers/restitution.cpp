@@ -157,7 +157,7 @@ private:
             const uint32_t body = all_.body_of[side->at];
             const Velocity& u = body == kNone ? sys_.exact[side->at] : bodies_[body].u;
             gap += side->linear[0].dot(wide(all_.flight[side->at].moved));
-            rate += side->linear[0].dot(u.v) + side->angular[0].dot(u.w);
+            rate += side->rate(0, u);
         }
         const bool pressed = rate < -s_.least_impact() && gap + sys_.scheme.h * rate < 0;
         if (!pressed) impacts_.pop_back();
@@ -258,7 +258,7 @@ private:
         const SweepFlight& flight = all_.flight[at];
         fall.gap += linear.dot(wide(flight.moved));
         fall.gained += linear.dot(wide(flight.gained));
-        fall.rate += linear.dot(sys_.exact[at].v) + angular.dot(sys_.exact[at].w);
+        fall.rate += along(linear, angular, sys_.exact[at]);
     }
 
     // When and how fast its points meet, and what an impulse does to them.
@@ -287,7 +287,7 @@ private:
             if (side->body == kNone) continue;
             ImpactBody& body = bodies_[side->body];
             body.time = std::min(body.time, impact.time);
-            impact.approach += side->linear[0].dot(body.before.v) + side->angular[0].dot(body.before.w);
+            impact.approach += side->rate(0, body.before);
         }
         if (!moves && fall.gap > 0)
             impact.restitution = restitution_above(impact, fall.gained / sys_.scheme.h * fall.gap);
@@ -337,8 +337,7 @@ private:
 
     void add_side(Impact& impact, Impact::Side& side, int r, Mat3& k) const {
         if (side.body == kNone) {
-            const Velocity& u = sys_.exact[side.at];
-            impact.known[r] += side.linear[r].dot(u.v) + side.angular[r].dot(u.w);
+            impact.known[r] += side.rate(r, sys_.exact[side.at]);
             return;
         }
         const double before = bodies_[side.body].moves * impact.time / sys_.scheme.h;
@@ -347,9 +346,7 @@ private:
         const Mat3& R = sys_.pose[side.at].R;  // of now: those of the sweeps may be old
         side.response[r].v = mass.inv_mass * side.linear[r];
         side.response[r].w = R * (mass.inv_inertia.matrix() * (R.transpose() * side.angular[r]));
-        for (int c = 0; c <= r; ++c) {
-            k(c, r) += side.linear[c].dot(side.response[r].v) + side.angular[c].dot(side.response[r].w);
-        }
+        for (int c = 0; c <= r; ++c) k(c, r) += side.rate(c, side.response[r]);
     }
 
     bool is_held(uint32_t at) {

@@ -6,6 +6,7 @@
 
 #include "constraints/soft_contact.h"
 #include "system/operators.h"
+#include "system/project.h"
 
 namespace taut {
 namespace {
@@ -93,10 +94,11 @@ private:
         if (q.norm() > limit) {
             const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
             q = old - slip / (half + std::sqrt(diff * diff + k(0, 1) * k(0, 1)));
-            if (q.norm() > limit) q *= limit / q.norm();
         }
-        p[1] = q[0];
-        p[2] = q[1];
+        double t[2] = {q[0], q[1]};
+        project_disc(t, limit);
+        p[1] = t[0];
+        p[2] = t[1];
         move_to(p);
     }
 

@@ -1,7 +1,7 @@
 // Impacts of a substep, as restitution finds and solves them (solvers/restitution.h).
 #pragma once
 
-#include "system/system.h"
+#include "system/operators.h"
 
 namespace taut {
 
@@ -21,6 +21,8 @@ struct Impact {  // rows: normal, tangent 1, tangent 2
         uint32_t body;               // kNone: it does not yield
         Vec3 linear[3], angular[3];  // J
         Velocity response[3];        // W J^T
+
+        double rate(int row, const Velocity& u) const { return along(linear[row], angular[row], u); }  // J u
     };
 
     uint32_t pair;  // index into Pairs::list

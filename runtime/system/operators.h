@@ -31,7 +31,10 @@ RowVector rates(const System& system, const RowBlock& block, VelocityOf&& veloci
 }
 
 // The same of one row j [6] of each node: j u.
-inline double along(const double* j, const Velocity& u) { return Vec3::Map(j).dot(u.v) + Vec3::Map(j + 3).dot(u.w); }
+inline double along(const auto& linear, const auto& angular, const Velocity& u) {
+    return linear.dot(u.v) + angular.dot(u.w);
+}
+inline double along(const double* j, const Velocity& u) { return along(Vec3::Map(j), Vec3::Map(j + 3), u); }
 inline double rate(const System& system, const RowBlock& block, int row, const Array<Velocity>& velocity) {
     double sum = 0;
     for (int n = 0; n < block.type->nodes; ++n) sum += along(row_of(system, block, n, row), velocity[block.node[n]]);

@@ -14,8 +14,10 @@ enum class FrictionModel : uint8_t {
     box,       // |t1|, |t2| <= mu n each: the square pyramid
 };
 
+inline double length_of(const double (&t)[2]) { return std::sqrt(t[0] * t[0] + t[1] * t[1]); }
+
 inline void project_disc(double (&t)[2], double limit) {
-    const double size = std::hypot(t[0], t[1]);
+    const double size = length_of(t);
     if (size > limit) t[0] *= limit / size, t[1] *= limit / size;
 }
 
@@ -26,7 +28,7 @@ inline void project_box(double (&t)[2], double limit) {
 // n may be negative. Inside the polar cone, |t| mu <= -n, the nearest point is the tip; else
 //   n' = (n + mu |t|) / (1 + mu^2),  |t'| = mu n'.
 inline void project_cone(double& n, double (&t)[2], double mu) {
-    const double size = std::hypot(t[0], t[1]);
+    const double size = length_of(t);
     if (size <= mu * n) return;
     n = std::max(0.0, (n + mu * size) / (1 + mu * mu));
     project_disc(t, mu * n);
