@@ -42,4 +42,7 @@ protected:
     ~StageObserver() = default;
 };
 
+// To the world's observer; in builds with checks, invariants are looked at first.
+void tell(World& world, const StageEnd& end);
+
 }  // namespace taut

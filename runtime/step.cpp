@@ -10,23 +10,22 @@
 #include "detect/impact.h"
 #include "detect/internal_faces.h"
 #include "detect/sensors.h"
+#include "group_solve.h"
 #include "integrate/integrate.h"
 #include "integrate/scheme.h"
-#include "integrate/substeps.h"
 #include "models/cable.h"
 #include "publish/publish.h"
 #include "sleep/sleep.h"
-#include "solvers/restitution.h"
-#include "system/assemble.h"
 #include "world.h"
 
 namespace taut {
-namespace {
 
 void tell(World& w, const StageEnd& end) {
     if constexpr (kValidates) validate(w, end);
     if (w.observer) w.observer->after(w, end);
 }
+
+namespace {
 
 constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
 
@@ -66,109 +65,6 @@ void detect(World& w, Stopwatch& watch) {
     w.profile.narrowphase_us = watch.lap();
 }
 
-// Rows and lanes of a group for the frame.
-void build_group(World& w, const Group& group, const Solver& solver, const ContactKernels& kernels) {
-    build_rows(w.system, group, w.partition.blocks, w.joints, w.elements, w.pairs, w.nodes, !solver.lanes);
-    if (solver.lanes) {
-        build_lanes(w.team, w.system, group, w.pairs, w.nodes, kernels);
-        build_joint_lanes(w.team, w.system, group, w.def.time_step);
-    }
-    watch_group(group, w.system, w.pairs, w.watch);
-}
-
-void assemble_joint_lanes(World& w, const SolverSettings& settings) {
-    evaluate_joint_lanes(w.team, w.system);
-    if (settings.geometric_stiffness)
-        stiffen_joints(w.team, w.system, w.nodes, *settings.joint_kernels, settings.velocity_filter > 0);
-    prepare_joint_lanes(w.team, w.system, *settings.joint_kernels);
-}
-
-// All substeps of a group of islands, which no other group touches.
-void solve_group(World& w, uint32_t index, const Solver& solver, const SolverSettings& settings, SolverReport& report,
-                 Stopwatch& watch) {
-    System& system = w.system;
-    Group& group = w.partition.groups[index];
-    const Vec3 gravity(w.def.gravity.x, w.def.gravity.y, w.def.gravity.z);
-    const double frame = w.def.time_step;
-    Substeps part(frame, group.substeps, solver.direct && w.def.fixed_substeps == 0);
-    system.scheme.set_length(part.length());
-    build_group(w, group, solver, *settings.kernels);
-    w.profile.predict_us += watch.lap();
-
-    const bool one_step = system.scheme.is_one_step(), looks_on = w.observer || w.def.report;
-    const bool lends = one_step && w.team.size() > 1 && group.blocks.empty() && w.nodes.load.empty() && !looks_on;
-    MotionLoan loan(w.team, system, group, w.nodes);
-    bool loaded = false, sane = false;  // the nodes, as far as is known
-    while (!part.done()) {
-        const uint32_t i = part.number();
-        if (part.length() != system.scheme.h) change_length(w.team, system, group, w.pairs, part.length(), frame);
-        if (loaded || !sane) {
-            loan.end();
-            loaded = quarantine(w.team, w.nodes, group.nodes, w.frozen, system.scheme.h);
-        }
-        if (lends) loan.begin();
-        find_contacts_again(w.nodes, w.colliders, w.shapes, w.pairs, group.direct_pairs, part.begin(), system.scheme.h);
-        turn_kinematic(system, w.nodes, part.begin());
-        predict(w.team, system, group, w.nodes, gravity);
-        if (!one_step) begin_scheme(system, group, w.nodes);
-        if (solver.lanes && i > 0) turn_lanes(w.team, system, group, *settings.kernels);
-        shift_kinematic(system, w.nodes, part.begin());
-        const Measured measured{system, group, w.partition, w.nodes, w.pairs, gravity, i};
-        if (w.def.report) w.reports.begin(measured);
-        build_block_contacts(system, group, w.partition.blocks, w.pairs, w.nodes);
-        tell(w, {Stage::predict, index, i});
-        w.profile.predict_us += watch.lap();
-        evaluate_rows(w.team, system, part.left(), frame);
-        if (solver.lanes) assemble_joint_lanes(w, settings);
-        tell(w, {Stage::assemble, index, i});
-        w.profile.assemble_us += watch.lap();
-        Substep substep{w.team, system,    group,       w.partition.blocks, w.nodes,    settings,
-                        report, w.scratch, part.last(), i % 2 == 0,         i % 2 == 1, part.most_turn()};
-        substep.impacts = &w.impacts;
-        restitute(substep);
-        solver.solve(substep);
-        if (substep.is_too_long()) {
-            drop_strikes(system, w.impacts);
-            part.halve();
-            w.profile.sweep_us += watch.lap();
-            continue;
-        }
-        if (substep.last) report.residual = std::max(report.residual, row_residual(system, *settings.joint_kernels));
-        if (w.def.report) w.reports.solved(measured);
-        tell(w, {Stage::solve, index, i});
-        w.profile.sweep_us += watch.lap();
-        commit_strikes(system, w.impacts, w.nodes);
-        commit(w.team, system, group, w.nodes);
-        shift_kinematic(system, w.nodes, part.end());
-        if (solver.settle) {
-            solver.settle(substep);
-            correct(system, group, w.partition.blocks, w.nodes);
-        }
-        if (!one_step) {
-            if (solver.lanes) store_joint_lanes(w.team, system);
-            end_scheme(system, group, w.nodes);
-        }
-        tell(w, {Stage::commit, index, i});
-        w.profile.commit_us += watch.lap();
-        solver.relax(substep);
-        w.profile.sweep_us += watch.lap();
-        sane = store_velocity(w.team, system, group, w.nodes, settings.velocity_filter);
-        if (!one_step) remember_scheme(system, group, w.nodes);
-        store_contact_rows(system);
-        if (w.def.report) w.reports.end(measured);
-        gather_impulses(system, w.impacts, w.pairs, w.watch);
-        tell(w, {Stage::relax, index, i});
-        w.profile.commit_us += watch.lap();
-        part.advance(substep.turn);
-    }
-    loan.end();
-    w.profile.substeps = std::max(w.profile.substeps, part.number());
-    if (!sane) quarantine(w.team, w.nodes, group.nodes, w.frozen);
-    if (!solver.lanes) return;
-    store_lanes(w.team, system, w.pairs);
-    store_joint_lanes(w.team, system);
-}
-
 void solve(World& w, Stopwatch& watch) {
     const Solver& solver = *solvers()[w.def.solver];
     const taut_vec3 g = w.def.gravity;
@@ -187,13 +83,11 @@ void solve(World& w, Stopwatch& watch) {
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
-    w.system.scheme.kind = static_cast<SchemeKind>(w.def.scheme);
-    w.system.scheme.beta = w.def.newmark_beta;
-    w.system.scheme.gamma = w.def.newmark_gamma;
+    w.system.scheme = scheme_types()[w.def.scheme]->times({w.def.newmark_beta, w.def.newmark_gamma});
     begin_frame(w.team, w.system, w.partition, w.nodes, w.joints.ids.count() > 0 || w.elements.ids.count() > 0);
     make_room_for_scheme(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
-    for (uint32_t i = 0; i < w.partition.group_count; ++i) solve_group(w, i, solver, settings, report, watch);
+    for (uint32_t i = 0; i < w.partition.group_count; ++i) GroupSolve(w, i, solver, settings, report, watch).run();
     if (const uint32_t failures = report.failures; failures > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (!w.frozen.empty()) {

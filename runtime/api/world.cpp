@@ -5,6 +5,7 @@
 
 #include "advance.h"
 #include "api/access.h"
+#include "integrate/scheme.h"
 #include "sleep/wake.h"
 
 using namespace taut;
@@ -55,7 +56,7 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .choice("friction_model", def.friction_model, TAUT_FRICTION_BOX)
         .choice("momentum", def.momentum, TAUT_MOMENTUM_POWER)
         .boolean("fixed_step", def.fixed_step)
-        .choice("scheme", def.scheme, TAUT_SCHEME_BDF2)
+        .choice("scheme", def.scheme, static_cast<uint32_t>(scheme_types().size()) - 1)
         .number("newmark_beta", def.newmark_beta, kNewmarkBeta)
         .number("newmark_gamma", def.newmark_gamma, kNewmarkGamma)
         .require(def.newmark_gamma <= 2 * def.newmark_beta,

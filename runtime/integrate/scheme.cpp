@@ -8,7 +8,6 @@
 namespace taut {
 namespace {
 
-Speed sum(const Speed& a, double share, const Speed& b) { return {a.v + share * b.v, a.w + share * b.w}; }
 Speed speed_of(const NodeMotion& m) { return {m.v, m.w}; }
 Speed speed_of(const Velocity& u) { return {u.v, u.w}; }
 Velocity velocity_of(const Speed& u) { return {u.v, u.w}; }
@@ -95,7 +94,8 @@ void make_room_for_scheme(System& system, Nodes& nodes) {
         grow_to(*each, system.pose.size());
 }
 
-void begin_scheme(System& system, const Group& group, Nodes& nodes) {
+void begin_scheme(System& system, const Group& group, Nodes& nodes, const SchemeType& type,
+                  const SchemeSettings& settings) {
     const Scheme& scheme = system.scheme;
     const Speed none;
     begin_histories(system, group, nodes);
@@ -105,13 +105,7 @@ void begin_scheme(System& system, const Group& group, Nodes& nodes) {
         const Speed v = speed_of(nodes.motion[node]), gained = sum(speed_of(system.exact[at]), -1, v);
         renew(history, v, scheme.h, sum(none, 1 / scheme.h, gained));
         Speed ahead, coast;
-        if (scheme.kind == SchemeKind::newmark) {
-            ahead = sum(sum(v, scheme.h * (0.5 - scheme.beta), history.acceleration), 0.5, gained);
-            coast = sum(sum(v, scheme.h * (1 - scheme.gamma), history.acceleration), 1, gained);
-        } else {
-            coast = sum(sum(sum(none, 4.0 / 3, v), -1.0 / 3, history.before), 2.0 / 3, gained);
-            ahead = sum(sum(none, 1.0 / 3, history.rate), 2.0 / 3, coast);
-        }
+        type.start({v, gained, history, scheme.h, settings}, ahead, coast);
         system.began[at] = velocity_of(v);
         system.ahead[at] = velocity_of(ahead);
         system.coast[at] = velocity_of(coast);

@@ -1,0 +1,138 @@
+#include "group_solve.h"
+
+#include <algorithm>
+
+#include "check/quarantine.h"
+#include "detect/detect.h"
+#include "integrate/scheme.h"
+#include "publish/publish.h"
+#include "solvers/restitution.h"
+#include "system/assemble.h"
+
+namespace taut {
+
+GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const SolverSettings& settings,
+                       SolverReport& report, Stopwatch& watch)
+    : w_(world),
+      system_(world.system),
+      group_(world.partition.groups[index]),
+      index_(index),
+      solver_(solver),
+      settings_(settings),
+      report_(report),
+      watch_(watch),
+      gravity_(world.def.gravity.x, world.def.gravity.y, world.def.gravity.z),
+      clock_(world.def.time_step, group_.substeps, solver.direct && world.def.fixed_substeps == 0),
+      one_step_(system_.scheme.is_one_step()),
+      lends_(one_step_ && world.team.size() > 1 && group_.blocks.empty() && world.nodes.load.empty() &&
+             !world.observer && !world.def.report),
+      loan_(world.team, system_, group_, world.nodes) {}
+
+void GroupSolve::build() {
+    system_.scheme.set_length(clock_.length());
+    build_rows(system_, group_, w_.partition.blocks, w_.joints, w_.elements, w_.pairs, w_.nodes, !solver_.lanes);
+    if (solver_.lanes) {
+        build_lanes(w_.team, system_, group_, w_.pairs, w_.nodes, *settings_.kernels);
+        build_joint_lanes(w_.team, system_, group_, w_.def.time_step);
+    }
+    watch_group(group_, system_, w_.pairs, w_.watch);
+    w_.profile.predict_us += watch_.lap();
+}
+
+void GroupSolve::begin() {
+    if (clock_.length() != system_.scheme.h)
+        change_length(w_.team, system_, group_, w_.pairs, clock_.length(), w_.def.time_step);
+    if (loaded_ || !sane_) {
+        loan_.end();
+        loaded_ = quarantine(w_.team, w_.nodes, group_.nodes, w_.frozen, system_.scheme.h);
+    }
+    if (lends_) loan_.begin();
+    find_contacts_again(w_.nodes, w_.colliders, w_.shapes, w_.pairs, group_.direct_pairs, clock_.begin(),
+                        system_.scheme.h);
+    turn_kinematic(system_, w_.nodes, clock_.begin());
+    predict(w_.team, system_, group_, w_.nodes, gravity_);
+    if (!one_step_)
+        begin_scheme(system_, group_, w_.nodes, *scheme_types()[w_.def.scheme],
+                     {w_.def.newmark_beta, w_.def.newmark_gamma});
+    if (solver_.lanes && clock_.number() > 0) turn_lanes(w_.team, system_, group_, *settings_.kernels);
+    shift_kinematic(system_, w_.nodes, clock_.begin());
+    if (w_.def.report) w_.reports.begin(measured());
+    build_block_contacts(system_, group_, w_.partition.blocks, w_.pairs, w_.nodes);
+    tell(Stage::predict);
+    w_.profile.predict_us += watch_.lap();
+}
+
+void GroupSolve::assemble() {
+    evaluate_rows(w_.team, system_, clock_.left(), w_.def.time_step);
+    if (solver_.lanes) {
+        evaluate_joint_lanes(w_.team, system_);
+        if (settings_.geometric_stiffness)
+            stiffen_joints(w_.team, system_, w_.nodes, *settings_.joint_kernels, settings_.velocity_filter > 0);
+        prepare_joint_lanes(w_.team, system_, *settings_.joint_kernels);
+    }
+    tell(Stage::assemble);
+    w_.profile.assemble_us += watch_.lap();
+}
+
+Substep GroupSolve::next() {
+    const bool even = clock_.number() % 2 == 0;
+    Substep substep{w_.team,       system_, group_, w_.partition.blocks, w_.nodes, settings_, report_, w_.scratch,
+                    clock_.last(), even,    !even,  clock_.most_turn()};
+    substep.impacts = &w_.impacts;
+    return substep;
+}
+
+void GroupSolve::solve(Substep& substep) {
+    restitute(substep);
+    solver_.solve(substep);
+    if (substep.is_too_long()) return;
+    if (substep.last) report_.residual = std::max(report_.residual, row_residual(system_, *settings_.joint_kernels));
+    if (w_.def.report) w_.reports.solved(measured());
+    tell(Stage::solve);
+    w_.profile.sweep_us += watch_.lap();
+}
+
+void GroupSolve::shorten() {
+    drop_strikes(system_, w_.impacts);
+    clock_.halve();
+    w_.profile.sweep_us += watch_.lap();
+}
+
+void GroupSolve::commit(Substep& substep) {
+    commit_strikes(system_, w_.impacts, w_.nodes);
+    taut::commit(w_.team, system_, group_, w_.nodes);
+    shift_kinematic(system_, w_.nodes, clock_.end());
+    if (solver_.settle) {
+        solver_.settle(substep);
+        correct(system_, group_, w_.partition.blocks, w_.nodes);
+    }
+    if (!one_step_) {
+        if (solver_.lanes) store_joint_lanes(w_.team, system_);
+        end_scheme(system_, group_, w_.nodes);
+    }
+    tell(Stage::commit);
+    w_.profile.commit_us += watch_.lap();
+}
+
+void GroupSolve::relax(Substep& substep) {
+    solver_.relax(substep);
+    w_.profile.sweep_us += watch_.lap();
+    sane_ = store_velocity(w_.team, system_, group_, w_.nodes, settings_.velocity_filter);
+    if (!one_step_) remember_scheme(system_, group_, w_.nodes);
+    store_contact_rows(system_);
+    if (w_.def.report) w_.reports.end(measured());
+    gather_impulses(system_, w_.impacts, w_.pairs, w_.watch);
+    tell(Stage::relax);
+    w_.profile.commit_us += watch_.lap();
+}
+
+void GroupSolve::end() {
+    loan_.end();
+    w_.profile.substeps = std::max(w_.profile.substeps, clock_.number());
+    if (!sane_) quarantine(w_.team, w_.nodes, group_.nodes, w_.frozen);
+    if (!solver_.lanes) return;
+    store_lanes(w_.team, system_, w_.pairs);
+    store_joint_lanes(w_.team, system_);
+}
+
+}  // namespace taut
