@@ -4,13 +4,25 @@
 #include <functional>
 #include <queue>
 
+#include "linear/minimum_degree.h"
+
 namespace taut {
 namespace {
 
 constexpr size_t kLeastNet = 300;  // unknowns
 constexpr size_t kMostTies = 16;   // of a node of a net
 
-constexpr size_t kCouplingShare = 4;  // of the nodes of a net, that couplings between nodes may tie together
+constexpr size_t kCouplingShare = 8;  // of the nodes of a net, as many as there may be couplings between them
+
+// Couplings of particles, such as elements of cloth and solids make.
+size_t couplings_of_particles(std::span<const Unknown> unknowns, const Array<Array<uint32_t>>& graph) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < unknowns.size(); ++i)
+        for (uint32_t j : graph[i])
+            count += j > i && !unknowns[i].multiplier && !unknowns[j].multiplier &&
+                     std::min(unknowns[i].size, unknowns[j].size) == 3;
+    return count;
+}
 
 int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
 
@@ -23,13 +35,48 @@ EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unkn
       ends_(unknowns.size(), Array<uint32_t>(memory), memory),
       done_(unknowns.size(), 0, memory),
       freedoms_(unknowns.size(), 0, memory),
+      ties_(memory),
       neighbours_(memory),
       merged_(memory) {
     read_links(links);
-    if (meshed())
+    tie_nodes();
+    if (multipliers_ == 0 || couplings_of_particles(unknowns, graph_) > multipliers_)
+        run_by_nodes();
+    else if (meshed())
         dissect();
     else
         run_greedily();
+}
+
+// Nodes that are tied to each other, by couplings or a joint.
+void EliminationOrder::tie_nodes() {
+    auto tie = [&](uint32_t a, uint32_t b) {
+        ties_.push_back(static_cast<uint64_t>(a) << 32 | b);
+        ties_.push_back(static_cast<uint64_t>(b) << 32 | a);
+    };
+    for (uint32_t i = 0; i < unknowns_.size(); ++i) {
+        multipliers_ += unknowns_[i].multiplier;
+        for (uint32_t j : graph_[i])
+            if (j > i && !unknowns_[i].multiplier && !unknowns_[j].multiplier) tie(i, j);
+    }
+    couplings_ = ties_.size() / 2;
+    for (const auto& ends : ends_)
+        for (size_t a = 0; a < ends.size(); ++a)
+            for (size_t b = 0; b < a; ++b) tie(ends[a], ends[b]);
+    std::sort(ties_.begin(), ties_.end());
+    ties_.erase(std::unique(ties_.begin(), ties_.end()), ties_.end());
+}
+
+// The nodes' own graph decides what fills in; a multiplier comes as soon as it may.
+void EliminationOrder::run_by_nodes() {
+    Array<uint8_t> weight(order.get_allocator());
+    for (const Unknown& u : unknowns_) weight.push_back(u.multiplier ? 0 : u.size);
+    const MinimumDegree nodes(*order.get_allocator().memory, weight, ties_);
+    for (uint32_t node : nodes.order) {
+        take(node);
+        for (uint32_t m : graph_[node])
+            if (unknowns_[m].multiplier && !done_[m] && ready(m)) take(m);
+    }
 }
 
 void EliminationOrder::run_greedily() {
@@ -132,24 +179,10 @@ bool EliminationOrder::meshed() const {
 
 void EliminationOrder::dissect() {
     Array<uint32_t> nodes(order.get_allocator());
-    Array<uint64_t> edges(order.get_allocator());
-    auto tie = [&](uint32_t a, uint32_t b) {
-        edges.push_back(static_cast<uint64_t>(a) << 32 | b);
-        edges.push_back(static_cast<uint64_t>(b) << 32 | a);
-    };
-    for (uint32_t i = 0; i < unknowns_.size(); ++i) {
+    for (uint32_t i = 0; i < unknowns_.size(); ++i)
         if (!unknowns_[i].multiplier) nodes.push_back(i);
-        for (uint32_t j : graph_[i])
-            if (j > i && !unknowns_[i].multiplier && !unknowns_[j].multiplier) tie(i, j);
-    }
-    const bool coupled = edges.size() * kCouplingShare > nodes.size();
-    for (const auto& ends : ends_)
-        for (size_t a = 0; a < ends.size(); ++a)
-            for (size_t b = 0; b < a; ++b) tie(ends[a], ends[b]);
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    const Dissection halves(*order.get_allocator().memory, static_cast<uint32_t>(unknowns_.size()), nodes, edges);
-    coupled ? cut_at_nodes(halves) : cut_at_multipliers(halves);
+    const Dissection halves(*order.get_allocator().memory, static_cast<uint32_t>(unknowns_.size()), nodes, ties_);
+    couplings_ * kCouplingShare > nodes.size() ? cut_at_nodes(halves) : cut_at_multipliers(halves);
 }
 
 // A node of the second half with a neighbour in the first lies on the cut. Multipliers come as soon as they may.

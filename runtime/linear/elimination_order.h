@@ -15,8 +15,9 @@ struct Unknown {
 };
 
 // One rule: a multiplier comes only after a node with freedoms left that no other multiplier claimed (a rigid body has
-// five: two ball joints on one body fix their distance twice), or after all its nodes. Under it, trees and single loops
-// go by greedy minimum degree, which is leaf to root without fill on a tree; nets go by nested dissection.
+// five: two ball joints on one body fix their distance twice), or after all its nodes. Under it, nodes alone and meshes
+// (more couplings of particles than multipliers) go by approximate minimum degree of nodes; trees and single loops of
+// joints by greedy minimum degree, which is leaf to root without fill on a tree; nets of joints by nested dissection.
 class EliminationOrder {
 public:
     // links: pairs of unknowns, smaller << 32 | larger.
@@ -26,6 +27,7 @@ public:
 
 private:
     void read_links(std::span<const uint64_t> links);
+    void tie_nodes();
     void take(uint32_t i);
     void eliminate(uint32_t i);
     bool ready(uint32_t i) const;
@@ -34,15 +36,18 @@ private:
     bool linked(uint32_t i, uint32_t j) const;
     uint64_t key(uint32_t i) const;
     bool meshed() const;
+    void run_by_nodes();
     void run_greedily();
     void dissect();
     void cut_at_nodes(const Dissection& halves);
     void cut_at_multipliers(const Dissection& halves);
 
     std::span<const Unknown> unknowns_;
-    Array<Array<uint32_t>> graph_;         // as elimination leaves it
-    Array<Array<uint32_t>> ends_;          // nodes of a multiplier
-    Array<uint8_t> done_, freedoms_;       // freedoms of a node that no multiplier claimed yet
+    Array<Array<uint32_t>> graph_;    // as elimination leaves it
+    Array<Array<uint32_t>> ends_;     // nodes of a multiplier
+    Array<uint8_t> done_, freedoms_;  // freedoms of a node that no multiplier claimed yet
+    Array<uint64_t> ties_;            // from << 32 | to of nodes, each in both directions, ascending
+    size_t couplings_ = 0, multipliers_ = 0;
     Array<uint32_t> neighbours_, merged_;  // of the last one eliminated; space
 };
 
