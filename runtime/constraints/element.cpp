@@ -32,6 +32,7 @@ void element_energy(const ElementType& type, const ElementBatch& batch, const El
 
 void positive_sum(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
                   double* k) {
+    if (type.positive_sum) return type.positive_sum(batch, d, lambda, k);
     const int rows = type.row.rows, nodes = type.row.nodes, width = nodes * type.freedoms;
     for (uint32_t i = 0; i < batch.count; ++i) {
         const ElementBatch one = one_of(type, batch, i);

@@ -23,6 +23,12 @@ struct ElementBatch {
     uint32_t index(uint32_t i) const { return element ? element[i] : i; }
 };
 
+// D of some elements: [rows][rows] of the material, over the softness of each.
+struct ElementStiffness {
+    const double* material;
+    const double* softness;  // [elements]
+};
+
 struct ElementType {
     const char* name;
     int freedoms;        // of each node: 3, of whose pose x alone is read, or 6
@@ -34,6 +40,9 @@ struct ElementType {
     void (*evaluate)(const ElementBatch& batch, double* error, double* jacobian, int columns);
     // lambda: [count][rows]. k: [count][nodes freedoms][nodes freedoms], row-major, overwritten.
     void (*stiffness)(const ElementBatch& batch, const double* lambda, Curvature part, double* k);
+    // What positive_sum() below is to give, where a type has a cheaper way to it; else null.
+    void (*positive_sum)(const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
+                         double* k) = nullptr;
 };
 
 // Every type there is; tests, hash and snapshots loop over it.
@@ -42,11 +51,17 @@ std::span<const ElementType* const> element_types();
 extern const ElementType kLinkElement;  // distance between two points
 extern const ElementType kBendElement;  // bend of a line through three points
 
-// D of some elements: [rows][rows] of the material, over the softness of each.
-struct ElementStiffness {
-    const double* material;
-    const double* softness;  // [elements]
-};
+// Strains of continua (continuum.h) over the gradients of shape functions (shape_functions.h): an element a Gauss
+// point. Their rows times a D of material.h are a density of energy, one over the softness is the volume of the point
+// [m^3], or its area times the thickness.
+extern const ElementType kGreenTri3, kGreenQuad4, kGreenTet4, kGreenHex8;
+extern const ElementType kCorotatedTri3, kCorotatedQuad4, kCorotatedTet4, kCorotatedHex8;
+extern const ElementType kStretchTet4, kStretchHex8;              // principal stretches
+extern const ElementType kStretchVolumeTet4, kStretchVolumeHex8;  // those and the volume: fixed corotated
+extern const ElementType kNeoHookeanTet4, kNeoHookeanHex8;
+
+extern const ElementType kDihedralElement;       // angle between two triangles of cloth
+extern const ElementType kQuadraticBendElement;  // bend of cloth whose rest shape is flat
 
 // W = 1/2 C^T D C of each [J].
 void element_energy(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, double* energy);

@@ -12,7 +12,14 @@ std::span<const ConstraintType* const> constraint_types() {
 }
 
 std::span<const ElementType* const> element_types() {
-    static const ElementType* const types[] = {&kLinkElement, &kBendElement};
+    static const ElementType* const types[] = {
+        &kLinkElement,       &kBendElement,       &kGreenTri3,
+        &kGreenQuad4,        &kGreenTet4,         &kGreenHex8,
+        &kCorotatedTri3,     &kCorotatedQuad4,    &kCorotatedTet4,
+        &kCorotatedHex8,     &kStretchTet4,       &kStretchHex8,
+        &kStretchVolumeTet4, &kStretchVolumeHex8, &kNeoHookeanTet4,
+        &kNeoHookeanHex8,    &kDihedralElement,   &kQuadraticBendElement,
+    };
     return types;
 }
 

@@ -183,8 +183,9 @@ TEST_P(EveryElement, EnergyKnowsNoPlaceAndNoDirectionOfIsotropicStiffness) {
     });
 }
 
-// The exact positive part of J^T D J + K, by another route: it splits into parts that are orthogonal and of one sign.
-TEST_P(EveryElement, SumsAreTheNearestPositiveMatrix) {
+// The positive part of J^T D J + K, by another route: where a type has no way of its own it is the nearest such matrix,
+// which splits the sum into parts that are orthogonal and of one sign.
+TEST_P(EveryElement, SumsArePositiveAndNotBelowTheirParts) {
     for_samples([](const Batch& b) {
         std::vector<double> k(b.kCount * b.width() * b.width());
         positive_sum(b.type, b.view(), b.d(), b.lambda().data(), k.data());
@@ -197,7 +198,9 @@ TEST_P(EveryElement, SumsAreTheNearestPositiveMatrix) {
             EXPECT_LE(largest(got - got.transpose()), 1e-12 * scale);
             EXPECT_GE(least_eigenvalue(symmetric(got)), -1e-11 * scale);
             EXPECT_GE(least_eigenvalue(symmetric(got - sum)), -1e-11 * scale);
-            EXPECT_LE(largest(got * (got - sum)), 1e-10 * scale * scale);
+            if (!b.type.positive_sum) {
+                EXPECT_LE(largest(got * (got - sum)), 1e-10 * scale * scale);
+            }
         }
     });
 }
