@@ -127,7 +127,7 @@ void step(World& w) {
     const taut_vec3 g = w.def.gravity;
     w.partition.build(w.team, w.nodes, w.joints, w.elements, w.pairs,
                       {w.least_substeps(), w.def.fixed_substeps != 0, solver.direct, w.def.time_step,
-                       Vec3(g.x, g.y, g.z), w.team.size() > 1, w.spring_substep});
+                       Vec3(g.x, g.y, g.z), w.team.size() > 1, !scheme_types()[w.def.scheme]->start, w.spring_substep});
     if (w.def.report) w.reports.begin_step(w.partition, w.joints, w.elements);
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();

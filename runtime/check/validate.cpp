@@ -259,7 +259,10 @@ MaybeFlaw validate_elements(const Partition& partition, const Elements& elements
         for (const ElementRef& each : all) ++listed[first[each.set] + each.element];
     };
     for (uint32_t g = 0; g < partition.group_count; ++g) list(partition.groups[g].elements);
-    for (const Block& block : partition.blocks) list(block.elements);
+    for (const Block& block : partition.blocks) {
+        list(block.elements);
+        list(block.elastic);
+    }
     for (size_t s = 0; s < elements.set.size(); ++s) {
         const ElementSet& set = elements.set[s];
         for (uint32_t e = 0; set.type && e < set.size(); ++e) {

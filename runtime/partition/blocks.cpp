@@ -147,19 +147,20 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
 
 // What ties of each component ask for.
 void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements) {
-    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded) {
+    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, bool multiplies) {
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
-        ++c.ties;
+        c.ties += multiplies;
         const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
         c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
         c.always = c.always || direct;
     };
-    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded);
+    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element]);
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element],
+              multiplies(set));
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
@@ -232,7 +233,7 @@ Block& Partition::block_at(uint32_t node) {
         Block& fresh = spare_[block];
         for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
         fresh.elements.clear();
-        fresh.condensed = 0;
+        fresh.elastic.clear();
         fresh.links.clear();
         fresh.identity.clear();
         fresh.order.clear();
@@ -243,16 +244,15 @@ Block& Partition::block_at(uint32_t node) {
     return spare_[block];
 }
 
-// Elements of one form into their blocks, each marked once with the sets that it has elements of.
-void Partition::fill_elements(const Elements& elements, ElementForm form) {
+// Elements into their blocks, each marked once with the sets that it has elements of.
+void Partition::fill_elements(const Elements& elements) {
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        if (!element_in_block_[e] || set.form != form) continue;
+        if (!element_in_block_[e]) continue;
         const auto ends = movers_of(e);
         const uint32_t node = *std::ranges::find_if(ends, [](uint32_t end) { return end != kNone; });
         Block& block = block_at(node);
-        block.elements.push_back(element_[e]);
-        block.condensed += form == ElementForm::energy;
+        (multiplies(set) ? block.elements : block.elastic).push_back(element_[e]);
         block.passing = block.passing && by_load(set.solve);
         if (std::exchange(component_[find(node)].set, element_[e].set) != element_[e].set)
             block.identity.push_back(set.serial << 32 | (set.version & UINT32_MAX));
@@ -270,8 +270,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         block.identity.push_back(joint.mark());
         block.passing = block.passing && by_load(joint.solve);
     }
-    fill_elements(elements, ElementForm::rows);
-    fill_elements(elements, ElementForm::energy);
+    fill_elements(elements);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         if (!pair_in_block_[p]) continue;
         const auto ends = pairs.active[p].nodes();
@@ -293,7 +292,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         }
         block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
         block.mass_ratio = most / least;
-        block.tower = block.joints.empty() && block.elements.empty();
+        block.tower = block.joints.empty() && block.elements.empty() && block.elastic.empty();
         block.passing = block.passing && !block.tower && block.mass_ratio < kSweptMassRatio;
     }
 }

@@ -91,6 +91,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
         forget(graph_);
         throw;
     }
+    folds_ = rules.folds;
     soften_squeezed(nodes, pairs, rules);
     find_loads(nodes);
     find_columns(nodes, pairs, rules);

@@ -40,6 +40,7 @@ struct Block {
         : nodes(m),
           joints(m),
           elements(m),
+          elastic(m),
           pairs(m),
           links(m),
           identity(m),
@@ -48,12 +49,13 @@ struct Block {
           places(m),
           solution(m),
           known(m),
-          force(m) {}
+          force(m),
+          elastic_force(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
-    Array<ElementRef> elements;            // ascending, those in energy form last
-    uint32_t condensed = 0;                // how many those are
+    Array<ElementRef> elements;            // ascending, those with multipliers
+    Array<ElementRef> elastic;             // ascending, all others; see solvers/block_elastic.cpp
     Array<uint32_t> pairs;                 // in Pairs::active, of this frame
     Array<uint64_t> links;                 // pairs of its nodes that touch: smaller << 32 | larger
     Array<uint64_t> identity;              // of joints, nodes and links: the graph of the matrix
@@ -62,6 +64,9 @@ struct Block {
     Array<BlockPlace> places;              // of its nodes and ties in the matrix; see solvers/block_matrix.cpp
     uint32_t stride = 0;                   // of these, from tie to tie
     Array<double> solution, known, force;  // scratch of its solve
+    Array<double> elastic_force;           // likewise
+    bool foresees = false;                 // folded elements are evaluated where their nodes are going
+    uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
     bool tower = false;                    // no ties: bodies that stand on each other or are pressed
     bool looped = false;                   // more joints than a tree
     bool passing = false;                  // direct while a load lasts that sweeps hold as well: it may turn far
@@ -79,8 +84,8 @@ struct Block {
 };
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [nodes, joints, elements, condensed, pairs, links, identity, order, matrix, places, stride, solution, known,
-           force, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
+    auto& [nodes, joints, elements, elastic, pairs, links, identity, order, matrix, places, stride, solution, known, force,
+           elastic_force, foresees, first_elastic_run, elastic_runs, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
            contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
@@ -132,6 +137,7 @@ struct PartitionRules {
     double time_step;   // of a frame [s]
     Vec3 gravity;       // [m/s^2]
     bool by_place;      // nodes of a group by place, for threads that take a stretch each; else ascending
+    bool folds = true;  // blocks take elements of other forms than rows as such; else all have rows
     double spring_substep = time_step / substeps;  // for which contacts are as soft as they are; World::spring_substep
 };
 
@@ -257,7 +263,8 @@ private:
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     bool join_contact(uint32_t a, uint32_t b);
     Block& block_at(uint32_t node);
-    void fill_elements(const Elements& elements, ElementForm form);
+    bool multiplies(const ElementSet& set) const { return set.form == ElementForm::rows || !folds_; }
+    void fill_elements(const Elements& elements);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
     void find_block_of(uint32_t nodes);
@@ -305,6 +312,7 @@ private:
     Array<uint8_t> element_colour_;
     Incidence incidence_;
     Array<uint8_t> element_in_block_;  // of this frame
+    bool folds_ = true;                // likewise
     Array<uint32_t> block_of_;         // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
     uint32_t filled_ = 0;                          // of spare_

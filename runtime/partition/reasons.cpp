@@ -12,7 +12,8 @@ void Partition::find_reasons(const Joints& joints, const Elements& elements, Arr
         const uint32_t island = island_of_[block.nodes[0]];
         const auto reason = [](JointSolve solve) { return solve == JointSolve::direct ? kByJoint : kByLoad; };
         for (const uint32_t j : block.joints) out[island] |= reason(joints.record[j].solve);
-        for (const ElementRef& e : block.elements) out[island] |= reason(elements.set[e.set].solve);
+        for (const auto* list : {&block.elements, &block.elastic})
+            for (const ElementRef& e : *list) out[island] |= reason(elements.set[e.set].solve);
         if (block.pairs.empty()) continue;
         if (island_[island].tower) out[island] |= kByTower;
         if (component.hit || block.memory.hit_left > 0) out[island] |= kByHit;

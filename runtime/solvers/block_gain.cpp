@@ -72,7 +72,7 @@ double BlockSolve::slow_closing() const {
 void BlockSolve::solve_closing(double part) {
     b_.closing = part;
     solve_known();
-    gained_ = energy_gain(s_, b_, set.work() + tie_work());
+    gained_ = energy_gain(s_, b_, set.work() + tie_work() + elastic_work());
 }
 
 // Where a solution that closes wide gaps gains energy, solves on the same factor for one that does not: first without
@@ -86,7 +86,7 @@ void BlockSolve::limit_gain() {
     const double slow = slow_closing();
     const bool wide = slow < kWide * b_.closing;
     if (!is_guarded(b_) && !wide) return;
-    gained_ = energy_gain(s_, b_, set.work() + tie_work());
+    gained_ = energy_gain(s_, b_, set.work() + tie_work() + elastic_work());
     const double most = wide ? 1 : may_burst(b_);
     if (!gained_.excessive(most) || slow >= b_.closing) return;
     const EnergyGain first = gained_;  // what the guard hears of

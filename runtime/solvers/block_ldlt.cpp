@@ -85,6 +85,7 @@ void gather(Substep& s) {
         add_contact_changes(s, block);
         BlockSolve solve(s, block);
         solve.analyse();
+        solve.foresee();
         solve.set.gather();
     }
 }

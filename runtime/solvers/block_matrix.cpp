@@ -71,24 +71,23 @@ private:
 void BlockSolve::analyse() {
     SparseBlockLdlt& matrix = b_.matrix;
     if (matrix.analysed()) return;
-    matrix.begin(nodes_ + multipliers());
+    matrix.begin(nodes_ + ties());
     for (uint32_t i = 0; i < nodes_; ++i)
         matrix.set_unknown(i, s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6, false);
     for (uint32_t j = 0; j < ties(); ++j) {
         const ConstraintType& type = *row(j).type;
-        const bool multiplies = j < multipliers();
-        if (multiplies)
-            matrix.set_unknown(nodes_ + j, row(j).held() > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
+        matrix.set_unknown(nodes_ + j, row(j).held() > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
-            if (multiplies) matrix.link(nodes_ + j, i);
+            matrix.link(nodes_ + j, i);
             for (int m = 0; m < n && (type.couples_nodes || row(j).axis); ++m) {
                 const uint32_t k = local(row(j).node[m]);
                 if (k != kNone) matrix.link(i, k);
             }
         }
     }
+    link_elastic();
     for (uint64_t link : b_.links)
         matrix.link(local(sys_.at(static_cast<uint32_t>(link >> 32))), local(sys_.at(static_cast<uint32_t>(link))));
     b_.solution.resize(2 * unknowns());
@@ -113,11 +112,11 @@ bool BlockSolve::gives(const RowBlock& block) const {
 // loop by contacts. Then nodes are not eliminated from leaf to root, and two joints may come right after the body
 // between them, which cannot part them: it has no freedom for all their rows.
 bool BlockSolve::looped() const {
-    if (!b_.links.empty() && multipliers() > 1) return true;
+    if (!b_.links.empty() && ties() > 1) return true;
     bool held = false;
-    for (uint32_t j = 0; j < multipliers(); ++j)
+    for (uint32_t j = 0; j < ties(); ++j)
         for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;
-    return multipliers() + 1 > nodes_ + (held ? 1u : 0u);
+    return ties() + 1 > nodes_ + (held ? 1u : 0u);
 }
 
 BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[nodes_ + j * b_.stride + which]; }
@@ -129,18 +128,18 @@ void BlockSolve::find_places() {
     for (uint32_t i = 0; i < nodes_; ++i) b_.places[i] = b_.matrix.place(i, i);
     for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
-        const bool multiplies = j < multipliers();
-        if (multiplies) place(j, kDiagonal) = b_.matrix.place(nodes_ + j, nodes_ + j);
+        place(j, kDiagonal) = b_.matrix.place(nodes_ + j, nodes_ + j);
         for (int n = 0; n < block.type->nodes; ++n) {
             const uint32_t i = local(block.node[n]);
             if (i == kNone) continue;
-            if (multiplies) place(j, of_jacobian(n)) = b_.matrix.place(nodes_ + j, i);
+            place(j, of_jacobian(n)) = b_.matrix.place(nodes_ + j, i);
             for (int m = 0; m < n && (block.type->couples_nodes || block.axis); ++m) {
                 const uint32_t k = local(block.node[m]);
                 if (k != kNone) place(j, coupling(*block.type, n, m)) = b_.matrix.place(i, k);
             }
         }
     }
+    find_elastic_places();
 }
 
 void BlockSolve::add_mass(uint32_t i) {
@@ -226,25 +225,6 @@ void BlockSolve::add_rows(uint32_t j) {
     b_.matrix.add(place(j, kDiagonal), {diagonal, padded, padded, padded});
 }
 
-// J^T J / c onto the nodes of a tie without multipliers.
-void BlockSolve::add_condensed(uint32_t j) {
-    const RowBlock& block = row(j);
-    const RowMatrix stiffness = compliance_of(block, sys_.scheme).inverse();
-    for (int n = 0; n < block.type->nodes; ++n) {
-        const uint32_t i = local(block.node[n]);
-        if (i == kNone) continue;
-        const Eigen::Matrix<double, kDof, Eigen::Dynamic, 0, kDof, kMaxRows> force =
-            jacobian_of(sys_, block, n).transpose() * stiffness;
-        for (int m = 0; m <= n; ++m) {
-            const uint32_t k = local(block.node[m]);
-            if (k == kNone) continue;
-            const Eigen::Matrix<double, kDof, kDof, Eigen::RowMajor> sum = force * jacobian_of(sys_, block, m);
-            b_.matrix.add(n == m ? b_.places[i] : place(j, coupling(*block.type, n, m)),
-                          {sum.data(), size_of(i), size_of(k), kDof});
-        }
-    }
-}
-
 // Of two nodes of a bounded row. Contacts come and go, places of ties are known.
 BlockPlace BlockSolve::place(const BoundedRow& row, int n, int m) {
     if (n == m) return b_.places[row.place[n]];
@@ -281,10 +261,11 @@ void BlockSolve::assemble(bool with_old) {
     for (uint32_t j = 0; j < ties(); ++j) {
         const bool meant = !row(j).fresh || b_.memory.solved > 0;
         if (with_old && meant) add_stiffness(j, row(j).force);
-        j < multipliers() ? add_rows(j) : add_condensed(j);
+        add_rows(j);
         for (int r = 0; r < row(j).type->rows; ++r)
             if (row(j).locked(r)) known(nodes_ + j)[r] = sys_.scheme.row_rate(relaxation_of(row(j), r));
     }
+    assemble_elastic();
 }
 
 void BlockSolve::add_new_stiffness() {

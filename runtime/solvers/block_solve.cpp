@@ -78,27 +78,6 @@ double BlockSolve::known_rate(const RowBlock& block, int r) const {
     return v;
 }
 
-// J^T x / -c of a tie without multipliers, x its known side.
-void BlockSolve::add_condensed_force(uint32_t j) {
-    const RowBlock& block = row(j);
-    const int rows = block.type->rows;
-    const RowVector x = Eigen::Map<const RowVector>(&b_.solution[(nodes_ + j) * kDof], rows);
-    const RowVector mu = -(compliance_of(block, sys_.scheme).inverse() * x);
-    for (int n = 0; n < block.type->nodes; ++n)
-        if (const uint32_t i = local(block.node[n]); i != kNone)
-            NodeVector::Map(&b_.solution[i * kDof]) += jacobian_of(sys_, block, n).transpose() * mu;
-}
-
-// mu = -(x + J v) / c in the place of x.
-void BlockSolve::find_condensed_impulse(uint32_t j) {
-    const RowBlock& block = row(j);
-    Eigen::Map<RowVector> x(&b_.solution[(nodes_ + j) * kDof], block.type->rows);
-    for (int n = 0; n < block.type->nodes; ++n)
-        if (const uint32_t i = local(block.node[n]); i != kNone)
-            x += jacobian_of(sys_, block, n) * NodeVector::Map(&b_.solution[i * kDof]);
-    x = (-(compliance_of(block, sys_.scheme).inverse() * x)).eval();
-}
-
 // M (v* + contact changes) + h^2 K s + B^T goal / c for nodes, -closing target for ties.
 void BlockSolve::right_hand_side() {
     for (uint32_t i = 0; i < nodes_; ++i) {
@@ -109,6 +88,7 @@ void BlockSolve::right_hand_side() {
         Vec3::Map(x + 3).setZero();
         if (size_of(i) == 6) Vec3::Map(x + 3) = sys_.inertia[sys_.at(node)] * u.w + Vec3::Map(known(i) + 3);
     }
+    for (size_t i = 0; i < b_.elastic_force.size(); ++i) b_.solution[i] += b_.elastic_force[i];
     for (uint32_t j = 0; j < ties(); ++j) {
         const RowBlock& block = row(j);
         double* x = &b_.solution[(nodes_ + j) * kDof];
@@ -120,7 +100,6 @@ void BlockSolve::right_hand_side() {
             const double part = b_.closing < 1 && ideal(block, r) ? b_.closing : 1;
             x[r] = part * known(nodes_ + j)[r] * error_of(block, r) + (meets_known ? known_rate(block, r) : 0.0);
         }
-        if (j >= multipliers()) add_condensed_force(j);
     }
     for (const BoundedRow& bounded : set.rows()) {
         if (!bounded.on) continue;
@@ -138,7 +117,6 @@ void BlockSolve::right_hand_side() {
 void BlockSolve::solve_linear() {
     right_hand_side();
     b_.matrix.solve(b_.solution.data());
-    for (uint32_t j = multipliers(); j < ties(); ++j) find_condensed_impulse(j);
 }
 
 void BlockSolve::solve_known() {
@@ -303,6 +281,7 @@ void BlockSolve::finish() {
             row(j).force[r] = f;
             sys_.rows.impulse[row(j).row + static_cast<uint32_t>(r)] = sys_.scheme.impulse(f);
         }
+    take_elastic_forces();
     if (s_.settings.velocity_filter > 0 && s_.settings.geometric_stiffness) filter_lines();
     ++b_.memory.solved;
 }

@@ -1,5 +1,5 @@
 // The matrix of one block: its nodes and the multipliers of the locked rows of its ties, which are joints and elements.
-// Bounded rows (active_set.h) and those of elements in energy form are folded into the nodes:
+// Bounded rows (active_set.h) and elastic elements (block_elastic.cpp) are folded into the nodes:
 // J^T J / c stands for -J^T mu, mu = (target - J v) / c.
 //
 //   [ M + h^2 K + B^T B / c   -J^T ] [v+]   [ M v* + contact impulses + h^2 K s + B^T goal / c ]
@@ -24,6 +24,8 @@ public:
         : set(s, b), s_(s), sys_(s.system), b_(b), nodes_(static_cast<uint32_t>(b.nodes.size())) {}
 
     void analyse();
+    // Where elastic elements are evaluated; one block after the other.
+    void foresee();
     // Factors at this substep's poses and solves from the unconstrained velocity, in rounds over the active set and
     // twice where the force demands it.
     bool solve_first();
@@ -42,9 +44,8 @@ public:
 
 private:
     const RowBlock& row(uint32_t j) const { return sys_.rows.block[b_.first_row_block + j]; }
-    // Joints, then elements; those with multipliers first.
+    // Joints, then elements with multipliers.
     uint32_t ties() const { return static_cast<uint32_t>(b_.joints.size() + b_.elements.size()); }
-    uint32_t multipliers() const { return ties() - b_.condensed; }
     uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
     int size_of(uint32_t i) const { return b_.matrix.size(i); }                   // 3: a particle
     bool looped() const;
@@ -60,9 +61,22 @@ private:
     void stiffness_of(const RowBlock& block, const double* force, double* k) const;
     void add_stiffness(uint32_t j, const double* force);
     void add_rows(uint32_t j);
-    void add_condensed(uint32_t j);
     void add_bounded();
     double loop_compliance(const RowBlock& block, int r) const;
+
+    // block_elastic.cpp
+    template <class Act>
+    void for_elastic(Act&& act) const;
+    template <class Act>
+    void for_couplings(Act&& act) const;
+    template <class Batch>
+    void gather_before(const Batch& batch, uint32_t i, double* out) const;
+    bool foresees(const ElementSet& of) const;
+    void link_elastic();
+    void find_elastic_places();
+    void assemble_elastic();
+    void take_elastic_forces();
+    double elastic_work() const;
 
     // block_solve.cpp
     Vec3 line_turn(const RowBlock& block) const;
@@ -78,8 +92,6 @@ private:
     double error_of(const RowBlock& block, int r) const {
         return sys_.rows.error[block.row + static_cast<uint32_t>(r)];
     }
-    void add_condensed_force(uint32_t j);
-    void find_condensed_impulse(uint32_t j);
     void solve_linear();
     void solve_known();
     void take_solution();

@@ -18,7 +18,8 @@ namespace taut {
 // How a direct solve takes the elements of a set.
 enum class ElementForm : uint8_t {
     rows,    // with multipliers: any compliance, 0 included
-    energy,  // within the nodes' blocks, J^T J / c: cheaper where there are more rows than freedoms; elastic ones alone
+    folded,  // the same system without the multipliers, J^T J / c within the nodes' blocks: elastic ones alone
+    energy,  // a step of Newton's method on W = 1/2 C^T D C within the nodes' blocks: lambda is -D C, and not kept
 };
 
 struct ElementSet {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "constraints/soft_contact.h"
 #include "state/levers.h"
@@ -58,7 +59,6 @@ void add_element(System& system, ElementSet& set, uint32_t e, bool in_lanes) {
     block.compliance[0] = block.compliance[1] = set.softness[e] * (set.coupled ? 1 : set.compliance[0]);
     block.relaxation[0] = block.relaxation[1] = set.relaxation;
     block.batched = true;
-    block.condensed = set.form == ElementForm::energy;
     block.fresh = set.fresh[e] != 0;
     set.fresh[e] = 0;
 }
@@ -78,6 +78,23 @@ void add_elements(System& system, Elements& elements, std::span<const ElementRef
         add_element(system, of, ref.element, in_lanes);
         ++rows.run.back().count;
     }
+}
+
+// The same for those of a block without rows.
+void add_elastic(System& system, Elements& elements, Block& block) {
+    Rows& rows = system.rows;
+    block.first_elastic_run = static_cast<uint32_t>(rows.elastic.size());
+    uint32_t set = kNone;
+    for (const ElementRef& ref : block.elastic) {
+        if (std::exchange(set, ref.set) != ref.set)
+            rows.elastic.push_back({&elements.set[set], 0, static_cast<uint32_t>(rows.element.size()),
+                                    static_cast<uint32_t>(rows.element_node.size())});
+        rows.element.push_back(ref.element);
+        for (const uint32_t node : elements.set[set].nodes_of(ref.element))
+            rows.element_node.push_back(system.at(node));
+        ++rows.elastic.back().count;
+    }
+    block.elastic_runs = static_cast<uint32_t>(rows.elastic.size()) - block.first_elastic_run;
 }
 
 // Of a contact point, world axes.
@@ -290,6 +307,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     Rows& rows = system.rows;
     rows.block.clear();
     rows.run.clear();
+    rows.elastic.clear();
     rows.element.clear();
     rows.element_node.clear();
     rows.error.clear();
@@ -306,6 +324,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
         }
         for (uint32_t j : blocks[b].joints) add_joint(system, joints.record[j], false);
         add_elements(system, elements, blocks[b].elements, false);
+        add_elastic(system, elements, blocks[b]);
     }
     rows.direct = static_cast<uint32_t>(rows.block.size());
     for (uint32_t j : group.joints) add_joint(system, joints.record[j], !contacts_as_rows);

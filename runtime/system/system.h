@@ -22,6 +22,7 @@
 #include "constraints/joint_lanes.h"
 #include "constraints/rolling.h"
 #include "constraints/span_contact.h"
+#include "state/elements.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
 #include "system/scheme.h"
@@ -60,7 +61,6 @@ struct RowBlock {
     bool fresh;                      // lambda of the last substep means nothing yet
     bool in_lanes;                   // a swept joint or element: bias, targets and impulses are in System::joints
     bool batched;                    // an element: evaluated by its run
-    bool condensed;                  // an element whose rows a direct solve folds into its nodes
     uint8_t point;                   // of a cone: which point
     uint32_t pair;                   // of which pair, an index into Pairs::list
 
@@ -86,10 +86,19 @@ struct ElementRun {
     uint32_t node;          // first in Rows::element_node
 };
 
+// Elements of one set that a block folds into its nodes: they have no rows.
+struct ElasticRun {
+    ElementSet* set;
+    uint32_t count;
+    uint32_t element;  // first in Rows::element, of as many
+    uint32_t node;     // first in Rows::element_node
+};
+
 struct Rows {
     explicit Rows(Memory& memory)
         : block(memory),
           run(memory),
+          elastic(memory),
           element(memory),
           element_node(memory),
           error(memory),
@@ -105,6 +114,7 @@ struct Rows {
     uint32_t lasting_spans = 0;                    // in span_data
     Array<RowBlock> block;
     Array<ElementRun> run;
+    Array<ElasticRun> elastic;              // of blocks
     Array<uint32_t> element, element_node;  // of runs: index in the set; seats
     Array<double> error;                    // C(x) [m or rad]           rows; assemble()
     Array<double> jacobian;                 // dC/dx                     assemble()
@@ -133,6 +143,7 @@ struct System {
           node_at(memory),
           motion(memory),
           pose(memory),
+          foreseen(memory),
           exact(memory),
           free(memory),
           kept(memory),
@@ -181,6 +192,7 @@ struct System {
 
     // by seat; of those for nodes in blocks all or, where no block ever was, none
     Array<Pose> pose;            // at the start of the substep; predict()
+    Array<Pose> foreseen;        // at its end, as velocities were before the solve, of nodes of elastic elements; block_ldlt
     Array<Velocity> exact;       // predict(): v* = v + h a; solvers: v+
     Array<Velocity> free;        // v* with contact impulses, of nodes in blocks; block_ldlt
     Array<Velocity> kept;        // v+ without the push of overlaps, of nodes in blocks with bounded rows

@@ -1,0 +1,326 @@
+// Elastic elements within a block's nodes, evaluated in batches and without multipliers. With u the velocity that moves
+// the positions, x' = x_n + h u, and elements evaluated at x_n + h u_0,
+//   t J^T D J (h + d) + t h K   into the matrix,
+//   t h (J^T D J + K) u_0 - t J^T D C   onto the known side,
+// t and d as in scheme.h. Folded: K is that of the force lambda carried over, its positive part, and lambda becomes
+// -D (C + h J (u - u_0) + d J u), as if it were an unknown (Tournier et al. 2015, eq. 21). Energy: lambda = -D C and
+// the positive part is that of the sum, a step of Newton's method on W = 1/2 C^T D C.
+//
+// u_0 = 0, but for elements of links: there it is the velocity before the solve, which foresees how they turn.
+#include <algorithm>
+
+#include "solvers/block_solve.h"
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kBatch = 8;  // elements evaluated together
+constexpr int kMostFreedoms = kMaxNodes * kDof;
+// Nodes of a link that move against each other by more of its length in a substep are not foreseen: evaluated where
+// they would be, it pulls the wrong way (measured on hanging cloths: above, some burst; below, none).
+constexpr double kForeseen = 1.5;
+
+uint32_t couplings_of(const ElementType& type) {
+    return static_cast<uint32_t>(type.row.nodes * (type.row.nodes - 1) / 2);
+}
+
+// Elements of one set that are evaluated together.
+struct ElasticBatch {
+    ElementSet& set;
+    ElementBatch at;
+    uint32_t place;  // of its first element's couplings in Block::places
+
+    const ElementType& type() const { return *set.type; }
+    int rows() const { return set.type->row.rows; }
+    int nodes() const { return set.type->row.nodes; }
+    int width() const { return nodes() * set.type->freedoms; }
+    double* lambda(uint32_t i) const { return set.lambda_of(at.element[i]); }
+    const uint32_t* seats(uint32_t i) const { return at.node + i * static_cast<uint32_t>(nodes()); }
+    // Of nodes n and m < n of an element.
+    uint32_t place_of(uint32_t i, int n, int m) const {
+        return place + i * couplings_of(type()) + static_cast<uint32_t>(n * (n - 1) / 2 + m);
+    }
+};
+
+// y = D x over the softness of an element.
+void stress(const ElasticBatch& batch, uint32_t i, const double* x, double* y) {
+    const int rows = batch.rows();
+    const double scale = 1 / batch.set.softness[batch.at.element[i]];
+    for (int r = 0; r < rows; ++r) {
+        double sum = 0;
+        for (int k = 0; k < rows; ++k) sum += batch.set.stiffness[r * rows + k] * x[k];
+        y[r] = scale * sum;
+    }
+}
+
+// What a batch puts into the system of a substep.
+class ElasticSystem {
+public:
+    ElasticSystem(const ElasticBatch& batch, const Scheme& scheme) : batch_(batch), scheme_(scheme) {
+        batch.type().evaluate(batch.at, error_, jacobian_, batch.type().freedoms);
+        double lambda[kBatch * kMaxRows];
+        for (uint32_t i = 0; i < batch.at.count; ++i) find_force(i, lambda + i * rows());
+        if (folded())
+            batch.type().stiffness(batch.at, lambda, Curvature::positive, matrix_);
+        else
+            positive_sum(batch.type(), batch.at, {batch.set.stiffness, batch.set.softness.data()}, lambda, matrix_);
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            for (uint32_t k = 0; k < width() * width(); ++k) matrix(i)[k] *= scheme.stiffness();
+            if (folded()) add_material(i, scheme.stiffness());
+        }
+    }
+
+    uint32_t rows() const { return static_cast<uint32_t>(batch_.rows()); }
+    uint32_t width() const { return static_cast<uint32_t>(batch_.width()); }
+    const double* error(uint32_t i) const { return error_ + i * rows(); }
+    const double* jacobian(uint32_t i) const { return jacobian_ + i * rows() * width(); }
+    double* matrix(uint32_t i) { return matrix_ + i * width() * width(); }  // [width][width]
+
+    // -t J^T D C + t h (J^T D J + K) u_0 of an element; then the damping joins its matrix.
+    void known_side(uint32_t i, const double* u_0, double* out) {
+        double f[kMaxRows];
+        stress(batch_, i, error(i), f);
+        const auto freedoms = static_cast<uint32_t>(batch_.type().freedoms);
+        std::fill_n(out, width(), 0.0);
+        for (uint32_t n = 0; n < static_cast<uint32_t>(batch_.nodes()); ++n)
+            for (uint32_t r = 0; r < rows(); ++r)
+                for (uint32_t c = 0; c < freedoms; ++c)
+                    out[n * freedoms + c] -= scheme_.act * f[r] * jacobian(i)[(n * rows() + r) * freedoms + c];
+        add_times(i, u_0, 1, out);
+        if (batch_.set.relaxation > 0) add_material(i, scheme_.act * batch_.set.relaxation);
+    }
+    // out += weight matrix u.
+    void add_times(uint32_t i, const double* u, double weight, double* out) {
+        for (uint32_t a = 0; a < width(); ++a) {
+            double sum = 0;
+            for (uint32_t b = 0; b < width(); ++b) sum += matrix(i)[a * width() + b] * u[b];
+            out[a] += weight * sum;
+        }
+    }
+
+private:
+    bool folded() const { return batch_.set.form == ElementForm::folded; }
+
+    void find_force(uint32_t i, double* lambda) const {
+        const uint32_t e = batch_.at.element[i];
+        if (folded() && !batch_.set.fresh[e]) {
+            std::copy_n(batch_.lambda(i), rows(), lambda);
+            return;
+        }
+        stress(batch_, i, error(i), lambda);
+        for (uint32_t r = 0; r < rows(); ++r) lambda[r] = -lambda[r];
+    }
+
+    // weight J^T D J onto the matrix of an element.
+    void add_material(uint32_t i, double weight) {
+        const auto freedoms = static_cast<uint32_t>(batch_.type().freedoms);
+        double force[kMaxRows];
+        for (uint32_t n = 0; n < static_cast<uint32_t>(batch_.nodes()); ++n)
+            for (uint32_t c = 0; c < freedoms; ++c) {
+                double column[kMaxRows];
+                for (uint32_t r = 0; r < rows(); ++r) column[r] = jacobian(i)[(n * rows() + r) * freedoms + c];
+                stress(batch_, i, column, force);
+                double* line = matrix(i) + (n * freedoms + c) * width();
+                for (uint32_t m = 0; m < static_cast<uint32_t>(batch_.nodes()); ++m)
+                    for (uint32_t r = 0; r < rows(); ++r) {
+                        const double f = weight * force[r];
+                        const double* j = jacobian(i) + (m * rows() + r) * freedoms;
+                        for (uint32_t k = 0; k < freedoms; ++k) line[m * freedoms + k] += f * j[k];
+                    }
+            }
+    }
+
+    const ElasticBatch& batch_;
+    const Scheme& scheme_;
+    double error_[kBatch * kMaxRows];
+    double jacobian_[kBatch * kMaxRows * kMostFreedoms];  // [count][nodes][rows][freedoms]
+    double matrix_[kBatch * kMostFreedoms * kMostFreedoms];
+};
+
+// Velocities of an element's nodes, its freedoms alone.
+void gather_velocities(const ElasticBatch& batch, uint32_t i, const Array<Velocity>& from, double* out) {
+    const int freedoms = batch.type().freedoms;
+    for (int n = 0; n < batch.nodes(); ++n) {
+        const Velocity& u = from[batch.seats(i)[n]];
+        Vec3::Map(out + n * freedoms) = u.v;
+        if (freedoms == 6) Vec3::Map(out + n * freedoms + 3) = u.w;
+    }
+}
+
+}  // namespace
+
+// act(batch) for the block's elastic elements, in order.
+template <class Act>
+void BlockSolve::for_elastic(Act&& act) const {
+    const Rows& rows = sys_.rows;
+    uint32_t place = nodes_ + ties() * b_.stride;
+    for (uint32_t r = b_.first_elastic_run; r < b_.first_elastic_run + b_.elastic_runs; ++r) {
+        const ElasticRun& run = rows.elastic[r];
+        const auto nodes = static_cast<uint32_t>(run.set->type->row.nodes);
+        const Array<Pose>& x = foresees(*run.set) ? sys_.foreseen : sys_.pose;
+        for (uint32_t begin = 0; begin < run.count; begin += kBatch) {
+            const uint32_t count = std::min(kBatch, run.count - begin);
+            const ElementBatch at{count, &rows.element_node[run.node + begin * nodes],
+                                  &rows.element[run.element + begin], run.set->data.data(), x.data()};
+            act(ElasticBatch{*run.set, at, place});
+            place += count * couplings_of(*run.set->type);
+        }
+    }
+}
+
+bool BlockSolve::foresees(const ElementSet& of) const { return b_.foresees && of.form == ElementForm::folded; }
+
+// act(local node, local node, place) for the pairs of nodes that an element couples.
+template <class Act>
+void BlockSolve::for_couplings(Act&& act) const {
+    for_elastic([&](const auto& batch) {
+        for (uint32_t i = 0; i < batch.at.count; ++i)
+            for (int n = 0; n < batch.nodes(); ++n)
+                for (int m = 0; m < n; ++m) {
+                    const uint32_t a = local(batch.seats(i)[n]), b = local(batch.seats(i)[m]);
+                    if (a != kNone && b != kNone) act(a, b, batch.place_of(i, n, m));
+                }
+    });
+}
+
+void BlockSolve::link_elastic() {
+    for_couplings([&](uint32_t a, uint32_t b, uint32_t) { b_.matrix.link(a, b); });
+}
+
+void BlockSolve::find_elastic_places() {
+    uint32_t end = static_cast<uint32_t>(b_.places.size());
+    for_elastic([&](const auto& batch) { end = batch.place_of(batch.at.count, 0, 0); });
+    b_.places.resize(end);
+    for_couplings([&](uint32_t a, uint32_t b, uint32_t place) { b_.places[place] = b_.matrix.place(a, b); });
+}
+
+// Where nodes of elastic elements would be at the end of the substep.
+void BlockSolve::foresee() {
+    b_.foresees = false;
+    if (b_.elastic_runs == 0) return;
+    const double h = sys_.scheme.h;
+    sys_.foreseen.resize(sys_.pose.size());
+    bool slow = true;
+    for_elastic([&](const auto& batch) {
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            const uint32_t* seat = batch.seats(i);
+            for (int n = 0; n < batch.nodes(); ++n) {
+                const Pose& x = sys_.pose[seat[n]];
+                const Velocity& u = local(seat[n]) == kNone ? sys_.exact[seat[n]] : sys_.free[seat[n]];
+                sys_.foreseen[seat[n]] = {x.x + h * u.v, x.R};
+            }
+            if (batch.set.form != ElementForm::folded) continue;
+            for (int n = 1; n < batch.nodes(); ++n) {
+                const Vec3 span = sys_.pose[seat[n]].x - sys_.pose[seat[0]].x;
+                const Vec3 ahead = sys_.foreseen[seat[n]].x - sys_.foreseen[seat[0]].x;
+                slow = slow && (ahead - span).squaredNorm() <= kForeseen * kForeseen * span.squaredNorm();
+            }
+        }
+    });
+    b_.foresees = slow;
+}
+
+// u_0, as it moved the places at which elements are evaluated; rotations stay.
+template <class Batch>
+void BlockSolve::gather_before(const Batch& batch, uint32_t i, double* out) const {
+    const int freedoms = batch.type().freedoms;
+    std::fill_n(out, batch.width(), 0.0);
+    if (!foresees(batch.set)) return;
+    for (int n = 0; n < batch.nodes(); ++n) {
+        const uint32_t seat = batch.seats(i)[n];
+        Vec3::Map(out + n * freedoms) = (sys_.foreseen[seat].x - sys_.pose[seat].x) / sys_.scheme.h;
+    }
+}
+
+void BlockSolve::assemble_elastic() {
+    b_.elastic_force.clear();
+    if (b_.elastic_runs == 0) return;
+    b_.elastic_force.resize(nodes_ * kDof, 0.0);
+    for_elastic([&](const auto& batch) {
+        ElasticSystem system(batch, sys_.scheme);
+        const int freedoms = batch.type().freedoms, width = batch.width();
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            double u[kMostFreedoms], side[kMostFreedoms];
+            gather_before(batch, i, u);
+            system.known_side(i, u, side);
+            gather_velocities(batch, i, sys_.exact, u);
+            // Ends that the block does not solve for go to the known side.
+            bool meets_known = false;
+            for (int n = 0; n < batch.nodes(); ++n) {
+                if (local(batch.seats(i)[n]) != kNone)
+                    std::fill_n(u + n * freedoms, freedoms, 0.0);
+                else
+                    meets_known = true;
+            }
+            if (meets_known) system.add_times(i, u, -1, side);
+            for (int n = 0; n < batch.nodes(); ++n) {
+                const uint32_t a = local(batch.seats(i)[n]);
+                if (a == kNone) continue;
+                for (int c = 0; c < std::min(freedoms, size_of(a)); ++c)
+                    b_.elastic_force[a * kDof + static_cast<uint32_t>(c)] += side[n * freedoms + c];
+                for (int m = 0; m <= n; ++m) {
+                    const uint32_t b = local(batch.seats(i)[m]);
+                    if (b == kNone) continue;
+                    b_.matrix.add(m == n ? b_.places[a] : b_.places[batch.place_of(i, n, m)],
+                                  {system.matrix(i) + n * freedoms * width + m * freedoms,
+                                   std::min(freedoms, size_of(a)), std::min(freedoms, size_of(b)), width});
+                }
+            }
+        }
+    });
+}
+
+// Folded: lambda = -D (C + h J (u - u_0) + d J u).
+void BlockSolve::take_elastic_forces() {
+    for_elastic([&](const auto& batch) {
+        if (batch.set.form != ElementForm::folded) return;
+        double error[kBatch * kMaxRows], jacobian[kBatch * kMaxRows * kMostFreedoms];
+        const int rows = batch.rows(), freedoms = batch.type().freedoms;
+        batch.type().evaluate(batch.at, error, jacobian, freedoms);
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            double u[kMostFreedoms], u_0[kMostFreedoms];
+            gather_velocities(batch, i, sys_.exact, u);
+            gather_before(batch, i, u_0);
+            double* c = error + i * static_cast<uint32_t>(rows);
+            for (int n = 0; n < batch.nodes(); ++n)
+                for (int r = 0; r < rows; ++r) {
+                    const double* j =
+                        jacobian + ((i * static_cast<uint32_t>(batch.nodes()) + static_cast<uint32_t>(n)) *
+                                        static_cast<uint32_t>(rows) +
+                                    static_cast<uint32_t>(r)) *
+                                       static_cast<uint32_t>(freedoms);
+                    for (int k = 0; k < freedoms; ++k) {
+                        const double now = u[n * freedoms + k], then = u_0[n * freedoms + k];
+                        c[r] += j[k] * (sys_.scheme.h * (now - then) + batch.set.relaxation * now);
+                    }
+                }
+            stress(batch, i, c, batch.lambda(i));
+            for (int r = 0; r < rows; ++r) batch.lambda(i)[r] = -batch.lambda(i)[r];
+            batch.set.fresh[batch.at.element[i]] = 0;
+        }
+    });
+}
+
+// Of elastic elements on the block's nodes, at the mean of the velocities before and after [J].
+double BlockSolve::elastic_work() const {
+    double work = 0;
+    for_elastic([&](const auto& batch) {
+        ElasticSystem system(batch, sys_.scheme);
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            double u[kMostFreedoms], start[kMostFreedoms], impulse[kMostFreedoms];
+            gather_before(batch, i, u);
+            system.known_side(i, u, impulse);
+            gather_velocities(batch, i, sys_.exact, u);
+            system.add_times(i, u, -1, impulse);
+            gather_velocities(batch, i, sys_.start, start);
+            const int freedoms = batch.type().freedoms;
+            for (int n = 0; n < batch.nodes(); ++n) {
+                if (local(batch.seats(i)[n]) == kNone) continue;
+                for (int k = n * freedoms; k < (n + 1) * freedoms; ++k) work += 0.5 * impulse[k] * (start[k] + u[k]);
+            }
+        }
+    });
+    return work;
+}
+
+}  // namespace taut
