@@ -16,6 +16,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       joints(memory),
       elements(memory),
       cables(memory),
+      softs(memory),
       broadphase(memory),
       pairs(memory),
       sleep(memory),
@@ -74,6 +75,16 @@ taut_collider World::collider_handle(uint32_t collider) const {
 taut_cable World::cable_handle(uint32_t cable) const {
     if (cable == kNone) return {0};
     return {pack_handle({cable, cables.ids.generation(cable), id})};
+}
+
+taut_cloth World::cloth_handle(uint32_t soft) const {
+    if (soft == kNone || softs.record[soft].kind != SoftKind::cloth) return {0};
+    return {pack_handle({soft, softs.ids.generation(soft), id})};
+}
+
+taut_solid World::solid_handle(uint32_t soft) const {
+    if (soft == kNone || softs.record[soft].kind != SoftKind::solid) return {0};
+    return {pack_handle({soft, softs.ids.generation(soft), id})};
 }
 
 }  // namespace taut

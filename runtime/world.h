@@ -20,6 +20,7 @@
 #include "state/sensors.h"
 #include "state/shapes.h"
 #include "state/sleep.h"
+#include "state/softs.h"
 #include "system/system.h"
 #include "threads/team.h"
 
@@ -42,6 +43,7 @@ struct World {
     Joints joints;
     Elements elements;
     Cables cables;
+    Softs softs;
     collision::Broadphase broadphase;
     Pairs pairs;
     Sleep sleep;
@@ -87,6 +89,8 @@ struct World {
     taut_shape shape_handle(uint32_t shape) const;
     taut_collider collider_handle(uint32_t collider) const;
     taut_cable cable_handle(uint32_t cable) const;
+    taut_cloth cloth_handle(uint32_t soft) const;
+    taut_solid solid_handle(uint32_t soft) const;
 };
 
 // What changes of it after the world's creation.
@@ -103,11 +107,11 @@ void describe(Visitor& visitor, Of& of) {
 
 template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, broadphase, pairs, sleep, sensors,
+    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, broadphase, pairs, sleep, sensors,
            pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
            contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke, moved_before, frozen,
            profile, reports, observer, spring_substep, first_substep, impacts] = of;
-    TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, broadphase.boxes());
+    TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);
     TAUT_ASIDE(visitor, sensors, last_step);

@@ -44,7 +44,7 @@ typedef enum taut_result {
     TAUT_LOCKED = 6,           /**< the world is inside a step (or a second thread is using it) */
     TAUT_TOO_SMALL = 7,        /**< the array is too small; *count holds the number needed */
     TAUT_OUT_OF_MEMORY = 8,
-    TAUT_IN_USE = 9,       /**< a shape that bodies still use, or a body of a cable, cannot be removed */
+    TAUT_IN_USE = 9,       /**< a shape that bodies still use, or a body of a cable, cloth or solid, cannot be removed */
     TAUT_LIMIT = 10,       /**< a stated limit is reached (worlds, their contents, vertices of a hull) */
     TAUT_UNSUPPORTED = 11, /**< this machine or build lacks what is needed; the text says what */
     TAUT_RESULT_MAX = 0x7fffffff
@@ -88,6 +88,15 @@ typedef struct taut_joint {
 typedef struct taut_cable {
     uint64_t bits;
 } taut_cable;
+
+/** A cloth. Zero is null. */
+typedef struct taut_cloth {
+    uint64_t bits;
+} taut_cloth;
+/** A deformable solid. Zero is null. */
+typedef struct taut_solid {
+    uint64_t bits;
+} taut_solid;
 
 /** Severity of a log line. */
 typedef enum taut_log_level {

@@ -47,7 +47,7 @@ typedef struct taut_profile {
     uint32_t awake;       /**< of the bodies; counts and quality above, but for bodies and joints, are theirs alone */
     uint32_t sleeping_islands;
     uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved */
-    uint32_t elements;         /**< of cables of particles, which have no joint a segment */
+    uint32_t elements;         /**< of cables of particles, cloths and solids */
     /* what the solves of the step left, largest of all islands and substeps; 0 unless taut_world_def.report is 1 */
     float yield;          /**< by which a swept contact or rigid joint gives way under its force, s h^2 w |f| [m]: h
                                the substep, w the inverse mass along the row, s 0.4 for contacts and 0.025 for joints */

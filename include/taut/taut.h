@@ -8,6 +8,7 @@
 #include <taut/base.h>
 #include <taut/body.h>
 #include <taut/cable.h>
+#include <taut/cloth.h>
 #include <taut/collider.h>
 #include <taut/event.h>
 #include <taut/joint.h>
@@ -20,6 +21,7 @@
 #include <taut/shape.h>
 #include <taut/sleep.h>
 #include <taut/snapshot.h>
+#include <taut/solid.h>
 #include <taut/world.h>
 
 #endif

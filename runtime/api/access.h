@@ -167,6 +167,8 @@ inline const IdPool& pool_of(const World& world, taut_body) { return world.nodes
 inline const IdPool& pool_of(const World& world, taut_collider) { return world.colliders.ids; }
 inline const IdPool& pool_of(const World& world, taut_joint) { return world.joints.ids; }
 inline const IdPool& pool_of(const World& world, taut_cable) { return world.cables.ids; }
+inline const IdPool& pool_of(const World& world, taut_cloth) { return world.softs.ids; }
+inline const IdPool& pool_of(const World& world, taut_solid) { return world.softs.ids; }
 // Whether the bits name something that lives; an inner joint has no handle.
 template <class Handle>
 bool names(const World& world, Handle handle, const HandleBits& bits) {
@@ -178,11 +180,21 @@ inline bool names(const World& world, taut_shape, const HandleBits& bits) {
 inline bool names(const World& world, taut_joint handle, const HandleBits& bits) {
     return pool_of(world, handle).live(bits.index, bits.generation) && !world.joints.record[bits.index].inner;
 }
+inline bool names(const World& world, taut_cloth handle, const HandleBits& bits) {
+    return pool_of(world, handle).live(bits.index, bits.generation) &&
+           world.softs.record[bits.index].kind == SoftKind::cloth;
+}
+inline bool names(const World& world, taut_solid handle, const HandleBits& bits) {
+    return pool_of(world, handle).live(bits.index, bits.generation) &&
+           world.softs.record[bits.index].kind == SoftKind::solid;
+}
 constexpr const char* name_of(taut_body) { return "body"; }
 constexpr const char* name_of(taut_shape) { return "shape"; }
 constexpr const char* name_of(taut_collider) { return "collider"; }
 constexpr const char* name_of(taut_joint) { return "joint"; }
 constexpr const char* name_of(taut_cable) { return "cable"; }
+constexpr const char* name_of(taut_cloth) { return "cloth"; }
+constexpr const char* name_of(taut_solid) { return "solid"; }
 
 // ---------------------------------------------------------------- act
 

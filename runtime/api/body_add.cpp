@@ -178,8 +178,8 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
 taut_result taut_body_remove(taut_body handle) {
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
-        check.require(world.nodes.info[node].cable == kNone, "body is part of a cable, which is removed as a whole",
-                      TAUT_IN_USE);
+        check.require(!world.nodes.info[node].is_part(),
+                      "body is part of a cable, cloth or solid, which is removed as a whole", TAUT_IN_USE);
         if (!check) return check.result();
         remove_node(world, node);
         return TAUT_OK;

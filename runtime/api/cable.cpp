@@ -5,6 +5,7 @@
 
 #include "api/access.h"
 #include "api/collider_def.h"
+#include "api/copy_out.h"
 #include "models/cable.h"
 #include "models/cable_path.h"
 
@@ -155,16 +156,6 @@ Cable plan_of(World& world, const taut_cable_def& def) {
     plan.self_collision = def.self_collision != 0;
     plan.user_data = def.user_data;
     return plan;
-}
-
-template <class T, class Get>
-taut_result copy_out(uint32_t needed, T* out, uint32_t capacity, uint32_t* count, const char* call, const char* name,
-                     Get get) {
-    *count = needed;
-    if (capacity < needed) return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, %u needed", call, capacity, needed);
-    if (!out) return refuse(TAUT_NULL_POINTER, "%s: %s is null", call, name);
-    for (uint32_t i = 0; i < needed; ++i) out[i] = get(i);
-    return TAUT_OK;
 }
 
 // An end that can be reeled.

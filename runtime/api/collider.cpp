@@ -78,9 +78,9 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
 
 namespace {
 
-// Colliders of cables belong to the cable.
+// Colliders of cables, cloths and solids belong to these.
 Check& check_own(Check& check, const World& world, uint32_t node) {
-    return check.require(world.nodes.info[node].cable == kNone, "the body is part of a cable", TAUT_IN_USE);
+    return check.require(!world.nodes.info[node].is_part(), "the body is part of a cable, cloth or solid", TAUT_IN_USE);
 }
 
 taut_collider_def def_of(const World& world, uint32_t index) {

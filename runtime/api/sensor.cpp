@@ -12,7 +12,8 @@ taut_result taut_collider_set_sensor(taut_collider handle, int32_t sensor) {
     if (!check.boolean("sensor", static_cast<uint32_t>(sensor))) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         Collider& collider = world.colliders.record[index];
-        check.require(world.nodes.info[collider.node].cable == kNone, "the body is part of a cable", TAUT_IN_USE);
+        check.require(!world.nodes.info[collider.node].is_part(), "the body is part of a cable, cloth or solid",
+                      TAUT_IN_USE);
         if (!check || collider.sensor == (sensor != 0)) return check.result();
         world.colliders.reserve_sensor();  // what may fail comes first
         wake_about(world, collider.node);

@@ -48,12 +48,18 @@ uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, 
 void remove_node(World& world, uint32_t node) {
     wake(world, node);
     // What may fail comes first.
-    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
-    remove_colliders(world, node);
+    reserve_ended(world.pairs, ends_on(node));
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
         if (ends_on(world.joints.record[joint], node)) world.joints.remove(joint);
     }
+    drop_node(world, node);
+}
+
+void drop_node(World& world, uint32_t node) {
+    wake(world, node);
+    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
+    remove_colliders(world, node);
     world.nodes.remove(node);
 }
 

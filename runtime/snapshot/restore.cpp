@@ -46,7 +46,7 @@ struct Staged {
     Array<T> list;
     const std::byte* end = nullptr;
 };
-using Staging = std::tuple<Staged<ElementSet>, Staged<Cable>, Staged<Block>>;
+using Staging = std::tuple<Staged<ElementSet>, Staged<Cable>, Staged<Soft>, Staged<Block>>;
 
 template <class Self>
 class Reader : public Visitor<Self> {
@@ -359,7 +359,7 @@ taut_result restore(const char* call, World& world, std::span<const std::byte> f
         Source source{from.data() + sizeof(SnapshotHeader), from.data() + from.size()};
         if (const taut_result there = check_shapes(call, world, source); there != TAUT_OK) return there;
         Source again = source;
-        Staging staging{world.memory, world.memory, world.memory};
+        Staging staging{world.memory, world.memory, world.memory, world.memory};
         MakeRoom room(source, staging);
         describe(room, world);
         if (source.left() > 0) throw Damaged();

@@ -84,13 +84,17 @@ struct NodeInfo {
     NodeKind kind = NodeKind::dead;
     uint32_t collider = kNone;  // the first of its colliders
     uint32_t cable = kNone;     // that it is part of
+    uint32_t soft = kNone;      // likewise, a cloth or solid
     bool continuous = true;     // what moves past its own thickness is looked for along its way; detect/impact.h
     uint64_t user_data = 0;
+
+    // What the host knows as a whole, and changes as one.
+    bool is_part() const { return cable != kNone || soft != kNone; }
 };
 template <class Visitor, Like<NodeInfo> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, collider, cable, continuous, user_data] = of;
-    TAUT_FIELDS(visitor, kind, collider, cable, continuous);
+    auto& [kind, collider, cable, soft, continuous, user_data] = of;
+    TAUT_FIELDS(visitor, kind, collider, cable, soft, continuous);
     TAUT_ASIDE(visitor, user_data);
 }
 

@@ -1,0 +1,118 @@
+/**
+ * @file cloth.h
+ * Cloths: sheets of links or of triangles, from any triangle mesh, in one system with rigid bodies and cables.
+ * Each function here: thread safety: one thread at a time per world, not inside a step.
+ */
+#ifndef TAUT_CLOTH_H
+#define TAUT_CLOTH_H
+
+#include <taut/base.h>
+#include <taut/collider.h>
+#include <taut/deformable.h>
+#include <taut/math.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What a cloth is made of. */
+typedef enum taut_cloth_kind {
+    TAUT_CLOTH_TRIANGLES = 0, /**< a sheet of finite stiffness: St-Venant-Kirchhoff triangles, and bending */
+    TAUT_CLOTH_LINKS = 1,     /**< links along the edges and across them, each rigid or soft */
+    TAUT_CLOTH_KIND_MAX = 0x7fffffff
+} taut_cloth_kind;
+
+/** Fabrics whose figures taut_cloth_def_set_fabric() writes. */
+typedef enum taut_fabric {
+    TAUT_FABRIC_COTTON = 0,
+    TAUT_FABRIC_SILK = 1,
+    TAUT_FABRIC_DENIM = 2,
+    TAUT_FABRIC_LEATHER = 3,
+    TAUT_FABRIC_MAX = 0x7fffffff
+} taut_fabric;
+
+/**
+ * A cloth. Warp is the direction in which u of a triangle's texture coordinates grows, weft is across it; without
+ * coordinates warp is the direction of the first triangle's first edge. A link that goes by less than an eighth of a
+ * turn from warp or weft counts as such, others as shear. Across each inner edge there is a link between the two
+ * vertices beside it, which resists bending, or shear where the edge itself does.
+ */
+typedef struct taut_cloth_def {
+    uint32_t struct_size;
+    taut_cloth_kind kind;       /**< default TAUT_CLOTH_TRIANGLES */
+    const taut_pos* points;     /**< of the vertices [m]; copied */
+    const taut_pos* rest;       /**< of the vertices in the rest shape [m]; null: points. Copied */
+    uint32_t point_count;       /**< [3, TAUT_DEFORMABLE_MAX] */
+    uint32_t triangle_count;    /**< [1, TAUT_DEFORMABLE_MAX] */
+    const uint32_t* triangles;  /**< [triangle_count][3] vertices, all turned the same way; copied */
+    const float* uv;            /**< [point_count][2] texture coordinates; null: none. Copied */
+    float area_density;         /**< [kg/m^2], [1e-3, 1e4]. Default 0.2 */
+    float thickness;            /**< of the material, and of what touches others [m], [1e-4, 1]. Default 0.005 */
+    float stretch_stiffness[2]; /**< along warp and weft, of triangles [N/m], [1e-3, 1e9]. Default 5000 */
+    float shear_stiffness;      /**< [N/m], [1e-3, 1e9]. Default 2000 */
+    float poisson_ratio;        /**< contraction along weft over stretch along warp, (-1, 1). Default 0.3 */
+    float bending_stiffness;    /**< of triangles [N m], 0 (limp) or [1e-9, 1e6]. Default 0 */
+    float stretch_compliance[2]; /**< of each link along warp and weft [m/N], [0, 1e6]; 0: rigid. Default 1e-6 */
+    float shear_compliance;      /**< of each such link [m/N], [0, 1e6], or INFINITY: there are none. Default 1e-4 */
+    float bend_compliance;       /**< likewise. Default INFINITY */
+    float damping;               /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
+    float gravity_scale;         /**< [-1000, 1000]. Default 1 */
+    taut_deformable_solve solve; /**< default TAUT_DEFORMABLE_DIRECT */
+    taut_material material;
+    taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
+    uint64_t user_data; /**< of the cloth and of each of its vertices */
+} taut_cloth_def;
+
+TAUT_API void taut_cloth_def_init(taut_cloth_def* def);
+/**
+ * Writes density, thickness, stiffnesses and bending of a fabric, as measured on common ones, to be tuned.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT.
+ */
+TAUT_API taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric);
+
+/**
+ * Adds a cloth at rest.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex on no triangle; a triangle without area at rest; a mesh that
+ *         is not manifold or not all turned the same way; links of no length), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
+ *         TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_world_add_cloth(taut_world world, const taut_cloth_def* def, taut_cloth* out);
+/** Removes a cloth with its vertices and every joint on them; taut_body_remove of one returns TAUT_IN_USE. */
+TAUT_API taut_result taut_cloth_remove(taut_cloth cloth);
+/** 1 if the handle names a live cloth, else 0. */
+TAUT_API int32_t taut_cloth_is_valid(taut_cloth cloth);
+TAUT_API taut_result taut_cloth_get_user_data(taut_cloth cloth, uint64_t* out);
+/** The cloth that a body is a vertex of; null for any other body. */
+TAUT_API taut_result taut_body_get_cloth(taut_body body, taut_cloth* out);
+
+/**
+ * Pins a vertex or lets it go. A pinned one is a kinematic body, which stays, or moves as taut_body_move_kinematic and
+ * taut_body_set_velocity of it say.
+ * @param pinned 0 or 1.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_cloth_pin(taut_cloth cloth, uint32_t vertex, uint32_t pinned);
+
+/**
+ * Vertices after the last step [m], in the order of the def.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_cloth_get_points(taut_cloth cloth, taut_pos* points, uint32_t capacity, uint32_t* count);
+/** Their velocities [m/s]; results as above. */
+TAUT_API taut_result taut_cloth_get_velocities(taut_cloth cloth, taut_vec3* velocities, uint32_t capacity,
+                                               uint32_t* count);
+/** Their normals, by the angles of the triangles about them: unit, or 0 where these cancel; results as above. */
+TAUT_API taut_result taut_cloth_get_normals(taut_cloth cloth, taut_vec3* normals, uint32_t capacity, uint32_t* count);
+/** Their bodies; results as above. */
+TAUT_API taut_result taut_cloth_get_bodies(taut_cloth cloth, taut_body* bodies, uint32_t capacity, uint32_t* count);
+/** Triangles, [count][3] vertices, capacity in triangles; results as above. */
+TAUT_API taut_result taut_cloth_get_triangles(taut_cloth cloth, uint32_t* triangles, uint32_t capacity,
+                                              uint32_t* count);
+/** Largest principal strain of each triangle, stretch - 1; results as above. */
+TAUT_API taut_result taut_cloth_get_strains(taut_cloth cloth, float* strains, uint32_t capacity, uint32_t* count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,30 @@
+/**
+ * @file deformable.h
+ * What cloths (cloth.h) and solids (solid.h) have in common.
+ *
+ * A deformable is a mesh of vertices, each a particle of the world, and of elements between them. Its vertices are
+ * bodies that all other calls may read, push and attach to; they touch what is around them as spheres of half the
+ * deformable's thickness, and not each other.
+ */
+#ifndef TAUT_DEFORMABLE_H
+#define TAUT_DEFORMABLE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Most vertices, triangles or cells of one deformable. */
+#define TAUT_DEFORMABLE_MAX 1000000
+
+/** How the world's default solver takes the elements of a deformable; the other solvers take all alike. */
+typedef enum taut_deformable_solve {
+    TAUT_DEFORMABLE_DIRECT = 0, /**< all at once: exact for any stiffness and load; time grows as vertices^1.5 */
+    TAUT_DEFORMABLE_SWEPT = 1,  /**< element by element: time grows as vertices; what is stiff or heavy gives way */
+    TAUT_DEFORMABLE_SOLVE_MAX = 0x7fffffff
+} taut_deformable_solve;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,111 @@
+/**
+ * @file solid.h
+ * Deformable solids: meshes of tetrahedra or hexahedra, in one system with rigid bodies, cables and cloths.
+ * Each function here: thread safety: one thread at a time per world, not inside a step.
+ */
+#ifndef TAUT_SOLID_H
+#define TAUT_SOLID_H
+
+#include <taut/base.h>
+#include <taut/collider.h>
+#include <taut/deformable.h>
+#include <taut/math.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The law between strain and stress. */
+typedef enum taut_solid_material {
+    TAUT_SOLID_NEO_HOOKEAN = 0, /**< rubber: nothing inverts by itself; Poisson's ratio to 0.49 */
+    TAUT_SOLID_ST_VENANT_KIRCHHOFF = 1, /**< Green strain: cheapest; for stiff ones, as it collapses when pressed to half */
+    TAUT_SOLID_COROTATED = 2,           /**< Hooke's law of the principal stretches */
+    TAUT_SOLID_FIXED_COROTATED = 3,     /**< the same with the true volume (Stomakhin et al. 2012) */
+    TAUT_SOLID_MATERIAL_MAX = 0x7fffffff
+} taut_solid_material;
+
+/** Substances whose figures taut_solid_def_set_substance() writes. */
+typedef enum taut_substance {
+    TAUT_SUBSTANCE_RUBBER = 0,
+    TAUT_SUBSTANCE_JELLY = 1,
+    TAUT_SUBSTANCE_FOAM = 2,
+    TAUT_SUBSTANCE_MUSCLE = 3,
+    TAUT_SUBSTANCE_WOOD = 4,
+    TAUT_SUBSTANCE_MAX = 0x7fffffff
+} taut_substance;
+
+/**
+ * A solid. Tetrahedra: corners 1, 2, 3 go round counterclockwise as seen from outside, where corner 0 is on the other
+ * side. Hexahedra: corners 0 to 3 go round the bottom counterclockwise as seen from above, 4 to 7 lie over them.
+ */
+typedef struct taut_solid_def {
+    uint32_t struct_size;
+    taut_solid_material material; /**< default TAUT_SOLID_NEO_HOOKEAN */
+    const taut_pos* points;       /**< of the vertices [m]; copied */
+    const taut_pos* rest;         /**< of the vertices in the rest shape [m]; null: points. Copied */
+    uint32_t point_count;         /**< [4, TAUT_DEFORMABLE_MAX] */
+    uint32_t cell_count;          /**< [1, TAUT_DEFORMABLE_MAX] */
+    const uint32_t* cells;        /**< [cell_count][corners] vertices; copied */
+    uint32_t corners;             /**< 4: tetrahedra, 8: hexahedra. Default 4 */
+    float density;                /**< [kg/m^3], [1e-2, 1e6]. Default 1000 */
+    float young_modulus;          /**< [Pa], [1, 1e12]. Default 1e6 */
+    float poisson_ratio;          /**< [0, 0.499]; more than 0 for TAUT_SOLID_FIXED_COROTATED. Default 0.3 */
+    float damping;                /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
+    float thickness;              /**< of the spheres by which boundary vertices touch [m], [1e-4, 1]. Default 0.01 */
+    float gravity_scale;          /**< [-1000, 1000]. Default 1 */
+    taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_DIRECT */
+    taut_material surface;        /**< friction and restitution */
+    taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the solid has a negative one */
+    uint64_t user_data; /**< of the solid and of each of its vertices */
+} taut_solid_def;
+
+TAUT_API void taut_solid_def_init(taut_solid_def* def);
+/**
+ * Writes material, density and elastic constants of a substance, to be tuned.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT.
+ */
+TAUT_API taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_substance substance);
+
+/**
+ * Adds a solid at rest.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex in no cell; a cell that is flat or inverted at rest, whose
+ *         number the text gives), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED,
+ *         TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_world_add_solid(taut_world world, const taut_solid_def* def, taut_solid* out);
+/** Removes a solid with its vertices and every joint on them; taut_body_remove of one returns TAUT_IN_USE. */
+TAUT_API taut_result taut_solid_remove(taut_solid solid);
+/** 1 if the handle names a live solid, else 0. */
+TAUT_API int32_t taut_solid_is_valid(taut_solid solid);
+TAUT_API taut_result taut_solid_get_user_data(taut_solid solid, uint64_t* out);
+/** The solid that a body is a vertex of; null for any other body. */
+TAUT_API taut_result taut_body_get_solid(taut_body body, taut_solid* out);
+
+/** As taut_cloth_pin. */
+TAUT_API taut_result taut_solid_pin(taut_solid solid, uint32_t vertex, uint32_t pinned);
+
+/**
+ * Vertices after the last step [m], in the order of the def.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_solid_get_points(taut_solid solid, taut_pos* points, uint32_t capacity, uint32_t* count);
+/** Their velocities [m/s]; results as above. */
+TAUT_API taut_result taut_solid_get_velocities(taut_solid solid, taut_vec3* velocities, uint32_t capacity,
+                                               uint32_t* count);
+/** Their normals, by the angles of the boundary's triangles about them; 0 of inner ones. Results as above. */
+TAUT_API taut_result taut_solid_get_normals(taut_solid solid, taut_vec3* normals, uint32_t capacity, uint32_t* count);
+/** Their bodies; results as above. */
+TAUT_API taut_result taut_solid_get_bodies(taut_solid solid, taut_body* bodies, uint32_t capacity, uint32_t* count);
+/** Triangles of the boundary, outward, [count][3] vertices, capacity in triangles; results as above. */
+TAUT_API taut_result taut_solid_get_triangles(taut_solid solid, uint32_t* triangles, uint32_t capacity,
+                                              uint32_t* count);
+/** Von Mises stress of each cell, the mean of its Gauss points' [Pa]; results as above. */
+TAUT_API taut_result taut_solid_get_stresses(taut_solid solid, float* stresses, uint32_t capacity, uint32_t* count);
+/** Volume of each cell over that at rest, negative where it is inverted; results as above. */
+TAUT_API taut_result taut_solid_get_volumes(taut_solid solid, float* ratios, uint32_t capacity, uint32_t* count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,180 @@
+#include <taut/cloth.h>
+
+#include "api/deformable.h"
+#include "models/cloth.h"
+
+using namespace taut;
+
+namespace {
+
+constexpr Range kAreaDensity{1e-3, 1e4};     // [kg/m^2]
+constexpr Range kSheetStiffness{1e-3, 1e9};  // [N/m]
+constexpr Range kSheetPoisson{-0.999, 0.999};
+constexpr Range kSheetBending{1e-9, 1e6};  // [N m]
+constexpr float kNoLinks = std::numeric_limits<float>::infinity();
+
+bool check_def(Check& check, const taut_cloth_def& def) {
+    check.struct_size(def.struct_size, sizeof def)
+        .choice("kind", def.kind, TAUT_CLOTH_LINKS)
+        .number("area_density", def.area_density, kAreaDensity)
+        .number("stretch_stiffness[0]", def.stretch_stiffness[0], kSheetStiffness)
+        .number("stretch_stiffness[1]", def.stretch_stiffness[1], kSheetStiffness)
+        .number("shear_stiffness", def.shear_stiffness, kSheetStiffness)
+        .number("poisson_ratio", def.poisson_ratio, kSheetPoisson)
+        .zero_or("bending_stiffness", def.bending_stiffness, kSheetBending)
+        .number("stretch_compliance[0]", def.stretch_compliance[0], kCompliance)
+        .number("stretch_compliance[1]", def.stretch_compliance[1], kCompliance)
+        .number_or("shear_compliance", def.shear_compliance, kCompliance, kNoLinks)
+        .number_or("bend_compliance", def.bend_compliance, kCompliance, kNoLinks);
+    check_soft(check, def.material, kMaterialInDef, def.filter, def.thickness, def.damping, def.gravity_scale,
+               def.solve);
+    const MeshDef mesh{def.points,       def.rest,      def.point_count,    3, "triangles",
+                       "triangle_count", def.triangles, def.triangle_count, 3};
+    if (!check || !check_mesh(check, mesh)) return false;
+    for (size_t i = 0; def.uv && check && i < 2 * size_t{def.point_count}; ++i)
+        check.number("uv", def.uv[i], Range{-1e6, 1e6});
+    return static_cast<bool>(check);
+}
+
+Fabric fabric_of(const taut_cloth_def& def) {
+    Fabric fabric;
+    fabric.area_density = def.area_density;
+    fabric.thickness = def.thickness;
+    for (int i = 0; i < 2; ++i) {
+        fabric.stretch_stiffness[i] = def.stretch_stiffness[i];
+        fabric.stretch_compliance[i] = def.stretch_compliance[i];
+    }
+    fabric.shear_stiffness = def.shear_stiffness;
+    fabric.poisson = def.poisson_ratio;
+    fabric.bending_stiffness = def.bending_stiffness;
+    fabric.shear_compliance = def.shear_compliance;
+    fabric.bend_compliance = def.bend_compliance;
+    fabric.damping = def.damping;
+    return fabric;
+}
+
+// Common fabrics; stiffnesses are those of small strains (Wang, O'Brien and Ramamoorthi 2011 give the order).
+struct FabricFigures {
+    float area_density, thickness, stretch[2], shear, bending;
+};
+constexpr FabricFigures kFabrics[] = {
+    {0.15f, 0.0005f, {4000, 3000}, 600, 1e-5f},     // cotton
+    {0.07f, 0.0003f, {2500, 2000}, 250, 2e-6f},     // silk
+    {0.4f, 0.001f, {15000, 10000}, 3000, 1e-4f},    // denim
+    {0.9f, 0.0015f, {30000, 30000}, 10000, 1e-3f},  // leather
+};
+
+}  // namespace
+
+void taut_cloth_def_init(taut_cloth_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->area_density = 0.2f;
+    def->thickness = 0.005f;
+    def->stretch_stiffness[0] = def->stretch_stiffness[1] = 5000;
+    def->shear_stiffness = 2000;
+    def->poisson_ratio = 0.3f;
+    def->stretch_compliance[0] = def->stretch_compliance[1] = 1e-6f;
+    def->shear_compliance = 1e-4f;
+    def->bend_compliance = kNoLinks;
+    def->gravity_scale = 1;
+    def->material = kDefaultMaterial;
+    def->filter = kDefaultFilter;
+}
+
+taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric) {
+    Check check(__func__);
+    if (!check.pointer("def", def)) return check.result();
+    check.struct_size(def->struct_size, sizeof *def).choice("fabric", fabric, TAUT_FABRIC_LEATHER);
+    if (!check) return check.result();
+    const FabricFigures& of = kFabrics[fabric];
+    def->area_density = of.area_density;
+    def->thickness = of.thickness;
+    def->stretch_stiffness[0] = of.stretch[0];
+    def->stretch_stiffness[1] = of.stretch[1];
+    def->shear_stiffness = of.shear;
+    def->bending_stiffness = of.bending;
+    return TAUT_OK;
+}
+
+taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, taut_cloth* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    if (!check_def(check, *def)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const Array<Vec3> at = positions_of(world, def->points, def->point_count);
+        const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
+        const std::span<const float> uv(def->uv, def->uv ? 2 * size_t{def->point_count} : 0);
+        const ClothMesh mesh{at, rest, {def->triangles, 3 * size_t{def->triangle_count}}, uv};
+        const ClothKind kind = def->kind == TAUT_CLOTH_LINKS ? ClothKind::links : ClothKind::triangles;
+        SoftPlan plan(world.memory);
+        plan.soft.gravity_scale = def->gravity_scale;
+        plan.soft.user_data = def->user_data;
+        plan_spheres(plan, def->thickness, def->material, def->filter);
+        const char* fault = plan_cloth(mesh, kind, fabric_of(*def), solve_of(def->solve), plan);
+        if (!check.require(!fault, fault)) return check.result();
+        uint32_t index;
+        const taut_result added = add_planned(check, world, plan, index);
+        if (added == TAUT_OK) *out = world.cloth_handle(index);
+        return added;
+    });
+}
+
+taut_result taut_cloth_remove(taut_cloth handle) {
+    return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
+        remove_soft(world, index);
+        return TAUT_OK;
+    });
+}
+
+int32_t taut_cloth_is_valid(taut_cloth handle) { return is_valid(handle); }
+
+taut_result taut_cloth_get_user_data(taut_cloth handle, uint64_t* out) {
+    Check check(__func__);
+    return soft_user_data(check, handle, out);
+}
+
+taut_result taut_body_get_cloth(taut_body handle, taut_cloth* out) {
+    Check check(__func__);
+    return soft_of_body(check, handle, out, [](const World& world, uint32_t soft) { return world.cloth_handle(soft); });
+}
+
+taut_result taut_cloth_pin(taut_cloth handle, uint32_t vertex, uint32_t pinned) {
+    Check check(__func__);
+    return pin_soft(check, handle, vertex, pinned);
+}
+
+taut_result taut_cloth_get_points(taut_cloth handle, taut_pos* points, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_points(check, handle, points, capacity, count);
+}
+
+taut_result taut_cloth_get_velocities(taut_cloth handle, taut_vec3* velocities, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_velocities(check, handle, velocities, capacity, count);
+}
+
+taut_result taut_cloth_get_normals(taut_cloth handle, taut_vec3* normals, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_normals(check, handle, normals, capacity, count);
+}
+
+taut_result taut_cloth_get_bodies(taut_cloth handle, taut_body* bodies, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_bodies(check, handle, bodies, capacity, count);
+}
+
+taut_result taut_cloth_get_triangles(taut_cloth handle, uint32_t* triangles, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_triangles(check, handle, triangles, capacity, count);
+}
+
+taut_result taut_cloth_get_strains(taut_cloth handle, float* strains, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
+        return copy_out(soft.triangles(), strains, capacity, count, check.call(), "strains",
+                        [&](uint32_t t) { return to_float(triangle_strain(world, soft, t)); });
+    });
+}

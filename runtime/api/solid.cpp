@@ -1,0 +1,169 @@
+#include <taut/solid.h>
+
+#include <cstdio>
+
+#include "api/deformable.h"
+#include "models/solid.h"
+
+using namespace taut;
+
+namespace {
+
+constexpr Range kSolidDensity{1e-2, 1e6};  // [kg/m^3]
+constexpr Range kYoung{1, 1e12};           // [Pa]
+constexpr Range kSolidPoisson{0, 0.499};
+constexpr MaterialNames kSurface{"surface.friction",         "surface.restitution",      "surface.friction_rule",
+                                 "surface.restitution_rule", "surface.rolling_friction", "surface.spinning_friction"};
+
+bool check_def(Check& check, const taut_solid_def& def) {
+    check.struct_size(def.struct_size, sizeof def)
+        .choice("material", def.material, TAUT_SOLID_FIXED_COROTATED)
+        .number("density", def.density, kSolidDensity)
+        .number("young_modulus", def.young_modulus, kYoung)
+        .number("poisson_ratio", def.poisson_ratio, kSolidPoisson)
+        .require(def.corners == 4 || def.corners == 8, "corners is neither 4 nor 8")
+        .require(def.material != TAUT_SOLID_FIXED_COROTATED || def.poisson_ratio > 0,
+                 "poisson_ratio is 0, by which the volume does not resist, of a material that asks for it");
+    check_soft(check, def.surface, kSurface, def.filter, def.thickness, def.damping, def.gravity_scale, def.solve);
+    const MeshDef mesh{def.points,   def.rest,  def.point_count, 4,          "cells",
+                       "cell_count", def.cells, def.cell_count,  def.corners};
+    return check && check_mesh(check, mesh);
+}
+
+struct SubstanceFigures {
+    taut_solid_material material;
+    float density, young, poisson;
+};
+constexpr SubstanceFigures kSubstances[] = {
+    {TAUT_SOLID_NEO_HOOKEAN, 1100, 2e6f, 0.48f},         // rubber
+    {TAUT_SOLID_NEO_HOOKEAN, 1000, 2e4f, 0.45f},         // jelly
+    {TAUT_SOLID_NEO_HOOKEAN, 50, 1e5f, 0.1f},            // foam
+    {TAUT_SOLID_NEO_HOOKEAN, 1060, 1e5f, 0.45f},         // muscle
+    {TAUT_SOLID_ST_VENANT_KIRCHHOFF, 600, 1e10f, 0.3f},  // wood
+};
+
+}  // namespace
+
+void taut_solid_def_init(taut_solid_def* def) {
+    if (!def) return;
+    *def = {};
+    def->struct_size = sizeof *def;
+    def->corners = 4;
+    def->density = 1000;
+    def->young_modulus = 1e6f;
+    def->poisson_ratio = 0.3f;
+    def->thickness = 0.01f;
+    def->gravity_scale = 1;
+    def->surface = kDefaultMaterial;
+    def->filter = kDefaultFilter;
+}
+
+taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_substance substance) {
+    Check check(__func__);
+    if (!check.pointer("def", def)) return check.result();
+    check.struct_size(def->struct_size, sizeof *def).choice("substance", substance, TAUT_SUBSTANCE_WOOD);
+    if (!check) return check.result();
+    const SubstanceFigures& of = kSubstances[substance];
+    def->material = of.material;
+    def->density = of.density;
+    def->young_modulus = of.young;
+    def->poisson_ratio = of.poisson;
+    return TAUT_OK;
+}
+
+taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, taut_solid* out) {
+    Check check(__func__);
+    if (!check.pointer("def", def).pointer("out", out)) return check.result();
+    if (!check_def(check, *def)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const Array<Vec3> at = positions_of(world, def->points, def->point_count);
+        const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
+        const SolidMesh mesh{at, rest, {def->cells, size_t{def->corners} * def->cell_count}, def->corners};
+        const Solid solid{static_cast<SolidMaterial>(def->material),
+                          {def->young_modulus, def->poisson_ratio},
+                          def->density,
+                          def->damping};
+        SoftPlan plan(world.memory);
+        plan.soft.gravity_scale = def->gravity_scale;
+        plan.soft.user_data = def->user_data;
+        plan_spheres(plan, def->thickness, def->surface, def->filter);
+        uint32_t cell;
+        if (const char* fault = plan_solid(mesh, solid, solve_of(def->solve), plan, cell)) {
+            char text[96];
+            std::snprintf(text, sizeof text, "cells[%u] %s", cell, fault);
+            check.require(false, cell == kNone ? fault : text);
+            return check.result();
+        }
+        uint32_t index;
+        const taut_result added = add_planned(check, world, plan, index);
+        if (added == TAUT_OK) *out = world.solid_handle(index);
+        return added;
+    });
+}
+
+taut_result taut_solid_remove(taut_solid handle) {
+    return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
+        remove_soft(world, index);
+        return TAUT_OK;
+    });
+}
+
+int32_t taut_solid_is_valid(taut_solid handle) { return is_valid(handle); }
+
+taut_result taut_solid_get_user_data(taut_solid handle, uint64_t* out) {
+    Check check(__func__);
+    return soft_user_data(check, handle, out);
+}
+
+taut_result taut_body_get_solid(taut_body handle, taut_solid* out) {
+    Check check(__func__);
+    return soft_of_body(check, handle, out, [](const World& world, uint32_t soft) { return world.solid_handle(soft); });
+}
+
+taut_result taut_solid_pin(taut_solid handle, uint32_t vertex, uint32_t pinned) {
+    Check check(__func__);
+    return pin_soft(check, handle, vertex, pinned);
+}
+
+taut_result taut_solid_get_points(taut_solid handle, taut_pos* points, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_points(check, handle, points, capacity, count);
+}
+
+taut_result taut_solid_get_velocities(taut_solid handle, taut_vec3* velocities, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_velocities(check, handle, velocities, capacity, count);
+}
+
+taut_result taut_solid_get_normals(taut_solid handle, taut_vec3* normals, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_normals(check, handle, normals, capacity, count);
+}
+
+taut_result taut_solid_get_bodies(taut_solid handle, taut_body* bodies, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_bodies(check, handle, bodies, capacity, count);
+}
+
+taut_result taut_solid_get_triangles(taut_solid handle, uint32_t* triangles, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    return read_triangles(check, handle, triangles, capacity, count);
+}
+
+taut_result taut_solid_get_stresses(taut_solid handle, float* stresses, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
+        return copy_out(cells_of(world, soft), stresses, capacity, count, check.call(), "stresses",
+                        [&](uint32_t c) { return to_float(cell_state(world, soft, c).stress); });
+    });
+}
+
+taut_result taut_solid_get_volumes(taut_solid handle, float* ratios, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
+        return copy_out(cells_of(world, soft), ratios, capacity, count, check.call(), "ratios",
+                        [&](uint32_t c) { return to_float(cell_state(world, soft, c).volume); });
+    });
+}

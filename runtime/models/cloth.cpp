@@ -1,0 +1,184 @@
+#include "models/cloth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/material.h"
+#include "constraints/shape_functions.h"
+
+namespace taut {
+namespace {
+
+constexpr double kFlat = 1e-6;  // angle between two triangles that are flat at rest [rad]
+
+// Of a link: along warp, along weft, or neither, within an eighth of a turn.
+enum class Thread : uint8_t { warp, weft, shear };
+
+class ClothPlanner {
+public:
+    ClothPlanner(const ClothMesh& mesh, const Fabric& fabric, JointSolve solve, SoftPlan& plan)
+        : mesh_(mesh),
+          fabric_(fabric),
+          solve_(solve),
+          plan_(plan),
+          memory_(*plan.position.get_allocator().memory),
+          edges_(memory_),
+          point_(memory_) {}
+
+    const char* run(ClothKind kind) {
+        const MeshFault fault = find_edges(mesh_.triangle, edges_);
+        if (fault == MeshFault::not_manifold) return "triangles: more than two meet at an edge";
+        if (fault == MeshFault::not_oriented)
+            return "triangles: two that meet at an edge go along it in the same direction";
+        if (!find_points()) return "triangles: one has no area at rest";
+        plan_.soft.kind = SoftKind::cloth;
+        plan_.position.assign(mesh_.position.begin(), mesh_.position.end());
+        plan_.soft.triangle.assign(mesh_.triangle.begin(), mesh_.triangle.end());
+        weigh();
+        if (kind == ClothKind::links) {
+            add_links();
+        } else {
+            if (!add_triangles()) return "stretch_stiffness, shear_stiffness, poisson_ratio: no stable material";
+            if (fabric_.bending_stiffness > 0) add_bends();
+        }
+        std::erase_if(plan_.element, [](const ElementPlan& each) { return each.softness.empty(); });
+        return nullptr;
+    }
+
+private:
+    Vec3 rest(uint32_t vertex) const { return mesh_.rest[vertex]; }
+    uint32_t triangles() const { return static_cast<uint32_t>(mesh_.triangle.size() / 3); }
+    const uint32_t* corners(uint32_t t) const { return &mesh_.triangle[3 * size_t{t}]; }
+
+    // Warp of a triangle: along u; without texture coordinates the direction of the mesh's first edge.
+    Vec3 warp(const Vec3 (&x)[3], uint32_t t) const {
+        const uint32_t* corner = corners(t);
+        if (mesh_.uv.empty()) return rest(mesh_.triangle[1]) - rest(mesh_.triangle[0]);
+        double uv[3][2];
+        for (int n = 0; n < 3; ++n)
+            for (size_t k = 0; k < 2; ++k) uv[n][k] = static_cast<double>(mesh_.uv[2 * size_t{corner[n]} + k]);
+        return warp_of(x, uv);
+    }
+
+    bool find_points() {
+        point_.resize(triangles());
+        plan_.soft.rest.clear();
+        for (uint32_t t = 0; t < triangles(); ++t) {
+            const uint32_t* corner = corners(t);
+            const Vec3 x[3] = {rest(corner[0]), rest(corner[1]), rest(corner[2])};
+            // Where the warp stands across it, as at a collar, an edge will do.
+            if (!tri3_point(x, warp(x, t), point_[t]) && !tri3_point(x, x[1] - x[0], point_[t])) return false;
+            plan_.soft.rest.insert(plan_.soft.rest.end(), &point_[t].g[0][0], &point_[t].g[0][0] + 6);
+        }
+        return true;
+    }
+
+    // A third of each triangle's mass to each corner.
+    void weigh() {
+        plan_.soft.mass.assign(mesh_.rest.size(), 0.0);
+        for (uint32_t t = 0; t < triangles(); ++t)
+            for (int n = 0; n < 3; ++n) plan_.soft.mass[corners(t)[n]] += fabric_.area_density * point_[t].weight / 3;
+    }
+
+    // By where an edge goes in the plane of its first triangle: across the gradient of the corner opposite to it.
+    Thread thread_of(const MeshEdge& edge) const {
+        constexpr double kEighth = 0.41421356237309503;  // tan(pi/8)
+        const uint32_t* corner = corners(edge.triangle[0]);
+        const auto opposite = std::find(corner, corner + 3, edge.across[0]) - corner;
+        const auto& g = point_[edge.triangle[0]].g[opposite];
+        const double warp = std::abs(g[1]), weft = std::abs(g[0]);
+        return weft <= kEighth * warp ? Thread::warp : warp <= kEighth * weft ? Thread::weft : Thread::shear;
+    }
+
+    ElementPlan& add_plan(const ElementType& type, SoftPart part) {
+        ElementPlan& plan = plan_.element.emplace_back(memory_, type, part);
+        plan.solve = solve_;
+        plan.relaxation = fabric_.damping;
+        return plan;
+    }
+
+    void add_link(ElementPlan& plan, uint32_t a, uint32_t b) {
+        const uint32_t ends[2] = {a, b};
+        const double length = (rest(b) - rest(a)).norm();
+        plan.add(ends, {&length, 1}, 1);
+    }
+
+    void add_links() {
+        const double compliance[] = {fabric_.stretch_compliance[0], fabric_.stretch_compliance[1],
+                                     fabric_.shear_compliance, fabric_.bend_compliance};
+        const SoftPart part[] = {SoftPart::stretch, SoftPart::stretch, SoftPart::shear, SoftPart::bend};
+        plan_.element.reserve(4);
+        for (int i = 0; i < 4; ++i) {
+            ElementPlan& plan = add_plan(kLinkElement, part[i]);
+            plan.compliance[0] = compliance[i];
+            plan.form = compliance[i] > 0 ? ElementForm::folded : ElementForm::rows;
+        }
+        const auto adds = [&](size_t i, uint32_t a, uint32_t b) {
+            if (std::isfinite(compliance[i])) add_link(plan_.element[i], a, b);
+        };
+        for (const MeshEdge& edge : edges_) {
+            const Thread thread = thread_of(edge);
+            adds(static_cast<size_t>(thread), edge.a, edge.b);
+            // Across a diagonal lies the other diagonal of the same cell.
+            if (edge.across[1] != kNone) adds(thread == Thread::shear ? 2 : 3, edge.across[0], edge.across[1]);
+        }
+    }
+
+    bool add_triangles() {
+        plan_.element.reserve(3);
+        ElementPlan& plan = add_plan(kGreenTri3, SoftPart::stretch);
+        plan.form = ElementForm::folded;
+        const double t = fabric_.thickness;
+        double compliance[9];
+        const OrthotropicSheet sheet{{fabric_.stretch_stiffness[0] / t, fabric_.stretch_stiffness[1] / t},
+                                     fabric_.poisson,
+                                     fabric_.shear_stiffness / t};
+        if (!orthotropic_sheet(sheet, compliance)) return false;
+        std::copy_n(compliance, 9, plan.compliance);
+        for (uint32_t i = 0; i < triangles(); ++i)
+            plan.add({corners(i), 3}, {&point_[i].g[0][0], 6}, 1 / (t * point_[i].weight));
+        return true;
+    }
+
+    void add_bends() {
+        ElementPlan& flat = add_plan(kQuadraticBendElement, SoftPart::bend);
+        for (int r = 0; r < 3; ++r) flat.compliance[4 * r] = 1 / fabric_.bending_stiffness;
+        flat.form = ElementForm::folded;
+        ElementPlan& folded = add_plan(kDihedralElement, SoftPart::bend);
+        folded.compliance[0] = 1 / fabric_.bending_stiffness;
+        folded.form = ElementForm::folded;
+        ElementPlan& flat_plan = plan_.element[1];
+        for (const MeshEdge& edge : edges_) {
+            if (edge.across[1] == kNone) continue;
+            const uint32_t vertex[4] = {edge.a, edge.b, edge.across[0], edge.across[1]};
+            const Vec3 x[4] = {rest(vertex[0]), rest(vertex[1]), rest(vertex[2]), rest(vertex[3])};
+            const Pose pose[4] = {{x[0]}, {x[1]}, {x[2]}, {x[3]}};
+            const double none = 0;
+            double angle, weight[4], area;
+            kDihedralElement.row.evaluate(&none, pose, &angle, nullptr);
+            if (std::abs(angle) < kFlat && quadratic_bend_weights(x, weight, area))
+                flat_plan.add(vertex, weight, area / 3);
+            else
+                folded.add(vertex, {&angle, 1}, area_of(edge) / (3 * (x[1] - x[0]).squaredNorm()));
+        }
+    }
+    double area_of(const MeshEdge& edge) const {
+        return point_[edge.triangle[0]].weight + point_[edge.triangle[1]].weight;
+    }
+
+    const ClothMesh& mesh_;
+    const Fabric& fabric_;
+    JointSolve solve_;
+    SoftPlan& plan_;
+    Memory& memory_;
+    Array<MeshEdge> edges_;
+    Array<GaussPoint<3, 2>> point_;  // of each triangle
+};
+
+}  // namespace
+
+const char* plan_cloth(const ClothMesh& mesh, ClothKind kind, const Fabric& fabric, JointSolve solve, SoftPlan& plan) {
+    return ClothPlanner(mesh, fabric, solve, plan).run(kind);
+}
+
+}  // namespace taut

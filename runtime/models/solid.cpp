@@ -1,0 +1,141 @@
+#include "models/solid.h"
+
+#include <algorithm>
+#include <array>
+
+#include "constraints/shape_functions.h"
+
+namespace taut {
+namespace {
+
+// Faces of a cell, counterclockwise as seen from outside; a triangle ends with kNone.
+constexpr uint32_t kTetFaces[4][4] = {{1, 2, 3, kNone}, {0, 3, 2, kNone}, {0, 1, 3, kNone}, {0, 2, 1, kNone}};
+constexpr uint32_t kHexFaces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                      {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+
+struct MaterialType {
+    const ElementType *tet4, *hex8;
+    // D^-1 of a unit of volume, and alpha where its elements have one more number.
+    bool (*compliance)(const Isotropic& of, double* compliance, double& alpha);
+};
+
+template <size_t N, bool (*make)(const Isotropic&, double (&)[N])>
+bool compliance_of(const Isotropic& of, double* out, double&) {
+    double block[N];
+    if (!make(of, block)) return false;
+    std::copy_n(block, N, out);
+    return true;
+}
+bool neo_hookean_compliance(const Isotropic& of, double* out, double& alpha) {
+    double block[4];
+    if (!neo_hookean(of, block, alpha)) return false;
+    std::copy_n(block, 4, out);
+    return true;
+}
+
+const MaterialType kMaterials[] = {
+    {&kNeoHookeanTet4, &kNeoHookeanHex8, neo_hookean_compliance},
+    {&kGreenTet4, &kGreenHex8, compliance_of<36, hooke_solid>},
+    {&kStretchTet4, &kStretchHex8, compliance_of<9, hooke_stretches>},
+    {&kStretchVolumeTet4, &kStretchVolumeHex8, compliance_of<16, fixed_corotated>},
+};
+
+// Elements of a cell, an element a Gauss point; false: it is inverted or flat.
+template <int Nodes, size_t Points, class Find>
+bool add_cell(const Vec3 (&x)[Nodes], const uint32_t* vertex, double alpha, double density, Find&& find,
+              ElementPlan& plan, Array<double>& mass) {
+    GaussPoint<Nodes, 3> point[Points];
+    if (!find(x, point)) return false;
+    const auto numbers = static_cast<size_t>(plan.type->numbers);
+    for (const GaussPoint<Nodes, 3>& at : point) {
+        double data[3 * Nodes + 1];
+        std::copy_n(&at.g[0][0], 3 * Nodes, data);
+        data[3 * Nodes] = alpha;
+        plan.add({vertex, size_t{Nodes}}, {data, numbers}, 1 / at.weight);
+        for (int n = 0; n < Nodes; ++n) mass[vertex[n]] += density * at.weight / Nodes;
+    }
+    return true;
+}
+
+bool add_tet(const Vec3* rest, const uint32_t* vertex, double alpha, double density, ElementPlan& plan,
+             Array<double>& mass) {
+    Vec3 x[4];
+    for (int n = 0; n < 4; ++n) x[n] = rest[vertex[n]];
+    const auto find = [](const Vec3(&at)[4], GaussPoint<4, 3>(&out)[1]) { return tet4_point(at, out[0]); };
+    return add_cell<4, 1>(x, vertex, alpha, density, find, plan, mass);
+}
+
+bool add_hex(const Vec3* rest, const uint32_t* vertex, double alpha, double density, ElementPlan& plan,
+             Array<double>& mass) {
+    Vec3 x[8];
+    for (int n = 0; n < 8; ++n) x[n] = rest[vertex[n]];
+    const auto find = [](const Vec3(&at)[8], GaussPoint<8, 3>(&out)[8]) { return hex8_points(at, out); };
+    return add_cell<8, 8>(x, vertex, alpha, density, find, plan, mass);
+}
+
+}  // namespace
+
+const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve solve, SoftPlan& plan, uint32_t& cell) {
+    const bool tets = mesh.corners == 4;
+    const MaterialType& material = kMaterials[static_cast<size_t>(solid.material)];
+    ElementPlan& element = plan.element.emplace_back(*plan.position.get_allocator().memory,
+                                                     tets ? *material.tet4 : *material.hex8, SoftPart::stretch);
+    double alpha = 0;
+    cell = kNone;
+    if (!material.compliance(solid.elastic, element.compliance, alpha))
+        return "young_modulus, poisson_ratio: no stable material";
+    element.form = ElementForm::energy;
+    element.solve = solve;
+    element.relaxation = solid.damping;
+    plan.soft.kind = SoftKind::solid;
+    plan.soft.cell_points = tets ? 1 : 8;
+    plan.position.assign(mesh.position.begin(), mesh.position.end());
+    plan.soft.mass.assign(mesh.rest.size(), 0.0);
+    const auto cells = static_cast<uint32_t>(mesh.cell.size() / mesh.corners);
+    for (uint32_t c = 0; c < cells; ++c) {
+        const uint32_t* vertex = &mesh.cell[size_t{c} * mesh.corners];
+        const auto add = tets ? add_tet : add_hex;
+        if (add(mesh.rest.data(), vertex, alpha, solid.density, element, plan.soft.mass)) continue;
+        cell = c;
+        return "is flat or inverted at rest";
+    }
+    find_boundary(mesh.cell, mesh.corners, plan.soft.triangle);
+    return nullptr;
+}
+
+void find_boundary(std::span<const uint32_t> cells, uint32_t corners, Array<uint32_t>& out) {
+    struct Face {
+        std::array<uint32_t, 4> sorted;
+        uint32_t vertex[4];
+    };
+    Array<Face> faces(out.get_allocator());
+    const auto* list = corners == 4 ? kTetFaces : kHexFaces;
+    const uint32_t sides = corners == 4 ? 4 : 6;
+    for (size_t c = 0; c < cells.size(); c += corners)
+        for (uint32_t f = 0; f < sides; ++f) {
+            Face face{};
+            for (size_t k = 0; k < 4; ++k)
+                face.sorted[k] = face.vertex[k] = list[f][k] == kNone ? kNone : cells[c + list[f][k]];
+            std::ranges::sort(face.sorted);
+            faces.push_back(face);
+        }
+    // Of those that share their vertices, which are two cells' or a fault of the mesh, none is at the boundary.
+    Array<uint32_t> order(out.get_allocator());
+    order.resize(faces.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::sort(order, [&](uint32_t a, uint32_t b) {
+        return faces[a].sorted != faces[b].sorted ? faces[a].sorted < faces[b].sorted : a < b;
+    });
+    Array<uint8_t> inner(faces.size(), 0, out.get_allocator());
+    for (size_t i = 1; i < order.size(); ++i)
+        if (faces[order[i]].sorted == faces[order[i - 1]].sorted) inner[order[i]] = inner[order[i - 1]] = 1;
+    out.clear();
+    for (size_t f = 0; f < faces.size(); ++f) {
+        if (inner[f]) continue;
+        const auto& v = faces[f].vertex;
+        out.insert(out.end(), {v[0], v[1], v[2]});
+        if (v[3] != kNone) out.insert(out.end(), {v[0], v[2], v[3]});
+    }
+}
+
+}  // namespace taut

@@ -1,0 +1,35 @@
+// Solids: a mesh of tetrahedra or hexahedra and a material -> what a soft body of it is made of, with its boundary.
+#pragma once
+
+#include <span>
+
+#include "constraints/material.h"
+#include "models/softs.h"
+
+namespace taut {
+
+// In the order of taut_solid_material.
+enum class SolidMaterial : uint8_t { neo_hookean, st_venant_kirchhoff, corotated, fixed_corotated };
+
+struct Solid {
+    SolidMaterial material = SolidMaterial::neo_hookean;
+    Isotropic elastic{};
+    double density = 0;  // [kg/m^3]
+    double damping = 0;  // time d of the stress D (E + d dE/dt) [s]
+};
+
+// A host's mesh, checked: each vertex is on a cell.
+struct SolidMesh {
+    std::span<const Vec3> position;  // of vertices [m]
+    std::span<const Vec3> rest;      // their rest shape [m]
+    std::span<const uint32_t> cell;  // [corners] vertices
+    uint32_t corners = 4;            // 4: tetrahedra, 8: hexahedra, as shape_functions.h orders them
+};
+
+// Why a mesh is no solid; null: it is one. Where that is a cell's fault, this is its index.
+const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve solve, SoftPlan& plan, uint32_t& cell);
+
+// Triangles of the boundary, outward, of faces that one cell alone has.
+void find_boundary(std::span<const uint32_t> cells, uint32_t corners, Array<uint32_t>& out);
+
+}  // namespace taut

@@ -1,0 +1,81 @@
+// Soft bodies: which nodes and element sets a host's cloth or solid is made of, and its surface.
+#pragma once
+
+#include "state/colliders.h"
+#include "state/elements.h"
+
+namespace taut {
+
+enum class SoftKind : uint8_t { cloth, solid };
+
+// What the elements of a set do, for what reads them.
+enum class SoftPart : uint8_t {
+    stretch,  // along links, or within triangles or cells, in the order in which the host gave these
+    shear,
+    bend,
+};
+
+struct SoftSet {
+    uint32_t set = kNone;
+    SoftPart part = SoftPart::stretch;
+};
+template <class Visitor, Like<SoftSet> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [set, part] = of;
+    TAUT_FIELDS(visitor, set, part);
+}
+
+struct Soft {
+    explicit Soft(Memory& memory) : node(memory), mass(memory), triangle(memory), rest(memory), sets(memory) {}
+
+    SoftKind kind = SoftKind::cloth;
+    Array<uint32_t> node;      // of each vertex
+    Array<double> mass;        // of each vertex, pinned ones too [kg]
+    Array<uint32_t> triangle;  // [3], vertices: the cloth, or the boundary of the solid, outward
+    Array<double> rest;        // of each triangle of a cloth, [3][2]: dN/dX of its corners [1/m]; F = sum x_n rest_n^T
+    Array<SoftSet> sets;
+    uint32_t cell_points = 1;  // of a solid: elements of its set of stretch for each cell
+    uint32_t shape = kNone;    // of each vertex; kNone: it touches nothing
+    double gravity_scale = 1;
+    uint64_t user_data = 0;
+
+    uint32_t vertices() const { return static_cast<uint32_t>(node.size()); }
+    uint32_t triangles() const { return static_cast<uint32_t>(triangle.size() / 3); }
+};
+template <class Visitor, Like<Soft> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, user_data] = of;
+    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale);
+    TAUT_ASIDE(visitor, user_data);
+}
+
+struct Softs {
+    explicit Softs(Memory& memory) : ids(memory), record(memory) {}
+
+    // Throws std::bad_alloc with nothing changed.
+    uint32_t add(Soft&& soft) {
+        ids.reserve_one();
+        if (record.capacity() == record.size()) record.reserve(2 * record.size() + 4);
+        const uint32_t index = ids.create();
+        if (index == record.size())
+            record.push_back(std::move(soft));
+        else
+            record[index] = std::move(soft);
+        return index;
+    }
+    void remove(uint32_t index) {
+        record[index] = Soft(*record[index].node.get_allocator().memory);
+        ids.destroy(index);
+    }
+
+    IdPool ids;
+    Array<Soft> record;
+};
+template <class Visitor, Like<Softs> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [ids, record] = of;
+    TAUT_ASIDE(visitor, ids);
+    TAUT_ROWS(visitor, ids, record);
+}
+
+}  // namespace taut
