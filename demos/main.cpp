@@ -136,6 +136,7 @@ private:
         view.add_bodies(list_, tension);
         view.add_joints(list_, tension);
         view.add_cables(list_, tension);
+        view.add_softs(list_);
         for (size_t i = first; i < list_.instances.size(); ++i)
             list_.instances[i].position = list_.instances[i].position + offset;
     }

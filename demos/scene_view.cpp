@@ -350,6 +350,56 @@ void SceneView::add_cables(render::DrawList& list, bool tension) {
     }
 }
 
+namespace {
+
+// What both kinds of soft bodies are read by.
+auto points_reader(taut_cloth) { return taut_cloth_get_points; }
+auto points_reader(taut_solid) { return taut_solid_get_points; }
+auto normals_reader(taut_cloth) { return taut_cloth_get_normals; }
+auto normals_reader(taut_solid) { return taut_solid_get_normals; }
+auto triangles_reader(taut_cloth) { return taut_cloth_get_triangles; }
+auto triangles_reader(taut_solid) { return taut_solid_get_triangles; }
+
+// The whole of an array; entries: numbers in each.
+template <class Read, class Handle, class T>
+void read_all(Read read, Handle handle, std::vector<T>& out, size_t entries = 1) {
+    uint32_t count = 0;
+    read(handle, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+    out.resize(count * entries);
+    scenes::check(read(handle, out.data(), count, &count), "reading a soft body");
+}
+
+}  // namespace
+
+template <class Handle>
+void SceneView::add_surface(render::DrawList& list, Handle handle, const SoftLook& look) {
+    read_all(points_reader(handle), handle, points_);
+    read_all(normals_reader(handle), handle, normals_);
+    read_all(triangles_reader(handle), handle, triangles_, 3);
+    const auto corner = [&](size_t k, float side, Colour colour) {
+        const uint32_t v = triangles_[k];
+        const Vec3 normal = {normals_[v].x, normals_[v].y, normals_[v].z};
+        // Both sides lie apart, lest they shade each other.
+        list.surfaces.push_back({vec(points_[v]) + normal * (side * 0.001f), normal * side, colour, 0.1f});
+    };
+    for (size_t t = 0; 3 * t < triangles_.size(); ++t) {
+        const Colour colour = look.measured ? TensionScale::ramp(values_[t] / look.most) : look.colour;
+        for (size_t k = 0; k < 3; ++k) corner(3 * t + k, 1, colour);
+        for (size_t k = 3; look.both_sides && k-- > 0;) corner(3 * t + k, -1, darker(colour));
+    }
+}
+
+void SceneView::add_softs(render::DrawList& list) {
+    static const Colour kCloth = from_srgb(0xB8473A), kSolid = from_srgb(0x4E8C6A);
+    constexpr float kMostStrain = 0.05f;
+    for (size_t i = 0; i < scene_.cloths.size(); ++i) {
+        const bool measured = scene_.cloths[i].colours == scenes::SoftColours::strain;
+        if (measured) read_all(taut_cloth_get_strains, world_.cloths[i], values_);
+        add_surface(list, world_.cloths[i], {kCloth, true, measured, kMostStrain});
+    }
+    for (size_t i = 0; i < scene_.solids.size(); ++i) add_surface(list, world_.solids[i], {kSolid, false, false, 1});
+}
+
 void SceneView::add_contacts(render::DrawList& list) {
     uint32_t count = 0;
     taut_result result =

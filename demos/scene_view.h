@@ -32,12 +32,21 @@ public:
     void add_bodies(render::DrawList& list, bool tension) const;
     void add_joints(render::DrawList& list, bool tension) const;
     void add_cables(render::DrawList& list, bool tension);
+    void add_softs(render::DrawList& list);
     void add_contacts(render::DrawList& list);
     const TensionScale& tension_scale() const { return scale_; }
 
 private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
     void add_hinge(render::DrawList& list, size_t index, render::Vec3 at) const;
+    struct SoftLook {
+        render::Colour colour;
+        bool both_sides;
+        bool measured;  // colours from values_, over most
+        float most;
+    };
+    template <class Handle>
+    void add_surface(render::DrawList& list, Handle handle, const SoftLook& look);
     bool is_in_the_way(size_t index) const;
     float thickness_at(const scenes::Joint& joint) const;
 
@@ -48,6 +57,9 @@ private:
     std::vector<taut_contact> contacts_;
     std::vector<taut_pos> points_;  // of a cable
     std::vector<float> tensions_;
+    std::vector<taut_vec3> normals_;  // of a cloth or solid
+    std::vector<uint32_t> triangles_;
+    std::vector<float> values_;  // of its triangles
 };
 
 }  // namespace demo

@@ -52,6 +52,13 @@ struct Instance {
     Pass pass = Pass::solid;
 };
 
+// Corner of a triangle of a surface that changes from picture to picture; the first corner's colour is the triangle's.
+struct SurfaceVertex {
+    Vec3 position, normal;
+    Colour colour;
+    float gloss = 0.1f;
+};
+
 // Rectangle or text over the picture, in units of the canvas, y down.
 struct HudRect {
     float x = 0, y = 0, width = 0, height = 0, radius = 0;
@@ -80,11 +87,13 @@ struct HudCanvas {
 struct DrawList {
     Camera camera;
     std::vector<Instance> instances;
+    std::vector<SurfaceVertex> surfaces;  // three a triangle, counter-clockwise seen from outside, lit like solids
     std::vector<HudRect> rects;  // below the texts, in order
     std::vector<HudText> texts;
 
     void clear() {
         instances.clear();
+        surfaces.clear();
         rects.clear();
         texts.clear();
     }

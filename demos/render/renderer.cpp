@@ -54,6 +54,29 @@ GpuMesh upload(const std::vector<Vertex>& mesh, GLuint instances) {
     return gpu;
 }
 
+// An array for surfaces, whose corners bring their colour; they are placed in the world already.
+GpuMesh surface_array() {
+    GpuMesh gpu;
+    glGenVertexArrays(1, &gpu.array);
+    glGenBuffers(1, &gpu.vertices);
+    glBindVertexArray(gpu.array);
+    glBindBuffer(GL_ARRAY_BUFFER, gpu.vertices);
+    const struct {
+        GLuint index;
+        GLint count;
+        size_t offset;
+    } fields[] = {{0, 3, offsetof(SurfaceVertex, position)},
+                  {1, 3, offsetof(SurfaceVertex, normal)},
+                  {5, 4, offsetof(SurfaceVertex, colour)}};
+    for (const auto& field : fields) {
+        glEnableVertexAttribArray(field.index);
+        glVertexAttribPointer(field.index, field.count, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex),
+                              reinterpret_cast<const void*>(field.offset));
+    }
+    return gpu;
+}
+static_assert(offsetof(SurfaceVertex, gloss) == offsetof(SurfaceVertex, colour) + sizeof(Colour));
+
 // Points the instance attributes of the bound array at the instances from first on (GL 3.3 has no base instance).
 void point_at_instances(size_t first) {
     const struct {
@@ -85,6 +108,7 @@ struct Renderer::Inside {
         glGenBuffers(1, &instance_buffer);
         for (const auto& mesh : {box_mesh(), sphere_mesh(24), sphere_mesh(6), cylinder_mesh(16)})
             meshes.push_back(upload(mesh, instance_buffer));
+        surface = surface_array();
         picture.width = o.width;
         picture.height = o.height;
         picture.rgb.resize(3 * static_cast<size_t>(o.width) * static_cast<size_t>(o.height));
@@ -96,6 +120,8 @@ struct Renderer::Inside {
             glDeleteVertexArrays(1, &mesh.array);
             glDeleteBuffers(1, &mesh.vertices);
         }
+        glDeleteVertexArrays(1, &surface.array);
+        glDeleteBuffers(1, &surface.vertices);
         glDeleteBuffers(1, &instance_buffer);
         glDeleteVertexArrays(1, &empty_array);
     }
@@ -109,6 +135,7 @@ struct Renderer::Inside {
     }
 
     void sort_instances(const std::vector<Instance>& list);
+    void take_surfaces(const std::vector<SurfaceVertex>& list);
     void draw_pass(Program& program, Pass pass);
     void draw_depth(DepthMap& map);
     void set_light(Program& program, const Camera& camera);
@@ -123,6 +150,7 @@ struct Renderer::Inside {
     HudBatch hud;
     GLuint empty_array = 0, instance_buffer = 0;
     std::vector<GpuMesh> meshes;
+    GpuMesh surface;
     Stage stage;
     struct Run {
         uint32_t mesh;
@@ -154,6 +182,13 @@ void Renderer::Inside::sort_instances(const std::vector<Instance>& list) {
                  GL_STREAM_DRAW);
 }
 
+void Renderer::Inside::take_surfaces(const std::vector<SurfaceVertex>& list) {
+    surface.count = static_cast<GLsizei>(list.size());
+    glBindBuffer(GL_ARRAY_BUFFER, surface.vertices);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list.size() * sizeof(SurfaceVertex)), list.data(),
+                 GL_STREAM_DRAW);
+}
+
 void Renderer::Inside::draw_pass(Program& program, Pass pass) {
     for (const Run& run : runs) {
         if (run.pass != pass) continue;
@@ -163,6 +198,13 @@ void Renderer::Inside::draw_pass(Program& program, Pass pass) {
         point_at_instances(run.first);
         glDrawArraysInstanced(GL_TRIANGLES, 0, meshes[run.mesh].count, static_cast<GLsizei>(run.count));
     }
+    if (pass != Pass::solid || surface.count == 0) return;
+    program.set("bevelled", 0);
+    glBindVertexArray(surface.array);
+    glVertexAttrib3f(2, 0, 0, 0);
+    glVertexAttrib3f(3, 1, 1, 1);
+    glVertexAttrib4f(4, 0, 0, 0, 1);
+    glDrawArrays(GL_TRIANGLES, 0, surface.count);
 }
 
 void Renderer::Inside::draw_depth(DepthMap& map) {
@@ -270,6 +312,7 @@ void Renderer::set_stage(const Stage& stage) { inside_->set_stage(stage); }
 const Picture& Renderer::draw(const DrawList& list) {
     Inside& in = *inside_;
     in.sort_instances(list.instances);
+    in.take_surfaces(list.surfaces);
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
     in.draw_depth(in.sun_map);

@@ -36,5 +36,9 @@ Scene build_ragdoll_liana(double n, double r, const Options& options);
 Scene build_ferris_wheel(double n, double r, const Options& options);
 Scene build_tensegrity(double n, double r, const Options& options);
 Scene build_net(double n, double r, const Options& options);
+Scene build_cloth_hang(double n, double r, const Options& options);
+Scene build_cloth_load(double n, double r, const Options& options);
+Scene build_beam(double n, double r, const Options& options);
+Scene build_solid_drop(double n, double r, const Options& options);
 
 }  // namespace scenes

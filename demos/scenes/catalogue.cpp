@@ -89,6 +89,13 @@ const std::vector<Family>& families() {
          20000},
         {"terrain", "terrain", "a hundred bodies dropped on hills and stairs of triangles", 600, false, build_terrain,
          0},
+        {"cloth_hangN", "cloth_hang30", "a sheet of N x N vertices hung by two corners, released level", 240, false,
+         build_cloth_hang, 200},
+        {"cloth_load_rR", "cloth_load_r10", "a box of R times a sheet's mass falls on it", 240, false, build_cloth_load,
+         0},
+        {"beam_eR_nN", "beam_e1_n30", "a beam of R MPa and Poisson's ratio N/100, held at one end", 300, false,
+         build_beam, 49},
+        {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped on each other", 240, false, build_solid_drop, 50},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

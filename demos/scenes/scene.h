@@ -97,6 +97,26 @@ struct Cable {
     std::vector<taut_pos> path;          // def.points [m]
 };
 
+// What its triangles' colours tell.
+enum class SoftColours : uint8_t { plain, strain, stress };
+
+// A cloth or solid of the library's own. TautWorld puts the arrays into the def.
+struct Cloth {
+    taut_cloth_def def{};  // initialised
+    std::vector<taut_pos> points;
+    std::vector<uint32_t> triangles;
+    std::vector<float> uv;         // two a point, or none
+    std::vector<uint32_t> pinned;  // vertices
+    SoftColours colours = SoftColours::plain;
+};
+struct Solid {
+    taut_solid_def def{};  // initialised
+    std::vector<taut_pos> points;
+    std::vector<uint32_t> cells;
+    std::vector<uint32_t> pinned;
+    SoftColours colours = SoftColours::plain;
+};
+
 // A number over time: cubic between its keys, on at the last one's rate after it.
 struct Track {
     struct Key {
@@ -167,6 +187,8 @@ struct Scene {
     std::vector<Body> bodies;
     std::vector<Joint> joints;
     std::vector<Cable> cables;
+    std::vector<Cloth> cloths;
+    std::vector<Solid> solids;
     std::vector<Motion> motions;
     std::vector<Decoration> decorations;
     Roles roles;
@@ -189,6 +211,14 @@ struct Scene {
     int add_cable(const Cable& cable) {
         cables.push_back(cable);
         return static_cast<int>(cables.size()) - 1;
+    }
+    int add_cloth(Cloth cloth) {
+        cloths.push_back(std::move(cloth));
+        return static_cast<int>(cloths.size()) - 1;
+    }
+    int add_solid(Solid solid) {
+        solids.push_back(std::move(solid));
+        return static_cast<int>(solids.size()) - 1;
     }
 };
 

@@ -169,7 +169,34 @@ void TautWorld::build() {
         joints.push_back(handle);
     }
     for (const Cable& cable : scene_.cables) cables.push_back(add(cable, cables.size()));
+    for (const Cloth& cloth : scene_.cloths) cloths.push_back(add(cloth, cloths.size()));
+    for (const Solid& solid : scene_.solids) solids.push_back(add(solid, solids.size()));
     broken.reserve(joints.size());
+}
+
+taut_cloth TautWorld::add(Cloth plan, uint64_t index) const {
+    plan.def.points = plan.points.data();
+    plan.def.point_count = static_cast<uint32_t>(plan.points.size());
+    plan.def.triangles = plan.triangles.data();
+    plan.def.triangle_count = static_cast<uint32_t>(plan.triangles.size() / 3);
+    plan.def.uv = plan.uv.empty() ? nullptr : plan.uv.data();
+    plan.def.user_data = index;
+    taut_cloth handle{};
+    check(taut_world_add_cloth(world, &plan.def, &handle), "adding a cloth");
+    for (const uint32_t vertex : plan.pinned) check(taut_cloth_pin(handle, vertex, 1), "pinning a cloth");
+    return handle;
+}
+
+taut_solid TautWorld::add(Solid plan, uint64_t index) const {
+    plan.def.points = plan.points.data();
+    plan.def.point_count = static_cast<uint32_t>(plan.points.size());
+    plan.def.cells = plan.cells.data();
+    plan.def.cell_count = static_cast<uint32_t>(plan.cells.size()) / plan.def.corners;
+    plan.def.user_data = index;
+    taut_solid handle{};
+    check(taut_world_add_solid(world, &plan.def, &handle), "adding a solid");
+    for (const uint32_t vertex : plan.pinned) check(taut_solid_pin(handle, vertex, 1), "pinning a solid");
+    return handle;
 }
 
 taut_cable TautWorld::add(Cable plan, uint64_t index) const {

@@ -44,12 +44,16 @@ public:
     std::vector<taut_body> bodies;
     std::vector<taut_joint> joints;
     std::vector<taut_cable> cables;
+    std::vector<taut_cloth> cloths;
+    std::vector<taut_solid> solids;
     std::vector<int> broken;   // joints of the scene, in the order in which they broke
     uint32_t quarantined = 0;  // bodies
 
 private:
     void build();
     taut_cable add(Cable plan, uint64_t index) const;
+    taut_cloth add(Cloth plan, uint64_t index) const;
+    taut_solid add(Solid plan, uint64_t index) const;
     void follow_plans();
     void move(const Motion& motion, double value) const;
     void drive(const Motion& motion, double value, double rate) const;
