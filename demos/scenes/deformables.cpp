@@ -8,10 +8,10 @@ namespace scenes {
 
 namespace {
 
-constexpr double kSheet = 1.5;            // side of a sheet [m]
-constexpr float kSheetDensity = 0.2f;     // [kg/m^2]
-constexpr double kGravity = 9.81;         // [m/s^2]
-constexpr double kBeamSink = 0.026;       // of a beam's tip by theory [m]
+constexpr double kSheet = 1.5;                // side of a sheet [m]
+constexpr float kSheetDensity = 0.2f;         // [kg/m^2]
+constexpr double kGravity = 9.81;             // [m/s^2]
+constexpr double kBeamSink = 0.026;           // of a beam's tip by theory [m]
 constexpr double kBeam[3] = {0.5, 0.1, 0.1};  // [m]
 constexpr int kBeamNodes[3] = {21, 5, 5};
 
@@ -56,7 +56,8 @@ Solid box_of_tets(const double (&size)[3], const int (&nodes)[3], taut_pos corne
     for (int i = 0; i < nodes[0]; ++i)
         for (int j = 0; j < nodes[1]; ++j)
             for (int k = 0; k < nodes[2]; ++k)
-                solid.points.push_back({corner.x + size[0] * i / (nodes[0] - 1), corner.y + size[1] * j / (nodes[1] - 1),
+                solid.points.push_back({corner.x + size[0] * i / (nodes[0] - 1),
+                                        corner.y + size[1] * j / (nodes[1] - 1),
                                         corner.z + size[2] * k / (nodes[2] - 1)});
     // Corner b of a cell is at (b & 1, b >> 1 & 1, b >> 2).
     static constexpr int kEven[5][4] = {{0, 5, 3, 6}, {1, 3, 0, 5}, {2, 6, 0, 3}, {4, 5, 0, 6}, {7, 6, 3, 5}};
@@ -117,8 +118,8 @@ Scene build_beam(double n, double r, const Options&) {
     for (uint32_t v = 0; v < static_cast<uint32_t>(kBeamNodes[1] * kBeamNodes[2]); ++v) beam.pinned.push_back(v);
     const double length = kBeam[0], area = kBeam[1] * kBeam[2], inertia = kBeam[2] * std::pow(kBeam[1], 3) / 12;
     const double shear = young / (2 * (1 + poisson));
-    const double load = kBeamSink / (std::pow(length, 4) / (8 * young * inertia) +
-                                     length * length / (2 * 5.0 / 6 * shear * area));
+    const double load =
+        kBeamSink / (std::pow(length, 4) / (8 * young * inertia) + length * length / (2 * 5.0 / 6 * shear * area));
     scene.world.gravity = {0, static_cast<float>(-load / (static_cast<double>(beam.def.density) * area)), 0};
     scene.add_solid(beam);
     scene.camera = {{0.4, height + 0.3, 1}, {0, height, 0}, 40};

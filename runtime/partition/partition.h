@@ -67,14 +67,14 @@ struct Block {
     Array<double> elastic_force;           // likewise
     bool foresees = false;                 // folded elements are evaluated where their nodes are going
     uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
-    bool tower = false;                    // no ties: bodies that stand on each other or are pressed
-    bool looped = false;                   // more joints than a tree
-    bool passing = false;                  // direct while a load lasts that sweeps hold as well: it may turn far
-    bool failed = false;                   // this substep's matrix could not be factored
-    bool corrected = false;                // this substep's positions get a correction
-    double mass_ratio = 1;                 // heaviest over lightest node
-    double closing = 1;                    // part of its joints' gaps that this substep closes
-    uint32_t first_row_block = 0;          // its ties' rows in System::rows, of this frame
+    bool tower = false;                                // no ties: bodies that stand on each other or are pressed
+    bool looped = false;                               // more joints than a tree
+    bool passing = false;          // direct while a load lasts that sweeps hold as well: it may turn far
+    bool failed = false;           // this substep's matrix could not be factored
+    bool corrected = false;        // this substep's positions get a correction
+    double mass_ratio = 1;         // heaviest over lightest node
+    double closing = 1;            // part of its joints' gaps that this substep closes
+    uint32_t first_row_block = 0;  // its ties' rows in System::rows, of this frame
     uint32_t first_contact = 0, contact_count = 0;  // its contacts' rows, of this substep
     uint32_t first_bounded = 0, bounded_count = 0;  // its bounded rows in SolverScratch, of this substep
     float turn = 0;                                 // of its joints' levers and lines in this substep, at most [rad]
@@ -84,9 +84,10 @@ struct Block {
 };
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [nodes, joints, elements, elastic, pairs, links, identity, order, matrix, places, stride, solution, known, force,
-           elastic_force, foresees, first_elastic_run, elastic_runs, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
-           contact_count, first_bounded, bounded_count, turn, memory] = of;
+    auto& [nodes, joints, elements, elastic, pairs, links, identity, order, matrix, places, stride, solution, known,
+           force, elastic_force, foresees, first_elastic_run, elastic_runs, tower, looped, passing, failed, corrected,
+           mass_ratio, closing, first_row_block, first_contact, contact_count, first_bounded, bounded_count, turn,
+           memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }

@@ -191,11 +191,11 @@ struct System {
     float stretch = 1;  // length of substeps over the one that soft rows keep the frequency of; soft_contact.h
 
     // by seat; of those for nodes in blocks all or, where no block ever was, none
-    Array<Pose> pose;            // at the start of the substep; predict()
-    Array<Pose> foreseen;        // at its end, as velocities were before the solve, of nodes of elastic elements; block_ldlt
-    Array<Velocity> exact;       // predict(): v* = v + h a; solvers: v+
-    Array<Velocity> free;        // v* with contact impulses, of nodes in blocks; block_ldlt
-    Array<Velocity> kept;        // v+ without the push of overlaps, of nodes in blocks with bounded rows
+    Array<Pose> pose;       // at the start of the substep; predict()
+    Array<Pose> foreseen;   // at its end, as velocities were before the solve, of nodes of elastic elements; block_ldlt
+    Array<Velocity> exact;  // predict(): v* = v + h a; solvers: v+
+    Array<Velocity> free;   // v* with contact impulses, of nodes in blocks; block_ldlt
+    Array<Velocity> kept;   // v+ without the push of overlaps, of nodes in blocks with bounded rows
     Array<Velocity> correction;  // displacement and rotation [m, rad] of nodes in corrected blocks; solver.settle
     Array<Velocity> start;       // v before forces, w after the gyroscopic torque, for energy balances; predict()
     // Of schemes of more than one step, see scheme.h: u*, v~, v_n and accelerations by springs [m/s^2, rad/s^2].

@@ -38,7 +38,7 @@ protected:
 };
 
 TEST_F(Footprint, OfABodyAlone) {
-    expect_at_most(950, "body", bytes_of_each(ledger_, world_, [&](int) {
+    expect_at_most(955, "body", bytes_of_each(ledger_, world_, [&](int) {
                        taut_body_def def = body_def(TAUT_BODY_DYNAMIC, {});
                        def.mass = 1;
                        def.inertia = {1, 1, 1, 0, 0, 0};
@@ -47,7 +47,7 @@ TEST_F(Footprint, OfABodyAlone) {
 }
 
 TEST_F(Footprint, OfABodyWithAMassOfItsOwn) {
-    expect_at_most(1120, "body unlike any other", bytes_of_each(ledger_, world_, [&](int i) {
+    expect_at_most(1125, "body unlike any other", bytes_of_each(ledger_, world_, [&](int i) {
                        taut_body_def def = body_def(TAUT_BODY_DYNAMIC, {});
                        def.mass = 1 + static_cast<float>(i);
                        def.inertia = {1, 1, 1, 0, 0, 0};

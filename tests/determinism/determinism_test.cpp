@@ -94,7 +94,8 @@ TEST_P(SameBitsOnTeams, OfAnySize) {
 
 INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams,
                          testing::Values("boxes2000", "pyramid30", "wrecking_ball", "bridge", "ragdolls20",
-                                         "grains1000_r1", "terrain", "net47"),
+                                         "grains1000_r1", "terrain", "net47",
+                                         "cloth_hang20", "solids3_e1e5"),
                          [](const auto& tested) -> std::string { return tested.param; });
 
 // Islands fall asleep, and a brick that is kicked wakes its own.

@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Of, Restored,
                                          Case{"ragdoll_liana", 1}, Case{"ferris_wheel10", 2}, Case{"tensegrity", 1},
                                          Case{"shapes50", 5}, Case{"terrain", 2, true}, Case{"bridge_breaking", 1},
                                          Case{"hinges50", 1}, Case{"heavy_on_light_r100", 1, true},
-                                         Case{"stack20", 2, true, 300}),
+                                         Case{"stack20", 2, true, 300}, Case{"cloth_hang12", 2},
+                                         Case{"solids2_e1e5", 1, true}),
                          testing::PrintToStringParamName());
 
 // What a host's calls leave to later steps: forces, paths of kinematic bodies, time left over; and sensors, continuous

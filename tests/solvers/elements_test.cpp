@@ -95,22 +95,21 @@ TEST_P(EverySolverOf, TakesElementsAsJoints) {
     }
 }
 
-// Forms differ in what they linearise, and where: as steps shrink they meet, at first order.
+// Forms differ in what they linearise, and where: what that makes of a substep shrinks as its square.
 TEST(Elements, FormsAgreeAsStepsShrink) {
     const auto apart = [](ElementForm form, double h) {
         ChainOfElements rows(kElastic, ElementForm::rows), other(kElastic, form);
         for (ChainOfElements* each : {&rows, &other}) {
             each->h = h;
-            each->settings.velocity_filter = 0;
-            each->step(kBlockLdlt, static_cast<int>(std::lround(0.05 / h)));
+            each->step(kBlockLdlt, 1);
         }
         EXPECT_LT(other.w.partition.blocks[0].matrix.unknowns(), rows.w.partition.blocks[0].matrix.unknowns());
         return (rows.places() - other.places()).norm();
     };
     for (const ElementForm form : {ElementForm::folded, ElementForm::energy}) {
-        const double coarse = apart(form, 1.0 / 960), fine = apart(form, 1.0 / 3840);
-        EXPECT_LE(coarse, 2e-2);
-        EXPECT_LE(fine, 0.4 * coarse);
+        const double coarse = apart(form, 1.0 / 240), fine = apart(form, 1.0 / 960);
+        EXPECT_LE(coarse, 1e-2);
+        EXPECT_LE(fine, coarse / 12);
     }
 }
 

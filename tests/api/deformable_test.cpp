@@ -1,0 +1,270 @@
+// Cloths and solids: arguments, read-back, handles, pins, removal, memory.
+#include <algorithm>
+#include <limits>
+
+#include "support.h"
+
+using namespace taut_test;
+
+namespace {
+
+// Two triangles on the unit square, and a tetrahedron.
+const taut_pos kSquare[] = {{0, 5, 0}, {0, 5, 1}, {1, 5, 0}, {1, 5, 1}};
+const uint32_t kTriangles[] = {0, 1, 3, 0, 3, 2};
+const taut_pos kTet[] = {{0, 5, 0}, {1, 5, 0}, {0, 6, 0}, {0, 5, 1}};
+const uint32_t kCell[] = {0, 1, 2, 3};
+
+taut_cloth_def cloth_def() {
+    taut_cloth_def def;
+    taut_cloth_def_init(&def);
+    def.points = kSquare;
+    def.point_count = 4;
+    def.triangles = kTriangles;
+    def.triangle_count = 2;
+    def.user_data = 41;
+    return def;
+}
+
+taut_solid_def solid_def() {
+    taut_solid_def def;
+    taut_solid_def_init(&def);
+    def.points = kTet;
+    def.point_count = 4;
+    def.cells = kCell;
+    def.cell_count = 1;
+    def.user_data = 42;
+    return def;
+}
+
+struct Deformable : testing::Test {
+    Deformable() {
+        taut_world_def def;
+        taut_world_def_init(&def);
+        def.hooks = ledger.hooks();
+        EXPECT_OK(taut_world_create(&def, &world));
+    }
+    ~Deformable() override {
+        taut_world_destroy(world);
+        EXPECT_TRUE(ledger.empty());
+        EXPECT_EQ(ledger.errors, 0u);
+    }
+    taut_cloth add(const taut_cloth_def& def) const {
+        taut_cloth out{};
+        EXPECT_OK(taut_world_add_cloth(world, &def, &out));
+        return out;
+    }
+    taut_solid add(const taut_solid_def& def) const {
+        taut_solid out{};
+        EXPECT_OK(taut_world_add_solid(world, &def, &out));
+        return out;
+    }
+    void refused(const taut_cloth_def& def, taut_result code, const char* text) const {
+        taut_cloth out{};
+        EXPECT_EQ(taut_world_add_cloth(world, &def, &out), code);
+        EXPECT_TRUE(contains(taut_last_error(), text)) << taut_last_error();
+        expect_empty();
+    }
+    void refused(const taut_solid_def& def, taut_result code, const char* text) const {
+        taut_solid out{};
+        EXPECT_EQ(taut_world_add_solid(world, &def, &out), code);
+        EXPECT_TRUE(contains(taut_last_error(), text)) << taut_last_error();
+        expect_empty();
+    }
+    void expect_empty() const {
+        taut_profile profile{};
+        profile.struct_size = sizeof profile;
+        EXPECT_OK(taut_world_step(world));
+        EXPECT_OK(taut_world_get_profile(world, &profile));
+        EXPECT_EQ(profile.bodies, 0u);
+    }
+    static std::vector<taut_body> bodies_of(taut_cloth cloth) {
+        std::vector<taut_body> out(4);
+        uint32_t count = 0;
+        EXPECT_OK(taut_cloth_get_bodies(cloth, out.data(), 4, &count));
+        return out;
+    }
+
+    Ledger ledger;
+    taut_world world{};
+};
+
+TEST_F(Deformable, ClothReadsBackWhatItIs) {
+    const taut_cloth cloth = add(cloth_def());
+    uint64_t data = 0;
+    uint32_t count = 0, triangles[6];
+    taut_pos points[4];
+    taut_vec3 normals[4];
+    float strains[2];
+    EXPECT_OK(taut_cloth_get_user_data(cloth, &data));
+    EXPECT_EQ(data, 41u);
+    EXPECT_EQ(taut_cloth_get_points(cloth, points, 3, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(count, 4u);
+    EXPECT_OK(taut_cloth_get_points(cloth, points, 4, &count));
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(points[i].x, kSquare[i].x);
+    EXPECT_OK(taut_cloth_get_triangles(cloth, triangles, 2, &count));
+    EXPECT_TRUE(std::ranges::equal(triangles, kTriangles));
+    EXPECT_OK(taut_cloth_get_normals(cloth, normals, 4, &count));
+    for (const taut_vec3& normal : normals) EXPECT_NEAR(std::abs(normal.y), 1, 1e-6);
+    EXPECT_OK(taut_cloth_get_strains(cloth, strains, 2, &count));
+    for (const float strain : strains) EXPECT_NEAR(strain, 0, 1e-6);
+    taut_cloth of_body{};
+    EXPECT_OK(taut_body_get_cloth(bodies_of(cloth)[2], &of_body));
+    EXPECT_EQ(of_body.bits, cloth.bits);
+}
+
+// A third of each triangle's mass to each corner.
+TEST_F(Deformable, MassesAreThoseOfTheRestShape) {
+    float sum = 0, mass = 0;
+    taut_vec3 centre;
+    taut_sym3 inertia;
+    for (const taut_body body : bodies_of(add(cloth_def()))) {
+        EXPECT_OK(taut_body_get_mass(body, &mass, &centre, &inertia));
+        sum += mass;
+    }
+    EXPECT_NEAR(sum, 0.2, 1e-6);
+    taut_body corner[4];
+    uint32_t count = 0;
+    EXPECT_OK(taut_solid_get_bodies(add(solid_def()), corner, 4, &count));
+    EXPECT_OK(taut_body_get_mass(corner[0], &mass, &centre, &inertia));
+    EXPECT_NEAR(mass, 1000.0 / 6 / 4, 1e-4);
+}
+
+TEST_F(Deformable, PinnedVerticesStayAndMoveAsToldUntilLetGo) {
+    const taut_cloth cloth = add(cloth_def());
+    const taut_body corner = bodies_of(cloth)[0];
+    EXPECT_OK(taut_cloth_pin(cloth, 0, 1));
+    EXPECT_EQ(taut_cloth_pin(cloth, 4, 1), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_cloth_pin(cloth, 0, 2), TAUT_INVALID_ARGUMENT);
+    taut_pose pose{};
+    for (int i = 0; i < 60; ++i) EXPECT_OK(taut_world_step(world));
+    EXPECT_OK(taut_body_get_pose(corner, &pose));
+    EXPECT_EQ(pose.position.y, 5);
+    pose.position.y = 5.001;
+    EXPECT_OK(taut_body_move_kinematic(corner, &pose));
+    EXPECT_OK(taut_world_step(world));
+    EXPECT_OK(taut_body_get_pose(corner, &pose));
+    EXPECT_NEAR(pose.position.y, 5.001, 1e-9);
+    EXPECT_OK(taut_cloth_pin(cloth, 0, 0));
+    for (int i = 0; i < 60; ++i) EXPECT_OK(taut_world_step(world));
+    EXPECT_OK(taut_body_get_pose(corner, &pose));
+    EXPECT_LT(pose.position.y, 4);
+}
+
+TEST_F(Deformable, BadMeshesAreRefused) {
+    taut_cloth_def cloth = cloth_def();
+    const uint32_t beyond[] = {0, 1, 4}, twice[] = {0, 1, 1}, flipped[] = {0, 1, 3, 0, 2, 3}, one[] = {0, 1, 3};
+    const uint32_t fan[] = {0, 1, 2, 0, 1, 3, 1, 0, 3};
+    cloth.triangle_count = 1;
+    cloth.triangles = beyond;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "triangles[0][2]");
+    cloth.triangles = twice;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "names a vertex twice");
+    cloth.triangles = one;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "vertex 2");
+    cloth.triangles = flipped;
+    cloth.triangle_count = 2;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "same direction");
+    cloth.triangles = fan;
+    cloth.triangle_count = 3;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "triangles");
+    cloth = cloth_def();
+    const taut_pos line[] = {{0, 5, 0}, {0, 5, 1}, {0, 5, 2}, {0, 5, 3}};
+    cloth.points = line;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "no area");
+    taut_solid_def solid = solid_def();
+    const uint32_t inverted[] = {0, 2, 1, 3};
+    solid.cells = inverted;
+    refused(solid, TAUT_INVALID_ARGUMENT, "cells[0] is flat or inverted");
+    solid = solid_def();
+    solid.corners = 5;
+    refused(solid, TAUT_INVALID_ARGUMENT, "corners");
+}
+
+TEST_F(Deformable, BadNumbersAreRefused) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    taut_cloth_def cloth = cloth_def();
+    cloth.area_density = nan;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "area_density");
+    cloth = cloth_def();
+    cloth.stretch_stiffness[1] = 0;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "stretch_stiffness[1]");
+    cloth = cloth_def();
+    cloth.filter.group = 3;
+    refused(cloth, TAUT_INVALID_ARGUMENT, "filter.group");
+    cloth = cloth_def();
+    cloth.struct_size = 8;
+    refused(cloth, TAUT_STRUCT_SIZE, "struct_size");
+    cloth = cloth_def();
+    cloth.triangles = nullptr;
+    refused(cloth, TAUT_NULL_POINTER, "triangles");
+    taut_solid_def solid = solid_def();
+    solid.poisson_ratio = 0.5f;
+    refused(solid, TAUT_INVALID_ARGUMENT, "poisson_ratio");
+    solid = solid_def();
+    solid.material = TAUT_SOLID_FIXED_COROTATED;
+    solid.poisson_ratio = 0;
+    refused(solid, TAUT_INVALID_ARGUMENT, "poisson_ratio");
+}
+
+TEST_F(Deformable, PartsAreNotRemovedAloneAndGoWithTheWhole) {
+    const taut_cloth cloth = add(cloth_def());
+    const std::vector<taut_body> bodies = bodies_of(cloth);
+    EXPECT_EQ(taut_body_remove(bodies[0]), TAUT_IN_USE);
+    taut_ball_joint_def joint;
+    taut_ball_joint_def_init(&joint);
+    joint.body_a = bodies[1];
+    joint.anchor_b = kSquare[1];
+    taut_joint held{};
+    EXPECT_OK(taut_world_add_ball_joint(world, &joint, &held));
+    EXPECT_OK(taut_world_step(world));
+    EXPECT_OK(taut_cloth_remove(cloth));
+    EXPECT_EQ(taut_cloth_is_valid(cloth), 0);
+    EXPECT_EQ(taut_body_is_valid(bodies[0]), 0);
+    EXPECT_EQ(taut_joint_is_valid(held), 0);
+    EXPECT_EQ(taut_cloth_pin(cloth, 0, 1), TAUT_STALE_HANDLE);
+    expect_empty();
+}
+
+// A handle of the other kind names nothing.
+TEST_F(Deformable, ClothsAreNoSolids) {
+    const taut_cloth cloth = add(cloth_def());
+    EXPECT_EQ(taut_solid_is_valid(taut_solid{cloth.bits}), 0);
+    EXPECT_EQ(taut_solid_remove(taut_solid{cloth.bits}), TAUT_STALE_HANDLE);
+}
+
+TEST_F(Deformable, FailedAllocationsChangeNothing) {
+    for (uint64_t fail = 1;; ++fail) {
+        ledger.fail_from = ledger.calls + fail;
+        ledger.fail_until = ledger.fail_from + 1;
+        const uint64_t failed = ledger.failed;
+        taut_cloth cloth{};
+        const taut_cloth_def def = cloth_def();
+        const taut_result result = taut_world_add_cloth(world, &def, &cloth);
+        ledger.fail_from = ledger.fail_until = UINT64_MAX;
+        if (ledger.failed == failed) {
+            EXPECT_EQ(result, TAUT_OK);
+            EXPECT_OK(taut_cloth_remove(cloth));
+            return;
+        }
+        ASSERT_EQ(result, TAUT_OUT_OF_MEMORY) << fail;
+        expect_empty();
+    }
+}
+
+TEST_F(Deformable, PresetsAreTaken) {
+    for (uint32_t i = 0; i <= TAUT_FABRIC_LEATHER; ++i) {
+        taut_cloth_def def = cloth_def();
+        EXPECT_OK(taut_cloth_def_set_fabric(&def, static_cast<taut_fabric>(i)));
+        add(def);
+    }
+    for (uint32_t i = 0; i <= TAUT_SUBSTANCE_WOOD; ++i) {
+        taut_solid_def def = solid_def();
+        EXPECT_OK(taut_solid_def_set_substance(&def, static_cast<taut_substance>(i)));
+        add(def);
+    }
+    taut_cloth_def def = cloth_def();
+    EXPECT_EQ(taut_cloth_def_set_fabric(&def, static_cast<taut_fabric>(9)), TAUT_INVALID_ARGUMENT);
+    for (int i = 0; i < 30; ++i) EXPECT_OK(taut_world_step(world));
+}
+
+}  // namespace
