@@ -194,9 +194,10 @@ void BlockSolve::find_elastic_places() {
     for_couplings([&](uint32_t a, uint32_t b, uint32_t place) { b_.places[place] = b_.matrix.place(a, b); });
 }
 
-// Where nodes of elastic elements would be at the end of the substep.
+// Where nodes of elastic elements would be at the end of the substep; memory for the solve, which may take none.
 void BlockSolve::foresee() {
     b_.foresees = false;
+    b_.elastic_force.resize(b_.elastic_runs > 0 ? nodes_ * kDof : 0);
     if (b_.elastic_runs == 0) return;
     const double h = sys_.scheme.h;
     sys_.foreseen.resize(sys_.pose.size());
@@ -233,9 +234,7 @@ void BlockSolve::gather_before(const Batch& batch, uint32_t i, double* out) cons
 }
 
 void BlockSolve::assemble_elastic() {
-    b_.elastic_force.clear();
-    if (b_.elastic_runs == 0) return;
-    b_.elastic_force.resize(nodes_ * kDof, 0.0);
+    std::fill(b_.elastic_force.begin(), b_.elastic_force.end(), 0.0);
     for_elastic([&](const auto& batch) {
         ElasticSystem system(batch, sys_.scheme);
         const int freedoms = batch.type().freedoms, width = batch.width();
