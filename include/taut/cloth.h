@@ -65,7 +65,7 @@ typedef struct taut_cloth_def {
 
 TAUT_API void taut_cloth_def_init(taut_cloth_def* def);
 /**
- * Writes density, thickness, stiffnesses and bending of a fabric, as measured on common ones, to be tuned.
+ * Writes density, thickness, stiffnesses and bending in the order of a common fabric's, to be tuned.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT.
  */
 TAUT_API taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric);

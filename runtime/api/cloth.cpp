@@ -53,7 +53,7 @@ Fabric fabric_of(const taut_cloth_def& def) {
     return fabric;
 }
 
-// Common fabrics; stiffnesses are those of small strains (Wang, O'Brien and Ramamoorthi 2011 give the order).
+// Of no single sample: the order of common fabrics.
 struct FabricFigures {
     float area_density, thickness, stretch[2], shear, bending;
 };

@@ -6,7 +6,7 @@
 // -D (C + h J (u - u_0) + d J u), as if it were an unknown (Tournier et al. 2015, eq. 21). Energy: lambda = -D C and
 // the positive part is that of the sum, a step of Newton's method on W = 1/2 C^T D C.
 //
-// u_0 = 0, but for elements of links: there it is the velocity before the solve, which foresees how they turn.
+// u_0 of energy is 0; of folded elements it is the velocity before the solve, which foresees how they turn.
 #include <algorithm>
 
 #include "solvers/block_solve.h"
@@ -16,8 +16,8 @@ namespace {
 
 constexpr uint32_t kBatch = 8;  // elements evaluated together
 constexpr int kMostFreedoms = kMaxNodes * kDof;
-// Nodes of a link that move against each other by more of its length in a substep are not foreseen: evaluated where
-// they would be, it pulls the wrong way (measured on hanging cloths: above, some burst; below, none).
+// Way h u of two nodes of an element against each other over their distance, from which on a block's elements are not
+// foreseen: evaluated where they would be, one may pull the wrong way. From six hanging cloths of a prototype.
 constexpr double kForeseen = 1.5;
 
 uint32_t couplings_of(const ElementType& type) {
