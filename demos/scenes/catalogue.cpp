@@ -95,7 +95,7 @@ const std::vector<Family>& families() {
          0},
         {"beam_eR_nN", "beam_e1_n30", "a beam of R MPa and Poisson's ratio N/100, held at one end", 300, false,
          build_beam, 49},
-        {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped on each other", 240, false, build_solid_drop, 50},
+        {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped beside each other", 240, false, build_solid_drop, 50},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

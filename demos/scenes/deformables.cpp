@@ -126,14 +126,14 @@ Scene build_beam(double n, double r, const Options&) {
     return scene;
 }
 
-// n cubes of r Pa dropped on each other.
+// n cubes of r Pa dropped beside each other: vertices do not meet the faces of other solids.
 Scene build_solid_drop(double n, double r, const Options&) {
     constexpr double kCube[3] = {0.4, 0.4, 0.4};
     constexpr int kNodes[3] = {5, 5, 5};
     Scene scene = hall(1.4);
     add_ground(scene);
     for (int i = 0; i < static_cast<int>(n); ++i) {
-        Solid cube = box_of_tets(kCube, kNodes, {-0.2 + 0.06 * (i % 3), 0.3 + 0.6 * i, -0.2 + 0.05 * (i % 2)});
+        Solid cube = box_of_tets(kCube, kNodes, {-0.8 + 0.6 * i, 0.3 + 0.2 * i, -0.2});
         cube.def.young_modulus = static_cast<float>(r);
         cube.def.poisson_ratio = 0.45f;
         scene.add_solid(cube);
