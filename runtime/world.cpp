@@ -17,6 +17,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       elements(memory),
       cables(memory),
       softs(memory),
+      attachments(memory),
       broadphase(memory),
       pairs(memory),
       sleep(memory),
@@ -33,6 +34,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       moved(memory),
       quarantined(memory),
       broken(memory),
+      detached(memory),
       fell_asleep(memory),
       woke(memory),
       moved_before(memory),
@@ -85,6 +87,11 @@ taut_cloth World::cloth_handle(uint32_t soft) const {
 taut_solid World::solid_handle(uint32_t soft) const {
     if (soft == kNone || softs.record[soft].kind != SoftKind::solid) return {0};
     return {pack_handle({soft, softs.ids.generation(soft), id})};
+}
+
+taut_attachment World::attachment_handle(uint32_t attachment) const {
+    if (attachment == kNone) return {0};
+    return {pack_handle({attachment, attachments.ids.generation(attachment), id})};
 }
 
 }  // namespace taut

@@ -11,6 +11,7 @@
 #include "solvers/report.h"
 #include "solvers/solver.h"
 #include "stages.h"
+#include "state/attachments.h"
 #include "state/cables.h"
 #include "state/colliders.h"
 #include "state/handle.h"
@@ -44,6 +45,7 @@ struct World {
     Elements elements;
     Cables cables;
     Softs softs;
+    Attachments attachments;
     collision::Broadphase broadphase;
     Pairs pairs;
     Sleep sleep;
@@ -66,6 +68,7 @@ struct World {
     Array<taut_moved_event> moved;
     Array<taut_quarantine_event> quarantined;
     Array<taut_joint_break_event> broken;
+    Array<taut_attachment_break_event> detached;
     Array<taut_sleep_event> fell_asleep, woke;
     Array<uint8_t> moved_before;  // by node, scratch; publish_motion()
 
@@ -91,6 +94,7 @@ struct World {
     taut_cable cable_handle(uint32_t cable) const;
     taut_cloth cloth_handle(uint32_t soft) const;
     taut_solid solid_handle(uint32_t soft) const;
+    taut_attachment attachment_handle(uint32_t attachment) const;
 };
 
 // What changes of it after the world's creation.
@@ -107,11 +111,13 @@ void describe(Visitor& visitor, Of& of) {
 
 template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, broadphase, pairs, sleep, sensors,
-           pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
-           contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke, moved_before, frozen,
-           profile, reports, observer, spring_substep, first_substep, impacts] = of;
-    TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, broadphase.boxes());
+    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, attachments, broadphase,
+           pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
+           contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
+           fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep, first_substep,
+           impacts] = of;
+    TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,
+                broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);
     TAUT_ASIDE(visitor, sensors, last_step);

@@ -98,6 +98,11 @@ typedef struct taut_solid {
     uint64_t bits;
 } taut_solid;
 
+/** An attachment between points of bodies, cables, cloths and solids. Zero is null. */
+typedef struct taut_attachment {
+    uint64_t bits;
+} taut_attachment;
+
 /** Severity of a log line. */
 typedef enum taut_log_level {
     TAUT_LOG_INFO = 0,

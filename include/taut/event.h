@@ -103,6 +103,16 @@ typedef struct taut_joint_break_event {
     uint32_t reserved; /**< zero */
 } taut_joint_break_event;
 
+/** An attachment that ended a step with more force or torque than it bears, and was removed then. */
+typedef struct taut_attachment_break_event {
+    taut_attachment attachment; /**< stale by now: good for comparing only */
+    uint64_t user_data;
+    taut_vec3 force;   /**< on b, as taut_attachment_get_force would have said [N] */
+    taut_vec3 torque;  /**< on b, likewise [N m] */
+    uint32_t step;     /**< as of a contact event */
+    uint32_t reserved; /**< zero */
+} taut_attachment_break_event;
+
 /** A body or particle that fell asleep or woke; see sleep.h. */
 typedef struct taut_sleep_event {
     taut_body body;
@@ -147,6 +157,9 @@ typedef struct taut_events {
     uint32_t woke_count;
     uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved; sum over the steps */
     uint32_t reserved_limits;  /**< zero */
+    const taut_attachment_break_event* detached; /**< in the order of the attachments' slots */
+    uint32_t detached_count;
+    uint32_t reserved_detached; /**< zero */
 } taut_events;
 
 /** One point of a touching pair. */

@@ -13,7 +13,8 @@ extern "C" {
 
 /** What is the matter; taut_lint_text says it in words. value and limit of an entry are in the unit given here. */
 typedef enum taut_lint_kind {
-    TAUT_LINT_BLOCK_MASS_RATIO = 0,    /**< heaviest over lightest body of directly solved joints; body: the lightest */
+    TAUT_LINT_BLOCK_MASS_RATIO = 0,    /**< heaviest over lightest body of joints and attachments that are solved
+                                            directly; body: the lightest */
     TAUT_LINT_JOINT_MASS_RATIO = 1,    /**< of the two ends of a swept joint; body: the lighter */
     TAUT_LINT_CONTACT_MASS_RATIO = 2,  /**< of a body that rests on a lighter one; body: the lighter */
     TAUT_LINT_LIGHT_BETWEEN_HEAVY = 3, /**< second heaviest neighbour over the body between them */
@@ -21,7 +22,7 @@ typedef enum taut_lint_kind {
     TAUT_LINT_SOFT_LOAD = 5,           /**< force of a swept joint over the weight of its lighter end, last step */
     TAUT_LINT_SOFT_COMPLIANCE = 6,     /**< compliance of a swept joint, over h^2 J W J^T [1]: acts as rigid */
     TAUT_LINT_REDUNDANT_ROWS = 7, /**< rows of a joint that other joints hold already: internal forces are arbitrary */
-    TAUT_LINT_JOINT_APART = 8,    /**< gap of a rigid joint [m]: closes with a jump */
+    TAUT_LINT_JOINT_APART = 8,    /**< gap of a rigid joint or attachment [m]: closes with a jump */
     TAUT_LINT_JOINT_MISALIGNED = 9,      /**< angle of a rigid joint that is off [rad]: closes with a jump */
     TAUT_LINT_STOP_OVERRUN = 10,         /**< coordinate beyond a rigid stop [m]: is pushed back */
     TAUT_LINT_STOP_OVERRUN_ANGLE = 11,   /**< the same of an angle [rad] */
@@ -37,11 +38,12 @@ typedef enum taut_lint_kind {
 /** One finding. */
 typedef struct taut_lint_entry {
     taut_lint_kind kind;
-    uint32_t reserved; /**< zero */
-    taut_body body;    /**< null where none is meant */
-    taut_joint joint;  /**< null where none is meant */
-    float value;       /**< found */
-    float limit;       /**< what it should keep to */
+    uint32_t reserved;          /**< zero */
+    taut_body body;             /**< null where none is meant */
+    taut_joint joint;           /**< null where none is meant */
+    float value;                /**< found */
+    float limit;                /**< what it should keep to */
+    taut_attachment attachment; /**< null where none is meant */
 } taut_lint_entry;
 
 /**

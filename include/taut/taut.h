@@ -5,6 +5,7 @@
 #ifndef TAUT_TAUT_H
 #define TAUT_TAUT_H
 
+#include <taut/attachment.h>
 #include <taut/base.h>
 #include <taut/body.h>
 #include <taut/cable.h>

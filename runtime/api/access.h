@@ -116,6 +116,7 @@ private:
 taut_result room_for_bodies(const char* call, const World& world, size_t more);
 taut_result room_for_colliders(const char* call, const World& world, size_t more);
 taut_result room_for_joints(const char* call, const World& world, size_t more);
+taut_result room_for_attachments(const char* call, const World& world, size_t more);
 
 // ---------------------------------------------------------------- find
 
@@ -169,6 +170,7 @@ inline const IdPool& pool_of(const World& world, taut_joint) { return world.join
 inline const IdPool& pool_of(const World& world, taut_cable) { return world.cables.ids; }
 inline const IdPool& pool_of(const World& world, taut_cloth) { return world.softs.ids; }
 inline const IdPool& pool_of(const World& world, taut_solid) { return world.softs.ids; }
+inline const IdPool& pool_of(const World& world, taut_attachment) { return world.attachments.ids; }
 // Whether the bits name something that lives; an inner joint has no handle.
 template <class Handle>
 bool names(const World& world, Handle handle, const HandleBits& bits) {
@@ -195,6 +197,7 @@ constexpr const char* name_of(taut_joint) { return "joint"; }
 constexpr const char* name_of(taut_cable) { return "cable"; }
 constexpr const char* name_of(taut_cloth) { return "cloth"; }
 constexpr const char* name_of(taut_solid) { return "solid"; }
+constexpr const char* name_of(taut_attachment) { return "attachment"; }
 
 // ---------------------------------------------------------------- act
 

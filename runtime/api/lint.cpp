@@ -19,7 +19,7 @@ constexpr const char* kText[] = {
     "a swept joint carries far more than its lighter end weighs and will yield: solve it directly",
     "a swept joint has so little compliance that it acts as a rigid one: make it 0, or solve the joint directly",
     "a joint holds what other joints hold already: its force is arbitrary; free an axis or give it compliance",
-    "the two points of a joint are apart and will jump together: place the bodies or the joint anew",
+    "the two points of a joint or attachment are apart and will jump together: place the bodies or the joint anew",
     "the two frames of a joint are turned apart and will jump together: place the bodies or the joint anew",
     "a joint is far beyond a stop and will be pushed back: place it within, or give the stop compliance",
     "a joint is turned far beyond a stop and will be pushed back: place it within, or give the stop compliance",

@@ -31,4 +31,8 @@ taut_result room_for_joints(const char* call, const World& world, size_t more) {
     return room_in(call, world.joints.ids, more, {"max_joints", world.def.max_joints, "joints"});
 }
 
+taut_result room_for_attachments(const char* call, const World& world, size_t more) {
+    return room_in(call, world.attachments.ids, more, {"", 0, "attachments"});
+}
+
 }  // namespace taut

@@ -24,8 +24,9 @@ public:
     double mass(uint32_t node) const { return nodes.mass[node].mass; }
     Vec3 gravity() const { return {world.def.gravity.x, world.def.gravity.y, world.def.gravity.z}; }
     // Solved within a block, not swept.
-    bool direct(const Joint& joint) const {
-        return solvers()[world.def.solver]->direct && joint.solve != JointSolve::swept;
+    template <class Tie>  // a joint or an attachment
+    bool direct(const Tie& tie) const {
+        return solvers()[world.def.solver]->direct && tie.solve != JointSolve::swept;
     }
 
     // Joints of which at least one end moves.
@@ -35,6 +36,13 @@ public:
             const Joint& joint = joints.record[j];
             if (lightest_of(joint) != kNone) act(j, joint);
         }
+    }
+
+    // act(index, attachment)
+    template <class Act>
+    void for_attachments(Act act) const {
+        for (uint32_t index = 0; index < world.attachments.ids.slots(); ++index)
+            if (world.attachments.ids.live(index)) act(index, world.attachments.record[index]);
     }
 
     // The lightest of a joint's nodes that move, the first of such; kNone: none moves.
@@ -48,7 +56,11 @@ public:
     // Node and joint may be kNone.
     void add(taut_lint_kind kind, uint32_t node, uint32_t joint, double value, double limit) const {
         found_.push_back({kind, 0, world.body_handle(node), world.joint_handle(joint), static_cast<float>(value),
-                          static_cast<float>(limit)});
+                          static_cast<float>(limit), taut_attachment{}});
+    }
+    void add(taut_lint_kind kind, taut_attachment attachment, double value, double limit) const {
+        found_.push_back(
+            {kind, 0, taut_body{}, taut_joint{}, static_cast<float>(value), static_cast<float>(limit), attachment});
     }
     void add_above(taut_lint_kind kind, uint32_t node, uint32_t joint, double value, double limit) const {
         if (value > limit) add(kind, node, joint, value, limit);
@@ -68,12 +80,18 @@ public:
 
     void unite(const Joint& joint) {
         uint32_t first = kNone;
-        for (uint32_t node : joint.nodes()) {
-            if (!context_.moves(node)) continue;
-            if (first == kNone) first = node;
-            const uint32_t a = root_of(first), b = root_of(node);
-            if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-        }
+        for (uint32_t node : joint.nodes()) unite(first, node);
+    }
+    void unite(const Attachment& attachment) {
+        uint32_t first = kNone;
+        for_ends(attachment, [&](uint32_t node) { unite(first, node); });
+    }
+    // With the first of some nodes that moves.
+    void unite(uint32_t& first, uint32_t node) {
+        if (!context_.moves(node)) return;
+        if (first == kNone) first = node;
+        const uint32_t a = root_of(first), b = root_of(node);
+        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
     }
     uint32_t root_of(uint32_t node) {
         while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];

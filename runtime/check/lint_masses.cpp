@@ -17,6 +17,9 @@ public:
         context_.for_joints([&](uint32_t, const Joint& joint) {
             if (context_.direct(joint)) block_.unite(joint);
         });
+        context_.for_attachments([&](uint32_t, const Attachment& attachment) {
+            if (context_.direct(attachment)) block_.unite(attachment);
+        });
         collect_direct_pairs();
     }
 

@@ -48,6 +48,11 @@ void lint_poses(const LintContext& context) {
             if (fit[angle].room < unit.least_room) context.add(unit.narrow, kNone, j, fit[angle].room, unit.least_room);
         }
     });
+    context.for_attachments([&](uint32_t index, const Attachment& attachment) {
+        const double gap = gap_of(context.nodes, context.world.elements, attachment);
+        if (attachment.compliance == 0 && gap > kGap)
+            context.add(TAUT_LINT_JOINT_APART, context.world.attachment_handle(index), gap, kGap);
+    });
 }
 
 }  // namespace taut

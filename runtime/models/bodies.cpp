@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "detect/detect.h"
+#include "models/attachments.h"
 #include "sleep/wake.h"
 #include "state/joint_reading.h"
 
@@ -58,6 +59,7 @@ void remove_node(World& world, uint32_t node) {
 
 void drop_node(World& world, uint32_t node) {
     wake(world, node);
+    drop_attachments(world, [&](uint32_t end) { return end == node; });
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     remove_colliders(world, node);
     world.nodes.remove(node);
@@ -111,6 +113,7 @@ void shift_centre(World& world, uint32_t node, const Vec3& offset) {
             if (joint.node[side] == node) set_anchor(joint, side, anchor_of(joint, side) - local);
         }
     }
+    shift_attachments(world, node, local);
 }
 
 }  // namespace taut

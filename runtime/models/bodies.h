@@ -14,7 +14,7 @@ inline NodePose origin_pose(const World& world, uint32_t node) {
 // A node with its colliders, whose node and next are set here. Throws std::bad_alloc with nothing changed.
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                   std::span<const ColliderPlan> colliders = {});
-// With its colliders and every joint that ends on it. Throws std::bad_alloc with nothing changed, and not at all where
+// With its colliders and every joint and attachment on it. Throws std::bad_alloc with nothing changed, and not at all where
 // reserve_ended(world.pairs, ends_on(node)) has gone before.
 void remove_node(World& world, uint32_t node);
 // The same of one on which no joint ends any more.
@@ -29,7 +29,8 @@ void remove_collider(World& world, uint32_t collider);
 // as the next step does it again.
 void refresh_boxes(World& world, uint32_t node);
 
-// Moves a body's centre of mass by an offset [m], world axes: what the body does, and where its joints hold it, stays.
+// Moves a body's centre of mass by an offset [m], world axes: what the body does, and where its joints and attachments hold
+// it, stays.
 void shift_centre(World& world, uint32_t node, const Vec3& offset);
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/attachments.h"
 #include "models/bodies.h"
 #include "sleep/wake.h"
 
@@ -93,6 +94,7 @@ void remove_soft(World& world, uint32_t index) {
         const auto nodes = world.joints.record[joint].nodes();
         if (std::any_of(nodes.begin(), nodes.end(), own)) world.joints.remove(joint);
     }
+    drop_attachments(world, own);
     for (const SoftSet& set : soft.sets) world.elements.remove(set.set);
     for (const uint32_t node : soft.node) drop_node(world, node);
     if (soft.shape != kNone) world.shapes.remove(soft.shape);

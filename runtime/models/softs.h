@@ -43,7 +43,7 @@ struct SoftPlan {
 
 // At rest. Throws std::bad_alloc with nothing changed.
 uint32_t add_soft(World& world, const SoftPlan& plan);
-// With every joint that ends on it. Throws std::bad_alloc with nothing changed.
+// With every joint and attachment on it. Throws std::bad_alloc with nothing changed.
 void remove_soft(World& world, uint32_t index);
 
 // A pinned vertex is a kinematic node: it moves as the host says. Throws std::bad_alloc with nothing changed.

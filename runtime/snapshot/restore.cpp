@@ -291,7 +291,7 @@ private:
 
     Staging& staging_;
     Restore restore_;
-    std::array<Slots, 9> slots_{};
+    std::array<Slots, 12> slots_{};
     size_t pools_ = 0;
     size_t values_ = 0;  // of the shared ones that are read
 };

@@ -3,6 +3,7 @@
 
 #include "state/elements.h"
 #include "state/joint_reading.h"
+#include "state/motion.h"
 
 namespace taut {
 

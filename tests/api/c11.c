@@ -1,4 +1,5 @@
 /* The headers as a C11 compiler sees them, each before any other of its kind, and a world that falls. */
+#include <taut/attachment.h>
 #include <taut/sleep.h>
 #include <taut/query.h>
 #include <taut/lint.h>
@@ -19,10 +20,12 @@ _Static_assert(sizeof(taut_body) == 8 && sizeof(taut_world) == 8, "handles are o
 _Static_assert(sizeof(taut_result) == 4 && sizeof(taut_body_kind) == 4, "enums are 32 bits");
 _Static_assert(sizeof(taut_pos) == 24 && sizeof(taut_vec3) == 12 && sizeof(taut_quat) == 16, "plain values");
 _Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
-_Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 32, "plain values");
+_Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 40, "plain values");
 _Static_assert(sizeof(taut_ball_joint_def) == 96 && sizeof(taut_distance_joint_def) == 152, "no hidden padding");
 _Static_assert(sizeof(taut_fixed_joint_def) == 144 && sizeof(taut_hinge_joint_def) == 200, "no hidden padding");
-_Static_assert(sizeof(taut_joint_break_event) == 48 && sizeof(taut_events) == 160, "no hidden padding");
+_Static_assert(sizeof(taut_joint_break_event) == 48 && sizeof(taut_events) == 176, "no hidden padding");
+_Static_assert(sizeof(taut_anchor) == 152 && sizeof(taut_attachment_def) == 352, "no hidden padding");
+_Static_assert(sizeof(taut_attachment_state) == 80 && sizeof(taut_attachment_break_event) == 48, "likewise");
 _Static_assert(sizeof(taut_contact_event) == 48 && sizeof(taut_contact_point) == 56, "likewise");
 _Static_assert(sizeof(taut_hit_event) == 80 && sizeof(taut_sensor_event) == 40, "likewise");
 _Static_assert(sizeof(taut_pre_solve) == 184 && sizeof(taut_pre_solve_answer) == 8, "likewise");
