@@ -81,7 +81,7 @@ TAUT_API taut_result taut_world_add_body(taut_world world, const taut_body_def* 
 /** Adds a particle; ranges and results as for taut_world_add_body. */
 TAUT_API taut_result taut_world_add_particle(taut_world world, const taut_particle_def* def, taut_body* out);
 /**
- * Removes a body or particle and every joint that ends on it. Its contacts end with the next step's events.
+ * Removes a body or particle and every joint and attachment on it. Its contacts end with the next step's events.
  * @return TAUT_OK; TAUT_IN_USE for a body of a cable, cloth or solid, TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_body_remove(taut_body body);

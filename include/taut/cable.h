@@ -84,7 +84,7 @@ TAUT_API void taut_cable_def_init(taut_cable_def* def);
  */
 TAUT_API taut_result taut_world_add_cable(taut_world world, const taut_cable_def* def, taut_cable* out);
 /**
- * Removes a cable with all its bodies and joints, and every other joint on its bodies.
+ * Removes a cable with all its bodies and joints, and every other joint and attachment on its bodies.
  * Its bodies cannot be removed one by one: taut_body_remove then returns TAUT_IN_USE. Its joints can: taking one out
  * cuts a cable of links there, and taking out an end's joint, or removing the body that it is attached to, lets the end
  * go.

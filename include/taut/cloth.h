@@ -77,7 +77,7 @@ TAUT_API taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric 
  *         TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_cloth(taut_world world, const taut_cloth_def* def, taut_cloth* out);
-/** Removes a cloth with its vertices and every joint on them; taut_body_remove of one returns TAUT_IN_USE. */
+/** Removes a cloth with its vertices and all joints and attachments on them; taut_body_remove of one: TAUT_IN_USE. */
 TAUT_API taut_result taut_cloth_remove(taut_cloth cloth);
 /** 1 if the handle names a live cloth, else 0. */
 TAUT_API int32_t taut_cloth_is_valid(taut_cloth cloth);

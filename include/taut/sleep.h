@@ -1,17 +1,17 @@
 /**
  * @file sleep.h
  * Sleeping: what came to rest costs next to nothing until something happens to it.
- * A world sleeps if its def says so (world.h: sleeping, sleep_speed, sleep_time). Bodies connected by joints, or by
- * contacts with gaps of at most 5 mm, form an island; static and kinematic bodies connect nothing. An island falls
- * asleep as a whole once no point of any of its bodies has been faster than sleep_speed for sleep_time: over the step
- * and at its end, with |v| + |w| r for the speed of the surface. What touches a moving kinematic body, or hangs on it,
- * stays awake.
+ * A world sleeps if its def says so (world.h: sleeping, sleep_speed, sleep_time). Bodies connected by joints, by
+ * attachments, or by contacts with gaps of at most 5 mm, form an island; static and kinematic bodies connect nothing.
+ * An island falls asleep as a whole once no point of any of its bodies has been faster than sleep_speed for sleep_time:
+ * over the step and at its end, with |v| + |w| r for the speed of the surface. What touches a moving kinematic body, or
+ * hangs on it, stays awake.
  *
  * While asleep a body has no velocity and no moved events; joints and contacts keep their forces, and queries find it.
  * The island wakes as a whole, and goes on with those forces, when
  * - an awake body, or a kinematic one that moves, touches it or will within the step,
  * - a call changes the motion, pose, forces (but by nothing), mass, colliders or filters of one of its bodies, or of
- *   what it touches; or adds, changes or removes a joint of it; or reels a cable of it,
+ *   what it touches; or adds, changes or removes a joint or attachment of it; or reels a cable of it,
  * - a static or kinematic body, or a collider of one, comes to where it lies,
  * - gravity changes; taut_body_set_awake or taut_world_wake_box says so.
  * A kinematic body that taut_body_move_kinematic sends to where it is wakes nobody, nor does a drive that is told its

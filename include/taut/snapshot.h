@@ -3,11 +3,11 @@
  * Snapshots: the state of a world as bytes in a buffer of the host's, and back. What comes after a restoration is what
  * came after the saving, bit by bit: for rollback, for saved games and replays, for finding where two runs part.
  *
- * A snapshot holds all that later steps depend on: bodies, joints with their forces, cables, cloths, solids, colliders,
- * contacts, what sleeps, sensors, time left over, gravity and what else was set of the world. It is restored into the
- * world that it is of, in this process. Handles of bodies, colliders, joints, cables, cloths and solids that lived at
- * the saving live again, whatever was removed since, and name the same; what was added since is gone. Who then adds the
- * same once more gets the same handles, so those of what is gone are best forgotten.
+ * A snapshot holds all that later steps depend on: bodies, joints and attachments with their forces, cables, cloths,
+ * solids, colliders, contacts, what sleeps, sensors, time left over, gravity and what else was set of the world. It is
+ * restored into the world that it is of, in this process. Handles of bodies, colliders, joints, attachments, cables,
+ * cloths and solids that lived at the saving live again, whatever was removed since, and name the same; what was added
+ * since is gone. Who then adds the same once more gets the same handles, so those of what is gone are best forgotten.
  *
  * Not in it are shapes and meshes, which are large and do not change: those that colliders have in the snapshot must
  * still be there. Shapes that were added since stay. Host functions and what belongs to them (hooks, pre_solve) stay as

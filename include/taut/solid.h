@@ -73,7 +73,7 @@ TAUT_API taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_subs
  *         TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_solid(taut_world world, const taut_solid_def* def, taut_solid* out);
-/** Removes a solid with its vertices and every joint on them; taut_body_remove of one returns TAUT_IN_USE. */
+/** Removes a solid with its vertices and all joints and attachments on them; taut_body_remove of one: TAUT_IN_USE. */
 TAUT_API taut_result taut_solid_remove(taut_solid solid);
 /** 1 if the handle names a live solid, else 0. */
 TAUT_API int32_t taut_solid_is_valid(taut_solid solid);

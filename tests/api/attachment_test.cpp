@@ -8,30 +8,31 @@ using namespace taut_test;
 
 namespace {
 
-const taut_pos kSquare[] = {{0, 5, 0}, {0, 5, 1}, {1, 5, 0}, {1, 5, 1}};
-const uint32_t kTriangles[] = {0, 1, 3, 0, 3, 2};
-const taut_pos kHex[] = {{0, 7, 0}, {1, 7, 0}, {1, 7, 1}, {0, 7, 1}, {0, 8, 0}, {1, 8, 0}, {1, 8, 1}, {0, 8, 1}};
-const uint32_t kCell[] = {0, 3, 2, 1, 4, 7, 6, 5};
+const taut_pos kAttachedSheet[] = {{0, 5, 0}, {0, 5, 1}, {1, 5, 0}, {1, 5, 1}};
+const uint32_t kAttachedTriangles[] = {0, 1, 3, 0, 3, 2};
+const taut_pos kAttachedCube[] = {{0, 7, 0}, {1, 7, 0}, {1, 7, 1}, {0, 7, 1},
+                                  {0, 8, 0}, {1, 8, 0}, {1, 8, 1}, {0, 8, 1}};
+const uint32_t kAttachedCell[] = {0, 3, 2, 1, 4, 7, 6, 5};
 
-struct AttachmentCalls : testing::Test {
-    AttachmentCalls() {
+struct Attachments : testing::Test {
+    Attachments() {
         taut_world_def def;
         taut_world_def_init(&def);
         def.hooks = ledger.hooks();
         EXPECT_OK(taut_world_create(&def, &world));
         taut_cloth_def sheet;
         taut_cloth_def_init(&sheet);
-        sheet.points = kSquare;
+        sheet.points = kAttachedSheet;
         sheet.point_count = 4;
-        sheet.triangles = kTriangles;
+        sheet.triangles = kAttachedTriangles;
         sheet.triangle_count = 2;
         sheet.thickness = 0.1f;
         EXPECT_OK(taut_world_add_cloth(world, &sheet, &cloth));
         taut_solid_def cube;
         taut_solid_def_init(&cube);
-        cube.points = kHex;
+        cube.points = kAttachedCube;
         cube.point_count = 8;
-        cube.cells = kCell;
+        cube.cells = kAttachedCell;
         cube.cell_count = 1;
         cube.corners = 8;
         EXPECT_OK(taut_world_add_solid(world, &cube, &solid));
@@ -40,7 +41,7 @@ struct AttachmentCalls : testing::Test {
         bob = add_particle(world, 3, 3, 3);
         anchored = add_body(world, body_def(TAUT_BODY_STATIC, {}));
     }
-    ~AttachmentCalls() override {
+    ~Attachments() override {
         taut_world_destroy(world);
         EXPECT_TRUE(ledger.empty());
         EXPECT_EQ(ledger.errors, 0u);
@@ -99,13 +100,13 @@ struct AttachmentCalls : testing::Test {
     taut_body crate{}, bob{}, anchored{};
 };
 
-void expect_near(const taut_pos& a, const taut_pos& b) {
+void expect_same_place(const taut_pos& a, const taut_pos& b) {
     EXPECT_NEAR(a.x, b.x, 1e-6);
     EXPECT_NEAR(a.y, b.y, 1e-6);
     EXPECT_NEAR(a.z, b.z, 1e-6);
 }
 
-TEST_F(AttachmentCalls, ReadBackWhatTheyAre) {
+TEST_F(Attachments, ReadBackWhatTheyAre) {
     const taut_attachment_def def = good();
     const taut_attachment attachment = add(def);
     taut_attachment_def read;
@@ -119,11 +120,11 @@ TEST_F(AttachmentCalls, ReadBackWhatTheyAre) {
         EXPECT_EQ(read.a.bodies[n].bits, def.a.bodies[n].bits);
         EXPECT_NEAR(read.a.weights[n], def.a.weights[n], 1e-6);
     }
-    expect_near(read.b.points[0], def.b.points[0]);
+    expect_same_place(read.b.points[0], def.b.points[0]);
     taut_pos a{}, b{};
     EXPECT_OK(taut_attachment_get_points(attachment, &a, &b));
-    expect_near(a, {0.25, 5, 0.6});
-    expect_near(b, {0.25, 4.9, 0.6});
+    expect_same_place(a, {0.25, 5, 0.6});
+    expect_same_place(b, {0.25, 4.9, 0.6});
     float error = 0;
     EXPECT_OK(taut_attachment_get_error(attachment, &error));
     EXPECT_NEAR(error, 0.1, 1e-6);
@@ -147,7 +148,7 @@ TEST_F(AttachmentCalls, ReadBackWhatTheyAre) {
 }
 
 // A read def can be added again.
-TEST_F(AttachmentCalls, DefsOfEachKindGoRound) {
+TEST_F(Attachments, DefsOfEachKindGoRound) {
     for (const taut_attachment_kind kind : {TAUT_ATTACHMENT_BALL, TAUT_ATTACHMENT_DISTANCE, TAUT_ATTACHMENT_FIXED}) {
         taut_attachment_def def = good(), read, again;
         def.kind = kind;
@@ -168,7 +169,7 @@ TEST_F(AttachmentCalls, DefsOfEachKindGoRound) {
     }
 }
 
-TEST_F(AttachmentCalls, BadAnchorsAreRefused) {
+TEST_F(Attachments, BadAnchorsAreRefused) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     taut_attachment_def def = good();
     def.a.count = 5;
@@ -210,7 +211,7 @@ TEST_F(AttachmentCalls, BadAnchorsAreRefused) {
     EXPECT_OK(taut_world_destroy(other));
 }
 
-TEST_F(AttachmentCalls, BadDefsAreRefused) {
+TEST_F(Attachments, BadDefsAreRefused) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     taut_attachment_def def = good();
     def.struct_size = 8;
@@ -250,7 +251,7 @@ TEST_F(AttachmentCalls, BadDefsAreRefused) {
     EXPECT_EQ(taut_world_add_attachment(world, &def, nullptr), TAUT_NULL_POINTER);
 }
 
-TEST_F(AttachmentCalls, EndsThatHoldNothingAreRefused) {
+TEST_F(Attachments, EndsThatHoldNothingAreRefused) {
     taut_attachment_def def = good();
     def.b = def.a;
     refused(def, TAUT_INVALID_ARGUMENT, "same point");
@@ -274,18 +275,18 @@ TEST_F(AttachmentCalls, EndsThatHoldNothingAreRefused) {
     EXPECT_OK(taut_world_step(world));
 }
 
-TEST_F(AttachmentCalls, AnchorsAreFoundWhereTheyAreNearest) {
+TEST_F(Attachments, AnchorsAreFoundWhereTheyAreNearest) {
     taut_anchor out{};
     uint32_t element = 9;
     taut_pos at{};
     EXPECT_OK(taut_cloth_find_anchor(cloth, {0.8, 6, 0.3}, &out, &element));
     EXPECT_EQ(element, 1u);
     EXPECT_OK(taut_world_get_anchor_point(world, &out, &at));
-    expect_near(at, {0.8, 5, 0.3});
+    expect_same_place(at, {0.8, 5, 0.3});
     EXPECT_OK(taut_cloth_find_anchor(cloth, {-1, 5, 0.4}, &out, &element));  // beside its edge
     EXPECT_EQ(element, 0u);
     EXPECT_OK(taut_world_get_anchor_point(world, &out, &at));
-    expect_near(at, {0, 5, 0.4});
+    expect_same_place(at, {0, 5, 0.4});
     for (const taut_pos& place : {taut_pos{0.5, 7.5, 0.5}, taut_pos{0.1, 7.2, 0.1}, taut_pos{0.9, 7.9, 0.2},
                                   taut_pos{0.9, 7.1, 0.9}, taut_pos{0.15, 7.8, 0.9}}) {
         EXPECT_OK(taut_solid_find_anchor(solid, place, &out, &element));
@@ -293,15 +294,15 @@ TEST_F(AttachmentCalls, AnchorsAreFoundWhereTheyAreNearest) {
         EXPECT_EQ(out.count, 4u);
         for (const float weight : out.weights) EXPECT_GE(weight, 0);
         EXPECT_OK(taut_world_get_anchor_point(world, &out, &at));
-        expect_near(at, place);
+        expect_same_place(at, place);
     }
     EXPECT_OK(taut_solid_find_anchor(solid, {0.5, 9, 2}, &out, &element));
     EXPECT_OK(taut_world_get_anchor_point(world, &out, &at));
-    expect_near(at, {0.5, 8, 1});
+    expect_same_place(at, {0.5, 8, 1});
     const float weights[] = {0.2f, 0.3f, 0.5f}, bad[] = {0.2f, 0.3f, 0.4f};
     EXPECT_OK(taut_cloth_get_anchor(cloth, 1, weights, &out));
     EXPECT_OK(taut_world_get_anchor_point(world, &out, &at));
-    expect_near(at, {0.3 + 0.5, 5, 0.3});
+    expect_same_place(at, {0.3 + 0.5, 5, 0.3});
     EXPECT_EQ(taut_cloth_get_anchor(cloth, 2, weights, &out), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_cloth_get_anchor(cloth, 0, bad, &out), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_cloth_get_anchor(cloth, 0, nullptr, &out), TAUT_NULL_POINTER);
@@ -314,10 +315,10 @@ TEST_F(AttachmentCalls, AnchorsAreFoundWhereTheyAreNearest) {
     const taut_anchor corner = on(crate, {1, 4.9, 1});
     EXPECT_OK(set_pose(crate, {{0.5, 4.4, 0.5}, {1, 0, 0, 0}, {0, 0}}));  // half a turn about x
     EXPECT_OK(taut_world_get_anchor_point(world, &corner, &at));
-    expect_near(at, {1, 3.9, 0});
+    expect_same_place(at, {1, 3.9, 0});
 }
 
-TEST_F(AttachmentCalls, GoWithWhatTheyAreOn) {
+TEST_F(Attachments, GoWithWhatTheyAreOn) {
     const taut_attachment_def def = good();
     taut_attachment attachment = add(def);
     EXPECT_OK(taut_world_step(world));
@@ -355,7 +356,7 @@ TEST_F(AttachmentCalls, GoWithWhatTheyAreOn) {
 }
 
 // Others in the same set keep their own when one is taken out of the middle.
-TEST_F(AttachmentCalls, RemovalLeavesTheOthersAsTheyAre) {
+TEST_F(Attachments, RemovalLeavesTheOthersAsTheyAre) {
     std::vector<taut_attachment> all;
     std::vector<taut_body> weights;
     for (int i = 0; i < 6; ++i) {
@@ -388,7 +389,7 @@ TEST_F(AttachmentCalls, RemovalLeavesTheOthersAsTheyAre) {
 }
 
 // A weight of 1 kg hangs from a point of a pinned triangle by what holds more or less than that.
-TEST_F(AttachmentCalls, BreakAboveTheForceAndNotBelow) {
+TEST_F(Attachments, BreakAboveTheForceAndNotBelow) {
     for (uint32_t v = 0; v < 4; ++v) EXPECT_OK(taut_cloth_pin(cloth, v, 1));
     taut_attachment_def def = good();
     taut_pos place{};
@@ -426,7 +427,7 @@ TEST_F(AttachmentCalls, BreakAboveTheForceAndNotBelow) {
 }
 
 // A chain of a joint and an attachment that both hold too little: the weaker for its load goes, the other is relieved.
-TEST_F(AttachmentCalls, OfAMechanismTheMostOverloadedBreaks) {
+TEST_F(Attachments, OfAMechanismTheMostOverloadedBreaks) {
     const taut_body upper = add_particle(world, 9, 5, 0), lower = add_particle(world, 9, 4, 0);
     taut_ball_joint_def joint;
     taut_ball_joint_def_init(&joint);
@@ -451,7 +452,7 @@ TEST_F(AttachmentCalls, OfAMechanismTheMostOverloadedBreaks) {
 }
 
 // Its bodies do not touch unless they are asked to, and touch again when it is gone.
-TEST_F(AttachmentCalls, KeepItsBodiesApart) {
+TEST_F(Attachments, KeepItsBodiesApart) {
     const auto touches = [&] {
         for (int i = 0; i < 3; ++i) EXPECT_OK(taut_world_step(world));
         taut_contact out[64];
@@ -483,7 +484,7 @@ TEST_F(AttachmentCalls, KeepItsBodiesApart) {
 }
 
 // Shapes that shift a body's centre of mass leave its attachments where they are.
-TEST_F(AttachmentCalls, StayWhereTheyAreOnABody) {
+TEST_F(Attachments, StayWhereTheyAreOnABody) {
     const taut_attachment attachment = add(good());
     taut_attachment_def fixed = good();
     fixed.kind = TAUT_ATTACHMENT_FIXED;
@@ -498,7 +499,7 @@ TEST_F(AttachmentCalls, StayWhereTheyAreOnABody) {
     EXPECT_GT(mass_of(crate).centre.x, 0.5f);
     taut_pos a{}, b{};
     EXPECT_OK(taut_attachment_get_points(attachment, &a, &b));
-    expect_near(b, {0.25, 4.9, 0.6});
+    expect_same_place(b, {0.25, 4.9, 0.6});
     float error = 1;
     EXPECT_OK(taut_attachment_get_error(attachment, &error));
     EXPECT_NEAR(error, 0.1, 1e-6);
@@ -506,7 +507,7 @@ TEST_F(AttachmentCalls, StayWhereTheyAreOnABody) {
     EXPECT_NEAR(error, 0, 1e-6);
 }
 
-TEST_F(AttachmentCalls, FailedAllocationsChangeNothing) {
+TEST_F(Attachments, FailedAllocationsChangeNothing) {
     for (const taut_attachment_kind kind : {TAUT_ATTACHMENT_BALL, TAUT_ATTACHMENT_FIXED}) {
         taut_attachment_def def = good();
         def.kind = kind;
@@ -530,7 +531,7 @@ TEST_F(AttachmentCalls, FailedAllocationsChangeNothing) {
     }
 }
 
-TEST_F(AttachmentCalls, AreSeenByLint) {
+TEST_F(Attachments, AreSeenByLint) {
     const taut_attachment attachment = add(good());
     taut_lint_entry entries[16];
     uint32_t found = 0;

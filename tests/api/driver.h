@@ -2,6 +2,7 @@
 // tells it, and checks after each call what must hold whatever the call was. The seeded test and the fuzzer share it.
 #pragma once
 
+#include "host/attachment_calls.h"
 #include "host/body_calls.h"
 #include "host/cable_calls.h"
 #include "host/collider_calls.h"
@@ -21,6 +22,7 @@ class Driver : private CableCalls,
                private ColliderCalls,
                private JointAddCalls,
                private JointCalls,
+               private AttachmentCalls,
                private WorldCalls,
                private QueryCalls,
                private NearCalls,
@@ -68,6 +70,9 @@ public:
             &Driver::step,           &Driver::step,
             &Driver::advance,        &Driver::replace_world,
             &Driver::check_counts,   &Driver::save_or_restore,
+            &Driver::attach_any,     &Driver::attach_any,
+            &Driver::detach_any,     &Driver::read_attached,
+            &Driver::write_attached,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

@@ -219,6 +219,7 @@ protected:
     std::vector<Known<taut_collider>> colliders_;
     std::vector<Known<taut_joint>> joints_, cable_joints_;
     std::vector<Known<taut_cable>> cables_;
+    std::vector<Known<taut_attachment>> attachments_;
 
 private:
     template <class Act>

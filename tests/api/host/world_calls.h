@@ -87,6 +87,8 @@ protected:
         for (uint32_t i = 0; i < events.moved_count; ++i) expect_finite(events.moved[i].pose);
         for (uint32_t i = 0; i < events.broken_count; ++i)
             expect(!taut_joint_is_valid(events.broken[i].joint), "a broken joint that lives");
+        for (uint32_t i = 0; i < events.detached_count; ++i)
+            expect(!taut_attachment_is_valid(events.detached[i].attachment), "a broken attachment that lives");
         for (uint32_t i = 0; i < events.point_count; ++i) {
             const taut_contact_point& point = events.points[i];
             expect(finite(point.position) && std::isfinite(point.approach_speed), "a point that is not finite");
@@ -129,6 +131,8 @@ protected:
         for (uint32_t i = 0; i < count; ++i) {
             expect(entries[i].body.bits == 0 || taut_body_is_valid(entries[i].body), "lint of a dead body");
             expect(entries[i].joint.bits == 0 || taut_joint_is_valid(entries[i].joint), "lint of a dead joint");
+            const taut_attachment attachment = entries[i].attachment;
+            expect(attachment.bits == 0 || taut_attachment_is_valid(attachment), "lint of a dead attachment");
             expect(std::strcmp(taut_lint_text(entries[i].kind), "unknown") != 0, "lint of no kind");
         }
     }
@@ -172,7 +176,7 @@ private:
         std::vector<unsigned char> bytes;
         uint64_t hash = 0;
         EventWatch watch;
-        size_t bodies = 0, cable_bodies = 0, colliders = 0, joints = 0, cable_joints = 0, cables = 0;
+        size_t bodies = 0, cable_bodies = 0, colliders = 0, joints = 0, cable_joints = 0, cables = 0, attachments = 0;
     };
     void save_world(size_t w) {
         uint64_t size = 0;
@@ -188,7 +192,8 @@ private:
                      colliders_.size(),
                      joints_.size(),
                      cable_joints_.size(),
-                     cables_.size()};
+                     cables_.size(),
+                     attachments_.size()};
     }
     // Now and then what is damaged, or in the wrong world.
     void restore_world(size_t w) {
@@ -215,6 +220,7 @@ private:
         forget(bodies_, saved.bodies), forget(cable_bodies_, saved.cable_bodies);
         forget(colliders_, saved.colliders), forget(cables_, saved.cables);
         forget(joints_, saved.joints), forget(cable_joints_, saved.cable_joints);
+        forget(attachments_, saved.attachments);
         saved_[1 - w] = {};  // where its own begin in these lists is not known any more
     }
 
