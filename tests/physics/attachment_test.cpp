@@ -205,6 +205,77 @@ TEST_P(WeldedBeam, HoldsItsBody) {
     EXPECT_LE(widest, GetParam().gap);
 }
 
+// What a kinematic body leads follows it to the end of each step.
+TEST(Attachment, FollowsAKinematicBody) {
+    const World world;
+    const Sheet sheet(4, 4, 0.6, 0.6, 0);
+    taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
+    def.filter.mask = 0;
+    def.damping = 0.1f;
+    const taut_cloth cloth = add(world, def);
+    const Vec place(0.25, 0, 0.35);
+    const taut_body hand = world.add({.kind = TAUT_BODY_KINEMATIC, .position = place});
+    const taut_attachment held = attach(world, anchor_on(cloth, place), anchor_on(world, hand, place));
+    for (int i = 1; i <= 90; ++i) {
+        taut_pose to{};
+        to.position = (place + Vec(0.01 * i, 0.005 * i, 0)).pos();
+        to.rotation.w = 1;
+        ok(taut_body_move_kinematic(hand, &to));
+        world.step();
+        EXPECT_LE(error_of(held), 1e-6) << i;
+    }
+    // b is the hand, which the cloth pulls down, by its weight on the mean.
+    double weight = 0, mean = 0;
+    for (const taut_body vertex : bodies_of(cloth)) weight += mass_of(vertex).mass * kG;
+    world.step(120);
+    constexpr int kFrames = 480;
+    for (int i = 0; i < kFrames; ++i) {
+        world.step();
+        mean += force_of(held).y / kFrames;
+    }
+    EXPECT_NEAR(mean, -weight, 0.02 * weight);
+}
+
+// A weight between two points of a cable; it goes when one of them is reeled in.
+TEST(Attachment, HangsFromACable) {
+    const World world;
+    const taut_pos ends[] = {{0, 3, 0}, {4, 3, 0}};
+    taut_cable_def def;
+    taut_cable_def_init(&def);
+    def.kind = TAUT_CABLE_PARTICLES;
+    def.points = ends;
+    def.point_count = 2;
+    def.segment_count = 8;
+    def.mass_per_metre = 0.5f;
+    for (int e = 0; e < 2; ++e) {
+        def.end[e].attached = 1;
+        def.end[e].anchor = ends[e];
+    }
+    taut_cable cable{};
+    ok(taut_world_add_cable(world.handle, &def, &cable));
+    std::vector<taut_body> bodies(9);
+    uint32_t count = 0;
+    ok(taut_cable_get_bodies(cable, bodies.data(), 9, &count));
+    ASSERT_EQ(count, 9u);
+    const Vec between = 0.25 * position(bodies[4]) + 0.75 * position(bodies[5]);
+    const taut_body weight = world.particle(3, between);
+    const taut_attachment hung =
+        attach(world, anchor_of({bodies[4], bodies[5]}, {0.25, 0.75}), anchor_on(world, weight, {}));
+    for (int i = 0; i < 240; ++i) {
+        world.step();
+        ASSERT_TRUE(finite(weight));
+        EXPECT_LE(error_of(hung), 1e-3);
+    }
+    ok(taut_cable_set_reel_speed(cable, 1, -1, 0));
+    for (int i = 0; i < 300 && taut_attachment_is_valid(hung); ++i) {
+        world.step();
+        ASSERT_TRUE(finite(weight));
+    }
+    EXPECT_EQ(taut_attachment_is_valid(hung), 0);
+    world.step(10);
+    EXPECT_TRUE(finite(weight));
+}
+
 // ---------------------------------------------------------------- momentum
 
 struct Free {
