@@ -150,6 +150,7 @@ constexpr Invariant kInvariants[] = {
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_joints(w.partition, w.joints, w.nodes); }},
     {Stage::partition,
      [](const World& w, const StageEnd&) { return validate_elements(w.partition, w.elements, w.nodes); }},
+    {Stage::partition, [](const World& w, const StageEnd&) { return validate_attachments(w.attachments, w.elements); }},
     {Stage::partition,
      [](const World& w, const StageEnd&) {
          return validate_colours(w.partition, w.pairs, w.joints, w.elements, w.nodes);
@@ -270,6 +271,27 @@ MaybeFlaw validate_elements(const Partition& partition, const Elements& elements
             if (listed[first[s] + e] != (mover(nodes, ends) != kNone ? 1 : 0))
                 return Flaw{"elements are solved once", first[s] + e};
             if (!in_one_island(partition, nodes, ends)) return Flaw{"elements are within an island", first[s] + e};
+        }
+    }
+    return std::nullopt;
+}
+
+MaybeFlaw validate_attachments(const Attachments& attachments, const Elements& elements) {
+    for (uint32_t index = 0; index < attachments.ids.slots(); ++index) {
+        if (!attachments.ids.live(index)) continue;
+        const Attachment& attachment = attachments.record[index];
+        const ElementSet& set = elements.set[attachment.set];
+        for (uint32_t i = 0; i < attachment.elements(); ++i) {
+            const uint32_t e = attachment.element[i];
+            if (!set.type || e >= set.size()) return Flaw{"attachments have elements", index};
+            const AttachedWay way = way_of(attachment, i);
+            const auto is_end = [&](uint32_t node) {
+                return std::any_of(way.term.begin(), way.term.begin() + way.count,
+                                   [&](const auto& term) { return term.node == node; });
+            };
+            const auto nodes = set.nodes_of(e);
+            if (nodes.size() != way.count || !std::ranges::all_of(nodes, is_end))
+                return Flaw{"elements of an attachment are on its nodes", index};
         }
     }
     return std::nullopt;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "stages.h"
+#include "state/attachments.h"
 #include "state/colliders.h"
 #include "state/elements.h"
 #include "state/nodes.h"
@@ -44,6 +45,8 @@ MaybeFlaw validate_pairs(const Partition& partition, const Pairs& pairs, const N
 MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, const Nodes& nodes);
 // Likewise every element. Index: of those of all sets, one after the other.
 MaybeFlaw validate_elements(const Partition& partition, const Elements& elements, const Nodes& nodes);
+// The elements of an attachment live, on the nodes of its two ends. Index: attachment.
+MaybeFlaw validate_attachments(const Attachments& attachments, const Elements& elements);
 // No node that forces move twice in a colour but the last. Index: node.
 MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const Joints& joints,
                            const Elements& elements, const Nodes& nodes);

@@ -54,12 +54,12 @@ void remove_node(World& world, uint32_t node) {
         if (!world.joints.ids.live(joint)) continue;
         if (ends_on(world.joints.record[joint], node)) world.joints.remove(joint);
     }
+    drop_attachments(world, [&](uint32_t end) { return end == node; });
     drop_node(world, node);
 }
 
 void drop_node(World& world, uint32_t node) {
     wake(world, node);
-    drop_attachments(world, [&](uint32_t end) { return end == node; });
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     remove_colliders(world, node);
     world.nodes.remove(node);

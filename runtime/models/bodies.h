@@ -17,7 +17,7 @@ uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, 
 // With its colliders and every joint and attachment on it. Throws std::bad_alloc with nothing changed, and not at all where
 // reserve_ended(world.pairs, ends_on(node)) has gone before.
 void remove_node(World& world, uint32_t node);
-// The same of one on which no joint ends any more.
+// The same of one on which there is none of these any more.
 void drop_node(World& world, uint32_t node);
 
 // Appends to the colliders of collider.node; next is set here. Throws std::bad_alloc with nothing changed.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/attachments.h"
 #include "models/cable_parts.h"
 #include "sleep/wake.h"
 
@@ -87,6 +88,7 @@ void remove_cable(World& world, uint32_t index) {
         const auto nodes = world.joints.record[joint].nodes();
         if (std::any_of(nodes.begin(), nodes.end(), own)) world.joints.remove(joint);
     }
+    drop_attachments(world, own);
     for (const uint32_t set : {world.cables.record[index].stretch, world.cables.record[index].bending})
         if (set != kNone) world.elements.remove(set);
     for (uint32_t node : world.cables.record[index].node) drop_cable_node(world, node);

@@ -1,5 +1,4 @@
 // Masses and shapes of a cable's points, links and segments.
-#include "models/attachments.h"
 #include "models/bodies.h"
 #include "models/cable_parts.h"
 #include "sleep/wake.h"
@@ -82,7 +81,6 @@ void set_cable_mass(World& world, const Cable& cable, uint32_t i) {
 
 void drop_cable_node(World& world, uint32_t node) {
     wake(world, node);
-    drop_attachments(world, [&](uint32_t end) { return end == node; });
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     while (world.nodes.info[node].collider != kNone) drop_capsule(world, world.nodes.info[node].collider);
     world.nodes.remove(node);

@@ -1,6 +1,7 @@
 // When segments are cut and joined, and what the files of links and particles share.
 #include "models/cable_reel.h"
 
+#include "models/attachments.h"
 #include "sleep/wake.h"
 
 #include <algorithm>
@@ -148,9 +149,10 @@ void Reel::load(const ConstraintRef& ref, const double* force) {
     }
 }
 
-void Reel::remove_joints_of(uint32_t node) {
+void Reel::remove_ties_of(uint32_t node) {
     for (uint32_t j = 0; j < world_.joints.ids.slots(); ++j)
         if (ends_on(world_.joints.record[j], node)) world_.joints.remove(j);
+    drop_attachments(world_, [&](uint32_t end) { return end == node; });
 }
 
 namespace {

@@ -74,7 +74,7 @@ private:
     // Drift by which what is straight now soon gives way as this force asks.
     void load(const ConstraintRef& ref, const double* force);
     // Joints of someone else on a node that goes away with it; forgotten pairs have their room.
-    void remove_joints_of(uint32_t node);
+    void remove_ties_of(uint32_t node);  // joints and attachments
 
     // cable_reel_links.cpp
     void grow_link(double d);

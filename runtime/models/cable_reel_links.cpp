@@ -120,7 +120,7 @@ void Reel::join_links() {
     retie(at());
     outer_joint.let_go();
     inner_joint.let_go();
-    remove_joints_of(gone);
+    remove_ties_of(gone);
     drop_cable_node(world_, gone);
     if (tie != kNone) forget_pairs(world_.pairs, world_.nodes, world_.colliders, between_nodes(kept, tie));
 }

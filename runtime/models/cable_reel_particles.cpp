@@ -88,7 +88,7 @@ void Reel::join_particles() {
     set_segment(world_, c_, at());
     tie_segment(world_, c_, at());
     set_points(2);
-    remove_joints_of(gone);
+    remove_ties_of(gone);
     drop_cable_node(world_, gone);
     segment.let_go(segment_ref(world_, c_, at()));
     outer_bend.let_go(bend_at(world_, c_, point(0)));
