@@ -395,6 +395,28 @@ TEST_P(AttachedWithEachSolver, HangsFromACloth) {
     }
 }
 
+// A spring and a weld under each scheme of time integration: the weight sinks by as much.
+TEST(Attachment, TakesEachScheme) {
+    for (const taut_scheme scheme : {TAUT_SCHEME_IMPLICIT_EULER, TAUT_SCHEME_NEWMARK, TAUT_SCHEME_BDF2}) {
+        World world([&](taut_world_def& def) { def.scheme = scheme; });
+        const Sheet sheet(2, 2, 0.4, 0.4, 0);
+        taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
+        def.filter.mask = 0;
+        const taut_cloth cloth = add(world, def);
+        for (uint32_t v = 0; v < 4; ++v) ok(taut_cloth_pin(cloth, v, 1));
+        const Vec place(0.1, 0, 0.2);
+        const taut_body plate = world.add({.position = place, .mass = 1, .inertia = {0.1, 0.1, 0.1}});
+        const taut_attachment weld =
+            attach(world, anchor_on(cloth, place), anchor_on(world, plate, place), {.kind = TAUT_ATTACHMENT_FIXED});
+        const taut_body weight = world.particle(1, place - Vec(0, 0.5, 0));
+        attach(world, anchor_on(world, plate, place), anchor_on(world, weight, {}),
+               {.kind = TAUT_ATTACHMENT_DISTANCE, .compliance = 1e-3, .damping = 50});
+        world.step(300);
+        EXPECT_NEAR(position(weight).y, -0.5 - 1e-3 * kG, 1e-4) << scheme;
+        EXPECT_LE(error_of(weld), 1e-5) << scheme;
+    }
+}
+
 // Swept where asked for, on a cloth that is swept: still near.
 TEST(Attachment, IsSweptWhereAskedFor) {
     World world;
