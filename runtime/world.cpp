@@ -33,6 +33,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       moved(memory),
       quarantined(memory),
       broken(memory),
+      torn(memory),
       fell_asleep(memory),
       woke(memory),
       moved_before(memory),

@@ -66,6 +66,7 @@ struct World {
     Array<taut_moved_event> moved;
     Array<taut_quarantine_event> quarantined;
     Array<taut_joint_break_event> broken;
+    Array<taut_tear_event> torn;
     Array<taut_sleep_event> fell_asleep, woke;
     Array<uint8_t> moved_before;  // by node, scratch; publish_motion()
 
@@ -109,8 +110,8 @@ template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, broadphase, pairs, sleep, sensors,
            pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
-           contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke, moved_before, frozen,
-           profile, reports, observer, spring_substep, first_substep, impacts] = of;
+           contact_end, contact_points, hits, moved, quarantined, broken, torn, fell_asleep, woke, moved_before,
+           frozen, profile, reports, observer, spring_substep, first_substep, impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);

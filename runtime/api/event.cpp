@@ -39,7 +39,8 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 size(world.fell_asleep),
                 size(world.woke),
                 world.window.dropped_contacts,
-                0};
+                size(world.torn),
+                world.torn.data()};
         return TAUT_OK;
     });
 }

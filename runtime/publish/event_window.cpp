@@ -13,6 +13,7 @@ void for_event_lists(World& w, Act&& act) {
     act(w.sensors.enter), act(w.sensors.leave);
     act(w.quarantined);
     act(w.broken);
+    act(w.torn);
     act(w.fell_asleep), act(w.woke);
 }
 
