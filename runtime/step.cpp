@@ -14,6 +14,7 @@
 #include "integrate/integrate.h"
 #include "integrate/scheme.h"
 #include "models/cable.h"
+#include "models/cloth_tearing.h"
 #include "publish/publish.h"
 #include "sleep/sleep.h"
 #include "world.h"
@@ -140,6 +141,7 @@ void step(World& w) {
     publish_motion(w, w.frozen);
     publish_profile(w);
     break_joints(w);
+    tear_cloths(w);
     tell(w, {Stage::publish});
     update_sleep(w);
     end_events(w);

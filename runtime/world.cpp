@@ -35,6 +35,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       quarantined(memory),
       broken(memory),
       detached(memory),
+      torn(memory),
       fell_asleep(memory),
       woke(memory),
       moved_before(memory),

@@ -69,6 +69,7 @@ struct World {
     Array<taut_quarantine_event> quarantined;
     Array<taut_joint_break_event> broken;
     Array<taut_attachment_break_event> detached;
+    Array<taut_tear_event> torn;
     Array<taut_sleep_event> fell_asleep, woke;
     Array<uint8_t> moved_before;  // by node, scratch; publish_motion()
 
@@ -113,7 +114,7 @@ template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, attachments, broadphase,
            pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
-           contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
+           contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached, torn,
            fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep, first_substep,
            impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,

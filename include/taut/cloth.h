@@ -15,6 +15,9 @@
 extern "C" {
 #endif
 
+/** Most tethers of a vertex. */
+#define TAUT_CLOTH_MAX_TETHERS 8
+
 /** What a cloth is made of. */
 typedef enum taut_cloth_kind {
     TAUT_CLOTH_TRIANGLES = 0, /**< a sheet of finite stiffness: St-Venant-Kirchhoff triangles, and bending */
@@ -36,27 +39,47 @@ typedef enum taut_fabric {
  * coordinates warp is the direction of the first triangle's first edge. A link that goes by less than an eighth of a
  * turn from warp or weft counts as such, others as shear. Across each inner edge there is a link between the two
  * vertices beside it, which resists bending, or shear where the edge itself does.
+ *
+ * Tethers keep cloth from stretching that sweeps do not hold: each vertex is tied to its nearest pinned vertices, one
+ * link each that only pulls, as long as the way there along edges at rest. They cost a swept link each, and nothing
+ * where nothing is pinned; they follow pins and tears. What hangs on no pin, or between two that come apart, they do
+ * not help.
+ *
+ * A cloth tears where an edge is stretched beyond tear_strain: at one end of it, that where less is cut, along the
+ * edges there that go most nearly across it. The vertex is split, and so is one on the rim that the cut comes to; new
+ * vertices come after all others, with bodies, contacts and velocity as the old ones, whose mass they share; triangles
+ * keep their place and get new vertices; links along the cut are halved, those across it go. Joints stay on the old
+ * vertex. Pinned vertices are not torn off, but the cut may come to one: then both parts are pinned. What lies around a
+ * cut waits for the next step, when its load is known. Each split is told as a taut_tear_event.
  */
 typedef struct taut_cloth_def {
     uint32_t struct_size;
-    taut_cloth_kind kind;       /**< default TAUT_CLOTH_TRIANGLES */
-    const taut_pos* points;     /**< of the vertices [m]; copied */
-    const taut_pos* rest;       /**< of the vertices in the rest shape [m]; null: points. Copied */
-    uint32_t point_count;       /**< [3, TAUT_DEFORMABLE_MAX] */
-    uint32_t triangle_count;    /**< [1, TAUT_DEFORMABLE_MAX] */
-    const uint32_t* triangles;  /**< [triangle_count][3] vertices, all turned the same way; copied */
-    const float* uv;            /**< [point_count][2] texture coordinates; null: none. Copied */
-    float area_density;         /**< [kg/m^2], [1e-3, 1e4]. Default 0.2 */
-    float thickness;            /**< of the material, and of what touches others [m], [1e-4, 1]. Default 0.005 */
-    float stretch_stiffness[2]; /**< along warp and weft, of triangles [N/m], [1e-3, 1e9]. Default 5000 */
-    float shear_stiffness;      /**< [N/m], [1e-3, 1e9]. Default 2000 */
-    float poisson_ratio;        /**< contraction along weft over stretch along warp, (-1, 1). Default 0.3 */
-    float bending_stiffness;    /**< of triangles [N m], 0 (limp) or [1e-9, 1e6]. Default 0 */
+    taut_cloth_kind kind;        /**< default TAUT_CLOTH_TRIANGLES */
+    const taut_pos* points;      /**< of the vertices [m]; copied */
+    const taut_pos* rest;        /**< of the vertices in the rest shape [m]; null: points. Copied */
+    uint32_t point_count;        /**< [3, TAUT_DEFORMABLE_MAX] */
+    uint32_t triangle_count;     /**< [1, TAUT_DEFORMABLE_MAX] */
+    const uint32_t* triangles;   /**< [triangle_count][3] vertices, all turned the same way; copied */
+    const float* uv;             /**< [point_count][2] texture coordinates; null: none. Copied */
+    float area_density;          /**< [kg/m^2], [1e-3, 1e4]. Default 0.2 */
+    float thickness;             /**< of the material, and of what touches others [m], [1e-4, 1]. Default 0.005 */
+    float stretch_stiffness[2];  /**< along warp and weft, of triangles [N/m], [1e-3, 1e9]. Default 5000 */
+    float shear_stiffness;       /**< [N/m], [1e-3, 1e9]. Default 2000 */
+    float poisson_ratio;         /**< contraction along weft over stretch along warp, (-1, 1). Default 0.3 */
+    float bending_stiffness;     /**< of triangles [N m], 0 (limp) or [1e-9, 1e6]. Default 0 */
     float stretch_compliance[2]; /**< of each link along warp and weft [m/N], [0, 1e6]; 0: rigid. Default 1e-6 */
     float shear_compliance;      /**< of each such link [m/N], [0, 1e6], or INFINITY: there are none. Default 1e-4 */
     float bend_compliance;       /**< likewise. Default INFINITY */
     float damping;               /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
-    float gravity_scale;         /**< [-1000, 1000]. Default 1 */
+    float compression;      /**< stiffness of links that are pressed over that of pulled ones, but of those that resist
+                                 bending: [0, 1]; below 1 these may not be rigid. Default 1 */
+    float strain_limit;     /**< stretch of edges - 1 from which on limit_compliance acts too: [1e-4, 100], or INFINITY:
+                                 there is none. Default INFINITY */
+    float limit_compliance; /**< of each edge beyond strain_limit, and of tethers [m/N], [1e-9, 1e6]. Default 1e-6 */
+    uint32_t tethers;       /**< of each vertex: [0, TAUT_CLOTH_MAX_TETHERS]. Default 0 */
+    float tether_slack;     /**< how much longer than the way to its pin each is, over that: [0, 10]. Default 0.01 */
+    float tear_strain;      /**< 0: it does not tear; or [1e-3, 100]. Default 0 */
+    float gravity_scale;    /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve; /**< default TAUT_DEFORMABLE_DIRECT */
     taut_material material;
     taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
@@ -94,7 +117,7 @@ TAUT_API taut_result taut_body_get_cloth(taut_body body, taut_cloth* out);
 TAUT_API taut_result taut_cloth_pin(taut_cloth cloth, uint32_t vertex, uint32_t pinned);
 
 /**
- * Vertices after the last step [m], in the order of the def.
+ * Vertices after the last step [m], in the order of the def, then those that tears made.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
 TAUT_API taut_result taut_cloth_get_points(taut_cloth cloth, taut_pos* points, uint32_t capacity, uint32_t* count);

@@ -112,6 +112,16 @@ typedef struct taut_attachment_break_event {
     uint32_t step;     /**< as of a contact event */
     uint32_t reserved; /**< zero */
 } taut_attachment_break_event;
+/** A vertex of a cloth that a step split, as an edge on it was stretched too far; see taut_cloth_def::tear_strain. */
+typedef struct taut_tear_event {
+    taut_cloth cloth;
+    uint64_t user_data;  /**< of the cloth */
+    uint32_t edge[2];    /**< vertices of the edge that was stretched too far */
+    uint32_t vertex;     /**< that was split: one of these, or one beside it that the tear parted in two */
+    uint32_t new_vertex; /**< its other part: the cloth's last vertex then */
+    float strain;        /**< of the edge, its length over that at rest - 1 */
+    uint32_t step;       /**< as of a contact event */
+} taut_tear_event;
 
 /** A body or particle that fell asleep or woke; see sleep.h. */
 typedef struct taut_sleep_event {
@@ -156,8 +166,9 @@ typedef struct taut_events {
     uint32_t fell_asleep_count;
     uint32_t woke_count;
     uint32_t dropped_contacts; /**< found beyond the world's max_contacts, and not solved; sum over the steps */
-    uint32_t reserved_limits;  /**< zero */
+    uint32_t torn_count;
     const taut_attachment_break_event* detached; /**< in the order of the attachments' slots */
+    const taut_tear_event* torn;                 /**< by cloths' slots, of each the largest strain first */
     uint32_t detached_count;
     uint32_t reserved_detached; /**< zero */
 } taut_events;

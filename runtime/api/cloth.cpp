@@ -11,6 +11,11 @@ constexpr Range kAreaDensity{1e-3, 1e4};     // [kg/m^2]
 constexpr Range kSheetStiffness{1e-3, 1e9};  // [N/m]
 constexpr Range kSheetPoisson{-0.999, 0.999};
 constexpr Range kSheetBending{1e-9, 1e6};  // [N m]
+constexpr Range kShare{0, 1};
+constexpr Range kLimitStrain{1e-4, 100};
+constexpr Range kLimitCompliance{1e-9, 1e6};  // [m/N]
+constexpr Range kTetherSlack{0, 10};
+constexpr Range kTearStrain{1e-3, 100};
 constexpr float kNoLinks = std::numeric_limits<float>::infinity();
 
 bool check_def(Check& check, const taut_cloth_def& def) {
@@ -25,7 +30,13 @@ bool check_def(Check& check, const taut_cloth_def& def) {
         .number("stretch_compliance[0]", def.stretch_compliance[0], kCompliance)
         .number("stretch_compliance[1]", def.stretch_compliance[1], kCompliance)
         .number_or("shear_compliance", def.shear_compliance, kCompliance, kNoLinks)
-        .number_or("bend_compliance", def.bend_compliance, kCompliance, kNoLinks);
+        .number_or("bend_compliance", def.bend_compliance, kCompliance, kNoLinks)
+        .number("compression", def.compression, kShare)
+        .number_or("strain_limit", def.strain_limit, kLimitStrain, kNoLinks)
+        .number("limit_compliance", def.limit_compliance, kLimitCompliance)
+        .count("tethers", def.tethers, 0, TAUT_CLOTH_MAX_TETHERS)
+        .number("tether_slack", def.tether_slack, kTetherSlack)
+        .zero_or("tear_strain", def.tear_strain, kTearStrain);
     check_soft(check, def.material, kMaterialInDef, def.filter, def.thickness, def.damping, def.gravity_scale,
                def.solve);
     const MeshDef mesh{def.points,       def.rest,      def.point_count,    3, "triangles",
@@ -50,6 +61,12 @@ Fabric fabric_of(const taut_cloth_def& def) {
     fabric.shear_compliance = def.shear_compliance;
     fabric.bend_compliance = def.bend_compliance;
     fabric.damping = def.damping;
+    fabric.compression = def.compression;
+    fabric.strain_limit = def.strain_limit;
+    fabric.limit_compliance = def.limit_compliance;
+    fabric.tethers = def.tethers;
+    fabric.tether_slack = def.tether_slack;
+    fabric.tear_strain = def.tear_strain;
     return fabric;
 }
 
@@ -78,6 +95,10 @@ void taut_cloth_def_init(taut_cloth_def* def) {
     def->stretch_compliance[0] = def->stretch_compliance[1] = 1e-6f;
     def->shear_compliance = 1e-4f;
     def->bend_compliance = kNoLinks;
+    def->compression = 1;
+    def->strain_limit = kNoLinks;
+    def->limit_compliance = 1e-6f;
+    def->tether_slack = 0.01f;
     def->gravity_scale = 1;
     def->material = kDefaultMaterial;
     def->filter = kDefaultFilter;

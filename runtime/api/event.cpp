@@ -39,8 +39,9 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 size(world.fell_asleep),
                 size(world.woke),
                 world.window.dropped_contacts,
-                0,
+                size(world.torn),
                 world.detached.data(),
+                world.torn.data(),
                 size(world.detached),
                 0};
         return TAUT_OK;

@@ -81,9 +81,12 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints, Elements& elements) {
         }
         if (bad) std::fill(joint.memory, joint.memory + kMaxRows, AxisMemory{});
     }
-    for (ElementSet& set : elements.set)
+    for (ElementSet& set : elements.set) {
         for (double& force : set.lambda)
             if (!std::isfinite(force)) force = 0;
+        for (AxisMemory& memory : set.memory)
+            if (!std::isfinite(memory.upper)) memory = {};
+    }
 }
 
 }  // namespace taut

@@ -169,6 +169,7 @@ struct JointSweep {
         }
     }
 
+    // A stop with a spring that is stiffer than its ends bear yields as such a row does.
     static void set_axis(LaneAxis& axis, const LaneAxisLaw& law, const LaneCoordinate& at, const F& k) {
         const F zero = F::all(0), tiny = F::all(1e-30f), sign = F::load(axis.sign), base = F::load(law.base);
         const F turn = F::load(law.turn), half = F::all(0.5f) * turn, c = F::load(at.value);
@@ -177,10 +178,15 @@ struct JointSweep {
         const F gap = sign * (c - turns - F::load(law.at)), open = F::load(law.open), push = F::load(law.push);
         const F target = base - F::if_greater(gap, zero, open, F::load(law.closed)) * gap;
         F::if_greater(target, push, push, target).store(axis.target);
-        (base - F::if_greater(gap, zero, open, F::load(law.relaxed)) * gap).store(axis.relaxed_target);
-
         const F compliance = F::max(F::load(law.compliance), F::load(law.softness) * k);
         compliance.store(axis.compliance);
+        const F spring = F::load(law.relaxed);
+        F kept = base - F::if_greater(gap, zero, open, spring) * gap;
+        if (axis.part < kDriving) {
+            const F yields = F::if_greater(compliance * open, spring * k, kept, compliance * F::load(axis.impulse));
+            kept = F::if_greater(gap, zero, kept, F::if_greater(spring, zero, yields, kept));
+        }
+        kept.store(axis.relaxed_target);
         const F filled = F::load(law.filled), whole = k + compliance;
         const F far = F::if_greater(F::load(axis.impulse), zero, filled, zero);
         const F used = F::if_greater(gap, F::load(law.reach), far, filled);

@@ -9,7 +9,8 @@
 namespace taut {
 namespace {
 
-constexpr double kFlat = 1e-6;  // angle between two triangles that are flat at rest [rad]
+constexpr double kFlat = 1e-6;    // angle between two triangles that are flat at rest [rad]
+constexpr size_t kMostSets = 10;  // of links by direction, with those that only pull, bends, limits and tethers
 
 // Of a link: along warp, along weft, or neither, within an eighth of a turn.
 enum class Thread : uint8_t { warp, weft, shear };
@@ -34,14 +35,21 @@ public:
         plan_.soft.kind = SoftKind::cloth;
         plan_.position.assign(mesh_.position.begin(), mesh_.position.end());
         plan_.soft.triangle.assign(mesh_.triangle.begin(), mesh_.triangle.end());
+        plan_.soft.tethers = fabric_.tethers;
+        plan_.soft.tether_slack = fabric_.tether_slack;
+        plan_.soft.tear_strain = fabric_.tear_strain;
         weigh();
+        plan_.element.reserve(kMostSets);
         if (kind == ClothKind::links) {
+            if (!may_give_way()) return "compression: below 1 it is of links that are not rigid";
             add_links();
         } else {
             if (!add_triangles()) return "stretch_stiffness, shear_stiffness, poisson_ratio: no stable material";
             if (fabric_.bending_stiffness > 0) add_bends();
         }
+        if (std::isfinite(fabric_.strain_limit)) add_limits();
         std::erase_if(plan_.element, [](const ElementPlan& each) { return each.softness.empty(); });
+        if (fabric_.tethers > 0) add_pulling(SoftPart::tether, fabric_.limit_compliance);
         return nullptr;
     }
 
@@ -97,35 +105,74 @@ private:
         return plan;
     }
 
-    void add_link(ElementPlan& plan, uint32_t a, uint32_t b) {
-        const uint32_t ends[2] = {a, b};
-        const double length = (rest(b) - rest(a)).norm();
-        plan.add(ends, {&length, 1}, 1);
+    // A set of links that only pull; theirs need no multipliers where a direct solve takes them.
+    ElementPlan& add_pulling(SoftPart part, double compliance) {
+        ElementPlan& plan = add_plan(kLinkElement, part);
+        plan.pulls = true;
+        plan.compliance[0] = compliance;
+        plan.form = ElementForm::folded;
+        return plan;
+    }
+
+    // Corner of a triangle at a vertex, as of Soft.
+    uint32_t corner_at(uint32_t t, uint32_t vertex) const {
+        return 3 * t + static_cast<uint32_t>(std::find(corners(t), corners(t) + 3, vertex) - corners(t));
+    }
+    void add_link(ElementPlan& plan, uint32_t a, uint32_t b, uint32_t triangle_a, uint32_t triangle_b,
+                  double stretch = 1) {
+        const uint32_t ends[2] = {a, b}, corner[2] = {corner_at(triangle_a, a), corner_at(triangle_b, b)};
+        const double length = stretch * (rest(b) - rest(a)).norm();
+        plan.add(ends, {&length, 1}, 1, corner);
+    }
+    void add_edge(ElementPlan& plan, const MeshEdge& edge, double stretch = 1) {
+        add_link(plan, edge.a, edge.b, edge.triangle[0], edge.triangle[0], stretch);
+    }
+
+    bool may_give_way() const {
+        return fabric_.compression == 1 ||
+               (fabric_.stretch_compliance[0] > 0 && fabric_.stretch_compliance[1] > 0 && fabric_.shear_compliance > 0);
+    }
+
+    // Links of one compliance; where they give way to pressure, a part of the stiffness only pulls: sets by index.
+    struct Links {
+        size_t first, end;
+    };
+    Links add_link_sets(SoftPart part, double compliance, double pressed) {
+        const size_t first = plan_.element.size();
+        if (!std::isfinite(compliance)) return {first, first};
+        if (pressed > 0) {
+            ElementPlan& plan = add_plan(kLinkElement, part);
+            plan.compliance[0] = compliance / pressed;
+            plan.form = compliance > 0 ? ElementForm::folded : ElementForm::rows;
+        }
+        if (pressed < 1) add_pulling(part, compliance / (1 - pressed));
+        return {first, plan_.element.size()};
     }
 
     void add_links() {
-        const double compliance[] = {fabric_.stretch_compliance[0], fabric_.stretch_compliance[1],
-                                     fabric_.shear_compliance, fabric_.bend_compliance};
-        const SoftPart part[] = {SoftPart::stretch, SoftPart::stretch, SoftPart::shear, SoftPart::bend};
-        plan_.element.reserve(4);
-        for (int i = 0; i < 4; ++i) {
-            ElementPlan& plan = add_plan(kLinkElement, part[i]);
-            plan.compliance[0] = compliance[i];
-            plan.form = compliance[i] > 0 ? ElementForm::folded : ElementForm::rows;
-        }
-        const auto adds = [&](size_t i, uint32_t a, uint32_t b) {
-            if (std::isfinite(compliance[i])) add_link(plan_.element[i], a, b);
-        };
+        const double pressed = fabric_.compression;
+        const Links warp = add_link_sets(SoftPart::stretch, fabric_.stretch_compliance[0], pressed);
+        const Links weft = add_link_sets(SoftPart::stretch, fabric_.stretch_compliance[1], pressed);
+        const Links shear = add_link_sets(SoftPart::shear, fabric_.shear_compliance, pressed);
+        const Links bend = add_link_sets(SoftPart::bend, fabric_.bend_compliance, 1);
         for (const MeshEdge& edge : edges_) {
             const Thread thread = thread_of(edge);
-            adds(static_cast<size_t>(thread), edge.a, edge.b);
+            const Links& along = thread == Thread::warp ? warp : thread == Thread::weft ? weft : shear;
+            for (size_t i = along.first; i < along.end; ++i) add_edge(plan_.element[i], edge);
+            if (edge.across[1] == kNone) continue;
             // Across a diagonal lies the other diagonal of the same cell.
-            if (edge.across[1] != kNone) adds(thread == Thread::shear ? 2 : 3, edge.across[0], edge.across[1]);
+            const Links& across = thread == Thread::shear ? shear : bend;
+            for (size_t i = across.first; i < across.end; ++i)
+                add_link(plan_.element[i], edge.across[0], edge.across[1], edge.triangle[0], edge.triangle[1]);
         }
     }
 
+    void add_limits() {
+        ElementPlan& plan = add_pulling(SoftPart::limit, fabric_.limit_compliance);
+        for (const MeshEdge& edge : edges_) add_edge(plan, edge, 1 + fabric_.strain_limit);
+    }
+
     bool add_triangles() {
-        plan_.element.reserve(3);
         ElementPlan& plan = add_plan(kGreenTri3, SoftPart::stretch);
         plan.form = ElementForm::folded;
         const double t = fabric_.thickness;
@@ -135,8 +182,10 @@ private:
                                      fabric_.shear_stiffness / t};
         if (!orthotropic_sheet(sheet, compliance)) return false;
         std::copy_n(compliance, 9, plan.compliance);
-        for (uint32_t i = 0; i < triangles(); ++i)
-            plan.add({corners(i), 3}, {&point_[i].g[0][0], 6}, 1 / (t * point_[i].weight));
+        for (uint32_t i = 0; i < triangles(); ++i) {
+            const uint32_t corner[3] = {3 * i, 3 * i + 1, 3 * i + 2};
+            plan.add({corners(i), 3}, {&point_[i].g[0][0], 6}, 1 / (t * point_[i].weight), corner);
+        }
         return true;
     }
 
@@ -150,16 +199,18 @@ private:
         ElementPlan& flat_plan = plan_.element[1];
         for (const MeshEdge& edge : edges_) {
             if (edge.across[1] == kNone) continue;
-            const uint32_t vertex[4] = {edge.a, edge.b, edge.across[0], edge.across[1]};
+            const uint32_t vertex[4] = {edge.a, edge.b, edge.across[0], edge.across[1]}, *t = edge.triangle;
+            const uint32_t corner[4] = {corner_at(t[0], edge.a), corner_at(t[0], edge.b),
+                                        corner_at(t[0], edge.across[0]), corner_at(t[1], edge.across[1])};
             const Vec3 x[4] = {rest(vertex[0]), rest(vertex[1]), rest(vertex[2]), rest(vertex[3])};
             const Pose pose[4] = {{x[0]}, {x[1]}, {x[2]}, {x[3]}};
             const double none = 0;
             double angle, weight[4], area;
             kDihedralElement.row.evaluate(&none, pose, &angle, nullptr);
             if (std::abs(angle) < kFlat && quadratic_bend_weights(x, weight, area))
-                flat_plan.add(vertex, weight, area / 3);
+                flat_plan.add(vertex, weight, area / 3, corner);
             else
-                folded.add(vertex, {&angle, 1}, area_of(edge) / (3 * (x[1] - x[0]).squaredNorm()));
+                folded.add(vertex, {&angle, 1}, area_of(edge) / (3 * (x[1] - x[0]).squaredNorm()), corner);
         }
     }
     double area_of(const MeshEdge& edge) const {

@@ -2,7 +2,8 @@
 //
 // Of links: springs along the edges, as warp, weft or shear by their direction, and across the edges between the two
 // vertices on either side. Of triangles: a sheet of St-Venant-Kirchhoff material under plane stress (Green strain),
-// bent by the angle between its triangles, or by the quadratic form where it is flat at rest.
+// bent by the angle between its triangles, or by the quadratic form where it is flat at rest. Of both, where they are
+// asked for: links along the edges that only pull, beyond a strain; tethers (tethers.h).
 #pragma once
 
 #include <span>
@@ -25,6 +26,12 @@ struct Fabric {
     double shear_compliance = 0;            // infinite: no such links
     double bend_compliance = 0;             // likewise
     double damping = 0;                     // time d of the stress D (E + d dE/dt) [s]
+    double compression = 1;                 // stiffness of pressed links over that of pulled ones
+    double strain_limit = 0;                // of edges; infinite: none
+    double limit_compliance = 0;            // beyond that, and of tethers [m/N]
+    uint32_t tethers = 0;                   // of each vertex
+    double tether_slack = 0;                // over their length
+    double tear_strain = 0;                 // 0: it does not tear
 };
 
 // A host's mesh, checked: each vertex is on a triangle.

@@ -4,6 +4,7 @@
 
 #include "models/attachments.h"
 #include "models/bodies.h"
+#include "models/tethers.h"
 #include "sleep/wake.h"
 
 namespace taut {
@@ -55,6 +56,7 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
     ElementSet& set = world.elements.set[index];
     set.form = plan.form;
     set.solve = plan.solve;
+    set.pulls = plan.pulls;
     set.collide_connected = true;  // a group keeps the vertices apart
     set_compliance(set, {plan.compliance, rows * rows}, plan.relaxation);
     reserve_elements(set, static_cast<uint32_t>(count));
@@ -64,6 +66,7 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
         world.elements.insert(set, e, {node, nodes}, plan.softness[e]);
         std::copy_n(&plan.data[size_t{e} * numbers], numbers, set.data_of(e));
     }
+    if (soft.tear_strain > 0) soft.corner.insert(soft.corner.end(), plan.corner.begin(), plan.corner.end());
 }
 
 }  // namespace
@@ -105,6 +108,8 @@ void pin_vertex(World& world, const Soft& soft, uint32_t vertex, bool pinned) {
     const uint32_t node = soft.node[vertex];
     if (pinned == is_pinned(world, soft, vertex)) return;
     world.nodes.mass.reserve_values(1);
+    TetherPlan tethers(world.memory);
+    plan_tethers(world, soft, vertex, pinned, tethers);
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     wake(world, node);
     NodeMass mass = mass_of_vertex(soft, vertex);
@@ -113,6 +118,7 @@ void pin_vertex(World& world, const Soft& soft, uint32_t vertex, bool pinned) {
     world.nodes.info[node].kind = pinned ? NodeKind::kinematic : NodeKind::particle;
     if (pinned) set_velocity(world.nodes.motion[node], Vec3::Zero(), Vec3::Zero());
     world.nodes.clear_load(node);
+    set_tethers(world, soft, tethers);
     wake(world, node);
 }
 

@@ -12,9 +12,11 @@ namespace taut {
 // Elements that one set is to have.
 struct ElementPlan {
     ElementPlan(Memory& memory, const ElementType& of, SoftPart does)
-        : type(&of), part(does), vertex(memory), data(memory), softness(memory) {}
+        : type(&of), part(does), vertex(memory), data(memory), softness(memory), corner(memory) {}
 
-    void add(std::span<const uint32_t> vertices, std::span<const double> numbers, double soft) {
+    void add(std::span<const uint32_t> vertices, std::span<const double> numbers, double soft,
+             std::span<const uint32_t> corners = {}) {
+        corner.insert(corner.end(), corners.begin(), corners.end());
         vertex.insert(vertex.end(), vertices.begin(), vertices.end());
         data.insert(data.end(), numbers.begin(), numbers.end());
         softness.push_back(soft);
@@ -24,17 +26,19 @@ struct ElementPlan {
     SoftPart part;
     ElementForm form = ElementForm::rows;
     JointSolve solve = JointSolve::direct;
+    bool pulls = false;
     double compliance[kMaxRows * kMaxRows] = {};  // [rows][rows] of a unit of the material [m/N per unit]
     double relaxation = 0;                        // [s]
     Array<uint32_t> vertex;                       // [elements][nodes]
     Array<double> data;                           // [elements][numbers]
     Array<double> softness;                       // [elements]
+    Array<uint32_t> corner;                       // [elements][nodes], as of Soft; of a cloth
 };
 
 struct SoftPlan {
     explicit SoftPlan(Memory& memory) : soft(memory), position(memory), element(memory), traits{} {}
 
-    Soft soft;             // node, sets and shape are ignored
+    Soft soft;             // node, sets, shape and corner are ignored
     Array<Vec3> position;  // of each vertex [m]
     Array<ElementPlan> element;
     double radius = 0;      // of the sphere about each vertex [m]; 0: it touches nothing
@@ -46,7 +50,8 @@ uint32_t add_soft(World& world, const SoftPlan& plan);
 // With every joint and attachment on it. Throws std::bad_alloc with nothing changed.
 void remove_soft(World& world, uint32_t index);
 
-// A pinned vertex is a kinematic node: it moves as the host says. Throws std::bad_alloc with nothing changed.
+// A pinned vertex is a kinematic node: it moves as the host says, and tethers lead to it. Throws std::bad_alloc with
+// nothing changed.
 void pin_vertex(World& world, const Soft& soft, uint32_t vertex, bool pinned);
 bool is_pinned(const World& world, const Soft& soft, uint32_t vertex);
 

@@ -14,6 +14,7 @@ void for_event_lists(World& w, Act&& act) {
     act(w.quarantined);
     act(w.broken);
     act(w.detached);
+    act(w.torn);
     act(w.fell_asleep), act(w.woke);
 }
 

@@ -64,6 +64,7 @@ Tally tally(World& world) {
             if (asleep(world.nodes, set.nodes_of(e))) continue;
             double value[kMaxRows], squared = 0;
             view_of(set, e).read(world.nodes, value);
+            if (set.pulls) value[0] = std::max(0.0, value[0]);
             for (int r = 0; r < set.type->row.rows; ++r)
                 if (!(set.type->row.angular >> r & 1)) squared += value[r] * value[r];
             t.joint_error = std::max(t.joint_error, static_cast<float>(std::sqrt(squared)));

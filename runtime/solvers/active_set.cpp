@@ -156,7 +156,7 @@ void ActiveSet::gather_rolling(uint32_t index) {
 void ActiveSet::gather() {
     b_.first_bounded = static_cast<uint32_t>(s_.scratch.bounded.size());
     b_.bounded_count = 0;
-    for (uint32_t j = 0; j < b_.joints.size(); ++j) gather_axes(b_.first_row_block + j);
+    for (uint32_t j = 0; j < b_.joints.size() + b_.elements.size(); ++j) gather_axes(b_.first_row_block + j);
     for (uint32_t c = b_.first_contact; c < b_.first_contact + b_.contact_count; ++c) {
         if (sys_.rows.block[c].type->bound == Bound::load)
             gather_rolling(c);

@@ -7,6 +7,10 @@
 // the positive part is that of the sum, a step of Newton's method on W = 1/2 C^T D C.
 //
 // u_0 of energy is 0; of folded elements it is the velocity before the solve, which foresees how they turn.
+//
+// Elements that only pull act or do not, one semismooth step of Newton's method: act those that the velocity of the
+// last substep makes long, and of those that pulled in it the ones that without forces would be long. By the latter
+// alone, what hangs on others just short of their ends would be drawn to these.
 #include <algorithm>
 
 #include "solvers/block_solve.h"
@@ -53,11 +57,34 @@ void stress(const ElasticBatch& batch, uint32_t i, const double* x, double* y) {
     }
 }
 
+// Bit i: element i of a set that pulls does not act. error: where they are evaluated.
+uint32_t find_slack(const ElasticBatch& batch, const System& system, const double* error) {
+    const auto nodes = static_cast<uint32_t>(batch.nodes());
+    uint32_t local[kBatch * kMaxNodes], slack = 0;
+    Pose moved[kBatch * kMaxNodes];
+    for (uint32_t i = 0; i < batch.at.count * nodes; ++i) {
+        const uint32_t seat = batch.at.node[i];
+        local[i] = i;
+        const Velocity& u = system.place[seat] == kNone ? system.exact[seat] : system.start[seat];
+        moved[i] = {system.pose[seat].x + system.scheme.h * u.v, system.pose[seat].R};
+    }
+    ElementBatch at = batch.at;
+    at.node = local;
+    at.x = moved;
+    double ahead[kBatch];
+    batch.type().evaluate(at, ahead, nullptr, 0);
+    for (uint32_t i = 0; i < batch.at.count; ++i)
+        if (!(ahead[i] > 0 || (error[i] > 0 && *batch.lambda(i) < 0))) slack |= 1u << i;
+    return slack;
+}
+
 // What a batch puts into the system of a substep.
 class ElasticSystem {
 public:
-    ElasticSystem(const ElasticBatch& batch, const Scheme& scheme) : batch_(batch), scheme_(scheme) {
+    ElasticSystem(const ElasticBatch& batch, const System& system) : batch_(batch), scheme_(system.scheme) {
+        const Scheme& scheme = system.scheme;
         batch.type().evaluate(batch.at, error_, jacobian_, batch.type().freedoms);
+        const uint32_t slack = batch.set.pulls ? find_slack(batch, system, error_) : 0;
         double lambda[kBatch * kMaxRows];
         for (uint32_t i = 0; i < batch.at.count; ++i) find_force(i, lambda + i * rows());
         if (folded())
@@ -67,6 +94,7 @@ public:
         for (uint32_t i = 0; i < batch.at.count; ++i) {
             for (uint32_t k = 0; k < width() * width(); ++k) matrix(i)[k] *= scheme.stiffness();
             if (folded()) add_material(i, scheme.stiffness());
+            if (slack >> i & 1) leave_out(i);
         }
     }
 
@@ -100,6 +128,11 @@ public:
 
 private:
     bool folded() const { return batch_.set.form == ElementForm::folded; }
+    void leave_out(uint32_t i) {
+        std::fill_n(error_ + i * rows(), rows(), 0.0);
+        std::fill_n(jacobian_ + i * rows() * width(), rows() * width(), 0.0);
+        std::fill_n(matrix(i), width() * width(), 0.0);
+    }
 
     void find_force(uint32_t i, double* lambda) const {
         const uint32_t e = batch_.at.element[i];
@@ -236,7 +269,7 @@ void BlockSolve::gather_before(const Batch& batch, uint32_t i, double* out) cons
 void BlockSolve::assemble_elastic() {
     std::fill(b_.elastic_force.begin(), b_.elastic_force.end(), 0.0);
     for_elastic([&](const auto& batch) {
-        ElasticSystem system(batch, sys_.scheme);
+        ElasticSystem system(batch, sys_);
         const int freedoms = batch.type().freedoms, width = batch.width();
         for (uint32_t i = 0; i < batch.at.count; ++i) {
             double u[kMostFreedoms], side[kMostFreedoms];
@@ -269,18 +302,24 @@ void BlockSolve::assemble_elastic() {
     });
 }
 
-// Folded: lambda = -D (C + h J (u - u_0) + d J u).
+// Folded, and of all that pull: lambda = -D (C + h J (u - u_0) + d J u).
 void BlockSolve::take_elastic_forces() {
     for_elastic([&](const auto& batch) {
-        if (batch.set.form != ElementForm::folded) return;
+        if (batch.set.form != ElementForm::folded && !batch.set.pulls) return;
         double error[kBatch * kMaxRows], jacobian[kBatch * kMaxRows * kMostFreedoms];
         const int rows = batch.rows(), freedoms = batch.type().freedoms;
         batch.type().evaluate(batch.at, error, jacobian, freedoms);
+        const uint32_t slack = batch.set.pulls ? find_slack(batch, sys_, error) : 0;
         for (uint32_t i = 0; i < batch.at.count; ++i) {
             double u[kMostFreedoms], u_0[kMostFreedoms];
             gather_velocities(batch, i, sys_.exact, u);
             gather_before(batch, i, u_0);
             double* c = error + i * static_cast<uint32_t>(rows);
+            batch.set.fresh[batch.at.element[i]] = 0;
+            if (slack >> i & 1) {
+                batch.lambda(i)[0] = 0;
+                continue;
+            }
             for (int n = 0; n < batch.nodes(); ++n)
                 for (int r = 0; r < rows; ++r) {
                     const double* j =
@@ -295,7 +334,7 @@ void BlockSolve::take_elastic_forces() {
                 }
             stress(batch, i, c, batch.lambda(i));
             for (int r = 0; r < rows; ++r) batch.lambda(i)[r] = -batch.lambda(i)[r];
-            batch.set.fresh[batch.at.element[i]] = 0;
+            if (batch.set.pulls) batch.lambda(i)[0] = std::min(0.0, batch.lambda(i)[0]);
         }
     });
 }
@@ -304,7 +343,7 @@ void BlockSolve::take_elastic_forces() {
 double BlockSolve::elastic_work() const {
     double work = 0;
     for_elastic([&](const auto& batch) {
-        ElasticSystem system(batch, sys_.scheme);
+        ElasticSystem system(batch, sys_);
         for (uint32_t i = 0; i < batch.at.count; ++i) {
             double u[kMostFreedoms], start[kMostFreedoms], impulse[kMostFreedoms];
             gather_before(batch, i, u);

@@ -48,7 +48,7 @@ inline ConstraintView view_of(const ElementSet& set, uint32_t element) {
             set.lambda_of(element),
             set.drift_of(element),
             {compliance, compliance},
-            static_cast<uint8_t>((1 << set.type->row.rows) - 1)};
+            static_cast<uint8_t>(set.pulls ? 0 : (1 << set.type->row.rows) - 1)};
 }
 
 inline ConstraintView view_of(const Joints& joints, const Elements& elements, const ConstraintRef& ref) {

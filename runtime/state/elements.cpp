@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 namespace taut {
 namespace {
@@ -19,6 +20,7 @@ void for_columns(ElementSet& of, Act&& act) {
     act(of.slow_turn, row.line ? 1u : 0u);
     act(of.loaded, 1u);
     act(of.fresh, 1u);
+    act(of.memory, of.pulls ? 1u : 0u);
 }
 
 }  // namespace
@@ -35,6 +37,12 @@ void set_compliance(ElementSet& set, std::span<const double> compliance, double 
     else
         std::fill(set.stiffness, set.stiffness + rows * rows, 0.0);
     set.relaxation = relaxation;
+    if (!set.pulls) return;
+    set.stop = {};
+    set.stop.mode = AxisMode::limited;
+    set.stop.lower = -std::numeric_limits<float>::infinity();
+    set.stop.limit_compliance = static_cast<float>(c(0, 0));
+    set.stop.limit_damping = static_cast<float>(c(0, 0) > 0 ? relaxation / c(0, 0) : 0);
 }
 
 void set_compliance(ElementSet& set, double compliance, double relaxation) {
@@ -95,6 +103,7 @@ void Elements::kill(ElementSet& of, uint32_t element) {
     const auto count = static_cast<size_t>(of.type->row.nodes);
     std::fill_n(&of.node[element * count], count, kNone);
     std::fill_n(of.lambda_of(element), of.type->row.rows, 0.0);
+    if (of.pulls) of.memory[element] = {};
     note(of);
 }
 

@@ -4,7 +4,8 @@
 //
 // An element gives way as C lambda' = -error, with C = softness * the set's compliance (eq. 21 of Tournier et al.
 // 2015): the compliance is that of a unit of the material, softness is how many of them lie in a row (metres of a
-// cable) or one over how many lie side by side (square metres of cloth).
+// cable) or one over how many lie side by side (square metres of cloth). Those of a set that pulls do so while C > 0
+// alone, lambda <= 0: as rows they are a stop at 0 (constraints/axis.h).
 #pragma once
 
 #include <span>
@@ -24,28 +25,31 @@ enum class ElementForm : uint8_t {
 
 struct ElementSet {
     explicit ElementSet(Memory& m)
-        : node(m), data(m), softness(m), lambda(m), drift(m), slow_turn(m), loaded(m), fresh(m) {}
+        : node(m), data(m), softness(m), lambda(m), drift(m), slow_turn(m), loaded(m), fresh(m), memory(m) {}
 
     const ElementType* type = nullptr;  // null: dead slot
     ElementForm form = ElementForm::rows;
     JointSolve solve = JointSolve::direct;
     bool collide_connected = false;
+    bool pulls = false;                           // of one row; said before its compliance and elements
     bool coupled = false;                         // the compliance is no multiple of 1
     double compliance[kMaxRows * kMaxRows] = {};  // [rows][rows], symmetric, positive definite or 0: rigid
     double stiffness[kMaxRows * kMaxRows] = {};   // its inverse; 0 where it is rigid
     double relaxation = 0;                        // damping over stiffness: time d of scheme.h [s]
+    Axis stop;                                    // of a set that pulls, for a softness of 1
     uint64_t serial = 0;                          // tells sets of one slot apart
     uint64_t version = 0;                         // grows with each change of which elements there are, and on what
 
     // by element; dead ones have kNone for all of their nodes
-    Array<uint32_t> node;    // [nodes]
-    Array<double> data;      // [numbers]
-    Array<double> softness;  // [1]
-    Array<double> lambda;    // [rows], force of the last substep [N, N m]
-    Array<double> drift;     // [rows], of C since the last step, by a change of length; see Joint
-    Array<Vec3> slow_turn;   // low-passed angular velocity of the line [rad/s]; of types with one, else empty
-    Array<uint8_t> loaded;   // frames under or since a load beyond what sweeps hold; partition/partition.h
-    Array<uint8_t> fresh;    // not solved yet: lambda means nothing
+    Array<uint32_t> node;      // [nodes]
+    Array<double> data;        // [numbers]
+    Array<double> softness;    // [1]
+    Array<double> lambda;      // [rows], force of the last substep [N, N m]
+    Array<double> drift;       // [rows], of C since the last step, by a change of length; see Joint
+    Array<Vec3> slow_turn;     // low-passed angular velocity of the line [rad/s]; of types with one, else empty
+    Array<uint8_t> loaded;     // frames under or since a load beyond what sweeps hold; partition/partition.h
+    Array<uint8_t> fresh;      // not solved yet: lambda means nothing
+    Array<AxisMemory> memory;  // of a set that pulls, else empty
 
     uint32_t size() const { return static_cast<uint32_t>(softness.size()); }
     std::span<const uint32_t> nodes_of(uint32_t element) const {
@@ -64,10 +68,10 @@ struct ElementSet {
 };
 template <class Visitor, Like<ElementSet> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [type, form, solve, collide_connected, coupled, compliance, stiffness, relaxation, serial, version, node,
-           data, softness, lambda, drift, slow_turn, loaded, fresh] = of;
-    TAUT_FIELDS(visitor, type, form, solve, collide_connected, coupled, compliance, stiffness, relaxation, node, data,
-                softness, lambda, drift, slow_turn, loaded, fresh);
+    auto& [type, form, solve, collide_connected, pulls, coupled, compliance, stiffness, relaxation, stop, serial,
+           version, node, data, softness, lambda, drift, slow_turn, loaded, fresh, memory] = of;
+    TAUT_FIELDS(visitor, type, form, solve, collide_connected, pulls, coupled, compliance, stiffness, relaxation, stop,
+                node, data, softness, lambda, drift, slow_turn, loaded, fresh, memory);
     TAUT_ASIDE(visitor, serial, version);
 }
 

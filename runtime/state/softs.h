@@ -13,6 +13,8 @@ enum class SoftPart : uint8_t {
     stretch,  // along links, or within triangles or cells, in the order in which the host gave these
     shear,
     bend,
+    limit,   // of a cloth: along its edges, beyond the strain that it bears
+    tether,  // of a cloth: from vertices to pinned ones
 };
 
 struct SoftSet {
@@ -26,7 +28,8 @@ void describe(Visitor& visitor, Of& of) {
 }
 
 struct Soft {
-    explicit Soft(Memory& memory) : node(memory), mass(memory), triangle(memory), rest(memory), sets(memory) {}
+    explicit Soft(Memory& memory)
+        : node(memory), mass(memory), triangle(memory), rest(memory), sets(memory), corner(memory) {}
 
     SoftKind kind = SoftKind::cloth;
     Array<uint32_t> node;      // of each vertex
@@ -38,14 +41,22 @@ struct Soft {
     uint32_t shape = kNone;    // of each vertex; kNone: it touches nothing
     double gravity_scale = 1;
     uint64_t user_data = 0;
+    // Of a cloth.
+    uint32_t tethers = 0;     // of each vertex, to so many pinned ones; models/tethers.h
+    double tether_slack = 0;  // over their length along the cloth
+    double tear_strain = 0;   // edges with more open; 0: none
+    Array<uint32_t> corner;  // of one that tears: of its elements, set by set but for tethers, what each of their nodes
+                             // is: corner k of triangle t as 3 t + k
 
     uint32_t vertices() const { return static_cast<uint32_t>(node.size()); }
     uint32_t triangles() const { return static_cast<uint32_t>(triangle.size() / 3); }
 };
 template <class Visitor, Like<Soft> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, user_data] = of;
-    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale);
+    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, user_data, tethers, tether_slack,
+           tear_strain, corner] = of;
+    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, tethers,
+                tether_slack, tear_strain, corner);
     TAUT_ASIDE(visitor, user_data);
 }
 

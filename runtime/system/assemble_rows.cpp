@@ -58,6 +58,11 @@ void add_element(System& system, ElementSet& set, uint32_t e, bool in_lanes) {
     block.compliance_block = set.coupled ? set.compliance : nullptr;
     block.compliance[0] = block.compliance[1] = set.softness[e] * (set.coupled ? 1 : set.compliance[0]);
     block.relaxation[0] = block.relaxation[1] = set.relaxation;
+    if (set.pulls) {
+        block.axis = &set.stop;
+        block.memory = &set.memory[e];
+        block.stop_softness = set.softness[e];
+    }
     block.batched = true;
     block.fresh = set.fresh[e] != 0;
     set.fresh[e] = 0;

@@ -29,10 +29,11 @@ struct AxisRow {
     bool rubs() const { return part == kRubbing; }
 };
 
-inline AxisRow stop_row(double sign, double gap, const Axis& axis, const Scheme& scheme, float* force) {
+inline AxisRow stop_row(double sign, double gap, const Axis& axis, double softness, const Scheme& scheme,
+                        float* force) {
     AxisRow row{sign > 0 ? 0u : 1u, sign, true, axis.limit_compliance > 0, gap, 0, 0, 0, 1e300, force};
     const double d = double(axis.limit_compliance) * axis.limit_damping;
-    row.compliance = axis.limit_compliance / (scheme.act * (scheme.h + d));
+    row.compliance = softness * axis.limit_compliance / (scheme.act * (scheme.h + d));
     row.target = row.relaxed_target = -gap / scheme.h;
     if (gap > 0) return row;
     row.target = row.physical ? -gap / (scheme.h + d) : std::min(kStopPush, -kStopRate * gap / scheme.h);
@@ -59,8 +60,9 @@ void for_each_axis_row(const RowBlock& block, int r, double c, const Scheme& sch
     const Axis& axis = block.axis[r];
     AxisMemory& memory = block.memory[r];
     if (axis.mode == AxisMode::limited) {
-        if (std::isfinite(axis.lower)) visit(stop_row(1, c - axis.lower, axis, scheme, &memory.lower));
-        if (std::isfinite(axis.upper)) visit(stop_row(-1, axis.upper - c, axis, scheme, &memory.upper));
+        const double soft = block.stop_softness;
+        if (std::isfinite(axis.lower)) visit(stop_row(1, c - axis.lower, axis, soft, scheme, &memory.lower));
+        if (std::isfinite(axis.upper)) visit(stop_row(-1, axis.upper - c, axis, soft, scheme, &memory.upper));
     }
     if (axis.mode == AxisMode::locked) return;
     if (is_driven(axis))

@@ -117,8 +117,11 @@ void Problem::set_locked(Unit& unit) {
     const RowMatrix own = elastic || !soft ? RowMatrix() : effective(unit);
     const RowMatrix elasticity = elastic ? compliance_of(joint, s_.scheme) : RowMatrix();
     for (int r = 0; r < unit.rows; ++r) {
-        if (!joint.locked(r)) continue;
         const uint32_t at = unit.first + static_cast<uint32_t>(r);
+        if (!joint.locked(r)) {
+            m_.impulse[at] = 0;  // that of its axes, which have their own
+            continue;
+        }
         const double error = s_.rows.error[at];
         if (elastic)
             m_.target[at] = -s_.scheme.row_rate(relaxation_of(joint, r)) * error;

@@ -48,6 +48,7 @@ struct RowBlock {
     const double* compliance_block;  // [rows][rows] in its place, times compliance[0]; or null
     double relaxation[2];            // time d [s]: compliance * damping, likewise
     const Axis* axis;                // of each row, or null: all are locked
+    double stop_softness = 1;        // with axis: times the compliance of their stops
     AxisMemory* memory;              // of each row, with axis
     ContactForce* contact;           // what a contact point carries on; null for joints
     bool* pushed;                    // of a contact point: its pair's

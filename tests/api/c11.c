@@ -23,7 +23,7 @@ _Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
 _Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 40, "plain values");
 _Static_assert(sizeof(taut_ball_joint_def) == 96 && sizeof(taut_distance_joint_def) == 152, "no hidden padding");
 _Static_assert(sizeof(taut_fixed_joint_def) == 144 && sizeof(taut_hinge_joint_def) == 200, "no hidden padding");
-_Static_assert(sizeof(taut_joint_break_event) == 48 && sizeof(taut_events) == 176, "no hidden padding");
+_Static_assert(sizeof(taut_joint_break_event) == 48 && sizeof(taut_events) == 184, "no hidden padding");
 _Static_assert(sizeof(taut_anchor) == 152 && sizeof(taut_attachment_def) == 352, "no hidden padding");
 _Static_assert(sizeof(taut_attachment_state) == 80 && sizeof(taut_attachment_break_event) == 48, "likewise");
 _Static_assert(sizeof(taut_contact_event) == 48 && sizeof(taut_contact_point) == 56, "likewise");

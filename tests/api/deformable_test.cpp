@@ -188,6 +188,20 @@ TEST_F(Deformable, BadNumbersAreRefused) {
     cloth = cloth_def();
     cloth.stretch_stiffness[1] = 0;
     refused(cloth, TAUT_INVALID_ARGUMENT, "stretch_stiffness[1]");
+    const auto bad = [&](const char* field, auto change) {
+        taut_cloth_def def = cloth_def();
+        change(def);
+        refused(def, TAUT_INVALID_ARGUMENT, field);
+    };
+    bad("compression", [](taut_cloth_def& d) { d.compression = 1.1f; });
+    bad("compression", [&](taut_cloth_def& d) { d.compression = nan; });
+    bad("compression",
+        [](taut_cloth_def& d) { d.kind = TAUT_CLOTH_LINKS, d.compression = 0.5f, d.stretch_compliance[1] = 0; });
+    bad("strain_limit", [](taut_cloth_def& d) { d.strain_limit = 0; });
+    bad("limit_compliance", [](taut_cloth_def& d) { d.limit_compliance = 0; });
+    bad("tethers", [](taut_cloth_def& d) { d.tethers = TAUT_CLOTH_MAX_TETHERS + 1; });
+    bad("tether_slack", [](taut_cloth_def& d) { d.tether_slack = -0.1f; });
+    bad("tear_strain", [](taut_cloth_def& d) { d.tear_strain = 1e-4f; });
     cloth = cloth_def();
     cloth.filter.group = 3;
     refused(cloth, TAUT_INVALID_ARGUMENT, "filter.group");
@@ -248,6 +262,55 @@ TEST_F(Deformable, FailedAllocationsChangeNothing) {
         }
         ASSERT_EQ(result, TAUT_OUT_OF_MEMORY) << fail;
         expect_empty();
+    }
+}
+
+// A strip of three rows that is stretched as it is made, beyond what it bears: where memory fails it does not tear, or
+// did so in whole.
+TEST_F(Deformable, TearsThatFindNoMemoryWait) {
+    taut_pos points[9], rest[9];
+    uint32_t triangles[24], *t = triangles;
+    for (uint32_t i = 0; i < 3; ++i)
+        for (uint32_t k = 0; k < 3; ++k) {
+            rest[3 * i + k] = {0.1 * i, 5, 0.1 * k};
+            points[3 * i + k] = {0.15 * i, 5, 0.1 * k};
+            if (i == 2 || k == 2) continue;
+            const uint32_t a = 3 * i + k, corner[] = {a, a + 1, a + 4, a, a + 4, a + 3};
+            t = std::copy_n(corner, 6, t);
+        }
+    taut_cloth_def def = cloth_def();
+    def.points = points;
+    def.rest = rest;
+    def.point_count = 9;
+    def.triangles = triangles;
+    def.triangle_count = 8;
+    def.tear_strain = 0.2f;
+    def.tethers = 1;
+    bool failed_within = false;
+    for (uint64_t fail = 1;; ++fail) {
+        const taut_cloth cloth = add(def);
+        EXPECT_OK(taut_cloth_pin(cloth, 0, 1));
+        ledger.fail_from = ledger.calls + fail;
+        ledger.fail_until = ledger.fail_from + 1;
+        const uint64_t failed = ledger.failed;
+        const taut_result result = taut_world_step(world);
+        ledger.fail_from = ledger.fail_until = UINT64_MAX;
+        taut_events events{};
+        uint32_t count = 0, corners[24];
+        EXPECT_OK(taut_world_get_events(world, &events));
+        EXPECT_EQ(taut_cloth_get_points(cloth, nullptr, 0, &count), TAUT_TOO_SMALL);
+        EXPECT_EQ(count, 9 + events.torn_count);
+        EXPECT_OK(taut_cloth_get_triangles(cloth, corners, 8, &count));
+        EXPECT_EQ(std::ranges::equal(corners, triangles), events.torn_count == 0);
+        failed_within = failed_within || (result == TAUT_OK && ledger.failed > failed && events.torn_count == 0);
+        if (result == TAUT_OK && ledger.failed == failed) {
+            EXPECT_GE(events.torn_count, 1u);
+            EXPECT_OK(taut_cloth_remove(cloth));
+            EXPECT_TRUE(failed_within);
+            return;
+        }
+        EXPECT_OK(taut_cloth_remove(cloth));
+        ASSERT_LT(fail, 2000u);
     }
 }
 
