@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <vector>
 
 namespace demo {
 
@@ -84,25 +85,87 @@ void add_caption(render::DrawList& list, const Caption& caption, float centre, c
         {left + kPadding, top + 38, kText, "joint error " + distance_of(caption.joint_error), kDim, 1});
 }
 
-void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas) {
-    constexpr float kWidth = 372, kHeight = 66, kBar = 12;
+namespace {
+
+constexpr float kLegendWidth = 372, kLegendHeight = 66;
+
+struct Mark {
+    float at;  // along the scale, [0, 1]
+    std::string label;
+};
+
+// A panel with a scale, from blue to red.
+void add_scale(render::DrawList& list, float left, float top, const std::string& title,
+               const std::vector<Mark>& marks) {
+    constexpr float kBar = 12;
     constexpr int kSpans = 15;
-    float left = kMargin, top = canvas.height - kMargin - kHeight, x = left + kPadding, full = kWidth - 2 * kPadding;
-    list.rects.push_back({left, top, kWidth, kHeight, kRadius, kPanel, kPanel, kPanelAlpha});
-    list.texts.push_back({x, top + 12, kText, "joint force", kWhite, 1});
+    const float x = left + kPadding, full = kLegendWidth - 2 * kPadding;
+    list.rects.push_back({left, top, kLegendWidth, kLegendHeight, kRadius, kPanel, kPanel, kPanelAlpha});
+    list.texts.push_back({x, top + 12, kText, title, kWhite, 1});
     for (int i = 0; i < kSpans; ++i) {
-        float a = static_cast<float>(i) / kSpans, b = static_cast<float>(i + 1) / kSpans;
+        const float a = static_cast<float>(i) / kSpans, b = static_cast<float>(i + 1) / kSpans;
         list.rects.push_back({x + a * full - 0.5f, top + 30, (b - a) * full + 1, kBar, 0, TensionScale::ramp(a),
                               TensionScale::ramp(b), 1});
     }
-    int decades = scale.high_decade() - scale.low_decade(), stride = (decades + 4) / 5;
-    for (int decade = scale.low_decade(); decade <= scale.high_decade(); decade += stride) {
-        float at = x + full * static_cast<float>(decade - scale.low_decade()) / static_cast<float>(decades);
-        std::string label = newtons(decade);
-        float half = 0.5f * 8 * kAdvance * static_cast<float>(label.size());
-        float from = std::clamp(at - half, x - 4, x + full + 4 - 2 * half);
-        list.texts.push_back({from, top + 49, 8, label, kDim, 1});
+    for (const Mark& mark : marks) {
+        const float half = 0.5f * 8 * kAdvance * static_cast<float>(mark.label.size());
+        const float from = std::clamp(x + full * mark.at - half, x - 4, x + full + 4 - 2 * half);
+        list.texts.push_back({from, top + 49, 8, mark.label, kDim, 1});
     }
+}
+
+std::string pascals(double value) {
+    if (value >= 1e6) return text_of("%.3g MPa", 1e-6 * value);
+    if (value >= 1e3) return text_of("%.3g kPa", 1e-3 * value);
+    return text_of("%.3g Pa", value);
+}
+
+}  // namespace
+
+void add_soft_legend(render::DrawList& list, const scenes::Scene& scene, const render::HudCanvas& canvas) {
+    constexpr int kMarks = 5;
+    const float left = canvas.width - kMargin - kLegendWidth;
+    float top = canvas.height - kMargin;
+    std::vector<std::string> shown;
+    const auto show_scale = [&](const char* what, double most, const auto& text) {
+        std::vector<Mark> marks;
+        for (int i = 0; i < kMarks; ++i)
+            marks.push_back({static_cast<float>(i) / (kMarks - 1), text(most * i / (kMarks - 1))});
+        const std::string all = what + marks.back().label;
+        if (std::find(shown.begin(), shown.end(), all) != shown.end()) return;
+        shown.push_back(all);
+        top -= kLegendHeight;
+        add_scale(list, left, top, what, marks);
+        top -= kMargin / 2;
+    };
+    for (const scenes::Cloth& cloth : scene.cloths)
+        if (cloth.look.colours == scenes::SoftColours::strain)
+            show_scale("strain", cloth.look.most, [](double v) { return text_of("%.3g %%", 100 * v); });
+    for (const scenes::Solid& solid : scene.solids)
+        if (solid.look.colours == scenes::SoftColours::stress)
+            show_scale("stress, von Mises", solid.look.most, pascals);
+    const auto show_label = [&](const scenes::SoftLook& look) {
+        constexpr float kHeight = 28;
+        if (look.label.empty()) return;
+        const Colour colour = from_srgb(look.paint);
+        top -= kHeight;
+        list.rects.push_back({left, top, kLegendWidth, kHeight, kRadius, kPanel, kPanel, kPanelAlpha});
+        if (look.colours == scenes::SoftColours::plain)
+            list.rects.push_back({left + kPadding, top + 8, 22, 12, 3, colour, colour, 1});
+        list.texts.push_back({left + kPadding + 34, top + 9, kText, look.label, kWhite, 1});
+        top -= 4;
+    };
+    for (size_t i = scene.cloths.size(); i-- > 0;) show_label(scene.cloths[i].look);
+    for (size_t i = scene.solids.size(); i-- > 0;) show_label(scene.solids[i].look);
+}
+
+void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas) {
+    const int decades = scale.high_decade() - scale.low_decade(), stride = (decades + 4) / 5;
+    std::vector<Mark> marks;
+    for (int decade = scale.low_decade(); decade <= scale.high_decade(); decade += stride)
+        marks.push_back(
+            {static_cast<float>(decade - scale.low_decade()) / static_cast<float>(decades), newtons(decade)});
+    add_scale(list, kMargin, canvas.height - kMargin - kLegendHeight, "joint force", marks);
 }
 
 }  // namespace demo

@@ -28,5 +28,7 @@ struct Caption {
 };
 void add_caption(render::DrawList& list, const Caption& caption, float centre, const render::HudCanvas& canvas);
 void add_tension_legend(render::DrawList& list, const TensionScale& scale, const render::HudCanvas& canvas);
+// What the colours of cloths and solids tell, at the right: scales of strain and stress, and names of plain colours.
+void add_soft_legend(render::DrawList& list, const scenes::Scene& scene, const render::HudCanvas& canvas);
 
 }  // namespace demo

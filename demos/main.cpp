@@ -132,13 +132,16 @@ private:
     }
 
     void add_scene(SceneView& view, bool tension, render::Vec3 offset) {
-        const size_t first = list_.instances.size();
+        const size_t first = list_.instances.size(), first_corner = list_.surfaces.size();
         view.add_bodies(list_, tension);
         view.add_joints(list_, tension);
         view.add_cables(list_, tension);
         view.add_softs(list_);
+        view.add_curves(list_);
         for (size_t i = first; i < list_.instances.size(); ++i)
             list_.instances[i].position = list_.instances[i].position + offset;
+        for (size_t i = first_corner; i < list_.surfaces.size(); ++i)
+            list_.surfaces[i].position = list_.surfaces[i].position + offset;
     }
 
     void step() {
@@ -166,6 +169,7 @@ private:
         if (options_.hud) add_figures(frame);
         if (options_.hud && tension && has_forces())
             add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
+        if (options_.hud) add_soft_legend(list_, scene_, {options_.width, options_.height});
         if (options_.hud && twin_) add_captions();
         const render::Picture& picture = renderer_->draw(list_);
         ++figures_.drawn;

@@ -52,7 +52,16 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--json", options.json, "also write the figures to this file");
     app.add_option("--threads", options.threads, "threads of a step")->check(CLI::Range(1, 64));
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
-    app.add_option("--mesh", options.mesh, "OBJ file of the scene mesh_drop");
+    CLI::Option* mesh_flag =
+        app.add_option("--mesh", options.mesh, "mesh file of the scene; without a scene an OBJ file for mesh_drop");
+    CLI::Option* cloth_flag =
+        app.add_option("--cloth", options.mesh, "OBJ file that becomes a cloth (scene cloth_file)")
+            ->excludes(mesh_flag);
+    CLI::Option* solid_flag = app.add_option("--solid", options.mesh,
+                                             "file that becomes a solid (scene solid_file): .msh (Gmsh), .node and "
+                                             ".ele (TetGen), or a closed surface as .obj")
+                                  ->excludes(mesh_flag)
+                                  ->excludes(cloth_flag);
     CLI::Option* substeps_flag =
         app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
     CLI::Option* solver_flag =
@@ -85,7 +94,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     if (substeps_flag->count() > 0) options.substeps = substeps;
     if (solver_flag->count() > 0) options.solver = solver;
     if (tension_flag->count() > 0) options.tension = tension;
-    if (!options.mesh.empty() && scene_flag->count() == 0) options.scene = "mesh_drop";
+    if (cloth_flag->count() + solid_flag->count() + mesh_flag->count() > 0 && scene_flag->count() == 0)
+        options.scene = cloth_flag->count() > 0 ? "cloth_file" : solid_flag->count() > 0 ? "solid_file" : "mesh_drop";
     options.render = !no_render;
     options.hud = !no_hud;
     if (options.out.empty() && options.video.empty()) options.out = "out";

@@ -308,21 +308,24 @@ void SceneView::add_hinge(render::DrawList& list, size_t index, Vec3 at) const {
 
 void SceneView::add_joints(render::DrawList& list, bool tension) const {
     for (size_t i = 0; i < scene_.joints.size(); ++i) {
-        if (!world_.is_whole(i)) continue;
+        const std::optional<double>& drawn = scene_.joints[i].drawn_radius;
+        if (!world_.is_whole(i) || (drawn && *drawn <= 0)) continue;
         taut_pos a{}, b{};
         scenes::check(taut_joint_get_anchors(world_.joints[i], &a, &b), "reading a joint's anchors");
         switch (scene_.joints[i].kind) {
             case TAUT_JOINT_DISTANCE: {
                 Colour colour = tension ? scale_.colour(force_on(world_.joints[i])) : kLinkGrey;
                 const bool rope = scene_.joints[i].max_length > 0;
-                list.instances.push_back(rod(vec(a), vec(b), rope ? kRopeRadius : kRodRadius, colour));
+                const float radius = drawn ? static_cast<float>(*drawn) : rope ? kRopeRadius : kRodRadius;
+                list.instances.push_back(rod(vec(a), vec(b), radius, colour));
                 break;
             }
             case TAUT_JOINT_HINGE:
                 add_hinge(list, i, vec(b));
                 break;
             case TAUT_JOINT_BALL:
-                list.instances.push_back(ball(vec(b), 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));
+                list.instances.push_back(ball(
+                    vec(b), drawn ? static_cast<float>(*drawn) : 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));
                 break;
             default:
                 break;  // inside the bodies that they join
@@ -372,32 +375,101 @@ void read_all(Read read, Handle handle, std::vector<T>& out, size_t entries = 1)
 }  // namespace
 
 template <class Handle>
-void SceneView::add_surface(render::DrawList& list, Handle handle, const SoftLook& look) {
+void SceneView::read_surface(Handle handle) {
     read_all(points_reader(handle), handle, points_);
     read_all(normals_reader(handle), handle, normals_);
     read_all(triangles_reader(handle), handle, triangles_, 3);
-    const auto corner = [&](size_t k, float side, Colour colour) {
+}
+
+// The mean of the elements about each vertex, so that colours pass smoothly from one to the next.
+void SceneView::spread_over_vertices(const std::vector<uint32_t>& elements, size_t corners, size_t vertices) {
+    std::vector<int> count(vertices, 0);
+    at_vertices_.assign(vertices, 0);
+    for (size_t i = 0; i < elements.size(); ++i) {
+        at_vertices_[elements[i]] += values_[i / corners];
+        ++count[elements[i]];
+    }
+    for (size_t v = 0; v < vertices; ++v) at_vertices_[v] /= static_cast<float>(std::max(1, count[v]));
+}
+
+// The skin in place of the solid's own boundary.
+void SceneView::put_on(const scenes::Skin& skin) {
+    std::vector<taut_pos> points(skin.corners.size() / 4);
+    std::vector<float> values(at_vertices_.empty() ? 0 : points.size());
+    for (size_t i = 0; i < skin.corners.size(); ++i) {
+        const taut_pos& from = points_[skin.corners[i]];
+        const auto weight = static_cast<double>(skin.weights[i]);
+        taut_pos& p = points[i / 4];
+        p = {p.x + weight * from.x, p.y + weight * from.y, p.z + weight * from.z};
+        if (!values.empty()) values[i / 4] += skin.weights[i] * at_vertices_[skin.corners[i]];
+    }
+    points_ = std::move(points);
+    at_vertices_ = std::move(values);
+    triangles_ = skin.triangles;
+    std::vector<Vec3> sum(points_.size());  // of areas
+    for (size_t t = 0; t < triangles_.size(); t += 3) {
+        const Vec3 a = vec(points_[triangles_[t]]);
+        const Vec3 area = cross(vec(points_[triangles_[t + 1]]) - a, vec(points_[triangles_[t + 2]]) - a);
+        for (size_t k = 0; k < 3; ++k) sum[triangles_[t + k]] = sum[triangles_[t + k]] + area;
+    }
+    normals_.clear();
+    for (const Vec3& n : sum) {
+        const Vec3 unit = length(n) > 0 ? normalised(n) : Vec3{0, 1, 0};
+        normals_.push_back({unit.x, unit.y, unit.z});
+    }
+}
+
+void SceneView::add_surface(render::DrawList& list, const Paint& paint) const {
+    const auto corner = [&](size_t k, float side) {
         const uint32_t v = triangles_[k];
         const Vec3 normal = {normals_[v].x, normals_[v].y, normals_[v].z};
+        const Colour colour =
+            paint.most > 0 ? TensionScale::ramp(at_vertices_[v] / static_cast<float>(paint.most)) : paint.plain;
         // Both sides lie apart, lest they shade each other.
-        list.surfaces.push_back({vec(points_[v]) + normal * (side * 0.001f), normal * side, colour, 0.1f});
+        list.surfaces.push_back(
+            {vec(points_[v]) + normal * (side * 0.001f), normal * side, side > 0 ? colour : darker(colour), 0.1f});
     };
-    for (size_t t = 0; 3 * t < triangles_.size(); ++t) {
-        const Colour colour = look.measured ? TensionScale::ramp(values_[t] / look.most) : look.colour;
-        for (size_t k = 0; k < 3; ++k) corner(3 * t + k, 1, colour);
-        for (size_t k = 3; look.both_sides && k-- > 0;) corner(3 * t + k, -1, darker(colour));
+    for (size_t t = 0; t < triangles_.size(); t += 3) {
+        for (size_t k = 0; k < 3; ++k) corner(t + k, 1);
+        for (size_t k = 3; paint.both_sides && k-- > 0;) corner(t + k, -1);
     }
 }
 
 void SceneView::add_softs(render::DrawList& list) {
-    static const Colour kCloth = from_srgb(0xB8473A), kSolid = from_srgb(0x4E8C6A);
-    constexpr float kMostStrain = 0.05f;
+    const auto paint_of = [](const scenes::SoftLook& look, uint32_t usual, bool both_sides) {
+        const bool measured = look.colours != scenes::SoftColours::plain;
+        return Paint{from_srgb(look.paint != 0 ? look.paint : usual), both_sides, measured ? look.most : 0};
+    };
     for (size_t i = 0; i < scene_.cloths.size(); ++i) {
-        const bool measured = scene_.cloths[i].colours == scenes::SoftColours::strain;
-        if (measured) read_all(taut_cloth_get_strains, world_.cloths[i], values_);
-        add_surface(list, world_.cloths[i], {kCloth, true, measured, kMostStrain});
+        const Paint paint = paint_of(scene_.cloths[i].look, 0xB8473A, true);
+        read_surface(world_.cloths[i]);
+        if (paint.most > 0) {
+            read_all(taut_cloth_get_strains, world_.cloths[i], values_);
+            spread_over_vertices(triangles_, 3, points_.size());
+        }
+        add_surface(list, paint);
     }
-    for (size_t i = 0; i < scene_.solids.size(); ++i) add_surface(list, world_.solids[i], {kSolid, false, false, 1});
+    for (size_t i = 0; i < scene_.solids.size(); ++i) {
+        const scenes::Solid& solid = scene_.solids[i];
+        const Paint paint = paint_of(solid.look, 0x4E8C6A, false);
+        read_surface(world_.solids[i]);
+        at_vertices_.clear();
+        if (paint.most > 0) {
+            read_all(taut_solid_get_stresses, world_.solids[i], values_);
+            spread_over_vertices(solid.cells, solid.def.corners, points_.size());
+        }
+        if (!solid.skin.triangles.empty()) put_on(solid.skin);
+        add_surface(list, paint);
+    }
+}
+
+void SceneView::add_curves(render::DrawList& list) const {
+    for (const scenes::Curve& curve : scene_.curves)
+        for (size_t i = 1; i < curve.points.size(); ++i) {
+            const auto radius = static_cast<float>(curve.radius);
+            list.instances.push_back(rod(vec(curve.points[i - 1]), vec(curve.points[i]), radius, kDecoration));
+            list.instances.push_back(ball(vec(curve.points[i]), radius, kDecoration, 0.2f));
+        }
 }
 
 void SceneView::add_contacts(render::DrawList& list) {

@@ -33,20 +33,23 @@ public:
     void add_joints(render::DrawList& list, bool tension) const;
     void add_cables(render::DrawList& list, bool tension);
     void add_softs(render::DrawList& list);
+    void add_curves(render::DrawList& list) const;
     void add_contacts(render::DrawList& list);
     const TensionScale& tension_scale() const { return scale_; }
 
 private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
     void add_hinge(render::DrawList& list, size_t index, render::Vec3 at) const;
-    struct SoftLook {
-        render::Colour colour;
+    struct Paint {
+        render::Colour plain;
         bool both_sides;
-        bool measured;  // colours from values_, over most
-        float most;
+        double most;  // of values_, at the top of the scale; 0: plain
     };
     template <class Handle>
-    void add_surface(render::DrawList& list, Handle handle, const SoftLook& look);
+    void read_surface(Handle handle);
+    void spread_over_vertices(const std::vector<uint32_t>& elements, size_t corners, size_t vertices);
+    void put_on(const scenes::Skin& skin);
+    void add_surface(render::DrawList& list, const Paint& paint) const;
     bool is_in_the_way(size_t index) const;
     float thickness_at(const scenes::Joint& joint) const;
 
@@ -59,7 +62,7 @@ private:
     std::vector<float> tensions_;
     std::vector<taut_vec3> normals_;  // of a cloth or solid
     std::vector<uint32_t> triangles_;
-    std::vector<float> values_;  // of its triangles
+    std::vector<float> values_, at_vertices_;  // strain or stress
 };
 
 }  // namespace demo

@@ -52,7 +52,7 @@ struct Instance {
     Pass pass = Pass::solid;
 };
 
-// Corner of a triangle of a surface that changes from picture to picture; the first corner's colour is the triangle's.
+// Corner of a triangle of a surface that changes from picture to picture.
 struct SurfaceVertex {
     Vec3 position, normal;
     Colour colour;
@@ -88,7 +88,7 @@ struct DrawList {
     Camera camera;
     std::vector<Instance> instances;
     std::vector<SurfaceVertex> surfaces;  // three a triangle, counter-clockwise seen from outside, lit like solids
-    std::vector<HudRect> rects;  // below the texts, in order
+    std::vector<HudRect> rects;           // below the texts, in order
     std::vector<HudText> texts;
 
     void clear() {

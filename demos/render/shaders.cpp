@@ -75,7 +75,8 @@ uniform mat4 clip_from_world;
 uniform vec3 viewer;
 uniform float pull;  // [m] by which depth is moved towards the viewer
 out vec3 world, local, local_normal, half_size;
-flat out vec4 paint, turn;
+out vec4 paint;  // of surfaces it differs from corner to corner
+flat out vec4 turn;
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 void main() {
     local = vertex * scale;
@@ -94,7 +95,8 @@ void main() {
 
 const char* const kSolidFragment = R"(
 in vec3 world, local, local_normal, half_size;
-flat in vec4 paint, turn;
+in vec4 paint;
+flat in vec4 turn;
 uniform int bevelled, unlit;
 out vec4 colour;
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }

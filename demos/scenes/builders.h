@@ -37,8 +37,19 @@ Scene build_ferris_wheel(double n, double r, const Options& options);
 Scene build_tensegrity(double n, double r, const Options& options);
 Scene build_net(double n, double r, const Options& options);
 Scene build_cloth_hang(double n, double r, const Options& options);
+Scene build_cloth_row(double n, double r, const Options& options);
 Scene build_cloth_load(double n, double r, const Options& options);
 Scene build_beam(double n, double r, const Options& options);
 Scene build_solid_drop(double n, double r, const Options& options);
+Scene build_armadillo(double n, double r, const Options& options);
+Scene build_armadillos(double n, double r, const Options& options);
+Scene build_cloth_loaded(double n, double r, const Options& options);
+Scene build_cloth_fem_beside_links(double n, double r, const Options& options);
+Scene build_trampoline(double n, double r, const Options& options);
+Scene build_garment(double n, double r, const Options& options);
+Scene build_bow(double n, double r, const Options& options);
+Scene build_knee(double n, double r, const Options& options);
+Scene build_cloth_file(double n, double r, const Options& options);
+Scene build_solid_file(double n, double r, const Options& options);
 
 }  // namespace scenes

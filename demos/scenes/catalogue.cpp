@@ -91,11 +91,30 @@ const std::vector<Family>& families() {
          0},
         {"cloth_hangN", "cloth_hang30", "a sheet of N x N vertices hung by two corners, released level", 240, false,
          build_cloth_hang, 200},
+        {"cloth_rowN_rR", "cloth_row20_r100", "the same, the free row weighs R times the sheet more", 240, false,
+         build_cloth_row, 200},
         {"cloth_load_rR", "cloth_load_r10", "a box of R times a sheet's mass falls on it", 240, false, build_cloth_load,
          0},
         {"beam_eR_nN", "beam_e1_n30", "a beam of R MPa and Poisson's ratio N/100, held at one end", 300, false,
          build_beam, 49},
-        {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped beside each other", 240, false, build_solid_drop, 50},
+        {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped beside each other", 240, false, build_solid_drop,
+         50},
+        {"armadillo_eR", "armadillo_e1e5", "a figure of R Pa falls on the ground", 240, false, build_armadillo, 0,
+         true},
+        {"cloth_loaded", "cloth_loaded", "balls of 500 vertices' mass hang on a sheet", 360, false, build_cloth_loaded,
+         0},
+        {"cloth_fem_beside_links", "cloth_fem_beside_links", "a sheet of links beside one of triangles", 300, false,
+         build_cloth_fem_beside_links, 0},
+        {"garment", "garment", "a tunic of two panels sewn together, on a mannequin that sways", 480, false,
+         build_garment, 0},
+        {"trampoline", "trampoline", "balls on a mat that hangs on springs in a frame", 480, false, build_trampoline,
+         0},
+        {"armadillos", "armadillos", "a figure of four materials falls on a step", 300, false, build_armadillos, 0,
+         true},
+        {"bow", "bow", "a bow of wood shoots an arrow, eight times slower", 400, false, build_bow, 0},
+        {"knee", "knee", "a knee with ligaments, stretched and bent by a muscle", 420, false, build_knee, 0},
+        {"cloth_file", "cloth_file", "a cloth of an OBJ file falls on a ball", 360, true, build_cloth_file, 0},
+        {"solid_file", "solid_file", "a solid of a mesh file falls on a step", 300, true, build_solid_file, 0},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;
@@ -109,10 +128,9 @@ Scene make_scene(const std::string& name, const Options& options, const std::vec
         if (!match(family.pattern, name, n, r)) continue;
         if (family.largest_n > 0) check_range(name, "N", n, 1, family.largest_n);
         check_range(name, "R", r, kLeastR, kMostR);
-        if (family.needs_mesh && options.mesh.empty())
-            throw BadScene("scene '" + name + "' needs a mesh: --mesh FILE.obj");
-        if (!family.needs_mesh && !options.mesh.empty())
-            throw BadScene("scene '" + name + "' takes no mesh; --mesh goes with mesh_drop");
+        if (family.needs_mesh && options.mesh.empty()) throw BadScene("scene '" + name + "' needs a mesh: --mesh FILE");
+        if (!family.needs_mesh && !family.takes_mesh && !options.mesh.empty())
+            throw BadScene("scene '" + name + "' takes no mesh");
         Scene scene = family.build(n, r, options);
         scene.name = name;
         scene.description = family.description;

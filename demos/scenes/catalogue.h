@@ -10,7 +10,7 @@ namespace scenes {
 
 struct Options {
     uint64_t seed = 0;  // above 0: a random start, the same for the same seed
-    std::string mesh;   // OBJ file of mesh_drop
+    std::string mesh;   // file of scenes that take one
 };
 
 // A family of scenes. In a pattern, N stands for a count and R for a mass, ratio or weight.
@@ -22,6 +22,7 @@ struct Family {
     bool needs_mesh;
     Scene (*build)(double n, double r, const Options& options);
     double largest_n;
+    bool takes_mesh = false;  // it can do without
 };
 
 const std::vector<Family>& families();

@@ -1,8 +1,9 @@
-// Convex pieces from an OBJ file.
+// Convex pieces, and surfaces, from an OBJ file.
 #pragma once
 
 #include <taut/math.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,14 @@ struct ObjPiece {
 
 // Reads every group and object that has faces. Throws BadFile naming file and line.
 std::vector<ObjPiece> read_obj(const std::string& path);
+
+// All faces as triangles; vertices in one place are one.
+struct Surface {
+    std::vector<taut_pos> points;
+    std::vector<uint32_t> triangles;
+    std::vector<float> uv;  // two a point, the first that a face gives it; none where some face gives none
+};
+// Throws BadFile naming file and line.
+Surface read_surface(const std::string& path);
 
 }  // namespace scenes

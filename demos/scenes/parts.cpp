@@ -248,6 +248,12 @@ void perturb(Scene& scene, uint64_t seed, ChainStart start) {
         body.linear_velocity = random.in_cube(1e-2);   // [m/s]
         body.angular_velocity = random.in_cube(1e-2);  // [rad/s]
     }
+    const auto shake = [&](auto& soft) {
+        for (size_t i = 0; i < soft.points.size(); ++i) soft.velocities.push_back(random.in_cube(1e-2));  // [m/s]
+        for (const uint32_t vertex : soft.pinned) soft.velocities[vertex] = {0, 0, 0};
+    };
+    for (Cloth& cloth : scene.cloths) shake(cloth);
+    for (Solid& solid : scene.solids) shake(solid);
 }
 
 void decorate_with_crane(Scene& scene, taut_pos anchor) {

@@ -76,45 +76,76 @@ struct Body {
     Look look = Look::crate;
 };
 
+// A vertex of a cloth or of a solid, which a joint or cable ends at in place of a body.
+struct SoftVertex {
+    int cloth = -1, solid = -1;  // index of one of the two; neither: the end is the body
+    uint32_t vertex = 0;
+};
+
 struct Joint {
     taut_joint_kind kind = TAUT_JOINT_BALL;
     int body_a = kWorld, body_b = kWorld;
+    SoftVertex vertex_a, vertex_b;
     taut_pos anchor_a{}, anchor_b{};                           // in each body's frame, in the world for kWorld
     taut_quat rotation_a{0, 0, 0, 1}, rotation_b{0, 0, 0, 1};  // from the joint's axes; not of ball and distance joints
     std::vector<taut_axis_def> axes;          // as taut_joint_set_axis counts them; the rest keep their defaults
     float length = 0;                         // of a rod [m]
     float max_length = 0;                     // above 0: a rope instead [m]
     float compliance = 0;                     // of positions, a rod or a rope [m/N]
-    float damping = 0;                        // the same [N s/m]
+    float angular_compliance = 0;             // of locked angles [rad/(N m)]
+    float damping = 0;                        // of positions, a rod or a rope [N s/m]
     float break_force = 0, break_torque = 0;  // 0: never [N, N m]
     taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT;
+    double until = 0;                      // taken away at that time [s]; 0: never
+    std::optional<double> drawn_radius{};  // of the line or ball that it is drawn as, 0: it is not [m]
 };
 
 // A cable of the library's own. The ends' bodies and the path are put into the def by TautWorld.
 struct Cable {
     taut_cable_def def{};                // initialised
     int end_body[2] = {kWorld, kWorld};  // of attached ends
-    std::vector<taut_pos> path;          // def.points [m]
+    SoftVertex end_vertex[2];
+    std::vector<taut_pos> path;  // def.points [m]
 };
 
-// What its triangles' colours tell.
+// What the colours of its surface tell.
 enum class SoftColours : uint8_t { plain, strain, stress };
+
+struct SoftLook {
+    SoftColours colours = SoftColours::plain;
+    double most = 0.05;  // at the top of the colours' scale: stretch - 1 of a cloth, stress of a solid [Pa]
+    uint32_t paint = 0;  // sRGB of a plain one; 0: its kind's
+    std::string label;   // beside that colour in the picture; none: no label
+};
+
+// A surface that is drawn in place of a solid's own; each point moves with four of its vertices.
+struct Skin {
+    std::vector<uint32_t> triangles;
+    std::vector<uint32_t> corners;  // four a point
+    std::vector<float> weights;     // of them, in sum 1
+};
 
 // A cloth or solid of the library's own. TautWorld puts the arrays into the def.
 struct Cloth {
     taut_cloth_def def{};  // initialised
     std::vector<taut_pos> points;
+    std::vector<taut_pos> rest;  // or none: points
     std::vector<uint32_t> triangles;
-    std::vector<float> uv;         // two a point, or none
-    std::vector<uint32_t> pinned;  // vertices
-    SoftColours colours = SoftColours::plain;
+    std::vector<float> uv;              // two a point, or none
+    std::vector<uint32_t> pinned;       // vertices
+    std::vector<taut_vec3> velocities;  // one a point, or none
+    std::string source;                 // where it came from, for messages
+    SoftLook look;
 };
 struct Solid {
     taut_solid_def def{};  // initialised
     std::vector<taut_pos> points;
     std::vector<uint32_t> cells;
     std::vector<uint32_t> pinned;
-    SoftColours colours = SoftColours::plain;
+    std::vector<taut_vec3> velocities;
+    Skin skin;           // none: its own boundary
+    std::string source;  // where it came from, for messages
+    SoftLook look;
 };
 
 // A number over time: cubic between its keys, on at the last one's rate after it.
@@ -161,6 +192,8 @@ struct Roles {
     bool swings = false;        // the chain swings freely: measure its period
     int load = -1;              // what is lifted, driven or shaken
     double mesh_width = 0;      // of a net, which all joints belong to [m]
+    std::vector<uint32_t> tip;  // of a beam, the first solid: vertices of its end
+    double tip_sink = 0;        // what theory says of it [m]
 };
 
 // The joint forces that colours tell apart, in powers of ten [N].
@@ -179,6 +212,12 @@ struct Decoration {
     taut_vec3 half_extents{};
 };
 
+// A line that is drawn and touches nothing.
+struct Curve {
+    std::vector<taut_pos> points;
+    double radius = 0.004;  // [m]
+};
+
 struct Scene {
     std::string name, description;
     uint32_t steps = 600;
@@ -191,6 +230,7 @@ struct Scene {
     std::vector<Solid> solids;
     std::vector<Motion> motions;
     std::vector<Decoration> decorations;
+    std::vector<Curve> curves;
     Roles roles;
     std::optional<ForceScale> forces;  // else from the chain's weights
     Camera camera;

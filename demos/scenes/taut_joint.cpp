@@ -1,5 +1,7 @@
 #include "taut_joint.h"
 
+#include <limits>
+
 namespace scenes {
 
 namespace {
@@ -34,6 +36,10 @@ taut_result add_distance(taut_world world, const Joint& joint, taut_body a, taut
     def.anchor_b = joint.anchor_b;
     def.length = joint.max_length > 0 ? 0 : joint.length;
     def.max_length = joint.max_length;
+    if (!joint.axes.empty()) {  // a range without stops of its own is driven
+        if (joint.max_length == 0) def.max_length = std::numeric_limits<float>::infinity();
+        def.drive = joint.axes[0].drive;
+    }
     return taut_world_add_distance_joint(world, &def, out);
 }
 
@@ -46,6 +52,7 @@ taut_result add_framed(taut_world world, const Joint& joint, taut_body a, taut_b
     fill_ends(joint, a, b, index, def);
     def.frame_a = {joint.anchor_a, joint.rotation_a};
     def.frame_b = {joint.anchor_b, joint.rotation_b};
+    def.angular_compliance = joint.angular_compliance;
     def.break_torque = joint.break_torque;
     taut_result result = add(world, &def, out);
     for (uint32_t i = 0; result == TAUT_OK && i < joint.axes.size(); ++i)

@@ -137,6 +137,15 @@ void check(taut_result result, const char* what) {
     throw TautError(std::string(what) + ": " + taut_result_name(result) + ": " + taut_last_error());
 }
 
+namespace {
+
+void start(const std::vector<taut_body>& vertices, const std::vector<taut_vec3>& velocities) {
+    for (size_t i = 0; i < velocities.size(); ++i)
+        check(taut_body_set_velocity(vertices[i], velocities[i], {}), "starting a vertex");
+}
+
+}  // namespace
+
 TautWorld::TautWorld(const Scene& scene, const std::function<void(taut_world)>& history) : scene_(scene) {
     check(taut_world_create(&scene.world, &world), "creating the world");
     try {
@@ -163,26 +172,48 @@ void TautWorld::build() {
         check(add_body(world, body, shape, bodies.size(), &handle), "adding a body");
         bodies.push_back(handle);
     }
+    for (const Cloth& cloth : scene_.cloths) {
+        cloths.push_back(add(cloth, cloths.size()));
+        cloth_vertices.emplace_back(cloth.points.size());
+        auto count = static_cast<uint32_t>(cloth.points.size());
+        check(taut_cloth_get_bodies(cloths.back(), cloth_vertices.back().data(), count, &count), "reading a cloth");
+        start(cloth_vertices.back(), cloth.velocities);
+    }
+    for (const Solid& solid : scene_.solids) {
+        solids.push_back(add(solid, solids.size()));
+        solid_vertices.emplace_back(solid.points.size());
+        auto count = static_cast<uint32_t>(solid.points.size());
+        check(taut_solid_get_bodies(solids.back(), solid_vertices.back().data(), count, &count), "reading a solid");
+        start(solid_vertices.back(), solid.velocities);
+    }
     for (const Joint& joint : scene_.joints) {
         taut_joint handle{};
-        check(add_joint(world, joint, end(joint.body_a), end(joint.body_b), joints.size(), &handle), "adding a joint");
+        check(add_joint(world, joint, end(joint.body_a, joint.vertex_a), end(joint.body_b, joint.vertex_b),
+                        joints.size(), &handle),
+              "adding a joint");
         joints.push_back(handle);
     }
     for (const Cable& cable : scene_.cables) cables.push_back(add(cable, cables.size()));
-    for (const Cloth& cloth : scene_.cloths) cloths.push_back(add(cloth, cloths.size()));
-    for (const Solid& solid : scene_.solids) solids.push_back(add(solid, solids.size()));
     broken.reserve(joints.size());
+}
+
+taut_body TautWorld::end(int index, const SoftVertex& vertex) const {
+    if (vertex.cloth >= 0) return cloth_vertices[static_cast<size_t>(vertex.cloth)][vertex.vertex];
+    if (vertex.solid >= 0) return solid_vertices[static_cast<size_t>(vertex.solid)][vertex.vertex];
+    return end(index);
 }
 
 taut_cloth TautWorld::add(Cloth plan, uint64_t index) const {
     plan.def.points = plan.points.data();
+    plan.def.rest = plan.rest.empty() ? nullptr : plan.rest.data();
     plan.def.point_count = static_cast<uint32_t>(plan.points.size());
     plan.def.triangles = plan.triangles.data();
     plan.def.triangle_count = static_cast<uint32_t>(plan.triangles.size() / 3);
     plan.def.uv = plan.uv.empty() ? nullptr : plan.uv.data();
     plan.def.user_data = index;
     taut_cloth handle{};
-    check(taut_world_add_cloth(world, &plan.def, &handle), "adding a cloth");
+    const std::string what = plan.source.empty() ? "adding a cloth" : plan.source;
+    check(taut_world_add_cloth(world, &plan.def, &handle), what.c_str());
     for (const uint32_t vertex : plan.pinned) check(taut_cloth_pin(handle, vertex, 1), "pinning a cloth");
     return handle;
 }
@@ -194,7 +225,8 @@ taut_solid TautWorld::add(Solid plan, uint64_t index) const {
     plan.def.cell_count = static_cast<uint32_t>(plan.cells.size()) / plan.def.corners;
     plan.def.user_data = index;
     taut_solid handle{};
-    check(taut_world_add_solid(world, &plan.def, &handle), "adding a solid");
+    const std::string what = plan.source.empty() ? "adding a solid" : plan.source;
+    check(taut_world_add_solid(world, &plan.def, &handle), what.c_str());
     for (const uint32_t vertex : plan.pinned) check(taut_solid_pin(handle, vertex, 1), "pinning a solid");
     return handle;
 }
@@ -202,7 +234,7 @@ taut_solid TautWorld::add(Solid plan, uint64_t index) const {
 taut_cable TautWorld::add(Cable plan, uint64_t index) const {
     plan.def.points = plan.path.data();
     plan.def.point_count = static_cast<uint32_t>(plan.path.size());
-    for (int e = 0; e < 2; ++e) plan.def.end[e].body = end(plan.end_body[e]);
+    for (int e = 0; e < 2; ++e) plan.def.end[e].body = end(plan.end_body[e], plan.end_vertex[e]);
     plan.def.user_data = index;
     taut_cable handle{};
     check(taut_world_add_cable(world, &plan.def, &handle), "adding a cable");
@@ -223,6 +255,14 @@ void TautWorld::follow_plans() {
         else if (is_whole(static_cast<size_t>(motion.joint)))
             drive(motion, point.value, point.rate);
     }
+    take_away(time);
+}
+
+// Joints whose time is over before the step's end.
+void TautWorld::take_away(double time) {
+    for (size_t i = 0; i < joints.size(); ++i)
+        if (scene_.joints[i].until > 0 && time > scene_.joints[i].until && is_whole(i))
+            check(taut_joint_remove(joints[i]), "taking a joint away");
 }
 
 void TautWorld::move(const Motion& motion, double value) const {

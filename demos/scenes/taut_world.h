@@ -46,6 +46,7 @@ public:
     std::vector<taut_cable> cables;
     std::vector<taut_cloth> cloths;
     std::vector<taut_solid> solids;
+    std::vector<std::vector<taut_body>> cloth_vertices, solid_vertices;
     std::vector<int> broken;   // joints of the scene, in the order in which they broke
     uint32_t quarantined = 0;  // bodies
 
@@ -55,9 +56,11 @@ private:
     taut_cloth add(Cloth plan, uint64_t index) const;
     taut_solid add(Solid plan, uint64_t index) const;
     void follow_plans();
+    void take_away(double time);
     void move(const Motion& motion, double value) const;
     void drive(const Motion& motion, double value, double rate) const;
     taut_body end(int index) const { return index == kWorld ? taut_body{} : bodies[static_cast<size_t>(index)]; }
+    taut_body end(int index, const SoftVertex& vertex) const;
 
     Scene scene_;
     uint64_t steps_ = 0;

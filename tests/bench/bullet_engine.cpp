@@ -1,13 +1,19 @@
 // The same scenes in Bullet's own dynamics with its default settings: one step a frame, ten iterations. Hulls are
 // btConvexHullShape as games make them, whose margin of 4 cm comes on top of the points. Friction of joints is left
-// out.
+// out. Cloths are its soft bodies of links in btSoftRigidDynamicsWorld, as stiff as they go (kLST 1), with twenty
+// iterations of positions, and touch rigid shapes by their vertices at 5 mm; weights on vertices are added to theirs.
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "peer.h"
+#include "soft_metrics.h"
 
 namespace bench {
 
@@ -56,16 +62,22 @@ public:
         : substeps_(substeps), step_(scene.world.time_step / static_cast<float>(substeps)) {
         if (!scene.cables.empty())
             throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' has cables, which Bullet lacks");
-        dispatcher_ = std::make_unique<btCollisionDispatcher>(&configuration_);
-        world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_, &configuration_);
+        if (!scene.solids.empty())
+            throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' has solids, which are not made here");
+        make_world(scene);
         world_->setGravity(vec(scene.world.gravity));
+        for (const scenes::Cloth& cloth : scene.cloths) add(cloth);
         for (const scenes::Shape& shape : scene.shapes) shapes_.push_back(make_shape(shape));
-        for (const scenes::Body& body : scene.bodies) add(scene, body);
-        for (const scenes::Joint& joint : scene.joints) add(joint);
+        for (const scenes::Body& body : scene.bodies)
+            if (!load(scene, body)) add(scene, body);
+        for (const scenes::Joint& joint : scene.joints)
+            if (joint.vertex_b.cloth < 0) add(joint);
     }
     ~BulletEngine() override {
         for (auto& joint : joints_) world_->removeConstraint(joint.get());
-        for (auto& body : bodies_) world_->removeRigidBody(body.get());
+        for (auto& body : bodies_)
+            if (body) world_->removeRigidBody(body.get());
+        for (auto& cloth : cloths_) soft_world_->removeSoftBody(cloth.get());
     }
 
     const char* name() const override { return "bullet"; }
@@ -76,6 +88,11 @@ public:
     }
 
     Motion motion(size_t body) const override {
+        if (const btSoftBody::Node* node = carrier(body))
+            return {{node->m_x.x(), node->m_x.y(), node->m_x.z()},
+                    {0, 0, 0, 1},
+                    {node->m_v.x(), node->m_v.y(), node->m_v.z()},
+                    {}};
         const btTransform& t = bodies_[body]->getWorldTransform();
         btQuaternion q = t.getRotation();
         const btVector3 &p = t.getOrigin(), &v = bodies_[body]->getLinearVelocity(),
@@ -84,14 +101,112 @@ public:
     }
 
     Mass mass(size_t body) const override {
+        if (carrier(body)) return {weights_[body].mass, {}};
         if (bodies_[body]->isStaticObject()) return {};
         const btVector3& inverse = bodies_[body]->getInvInertiaDiagLocal();
         return {bodies_[body]->getMass(), {1 / inverse.x(), 1 / inverse.y(), 1 / inverse.z(), 0, 0, 0}};
     }
 
-    uint64_t state_hash() const override { return hash_of_motions(*this, bodies_.size()); }
+    void read_cloth(size_t index, SoftState& state) const override {
+        const auto& nodes = cloths_[index]->m_nodes;
+        const auto count = static_cast<size_t>(nodes.size());
+        state.points.resize(count);
+        state.velocities.resize(count);
+        for (int i = 0; i < nodes.size(); ++i) {
+            const btVector3 &x = nodes[i].m_x, &v = nodes[i].m_v;
+            state.points[static_cast<size_t>(i)] = {x.x(), x.y(), x.z()};
+            state.velocities[static_cast<size_t>(i)] = {v.x(), v.y(), v.z()};
+        }
+    }
+
+    uint64_t state_hash() const override {
+        uint64_t hash = hash_of_motions(*this, bodies_.size());
+        for (const auto& cloth : cloths_)
+            for (int i = 0; i < cloth->m_nodes.size(); ++i)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const float value = cloth->m_nodes[i].m_x[axis];
+                    uint32_t bits = 0;
+                    std::memcpy(&bits, &value, sizeof bits);
+                    hash = (hash ^ bits) * 0x100000001b3u;
+                }
+        return hash;
+    }
 
 private:
+    // A point mass that a joint puts on a vertex.
+    struct Weight {
+        int cloth = -1;
+        uint32_t vertex = 0;
+        double mass = 0;
+    };
+
+    void make_world(const scenes::Scene& scene) {
+        configuration_ = scene.cloths.empty() ? std::make_unique<btDefaultCollisionConfiguration>()
+                                              : std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>();
+        dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
+        if (scene.cloths.empty()) {
+            world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_,
+                                                               configuration_.get());
+            return;
+        }
+        auto soft =
+            std::make_unique<btSoftRigidDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_, configuration_.get());
+        soft_world_ = soft.get();
+        world_ = std::move(soft);
+        btSoftBodyWorldInfo& info = soft_world_->getWorldInfo();
+        info.m_dispatcher = dispatcher_.get();
+        info.m_broadphase = &broadphase_;
+        info.m_gravity = vec(scene.world.gravity);
+        info.air_density = info.water_density = 0;
+        info.m_sparsesdf.Initialize();
+        weights_.resize(scene.bodies.size());
+        for (const scenes::Joint& joint : scene.joints)
+            if (joint.vertex_b.cloth >= 0 && joint.body_a >= 0) {
+                const auto body = static_cast<size_t>(joint.body_a);
+                weights_[body] = {joint.vertex_b.cloth, joint.vertex_b.vertex, mass_of(scene, scene.bodies[body])};
+            }
+    }
+
+    void add(const scenes::Cloth& cloth) {
+        constexpr int kIterations = 20;
+        constexpr float kThickness = 0.005f;
+        const SoftShape shape(cloth);
+        std::vector<btVector3> points;
+        std::vector<btScalar> mass;
+        for (const taut_pos& p : cloth.points) points.push_back(vec(p));
+        for (const double m : shape.mass) mass.push_back(static_cast<btScalar>(m));
+        auto body = std::make_unique<btSoftBody>(&soft_world_->getWorldInfo(), static_cast<int>(points.size()),
+                                                 points.data(), mass.data());
+        body->m_materials[0]->m_kLST = 1;
+        for (const auto& [a, b] : shape.sides) body->appendLink(static_cast<int>(a), static_cast<int>(b));
+        for (const auto& f : shape.faces)
+            body->appendFace(static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2]));
+        body->m_cfg.piterations = kIterations;
+        body->m_cfg.kDF = cloth.def.material.friction;
+        body->m_cfg.kDP = 0;
+        body->getCollisionShape()->setMargin(kThickness);
+        if (cloth.def.filter.mask == 0) body->m_cfg.collisions = 0;
+        soft_world_->addSoftBody(body.get());
+        cloths_.push_back(std::move(body));
+    }
+
+    // Whether the body is a weight on a vertex; it is added to that.
+    bool load(const scenes::Scene& scene, const scenes::Body& body) {
+        const size_t index = bodies_.size();
+        if (index >= weights_.size() || weights_[index].cloth < 0) return false;
+        const Weight& weight = weights_[index];
+        btSoftBody& cloth = *cloths_[static_cast<size_t>(weight.cloth)];
+        const auto node = static_cast<int>(weight.vertex);
+        cloth.setMass(node, cloth.getMass(node) + static_cast<btScalar>(mass_of(scene, body)));
+        bodies_.push_back(nullptr);
+        return true;
+    }
+
+    const btSoftBody::Node* carrier(size_t body) const {
+        if (body >= weights_.size() || weights_[body].cloth < 0) return nullptr;
+        return &cloths_[static_cast<size_t>(weights_[body].cloth)]->m_nodes[static_cast<int>(weights_[body].vertex)];
+    }
+
     void add(const scenes::Scene& scene, const scenes::Body& body) {
         if (body.kind == TAUT_BODY_PARTICLE)
             throw scenes::BadScene("--engine bullet: scene '" + scene.name +
@@ -160,7 +275,7 @@ private:
 
     uint32_t substeps_;
     btScalar step_;
-    btDefaultCollisionConfiguration configuration_;
+    std::unique_ptr<btDefaultCollisionConfiguration> configuration_;
     btDbvtBroadphase broadphase_;
     btSequentialImpulseConstraintSolver solver_;
     std::unique_ptr<btCollisionDispatcher> dispatcher_;
@@ -168,6 +283,9 @@ private:
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+    btSoftRigidDynamicsWorld* soft_world_ = nullptr;  // world_, in scenes with cloths
+    std::vector<std::unique_ptr<btSoftBody>> cloths_;
+    std::vector<Weight> weights_;  // by body, in scenes with cloths
 };
 
 }  // namespace

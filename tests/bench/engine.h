@@ -21,6 +21,12 @@ struct Mass {
     taut_sym3 inertia{};  // body axes [kg m^2]
 };
 
+// Vertices of a cloth or solid.
+struct SoftState {
+    std::vector<taut_pos> points;
+    std::vector<taut_vec3> velocities;
+};
+
 // Time that the last step spent on direct solves.
 struct SolveTime {
     double microseconds = 0;
@@ -42,6 +48,9 @@ public:
     virtual void step() = 0;
     virtual Motion motion(size_t body) const = 0;
     virtual Mass mass(size_t body) const = 0;
+    // Of a cloth or solid of the scene. Throw scenes::BadScene for what the engine doesn't have.
+    virtual void read_cloth(size_t index, SoftState& state) const;
+    virtual void read_solid(size_t index, SoftState& state) const;
     virtual uint64_t state_hash() const = 0;
     virtual taut_world world() const { return {}; }  // null: not Taut
     virtual SolveTime solve_time() const { return {}; }

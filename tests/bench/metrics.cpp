@@ -90,6 +90,16 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   blew_up                             1 if not finite, energy_max > 1.02, or a gap was above 25 % of a link
   first_vertical_s                    when the weight first passes below the anchor (null: never)
   period_s                            of a swing, mean over the run
+ cloths and solids: by their vertices alone
+  vertices elements                   of all of them; triangles, tetrahedra and hexahedra
+  peak_pct end_pct mean_pct           stretch of warp and weft edges: worst ever, worst at the end, mean at the end
+  energy_lost_m                       kinetic energy and that of height lost after a second, over m g of all that moves
+  energy_max                          largest such energy: 1 + (E - E_start) / (m g L), L the longest side at rest
+  deep_mm deep_end_mm                 deepest point inside a rigid shape, ever and at the end: vertices, middles of edges,
+                                      centres of faces; meshes, height fields and scaled hulls are left out
+  inverted inverted_end               cells turned inside out, most ever and at the end
+  tip_ratio                           of a beam: mean sink of its end over the last second, in parts of theory's
+  rest_speed                          mean speed of vertices over the last second [m/s]
  nets: joint_sep_pct                  largest joint gap of the whole run, % of a mesh
  solved directly
   solve_us                            mean of one substep's assembly and direct solve
@@ -110,6 +120,8 @@ Metrics::Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t step
     }
     read_motions();
     start_ = motions_;
+    if (!scene.cloths.empty() || !scene.solids.empty())
+        soft_.emplace(scene, engine, steps, energy_above_hanging(), moving_mass());
     if (!scene.roles.chain) return;
     const scenes::Chain& chain = *scene.roles.chain;
     for (size_t i = 0; i < chain.bodies.size(); ++i)
@@ -135,6 +147,12 @@ double Metrics::energy_above_hanging() const {
         if (masses_[i].mass > 0)
             sum += kinetic_energy(motions_[i], masses_[i]) +
                    masses_[i].mass * gravity * (motions_[i].position.y - hang_height_[i]);
+    return sum;
+}
+
+double Metrics::moving_mass() const {
+    double sum = 0;
+    for (const Mass& mass : masses_) sum += mass.mass;
     return sum;
 }
 
@@ -184,6 +202,7 @@ void Metrics::after_step(uint32_t step) {
         }
     if (scene_.roles.chain) follow_chain(step);
     if (scene_.roles.mesh_width > 0) follow_net();
+    if (soft_) soft_->after_step(step, energy_above_hanging(), motions_);
 }
 
 Metrics::Overlaps Metrics::overlaps() const {
@@ -275,6 +294,7 @@ void Metrics::report(nlohmann::ordered_json& json) const {
     if (!scene_.roles.pile.empty()) report_pile(json);
     if (scene_.roles.top_body >= 0) report_stack(json);
     if (scene_.roles.chain) report_chain(json);
+    if (soft_) soft_->report(json);
     if (scene_.roles.mesh_width > 0) json["joint_sep_pct"] = 100 * net_gap_ / scene_.roles.mesh_width;
 }
 

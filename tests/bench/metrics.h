@@ -2,9 +2,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "engine.h"
+#include "soft_metrics.h"
 
 namespace bench {
 
@@ -24,8 +26,9 @@ public:
     Metrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps);
 
     void after_step(uint32_t step);  // counted from 0
-    bool finite() const { return finite_; }
-    ChainFigures chain() const;  // of a scene that has one
+    bool finite() const { return finite_ && (!soft_ || soft_->finite()); }
+    const SoftMetrics& soft() const { return *soft_; }  // of a scene with cloths or solids
+    ChainFigures chain() const;                         // of a scene that has one
     void report(nlohmann::ordered_json& json) const;
 
 private:
@@ -35,6 +38,7 @@ private:
 
     void read_motions();
     double energy_above_hanging() const;
+    double moving_mass() const;
     void follow_chain(uint32_t step);
     void follow_net();
     double joint_gap(const scenes::Joint& joint) const;
@@ -59,6 +63,7 @@ private:
     std::vector<double> crossings_;  // times at which the weight passes below the anchor [s]
     double side_ = 0;                // of the weight at the last step [m]
     double net_gap_ = 0;             // largest of a net's joints, of the whole run [m]
+    std::optional<SoftMetrics> soft_;
 };
 
 }  // namespace bench

@@ -40,6 +40,8 @@ public:
         : solver_(solver), substeps_(substeps), step_(real(scene.world.time_step) / substeps) {
         if (!scene.cables.empty())
             throw scenes::BadScene("--engine ode: scene '" + scene.name + "' has cables, which ODE lacks");
+        if (!scene.cloths.empty() || !scene.solids.empty())
+            throw scenes::BadScene("--engine ode: scene '" + scene.name + "' has cloths or solids, which ODE lacks");
         start_library();
         world_ = dWorldCreate();
         space_ = dHashSpaceCreate(nullptr);

@@ -26,6 +26,7 @@ struct Options {
     std::string beside;
     double ratio_limit = 0;
     std::string report;
+    std::string mesh;
 };
 
 // Nothing: *exit_code says with what to end. Throws scenes::BadScene for what contradicts itself.

@@ -33,6 +33,16 @@ public:
         return result;
     }
 
+    void read_cloth(size_t index, SoftState& state) const override {
+        read(world_.cloths[index], world_.cloth_vertices[index].size(), taut_cloth_get_points,
+             taut_cloth_get_velocities, state);
+    }
+
+    void read_solid(size_t index, SoftState& state) const override {
+        read(world_.solids[index], world_.solid_vertices[index].size(), taut_solid_get_points,
+             taut_solid_get_velocities, state);
+    }
+
     uint64_t state_hash() const override {
         uint64_t hash = 0;
         scenes::check(taut_world_get_state_hash(world_.world, &hash), "reading the state hash");
@@ -68,11 +78,23 @@ public:
     }
 
 private:
+    template <class Handle, class Points, class Velocities>
+    static void read(Handle handle, size_t size, Points points, Velocities velocities, SoftState& state) {
+        auto count = static_cast<uint32_t>(size);
+        state.points.resize(size);
+        state.velocities.resize(size);
+        scenes::check(points(handle, state.points.data(), count, &count), "reading vertices");
+        scenes::check(velocities(handle, state.velocities.data(), count, &count), "reading velocities");
+    }
+
     taut_world_def def_;
     scenes::TautWorld world_;
 };
 
 }  // namespace
+
+void Engine::read_cloth(size_t, SoftState&) const { throw scenes::BadScene(name() + std::string(" has no cloths")); }
+void Engine::read_solid(size_t, SoftState&) const { throw scenes::BadScene(name() + std::string(" has no solids")); }
 
 std::unique_ptr<Engine> make_taut_engine(const scenes::Scene& scene) { return std::make_unique<TautEngine>(scene); }
 

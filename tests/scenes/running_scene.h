@@ -61,13 +61,15 @@ public:
         const auto all = everything();
         return std::all_of(all.begin(), all.end(), [](taut_body b) { return finite(b); });
     }
-    // The scene's bodies and those that its cables are made of.
+    // The scene's bodies and those that its cables, cloths and solids are made of.
     std::vector<taut_body> everything() const {
         std::vector<taut_body> all = world.bodies;
         for (taut_cable cable : world.cables) {
             const auto own = bodies_of(cable);
             all.insert(all.end(), own.begin(), own.end());
         }
+        for (const auto* soft : {&world.cloth_vertices, &world.solid_vertices})
+            for (const auto& vertices : *soft) all.insert(all.end(), vertices.begin(), vertices.end());
         return all;
     }
     double pile_speed() const {  // fastest

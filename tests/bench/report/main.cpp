@@ -2,55 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "csv.h"
+#include "deformables.h"
 #include "experiment.h"
 #include "scenes/catalogue.h"
 
 namespace bench {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-class Csv {
-public:
-    Csv(const fs::path& path, const char* header) : file_(path), name_(path.filename().string()) {
-        file_.precision(6);
-        file_ << header << '\n';
-    }
-    // The file is checked where it ends: a full disk must not pass for a report.
-    ~Csv() noexcept(false) {
-        file_.close();
-        if (!file_ && std::uncaught_exceptions() == 0) throw std::runtime_error("could not write " + name_);
-    }
-    Csv(const Csv&) = delete;
-    Csv& operator=(const Csv&) = delete;
-
-    template <class First, class... Rest>
-    void row(const First& first, const Rest&... rest) {
-        file_ << first;
-        ((file_ << ',' << rest), ...);
-        file_ << '\n';
-    }
-
-private:
-    std::ofstream file_;
-    std::string name_;
-};
-
-template <class... Values>
-void say(const char* format, Values... values) {
-    std::fprintf(stderr, format, values...);
-}
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
 
 scenes::Scene scene(const std::string& family, double r, uint64_t seed = 0) {
     return scenes::make_scene(family + "_r" + number(r), {seed, ""});
@@ -180,11 +141,9 @@ void mass_ratio(const fs::path& folder) {
 constexpr struct {
     const char* name;
     void (*measure)(const fs::path& folder);
-} kSections[] = {{"table1", table_1},
-                 {"stable_step", stable_step},
-                 {"energy", energy},
-                 {"mass_ratio", mass_ratio},
-                 {"links", links}};
+} kSections[] = {
+    {"table1", table_1}, {"stable_step", stable_step}, {"energy", energy}, {"mass_ratio", mass_ratio},
+    {"links", links},    {"cloth_ratio", cloth_ratio}, {"beam", beam},     {"cloth_solvers", cloth_solvers}};
 
 int report(const std::vector<std::string>& arguments) {
     if (arguments.empty() || arguments[0].starts_with('-')) {

@@ -1,0 +1,161 @@
+// A tunic of two panels, sewn together at sides and shoulders, on a mannequin that sways.
+#include <cmath>
+#include <numbers>
+
+#include "builders.h"
+#include "parts.h"
+#include "pose.h"
+#include "soft_meshes.h"
+
+namespace scenes {
+
+namespace {
+
+constexpr int kPanelRows = 34, kPanelColumns = 25;
+constexpr double kHem = 0.72, kLength = 0.72;       // height of the hem, from there to the shoulders [m]
+constexpr double kArmhole = 0.47, kNeck = 0.085;    // sides are sewn up to; half of its opening [m]
+constexpr double kShoulders = 0.44, kFlare = 0.05;  // from where the panels close over the shoulders [m]
+
+// Half of a panel's width at a height over the hem [m].
+double half_width(double height) {
+    if (height < kArmhole) return 0.27 + kFlare * std::pow(1 - height / kArmhole, 2);
+    const double t = (height - kArmhole) / (kLength - kArmhole);
+    return 0.27 - 0.07 * std::fmin(1, 3 * t);
+}
+
+// Where the point of a panel is on the figure: rows are half ellipses as long as the panel is wide, which flatten over
+// the shoulders. front: 1 or -1.
+taut_pos draped(double across, double height, double front) {
+    const double half = half_width(height), round = 2 * half / std::numbers::pi;
+    const double t = std::fmax(0, (height - kShoulders) / (kLength - kShoulders));
+    const double deep = 0.9 * round * std::sqrt(std::fmax(0, 1 - t * t));
+    // Ramanujan's circumference of an ellipse: half of it is 2 half.
+    double wide = half;
+    for (int i = 0; i < 30; ++i) {
+        const double h = std::pow((wide - deep) / (wide + deep), 2);
+        const double mean = 1 + 3 * h / (10 + std::sqrt(4 - 3 * h));
+        wide = 4 * half / (std::numbers::pi * mean) - deep;
+    }
+    const double angle = across / half * std::numbers::pi / 2;
+    return {wide * std::sin(angle), kHem + height - 0.1 * t * t, front * (deep * std::cos(angle) + 0.002)};
+}
+
+// Vertices on the sides and shoulders are the same on both panels.
+Cloth panel(double front) {
+    Cloth cloth = grid_cloth(kPanelRows, kPanelColumns, 1, 1, 0);
+    taut_cloth_def_set_fabric(&cloth.def, TAUT_FABRIC_COTTON);
+    cloth.def.damping = 0.01f;
+    cloth.def.material.friction = 0.4f;
+    cloth.uv.clear();
+    cloth.points.clear();
+    for (int i = 0; i < kPanelRows; ++i)
+        for (int k = 0; k < kPanelColumns; ++k) {
+            const double height = kLength * i / (kPanelRows - 1);
+            const double across = half_width(height) * (2.0 * k / (kPanelColumns - 1) - 1);
+            cloth.points.push_back(draped(across, height, front));
+            cloth.rest.push_back({across, height, 0});
+            cloth.uv.insert(cloth.uv.end(), {static_cast<float>(height), static_cast<float>(across)});
+        }
+    return cloth;
+}
+
+// Without the neck: triangles go of which a corner lies in it, then vertices that none has left. Returns the new
+// numbers of vertices, -1 for those that are gone.
+std::vector<int> cut_neck(Cloth& cloth) {
+    constexpr double kDeep = 0.07;  // [m]
+    const auto in_neck = [&](uint32_t v) {
+        const double x = cloth.rest[v].x / kNeck, y = (cloth.rest[v].y - kLength) / kDeep;
+        return x * x + y * y < 1;
+    };
+    std::vector<uint32_t> kept;
+    for (size_t t = 0; t < cloth.triangles.size(); t += 3) {
+        const uint32_t* v = &cloth.triangles[t];
+        if (!in_neck(v[0]) && !in_neck(v[1]) && !in_neck(v[2])) kept.insert(kept.end(), v, v + 3);
+    }
+    std::vector<int> place(cloth.points.size(), -1);
+    for (const uint32_t v : kept) place[v] = 0;
+    Cloth old = std::move(cloth);
+    cloth = old;
+    cloth.points.clear();
+    cloth.rest.clear();
+    cloth.uv.clear();
+    for (size_t v = 0; v < place.size(); ++v) {
+        if (place[v] < 0) continue;
+        place[v] = static_cast<int>(cloth.points.size());
+        cloth.points.push_back(old.points[v]);
+        cloth.rest.push_back(old.rest[v]);
+        cloth.uv.insert(cloth.uv.end(), {old.uv[2 * v], old.uv[2 * v + 1]});
+    }
+    cloth.triangles.clear();
+    for (const uint32_t v : kept) cloth.triangles.push_back(static_cast<uint32_t>(place[v]));
+    return place;
+}
+
+void sew(Scene& scene, const std::vector<int>& place) {
+    for (int i = 0; i < kPanelRows; ++i)
+        for (int k = 0; k < kPanelColumns; ++k) {
+            const bool side = (k == 0 || k == kPanelColumns - 1) && kLength * i / (kPanelRows - 1) < kArmhole;
+            const int vertex = place[static_cast<size_t>(i * kPanelColumns + k)];
+            if ((!side && i != kPanelRows - 1) || vertex < 0) continue;
+            Joint stitch;
+            stitch.vertex_a.cloth = 0;
+            stitch.vertex_b.cloth = 1;
+            stitch.vertex_a.vertex = stitch.vertex_b.vertex = static_cast<uint32_t>(vertex);
+            stitch.drawn_radius = 0;
+            scene.add_joint(stitch);
+        }
+}
+
+void add_mannequin(Scene& scene) {
+    struct Limb {
+        taut_pos from, to;
+        double radius;
+    };
+    constexpr Limb kLimbs[] = {
+        {{0, 0.95, 0}, {0, 1.22, 0}, 0.125},          // trunk
+        {{-0.045, 1.24, 0}, {0.045, 1.24, 0}, 0.11},  // chest
+        {{-0.15, 1.33, 0}, {0.15, 1.33, 0}, 0.055},   // shoulders
+        {{0, 1.4, 0}, {0, 1.5, 0}, 0.05},             // neck
+        {{0, 1.58, 0.01}, {0, 1.65, 0.01}, 0.09},     // head
+        {{-0.17, 1.33, 0}, {-0.36, 1.08, 0}, 0.042},  // arms
+        {{0.17, 1.33, 0}, {0.36, 1.08, 0}, 0.042},
+        {{-0.08, 0.88, 0}, {-0.09, 0.1, 0}, 0.075},  // legs
+        {{0.08, 0.88, 0}, {0.09, 0.1, 0}, 0.075},
+    };
+    for (const Limb& limb : kLimbs) {
+        const int body = add_capsule(scene, limb.from, limb.to, limb.radius, 0, Look::wood);
+        scene.bodies[static_cast<size_t>(body)].kind = TAUT_BODY_KINEMATIC;
+        Motion sway;
+        sway.body = body;
+        sway.along = {0.9f, 0, 0.4f};
+        sway.track.keys = {{0, 0, 0}};
+        sway.track.shake = {0.12, 0.8, 2, 7};
+        scene.motions.push_back(sway);
+    }
+}
+
+}  // namespace
+
+Scene build_garment(double, double, const Options& options) {
+    Scene scene = soft_hall(1.6);
+    add_ground(scene);
+    std::vector<int> place;
+    for (const double front : {1.0, -1.0}) {
+        Cloth cloth = panel(front);
+        place = cut_neck(cloth);
+        if (front < 0)
+            for (size_t t = 0; t < cloth.triangles.size(); t += 3)
+                std::swap(cloth.triangles[t], cloth.triangles[t + 1]);
+        cloth.look.most = 0.05;
+        scene.add_cloth(std::move(cloth));
+    }
+    sew(scene, place);
+    add_mannequin(scene);
+    scene.camera = {{0.75, 1.5, 2.3}, {-0.3, 0.95, 0}, 38};
+    scene.forces = ForceScale{-2, 2};
+    scene.stage = {{-1.5, 0, -1.5}, {1.5, 2, 1.5}};
+    perturb(scene, options.seed);
+    return scene;
+}
+
+}  // namespace scenes
