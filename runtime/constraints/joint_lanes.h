@@ -15,8 +15,9 @@ struct alignas(64) LaneScalar {
 
 // By seat, as SweepVelocity.
 struct alignas(32) SweepPose {
-    float dx[3] = {0, 0, 0}, pad = 0;  // translation since the frame began [m]
-    float q[4] = {0, 0, 0, 1};         // world from body: x, y, z, w
+    float dx[3] = {0, 0, 0};    // translation since the frame began [m]
+    float inv_mass = 0;         // of SweepMass, for who wants no more [1/kg]
+    float q[4] = {0, 0, 0, 1};  // world from body: x, y, z, w
 };
 
 // JointFrames in lanes. An end that stays where it is in this frame, which may be far from its node, is in `apart`.

@@ -138,6 +138,7 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     system.exact[at] = {m.v, m.w};
     set_inverse_mass(system.sweep[at].mass, nodes.mass[node], system.pose[at].R);
     if (nodes.sleeps(node)) system.sweep[at].mass = {};  // what comes near stops at it until it wakes
+    if (!system.sweep_pose.empty()) system.sweep_pose[at].inv_mass = system.sweep[at].mass.inv_mass;
     set_sweep_velocity(system.sweep[at].velocity, {m.v, m.w});
 }
 
@@ -181,7 +182,12 @@ struct Masses {
 void stop(System& system, uint32_t at) {
     system.exact[at] = {};
     system.sweep[at] = {};
+    if (!system.sweep_pose.empty()) system.sweep_pose[at].inv_mass = 0;
     if (system.in_block[at]) system.inertia[at].setZero();  // cannot be factored, and moves freely
+}
+
+bool are_points(const Nodes& nodes, const Batch& batch) {
+    return std::ranges::all_of(batch.node, [&](uint32_t n) { return nodes.info[n].kind == NodeKind::particle; });
 }
 
 // What a node's turn in the substep before changes.
@@ -245,6 +251,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     const NodeMotion* const motion = motions_of(system, nodes);
     const Prediction terms{system.scheme.h, {gravity.x(), gravity.y(), gravity.z()}, kLeverTurn, gyroscopic_euler};
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
+        if (are_points(nodes, batch)) return kernels.predict_points(rows, batch, Masses(nodes, batch).of, terms);
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         const Bodies turned = kernels.predict(rows, batch, Masses(nodes, batch).of, terms, turning, in_block);
@@ -277,8 +284,10 @@ void drop_strikes(System& system, const Impacts& impacts) {
 void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
-    for_batches(team, system, group.nodes,
-                [&](const Batch& batch) { kernels.commit(rows, batch, system.scheme.h, rotate); });
+    for_batches(team, system, group.nodes, [&](const Batch& batch) {
+        if (are_points(nodes, batch)) return kernels.commit_points(rows, batch, system.scheme.h);
+        kernels.commit(rows, batch, system.scheme.h, rotate);
+    });
 }
 
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
@@ -300,6 +309,11 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         const Bodies slow = which(batch.seat, [&](uint32_t at) { return system.filtered[at] != 0; }) | in_block;
+        if (are_points(nodes, batch)) {
+            if (kernels.store_points(rows, batch, keeping, slow) != (1u << batch.count) - 1)
+                all_sane.store(false, std::memory_order_relaxed);
+            return;
+        }
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
         if (kernels.store(rows, batch, Masses(nodes, batch).of, keeping, turning, in_block, slow) != kAll)
             all_sane.store(false, std::memory_order_relaxed);

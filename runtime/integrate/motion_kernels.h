@@ -86,6 +86,10 @@ struct MotionKernels {
     // rad/s].
     Bodies (*store)(const NodeRows&, const Batch&, const MassRow* const mass[kBodies], const Keeping&, Bodies turning,
                     Bodies damped, Bodies slow);
+    // The same of nodes that are all particles, which have no rotation: the same bits for less.
+    void (*predict_points)(const NodeRows&, const Batch&, const MassRow* const mass[kBodies], const Prediction&);
+    void (*commit_points)(const NodeRows&, const Batch&, double h);
+    Bodies (*store_points)(const NodeRows&, const Batch&, const Keeping&, Bodies slow);
 };
 
 extern const MotionKernels kMotionKernelsBase, kMotionKernelsAvx2;

@@ -191,7 +191,8 @@ template <class Linear, class Angular>
     Floats(linear).put(row, &FloatRow::linear);
     Floats(angular).put(row, &FloatRow::angular);
 }
-[[gnu::always_inline]] inline void put_floats(const Vector& linear, const Quaternion& angular, FloatRow* rows,
+template <class Linear>
+[[gnu::always_inline]] inline void put_floats(const Linear& linear, const Quaternion& angular, FloatRow* rows,
                                               const Batch& batch) {
     FloatRow* const row[kBodies] = {&rows[batch.seat[0]], &rows[batch.seat[1]], &rows[batch.seat[2]],
                                     &rows[batch.seat[3]]};
@@ -293,7 +294,8 @@ Bodies predict(const NodeRows& rows, const Batch& batch, const MassRow* const ma
                                       &rows.sweep[batch.seat[2]].velocity, &rows.sweep[batch.seat[3]].velocity};
     put_floats(u.v + none, u.w + none, sweep);
     const Found found(rows.found, batch);
-    if (rows.sweep_pose) put_floats(found.to(m.place()), q, rows.sweep_pose, batch);
+    const Vector moved = found.to(m.place());
+    if (rows.sweep_pose) put_floats(Quaternion{moved.x, moved.y, moved.z, masses.of[1]}, q, rows.sweep_pose, batch);
     const Vector away = found.to(q).vector();
     return bodies(dot(away, away) > 0.25 * terms.turn * terms.turn);
 }
@@ -441,7 +443,57 @@ Bodies store_velocities(const NodeRows& rows, const Batch& batch, const MassRow*
     return bodies(there & (dot(u.v, u.v) <= most) & (dot(w, w) <= most));
 }
 
-constexpr MotionKernels kTable = {predict, commit, store_velocities};
+// ---------------------------------------------------------------- particles, one after another: a vector is a row
+
+// Three numbers, the fourth undefined.
+Four load3(const double* p) { return load(p); }
+void store3(const Four& f, double* p) { p[0] = f[0], p[1] = f[1], p[2] = f[2]; }
+void put_float3(const Four& f, float (&row)[4]) {
+    for (int k = 0; k < 3; ++k) row[k] = static_cast<float>(f[k]);
+}
+
+void predict_points(const NodeRows& rows, const Batch& batch, const MassRow* const mass[kBodies],
+                    const Prediction& terms) {
+    const Four g = {terms.gravity[0], terms.gravity[1], terms.gravity[2], 0}, h = all(terms.h), none = {};
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        const MotionRow& m = rows.motion[batch.motion[i]];
+        const uint32_t at = batch.seat[i];
+        Four a = mass[i]->gravity_scale * g;
+        if (rows.load) a = a + mass[i]->inv_mass * load3(rows.load[batch.node[i]].linear);
+        const Four x = load3(m.x), v = load3(m.v), u = v + h * a;
+        store3(x, rows.pose[at].x);
+        store3(v, rows.start[at].linear);
+        store3(u, rows.velocity[at].linear);
+        put_float3(u + none, rows.sweep[at].velocity.linear);
+        if (rows.sweep_pose) put_float3(x - load3(rows.found[at].x), rows.sweep_pose[at].linear);
+    }
+}
+
+void commit_points(const NodeRows& rows, const Batch& batch, double h) {
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        MotionRow& m = rows.motion[batch.motion[i]];
+        const uint32_t at = batch.seat[i];
+        const Four x = load3(m.x) + all(h) * load3(rows.velocity[at].linear);
+        store3(x, m.x);
+        put_float3(x - load3(rows.found[at].x), rows.shift[at].linear);
+    }
+}
+
+Bodies store_points(const NodeRows& rows, const Batch& batch, const Keeping& terms, Bodies slow) {
+    Bodies sane = 0;
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        MotionRow& m = rows.motion[batch.motion[i]];
+        const Four u = load3(rows.velocity[batch.seat[i]].linear), s = load3(m.slow_v), x = load3(m.x);
+        store3(u, m.v);
+        store3(s + all((slow >> i & 1) != 0 ? terms.kappa : 1) * (u - s), m.slow_v);
+        const double speed = u[0] * u[0] + u[1] * u[1] + u[2] * u[2],
+                     away = (x[0] - x[0]) + (x[1] - x[1]) + (x[2] - x[2]);
+        sane |= static_cast<Bodies>(away == 0 && speed <= terms.most * terms.most) << i;
+    }
+    return sane;
+}
+
+constexpr MotionKernels kTable = {predict, commit, store_velocities, predict_points, commit_points, store_points};
 
 }  // namespace
 }  // namespace taut

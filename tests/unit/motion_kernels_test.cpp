@@ -230,5 +230,58 @@ TEST_P(Motions, GiveTheSameBitsWhoeverIsBesideThem) {
     }
 }
 
+// What begin_frame() leaves of nodes that never turn.
+void stop_turning(MotionRig& rig) {
+    const Mat3 R = Mat3::Identity();
+    for (int i = 0; i < kBodies; ++i) {
+        for (auto* w : {&rig.motion[i].w, &rig.motion[i].slow_w, &rig.velocity[i].angular, &rig.start[i].angular})
+            put(Vec3::Zero(), *w);
+        for (auto* q : {&rig.motion[i].q, &rig.found[i].q}) put(Quat(Quat::Identity()), *q);
+        std::copy_n(R.data(), 9, rig.pose[i].R);
+        for (FloatRow* row : {&rig.shift[i], &rig.sweep_pose[i]}) row->angular[3] = 1;
+        rig.sweep_pose[i].linear[3] = static_cast<float>(rig.mass[i].inv_mass);
+    }
+}
+
+void expect_same(const MotionRig& a, const MotionRig& b) {
+    const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+    EXPECT_TRUE(same(a.motion, b.motion) && same(a.pose, b.pose) && same(a.velocity, b.velocity));
+    EXPECT_TRUE(same(a.shift, b.shift) && same(a.sweep_pose, b.sweep_pose) && same(a.start, b.start));
+    EXPECT_TRUE(same(a.sweep, b.sweep));
+}
+
+// Full batches, and those whose last stands for what is missing.
+TEST_P(Motions, OfParticlesAreTheSameBits) {
+    MotionRig before = rig(0);
+    stop_turning(before);
+    const Vec3 gravity = vector(10);
+    const Prediction terms{kStep, {gravity.x(), gravity.y(), gravity.z()}, 0.05, gyroscopic_euler};
+    const Keeping keeping{kStep, 1e-3, 0.3, 1e3, rotate};
+    for (const MotionKernels* kernels : motion_builds())
+        for (uint32_t count = 1; count <= kBodies; ++count) {
+            MotionRig whole = before, points = before;
+            const MassRow* mass[kBodies];
+            Bodies slow = 0;  // every other one
+            for (uint32_t i = 0; i < kBodies; ++i) {
+                const uint32_t at = std::min(i, count - 1);
+                slow |= (at % 2) << i;
+                for (MotionRig* each : {&whole, &points})
+                    each->batch.node[i] = each->batch.seat[i] = each->batch.motion[i] = at;
+                mass[i] = &before.mass[at];
+            }
+            whole.batch.count = points.batch.count = count;
+            kernels->predict(whole.rows(), whole.batch, mass, terms, 0, 0);
+            kernels->predict_points(points.rows(), points.batch, mass, terms);
+            expect_same(whole, points);
+            kernels->commit(whole.rows(), whole.batch, kStep, rotate);
+            kernels->commit_points(points.rows(), points.batch, kStep);
+            expect_same(whole, points);
+            const Bodies all = (1u << count) - 1;
+            EXPECT_EQ(kernels->store(whole.rows(), whole.batch, mass, keeping, 0, 0, slow) & all,
+                      kernels->store_points(points.rows(), points.batch, keeping, slow));
+            expect_same(whole, points);
+        }
+}
+
 }  // namespace
 }  // namespace taut::test
