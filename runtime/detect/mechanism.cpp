@@ -16,13 +16,27 @@ bool drives(const Nodes& nodes, uint32_t node) {
     return nodes.info[node].kind == NodeKind::kinematic && (m.v != Vec3::Zero() || m.w != Vec3::Zero());
 }
 
+// Elements that keep their nodes as they are against each other: what is elastic gives, as its nodes are put back one
+// by one.
+bool holds(const ElementSet& set) { return set.type && set.form == ElementForm::rows; }
+
+// act(nodes) for what ties them so.
+template <class Act>
+void for_each_hold(const Joints& joints, const Elements& elements, Act&& act) {
+    for (const Joint& joint : joints.record)
+        if (joint.type) act(joint.nodes());
+    for_each_element(elements, [&](const ElementSet& set, uint32_t, std::span<const uint32_t> nodes) {
+        if (holds(set)) act(nodes);
+    });
+}
+
 // Into Mechanisms::tie, by the root that root_of(ends) says, in the order of these; kNone is left out.
 template <class RootOf>
 void list_ties(const Joints& joints, const Elements& elements, Mechanisms& of, RootOf&& root_of) {
     const auto for_refs = [&](auto&& act) {
         for (uint32_t j = 0; j < joints.record.size(); ++j) act(joints.record[j].nodes(), ConstraintRef{kNone, j});
         for (uint32_t s = 0; s < elements.set.size(); ++s)
-            for (uint32_t e = 0; elements.set[s].type && e < elements.set[s].size(); ++e)
+            for (uint32_t e = 0; holds(elements.set[s]) && e < elements.set[s].size(); ++e)
                 if (elements.set[s].lives(e)) act(elements.set[s].nodes_of(e), ConstraintRef{s, e});
     };
     // Counts two places on, so that what is filled below ends as where each begins.
@@ -65,7 +79,7 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& e
         return node;
     };
     const auto held = [&](uint32_t node) { return node == kNone || !nodes.solved(node); };
-    for_each_tie(joints, elements, [&](std::span<const uint32_t> ends) {
+    for_each_hold(joints, elements, [&](std::span<const uint32_t> ends) {
         uint32_t last = kNone;
         for (const uint32_t node : ends) {
             if (held(node)) continue;
@@ -86,7 +100,7 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& e
         of.any_drives = of.any_drives || drives(nodes, node);
     }
     of.ties.assign(slots, 0);
-    for_each_tie(joints, elements, [&](std::span<const uint32_t> ends) {
+    for_each_hold(joints, elements, [&](std::span<const uint32_t> ends) {
         const bool anchored = std::any_of(ends.begin(), ends.end(), held);
         for (const uint32_t node : ends)
             if (!held(node)) of.ties[root[node]] |= anchored ? kJointed | kAnchored : kJointed;

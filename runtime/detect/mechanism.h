@@ -23,7 +23,7 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& e
 // After all rounds: forgets the stays of mechanisms that did not stay in this frame, and those that lasted too long.
 void end_stays(Mechanisms& of);
 
-// A body and what joints tie to it, which stay as they are against each other.
+// A body and what joints and rigid elements tie to it, which stay as they are against each other.
 class Mechanism {
 public:
     Mechanism(Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& all, uint32_t node)
