@@ -34,6 +34,7 @@ void GroupSolve::build() {
     if (solver_.lanes) {
         build_lanes(w_.team, system_, group_, w_.pairs, w_.nodes, *settings_.kernels);
         build_joint_lanes(w_.team, system_, group_, w_.def.time_step);
+        build_element_lanes(w_.team, system_, group_, w_.elements);
     }
     watch_group(group_, system_, w_.pairs, w_.watch);
     w_.profile.predict_us += watch_.lap();
@@ -133,6 +134,8 @@ void GroupSolve::end() {
     if (!solver_.lanes) return;
     store_lanes(w_.team, system_, w_.pairs);
     store_joint_lanes(w_.team, system_);
+    store_element_lanes(w_.team, system_);
+    store_element_yields(system_);
 }
 
 }  // namespace taut

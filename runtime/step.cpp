@@ -76,6 +76,7 @@ void solve(World& w, Stopwatch& watch) {
         double(g.x) * g.x + double(g.y) * g.y + double(g.z) * g.z,
         &contact_kernels(),
         &joint_kernels(),
+        &element_kernels(),
         w.def.adaptive_damping != 0,
         w.def.restitution_threshold,
         {static_cast<FrictionModel>(w.def.friction_model), w.def.stepping == TAUT_STEPPING_VELOCITY,
@@ -85,6 +86,7 @@ void solve(World& w, Stopwatch& watch) {
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
     w.system.scheme = scheme_types()[w.def.scheme]->times({w.def.newmark_beta, w.def.newmark_gamma});
+    age_yields(w.elements, w.def.time_step, w.least_substeps());
     begin_frame(w.team, w.system, w.partition, w.nodes, w.joints.ids.count() > 0 || w.elements.ids.count() > 0);
     make_room_for_scheme(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
@@ -126,9 +128,10 @@ void step(World& w) {
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.elements, w.nodes);
     const taut_vec3 g = w.def.gravity;
+    const bool one_step = !scheme_types()[w.def.scheme]->start;
     w.partition.build(w.team, w.nodes, w.joints, w.elements, w.pairs,
                       {w.least_substeps(), w.def.fixed_substeps != 0, solver.direct, w.def.time_step,
-                       Vec3(g.x, g.y, g.z), w.team.size() > 1, !scheme_types()[w.def.scheme]->start, w.spring_substep});
+                       Vec3(g.x, g.y, g.z), w.team.size() > 1, solver.lanes && one_step, one_step, w.spring_substep});
     if (w.def.report) w.reports.begin_step(w.partition, w.joints, w.elements);
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();

@@ -114,8 +114,8 @@ template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, attachments, broadphase,
            pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
-           contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached, torn,
-           fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep, first_substep,
+           contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
+           torn, fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep, first_substep,
            impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,
                 broadphase.boxes());

@@ -117,6 +117,28 @@ MaybeFlaw joint_lanes_flaw(const System& system, const Group& group) {
     return std::nullopt;
 }
 
+MaybeFlaw element_lanes_flaw(const System& system, const Group& group) {
+    std::vector<uint8_t>& met = counts(system.sweep.size());
+    size_t used = 0;
+    for (const ElementPass& pass : system.elements.pass) {
+        std::vector<uint32_t> movers;
+        for (uint32_t i = pass.begin; i < pass.end; ++i) {
+            const ElementGroup& g = system.elements.group[i];
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (g.element[lane] == kNoLanes) continue;
+                ++used;
+                for (const auto& node : g.node)
+                    if (system.sweep[node[lane]].mass.inv_mass > 0) movers.push_back(node[lane]);
+            }
+        }
+        for (const uint32_t node : movers)
+            if (met[node]++ > 0 && !pass.overflow) return Flaw{"a pass over elements has a moving node once", node};
+        for (const uint32_t node : movers) met[node] = 0;
+    }
+    if (used != group.fused.size()) return Flaw{"lanes hold each element of a fused sweep once", used};
+    return std::nullopt;
+}
+
 // Impulses of one point in a lane; comparisons let pass what is not finite.
 const char* point_flaw(const LanePoint& p, int lane, float friction) {
     constexpr float kRounding = 1e-4f, kTiny = 1e-20f;  // of the squares
@@ -259,7 +281,10 @@ MaybeFlaw validate_elements(const Partition& partition, const Elements& elements
     const auto list = [&](const auto& all) {
         for (const ElementRef& each : all) ++listed[first[each.set] + each.element];
     };
-    for (uint32_t g = 0; g < partition.group_count; ++g) list(partition.groups[g].elements);
+    for (uint32_t g = 0; g < partition.group_count; ++g) {
+        list(partition.groups[g].elements);
+        list(partition.groups[g].fused);
+    }
     for (const Block& block : partition.blocks) {
         list(block.elements);
         list(block.elastic);
@@ -317,7 +342,8 @@ MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const
 }
 
 MaybeFlaw validate_lanes(const System& system, const Group& group) {
-    return either(contact_lanes_flaw(system, group), [&] { return joint_lanes_flaw(system, group); });
+    const MaybeFlaw found = either(contact_lanes_flaw(system, group), [&] { return joint_lanes_flaw(system, group); });
+    return either(found, [&] { return element_lanes_flaw(system, group); });
 }
 
 MaybeFlaw validate_impulses(const System& system) {

@@ -67,6 +67,6 @@ void sample_link(uint64_t seed, void* data, Pose* x) {
 }  // namespace
 
 constinit const ConstraintType kDistance = anchored_type<Distance>("distance", sample_distance);
-constinit const ElementType kLinkElement = point_element<Distance>("link", sample_link);
+constinit const ElementType kLinkElement = point_element<Distance>("link", sample_link, &ElementKernels::link);
 
 }  // namespace taut

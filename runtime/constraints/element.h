@@ -9,6 +9,7 @@
 #include <span>
 
 #include "constraints/constraint.h"
+#include "constraints/element_kernels.h"
 
 namespace taut {
 
@@ -43,6 +44,8 @@ struct ElementType {
     // What positive_sum() below is to give, where a type has a cheaper way to it; else null.
     void (*positive_sum)(const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
                          double* k) = nullptr;
+    // Its fused sweep in lanes, where it has one; else null.
+    ElementSweep ElementKernels::*sweep = nullptr;
 };
 
 // Every type there is; tests, hash and snapshots loop over it.

@@ -83,7 +83,7 @@ private:
 
 }  // namespace
 
-constinit const ElementType kGreenTri3 = continuum_element<3, Green<2>>("Green tri3");
+constinit const ElementType kGreenTri3 = continuum_element<3, Green<2>>("Green tri3", &ElementKernels::green_tri3);
 constinit const ElementType kGreenQuad4 = continuum_element<4, Green<2>>("Green quad4");
 constinit const ElementType kGreenTet4 = continuum_element<4, Green<3>>("Green tet4");
 constinit const ElementType kGreenHex8 = continuum_element<8, Green<3>>("Green hex8");

@@ -115,7 +115,8 @@ constexpr auto line_of_particles() -> Line (*)(const void*, const Pose*) {
 }
 
 template <class E>
-constexpr ElementType point_element(const char* name, void (*sample)(uint64_t seed, void* data, Pose* x)) {
+constexpr ElementType point_element(const char* name, void (*sample)(uint64_t seed, void* data, Pose* x),
+                                    ElementSweep ElementKernels::*sweep = nullptr) {
     return {name,
             3,
             kNumbers<E>,
@@ -123,7 +124,8 @@ constexpr ElementType point_element(const char* name, void (*sample)(uint64_t se
              evaluate_particles<E>, stiffness_of_particles<E>, nullptr, sample, line_of_particles<E>()},
             evaluate_points<E>,
             stiffness_of_points<E>,
-            positive_sum_of<E>()};
+            positive_sum_of<E>(),
+            sweep};
 }
 
 // ---------------------------------------------------------------- between points of bodies

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 #include "partition/partition.h"
 
@@ -111,6 +112,20 @@ void Partition::colour_elements() {
     for (uint32_t e = 0; e < element_.size(); ++e) element_colour_[e] = take_colour(movers_of(e));
 }
 
+// Stage by stage, as if no block took any: a stage's colours follow those of the stages before.
+void Partition::colour_fused(const Elements& elements) {
+    element_pass_.assign(element_.size(), kNone);
+    for (uint32_t stage = 0; stage < kMostStages; ++stage) {
+        bool any = false;
+        for (uint32_t e = 0; e < element_.size(); ++e) {
+            const ElementSet& set = elements.set[element_[e].set];
+            if (!set.fused || set.stage != stage) continue;
+            if (!std::exchange(any, true)) std::fill(used_.begin(), used_.end(), 0);
+            element_pass_[e] = stage * kMaxColours + take_colour(movers_of(e));
+        }
+    }
+}
+
 // Puts items_ in the order of their ranks, (colour * kKinds + kind) * kSlices + place, with take(at, rank, item).
 // Returns how many colours there are.
 template <class RankOf, class Take>
@@ -165,12 +180,33 @@ void Partition::list_swept_elements(uint32_t g) {
     Group& group = groups[g];
     items_.clear();
     for (uint32_t e = 0; e < element_.size(); ++e)
-        if (!element_in_block_[e] && is_in(g, movers_of(e))) items_.push_back(e);
+        if (!element_in_block_[e] && !(lanes_ && element_pass_[e] != kNone) && is_in(g, movers_of(e)))
+            items_.push_back(e);
     group.elements.resize(items_.size());
     const uint32_t used = sort_by_rank(
         group.element_colour_begin, [&](uint32_t e) { return rank(element_colour_[e], 0, movers_of(e)); },
         [&](uint32_t at, uint32_t, uint32_t e) { group.elements[at] = element_[e]; });
     colours = std::max(colours, used);
+}
+
+void Partition::list_fused_elements(uint32_t g) {
+    Group& group = groups[g];
+    group.fused.clear();
+    group.fused_pass.clear();
+    if (!lanes_) return;
+    items_.clear();
+    rank_begin_.assign(kMostStages * kMaxColours + 1, 0);
+    for (uint32_t e = 0; e < element_.size(); ++e) {
+        if (element_pass_[e] == kNone || element_in_block_[e] || !is_in(g, movers_of(e))) continue;
+        items_.push_back(e);
+        ++rank_begin_[element_pass_[e] + 1];
+    }
+    for (uint32_t pass = 0; pass < kMostStages * kMaxColours; ++pass) {
+        const uint32_t begin = rank_begin_[pass], end = rank_begin_[pass + 1] += begin;
+        if (begin < end) group.fused_pass.push_back({begin, end, (pass + 1) % kMaxColours == 0});
+    }
+    group.fused.resize(items_.size());
+    for (const uint32_t e : items_) group.fused[rank_begin_[element_pass_[e]]++] = element_[e];
 }
 
 void Partition::list_pairs(uint32_t g, const Pairs& pairs) {
@@ -229,6 +265,7 @@ void Partition::distribute(const Pairs& pairs, bool by_place) {
     for (uint32_t g = 0; g < group_count; ++g) {
         list_joints(g);
         list_swept_elements(g);
+        list_fused_elements(g);
         list_pairs(g, pairs);
     }
 }

@@ -77,6 +77,18 @@ void Partition::find_towers(const PartitionRules& rules) {
     }
 }
 
+// Of islands with swept elements that have a tolerance.
+void Partition::find_strains(const Elements& elements) {
+    for (Island& island : island_) island.strain = 0;
+    for (uint32_t e = 0; e < element_.size() && lanes_; ++e) {
+        const ElementSet& set = elements.set[element_[e].set];
+        if (element_pass_[e] == kNone || element_in_block_[e] || set.tolerance == 0) continue;
+        const auto moves = std::ranges::find_if(movers_of(e), [](uint32_t node) { return node != kNone; });
+        double& strain = island_[island_of_[*moves]].strain;
+        strain = std::max(strain, set.yield / set.tolerance);
+    }
+}
+
 void Partition::choose_substeps(const PartitionRules& rules) {
     for (Island& island : island_) {
         uint32_t halves = halves_for(island.stiffness);
@@ -93,6 +105,10 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         island.substeps = rules.fixed ? rules.substeps : (rules.substeps * halves + 1) / 2;
     }
     if (rules.fixed) return;
+    for (Island& island : island_) {  // yields fall as the square of substeps
+        const double substeps = std::ceil(rules.time_step * std::sqrt(island.strain));
+        island.substeps = std::max(island.substeps, static_cast<uint32_t>(std::min<double>(substeps, kMostElasticSubsteps)));
+    }
     for (Block& block : blocks) {
         Island& island = island_[island_of_[block.nodes[0]]];
         if (!block.tower && (block.mass_ratio > kExtremeMassRatio || block.memory.escalated))

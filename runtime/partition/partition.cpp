@@ -21,6 +21,7 @@ Partition::Partition(Memory& memory)
       element_begin_(memory),
       element_node_(memory),
       element_colour_(memory),
+      element_pass_(memory),
       incidence_(memory),
       element_in_block_(memory),
       block_of_(memory),
@@ -82,6 +83,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
             note_ties();
             run(team, kOfGraph, nodes);
             colour_elements();
+            colour_fused(elements);
             number_islands();
             list_small();
         } else {
@@ -92,6 +94,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
         throw;
     }
     folds_ = rules.folds;
+    lanes_ = rules.lanes;
     soften_squeezed(nodes, pairs, rules);
     find_loads(nodes);
     find_columns(nodes, pairs, rules);
@@ -105,6 +108,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
         build_blocks(nodes, joints, elements, pairs, rules);
     else
         forget_blocks(joints);
+    find_strains(elements);
     choose_substeps(rules);
     colour_joints();
     colour_pairs(pairs);

@@ -92,6 +92,12 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }
 
+// Elements of one stage and colour.
+struct FusedPass {
+    uint32_t begin, end;  // in Group::fused
+    bool overflow;        // they share moving nodes
+};
+
 struct Group {
     explicit Group(Memory& memory)
         : nodes(memory),
@@ -102,6 +108,8 @@ struct Group {
           joint_colour_begin(memory),
           elements(memory),
           element_colour_begin(memory),
+          fused(memory),
+          fused_pass(memory),
           blocks(memory),
           direct_pairs(memory),
           span_pairs(memory) {}
@@ -116,6 +124,8 @@ struct Group {
     Array<uint32_t> joints, joint_colour_begin;
     Array<ElementRef> elements;  // with colours of their own
     Array<uint32_t> element_colour_begin;
+    Array<ElementRef> fused;  // swept elements of sets with a fused sweep, by stage, colour and set
+    Array<FusedPass> fused_pass;
     Array<uint32_t> blocks;        // index into Partition::blocks
     Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
     Array<uint32_t> span_pairs;    // swept ones with a side of two nodes, which lanes do not take
@@ -126,6 +136,7 @@ struct Group {
 void note_loads(Joints& joints, Elements& elements, const Nodes& nodes);
 constexpr uint8_t kLoadedAfter = 3, kLoadedFor = 60;  // frames
 
+constexpr uint32_t kMostElasticSubsteps = 64;  // a frame, for fused sweeps of elements
 constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
 constexpr float kHeavyOnLight = 10;   // load over support mass, from which on a load is heavy
 constexpr uint32_t kMostTower = 60;   // bodies of an island that is solved directly, or what a heavy one of it presses
@@ -138,6 +149,7 @@ struct PartitionRules {
     double time_step;   // of a frame [s]
     Vec3 gravity;       // [m/s^2]
     bool by_place;      // nodes of a group by place, for threads that take a stretch each; else ascending
+    bool lanes = true;  // sets with a fused sweep have one
     bool folds = true;  // blocks take elements of other forms than rows as such; else all have rows
     double spring_substep = time_step / substeps;  // for which contacts are as soft as they are; World::spring_substep
 };
@@ -191,6 +203,7 @@ private:
         bool may_be_column = false;  // one as a whole, which a block may hold
         bool weak = false;           // has bodies in weak_
         bool squeezed = false;       // by something kinematic, harder than sweeps hold
+        double strain = 0;           // by which fused sweeps would yield in substeps of one second, over what they may
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -240,6 +253,7 @@ private:
     void note_ties();
     void list_elements(const Elements& elements);
     void colour_elements();
+    void colour_fused(const Elements& elements);
     void number_islands();
     void find_loads(const Nodes& nodes);
     void find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
@@ -271,6 +285,7 @@ private:
     void find_block_of(uint32_t nodes);
     void forget_blocks(const Joints& joints);
     void choose_substeps(const PartitionRules& rules);
+    void find_strains(const Elements& elements);
     void make_groups();
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
     void colour_pairs(const Pairs& pairs);
@@ -279,6 +294,7 @@ private:
     void list_nodes(bool by_place);
     void list_joints(uint32_t group);
     void list_swept_elements(uint32_t group);
+    void list_fused_elements(uint32_t group);
     void list_pairs(uint32_t group, const Pairs& pairs);
     void list_spans(const Pairs& pairs);
     template <class RankOf, class Take>
@@ -311,10 +327,11 @@ private:
     Array<ElementRef> element_;
     Array<uint32_t> element_begin_, element_node_;  // of each its nodes, kNone in place of those that do not move
     Array<uint8_t> element_colour_;
+    Array<uint32_t> element_pass_;  // of sets with a fused sweep: stage * kMaxColours + colour within it; else kNone
     Incidence incidence_;
-    Array<uint8_t> element_in_block_;  // of this frame
-    bool folds_ = true;                // likewise
-    Array<uint32_t> block_of_;         // by slot: its block in the last frame, or kNone
+    Array<uint8_t> element_in_block_;   // of this frame
+    bool folds_ = true, lanes_ = true;  // likewise
+    Array<uint32_t> block_of_;          // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
     uint32_t filled_ = 0;                          // of spare_
     Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot

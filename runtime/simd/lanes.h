@@ -78,13 +78,15 @@ struct ScalarLanes {
         for (int i = 0; i < kLanes; ++i) found = found || ((lanes.f[i] != 0) || ...);
         return found;
     }
-    // Rows of eight floats, one for each lane, become columns: out[c] holds component c of all lanes.
-    static void transpose(const float* const row[kLanes], ScalarLanes out[8]) {
-        for (int c = 0; c < 8; ++c)
+    // Rows of eight or four floats, one for each lane, become columns: out[c] holds component c of all lanes.
+    template <int Columns>
+    static void transpose(const float* const row[kLanes], ScalarLanes (&out)[Columns]) {
+        for (int c = 0; c < Columns; ++c)
             for (int lane = 0; lane < kLanes; ++lane) out[c].f[lane] = row[lane][c];
     }
-    static void transpose_back(const ScalarLanes in[8], float* const row[kLanes]) {
-        for (int c = 0; c < 8; ++c)
+    template <int Columns>
+    static void transpose_back(const ScalarLanes (&in)[Columns], float* const row[kLanes]) {
+        for (int c = 0; c < Columns; ++c)
             for (int lane = 0; lane < kLanes; ++lane) row[lane][c] = in[c].f[lane];
     }
 };
@@ -116,17 +118,19 @@ struct Twice {
     static bool any(Lanes... lanes) {
         return R::any(lanes.lo..., lanes.hi...);
     }
-    static void transpose(const float* const row[kWidth], Twice out[8]) {
-        R lo_[8], hi_[8];
+    template <int Columns>
+    static void transpose(const float* const row[kWidth], Twice (&out)[Columns]) {
+        R lo_[Columns], hi_[Columns];
         R::transpose(row, lo_);
         R::transpose(row + R::kWidth, hi_);
 #pragma GCC unroll 8
-        for (int c = 0; c < 8; ++c) out[c] = {lo_[c], hi_[c]};
+        for (int c = 0; c < Columns; ++c) out[c] = {lo_[c], hi_[c]};
     }
-    static void transpose_back(const Twice in[8], float* const row[kWidth]) {
-        R a_[8], b_[8];
+    template <int Columns>
+    static void transpose_back(const Twice (&in)[Columns], float* const row[kWidth]) {
+        R a_[Columns], b_[Columns];
 #pragma GCC unroll 8
-        for (int c = 0; c < 8; ++c) a_[c] = in[c].lo, b_[c] = in[c].hi;
+        for (int c = 0; c < Columns; ++c) a_[c] = in[c].lo, b_[c] = in[c].hi;
         R::transpose_back(a_, row);
         R::transpose_back(b_, row + R::kWidth);
     }
@@ -163,8 +167,9 @@ struct Sse2Register {
         ((a.f = _mm_or_ps(a.f, more.f)), ...);
         return _mm_movemask_ps(_mm_cmpneq_ps(a.f, _mm_setzero_ps())) != 0;
     }
-    static void transpose(const float* const row[4], Sse2Register out[8]) {
-        for (int half = 0; half < 2; ++half) {
+    template <int Columns>
+    static void transpose(const float* const row[4], Sse2Register (&out)[Columns]) {
+        for (int half = 0; half < Columns / 4; ++half) {
             __m128 r[4];
 #pragma GCC unroll 8
             for (int i = 0; i < 4; ++i) r[i] = _mm_load_ps(row[i] + 4 * half);
@@ -173,8 +178,9 @@ struct Sse2Register {
             for (int i = 0; i < 4; ++i) out[4 * half + i].f = r[i];
         }
     }
-    static void transpose_back(const Sse2Register in[8], float* const row[4]) {
-        for (int half = 0; half < 2; ++half) {
+    template <int Columns>
+    static void transpose_back(const Sse2Register (&in)[Columns], float* const row[4]) {
+        for (int half = 0; half < Columns / 4; ++half) {
             __m128 r[4];
 #pragma GCC unroll 8
             for (int i = 0; i < 4; ++i) r[i] = in[4 * half + i].f;
@@ -225,9 +231,10 @@ struct Avx2Register {
         return _mm256_movemask_ps(_mm256_cmp_ps(a.f, _mm256_setzero_ps(), _CMP_NEQ_UQ)) != 0;
     }
     // By half rows: what crosses the halves of a register is slow on many processors, and loads and stores need not.
-    static void transpose(const float* const row[8], Avx2Register out[8]) {
+    template <int Columns>
+    static void transpose(const float* const row[8], Avx2Register (&out)[Columns]) {
 #pragma GCC unroll 2
-        for (int half = 0; half < 2; ++half) {
+        for (int half = 0; half < Columns / 4; ++half) {
             __m256 r[4];
 #pragma GCC unroll 4
             for (int i = 0; i < 4; ++i) r[i] = _mm256_loadu2_m128(row[i + 4] + 4 * half, row[i] + 4 * half);
@@ -236,9 +243,10 @@ struct Avx2Register {
             for (int i = 0; i < 4; ++i) out[4 * half + i].f = r[i];
         }
     }
-    static void transpose_back(const Avx2Register in[8], float* const row[8]) {
+    template <int Columns>
+    static void transpose_back(const Avx2Register (&in)[Columns], float* const row[8]) {
 #pragma GCC unroll 2
-        for (int half = 0; half < 2; ++half) {
+        for (int half = 0; half < Columns / 4; ++half) {
             __m256 r[4];
 #pragma GCC unroll 4
             for (int i = 0; i < 4; ++i) r[i] = in[4 * half + i].f;
@@ -288,9 +296,10 @@ struct Avx512Register {
         return _mm512_cmp_ps_mask(a.f, _mm512_setzero_ps(), _CMP_NEQ_UQ) != 0;
     }
     // By half rows, four of which fill a register.
-    static void transpose(const float* const row[16], Avx512Register out[8]) {
+    template <int Columns>
+    static void transpose(const float* const row[16], Avx512Register (&out)[Columns]) {
 #pragma GCC unroll 2
-        for (int half = 0; half < 2; ++half) {
+        for (int half = 0; half < Columns / 4; ++half) {
             __m512 r[4];
 #pragma GCC unroll 4
             for (int i = 0; i < 4; ++i) {
@@ -304,9 +313,10 @@ struct Avx512Register {
             for (int i = 0; i < 4; ++i) out[4 * half + i].f = r[i];
         }
     }
-    static void transpose_back(const Avx512Register in[8], float* const row[16]) {
+    template <int Columns>
+    static void transpose_back(const Avx512Register (&in)[Columns], float* const row[16]) {
 #pragma GCC unroll 2
-        for (int half = 0; half < 2; ++half) {
+        for (int half = 0; half < Columns / 4; ++half) {
             __m512 r[4];
 #pragma GCC unroll 4
             for (int i = 0; i < 4; ++i) r[i] = in[4 * half + i].f;

@@ -36,6 +36,8 @@ public:
           nodes_(s_.system.sweep.data()),
           joint_(*s_.settings.joint_kernels),
           contact_(*s_.settings.kernels),
+          elements_(s_.system.elements.view()),
+          terms_{static_cast<float>(s_.system.scheme.h), static_cast<float>(1 / s_.system.scheme.act), false},
           soft_(contact_terms(s_.system.scheme.h, s_.system.stretch)) {}
 
     void joints(Pass pass, uint32_t begin, uint32_t end) const {
@@ -45,6 +47,11 @@ public:
         if (pass == Pass::first_correct) joint_.keep(joints_, begin, end);
         if (pass == Pass::first_correct || pass == Pass::correct) joint_.correct(joints_, begin, end, nodes_);
         if (pass == Pass::take_back) joint_.take_back(joints_, begin, end, nodes_);
+    }
+    void elements(Pass pass, const ElementPass& of, uint32_t begin, uint32_t end) const {
+        ElementTerms terms = terms_;
+        terms.first = pass == Pass::first_biased;
+        (s_.settings.element_kernels->*of.sweep)(elements_, begin, end, nodes_, s_.system.sweep_pose.data(), terms);
     }
     void rows(Pass pass) const {
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
@@ -70,6 +77,8 @@ private:
     SweepNode* nodes_;
     const JointKernels& joint_;
     const ContactKernels& contact_;
+    ElementView elements_;
+    ElementTerms terms_;
     SweepTerms soft_;
 };
 
@@ -90,10 +99,22 @@ public:
         const auto colours = static_cast<uint32_t>(s_.system.joints.colour_begin.size()) - 1;
         for (uint32_t k = 0; k < colours; ++k) add_joints_of(pass, backward ? colours - 1 - k : k);
     }
+    // Some passes over elements, from one on.
+    void add_elements(Pass pass, uint32_t begin, uint32_t end) {
+        for (uint32_t k = begin; k < end; ++k) {
+            const ElementPass& of = s_.system.elements.pass[k];
+            groups_ += of.end - of.begin;
+            if (of.overflow || of.end - of.begin <= 1)
+                add_single({&Program::elements_part, pass, k});
+            else
+                add_alone({&Program::elements_part, pass, k});
+        }
+    }
     void add_rows_and_contacts(Pass pass, bool backward = false) {
         add_rows(pass);
         add_contacts(pass, backward);
     }
+    bool empty() const { return pieces_ == 0; }
     // publishes: moves what was swept to the solution after all of it.
     void run(bool publishes) {
         if (publishes) add_alone({&Program::publish_part, {}, 0});
@@ -174,6 +195,11 @@ private:
         const uint32_t first = begin[piece.colour], count = begin[piece.colour + 1] - first;
         kernels_.joints(piece.pass, first + begin_of(part, count), first + begin_of(part + 1, count));
     }
+    void elements_part(const Piece& piece, uint32_t part) const {
+        const ElementPass& of = s_.system.elements.pass[piece.colour];
+        const uint32_t count = of.end - of.begin;
+        kernels_.elements(piece.pass, of, of.begin + begin_of(part, count), of.begin + begin_of(part + 1, count));
+    }
     void rows_part(const Piece& piece, uint32_t part) const {
         if (part == 0) kernels_.rows(piece.pass);
     }
@@ -198,6 +224,10 @@ private:
     }
     uint32_t begin_of(uint32_t part, uint32_t count) const { return begin_of_part(part, s_.team.size(), count); }
 
+public:
+    static constexpr uint32_t kMostElementPasses = 128;  // of one program
+
+private:
     static constexpr uint32_t kMostPasses = kRelaxSweeps;
     // Colours of joints, of elements, and of contacts twice.
     static constexpr uint32_t kMost = kMostPasses * (4 * kMaxColours + 1) + 2 * kMaxColours + 1;
@@ -220,11 +250,27 @@ void sweep_joints(Substep& s, Kernels::Pass pass, bool backward) {
     program.run(false);
 }
 
+void sweep_elements(Substep& s, Kernels::Pass pass) {
+    const auto passes = static_cast<uint32_t>(s.system.elements.pass.size());
+    for (uint32_t begin = 0; begin < passes; begin += Program::kMostElementPasses) {
+        Program program(s);
+        program.add_elements(pass, begin, std::min(passes, begin + Program::kMostElementPasses));
+        program.run(false);
+    }
+}
+
 }  // namespace
 
+// Elements, whose impulses begin at 0, have their first sweep before contacts have back what they carried: a contact
+// that bears what elements press on it would else throw it up first.
 void warm_start_sweeps(Substep& s) {
+    {
+        Program program(s);
+        program.add_joints(Kernels::Pass::warm_start);
+        program.run(false);
+    }
+    sweep_elements(s, Kernels::Pass::first_biased);
     Program program(s);
-    program.add_joints(Kernels::Pass::warm_start);
     program.add_rows_and_contacts(Kernels::Pass::warm_start);
     program.run(false);
 }
@@ -242,6 +288,7 @@ void sweep_biased(Substep& s) {
         for (const bool backward : {false, true}) sweep_joints(s, Pass::biased, backward);
         for (uint32_t k = 0; last && k < sweeps; ++k)
             sweep_joints(s, k == 0 ? Pass::first_correct : Pass::correct, k % 2 == 1);
+        if (i > 0) sweep_elements(s, pass);
         Program program(s);
         program.add_rows_and_contacts(pass, s.corrects_backward);
         program.run(last);
@@ -255,7 +302,7 @@ void sweep_relaxed(Substep& s) {
         program.add_joints(Kernels::Pass::relaxed, i % 2 == 1);
         program.add_rows_and_contacts(Kernels::Pass::relaxed, s.relaxes_backward);
     }
-    program.run(true);
+    if (!program.empty()) program.run(true);
 }
 
 namespace {

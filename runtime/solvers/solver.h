@@ -36,6 +36,7 @@ struct SolverSettings {
     double gravity_squared;  // |g|^2 [m^2/s^4], scale of the energy guard
     const ContactKernels* kernels;
     const JointKernels* joint_kernels;
+    const ElementKernels* element_kernels;
     bool adaptive_damping = false;     // |K| in the place of K; see adaptive_damping.h
     double restitution_threshold = 0;  // [m/s]
     RowSettings rows{};

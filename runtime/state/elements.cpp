@@ -113,4 +113,13 @@ uint32_t Elements::count() const {
     return sum;
 }
 
+void age_yields(Elements& elements, double time, uint32_t substeps) {
+    constexpr double kMemory = 0.5, kGrowth = 0.03;  // times in which they go and grow, e-fold [s]
+    for (ElementSet& set : elements.set) {
+        const double least = set.tolerance * substeps * substeps / (time * time);
+        set.most_yield = (1 + time / kGrowth) * std::max(least, set.yield);
+        set.yield /= 1 + time / kMemory;
+    }
+}
+
 }  // namespace taut

@@ -23,6 +23,8 @@ enum class ElementForm : uint8_t {
     energy,  // a step of Newton's method on W = 1/2 C^T D C within the nodes' blocks: lambda is -D C, and not kept
 };
 
+constexpr uint32_t kMostStages = 16;
+
 struct ElementSet {
     explicit ElementSet(Memory& m)
         : node(m), data(m), softness(m), lambda(m), drift(m), slow_turn(m), loaded(m), fresh(m), memory(m) {}
@@ -30,6 +32,13 @@ struct ElementSet {
     const ElementType* type = nullptr;  // null: dead slot
     ElementForm form = ElementForm::rows;
     JointSolve solve = JointSolve::direct;
+    // Swept at the positions that the sweep moves them to, by the type's fused sweep in lanes (element_lanes.h), in the
+    // order of stages; else, and by solvers without lanes, as linearised rows.
+    bool fused = false;
+    uint8_t stage = 0;      // below kMostStages
+    double tolerance = 0;   // of a fused sweep's yield, a strain, for which its islands take substeps; 0: the world's
+    double yield = 0;       // of substeps of one second, as it was of late: that of substeps h is h^2 of it [1/s^2]
+    double most_yield = 0;  // that it may grow to in this frame
     bool collide_connected = false;
     bool pulls = false;                           // of one row; said before its compliance and elements
     bool coupled = false;                         // the compliance is no multiple of 1
@@ -68,10 +77,12 @@ struct ElementSet {
 };
 template <class Visitor, Like<ElementSet> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [type, form, solve, collide_connected, pulls, coupled, compliance, stiffness, relaxation, stop, serial,
-           version, node, data, softness, lambda, drift, slow_turn, loaded, fresh, memory] = of;
-    TAUT_FIELDS(visitor, type, form, solve, collide_connected, pulls, coupled, compliance, stiffness, relaxation, stop,
-                node, data, softness, lambda, drift, slow_turn, loaded, fresh, memory);
+    auto& [type, form, solve, fused, stage, tolerance, yield, most_yield, collide_connected, pulls, coupled, compliance,
+           stiffness, relaxation, stop, serial, version, node, data, softness, lambda, drift, slow_turn, loaded, fresh,
+           memory] = of;
+    TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, most_yield, collide_connected, pulls,
+                coupled, compliance, stiffness, relaxation, stop, node, data, softness, lambda, drift, slow_turn,
+                loaded, fresh, memory);
     TAUT_ASIDE(visitor, serial, version);
 }
 
@@ -116,6 +127,11 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_ASIDE(visitor, ids, version);
     TAUT_ROWS(visitor, ids, set);
 }
+
+// Once a frame of so long [s], after the choice of substeps, of which the world takes so many at least. Yields go
+// slowly, as what was taut may soon be so again. They also grow slowly: shorter substeps are as a stiffer material, and
+// what is stretched would gain energy.
+void age_yields(Elements& elements, double time, uint32_t substeps);
 
 // act(set, element, nodes) for each live element.
 template <class Of, class Act>

@@ -13,6 +13,7 @@ enum class SoftPart : uint8_t {
     stretch,  // along links, or within triangles or cells, in the order in which the host gave these
     shear,
     bend,
+    bound,  // what a part of a thread never exceeds
     limit,   // of a cloth: along its edges, beyond the strain that it bears
     tether,  // of a cloth: from vertices to pinned ones
 };

@@ -46,6 +46,11 @@ void prepare_joint_lanes(Team& team, System& system, const JointKernels& kernels
 // Once a frame and group: their forces back into the joints.
 void store_joint_lanes(Team& team, const System& system);
 
+// Once a frame and group: elements of sets with a fused sweep into lanes; their forces back into the sets.
+void build_element_lanes(Team& team, System& system, const Group& group, Elements& elements);
+void store_element_lanes(Team& team, const System& system);
+void store_element_yields(const System& system);
+
 // Where the next substep has another length: forces stay.
 void change_length(Team& team, System& system, const Group& group, Pairs& pairs, double h, double frame);
 

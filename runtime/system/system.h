@@ -19,6 +19,7 @@
 #include "constraints/contact.h"
 #include "constraints/contact_lanes.h"
 #include "constraints/element.h"
+#include "constraints/element_lanes.h"
 #include "constraints/joint_lanes.h"
 #include "constraints/rolling.h"
 #include "constraints/span_contact.h"
@@ -166,6 +167,7 @@ struct System {
           sweep_pose(memory),
           rows(memory),
           joints(memory),
+          elements(memory),
           contacts(memory) {}
 
     // In what begin_frame() fills, for so many nodes: as they come, not in the step that sees them first.
@@ -214,6 +216,7 @@ struct System {
 
     Rows rows;              // of the group being solved
     JointLanes joints;      // swept ones of the group being solved
+    ElementLanes elements;  // likewise, of sets with a fused sweep
     ContactLanes contacts;  // of the group being solved
 };
 
