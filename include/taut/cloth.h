@@ -81,6 +81,9 @@ typedef struct taut_cloth_def {
     float tear_strain;      /**< 0: it does not tear; or [1e-3, 100]. Default 0 */
     float gravity_scale;    /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve; /**< default TAUT_DEFORMABLE_DIRECT */
+    float stretch_tolerance;     /**< of a swept cloth: by which it may stretch beyond what its stiffness lets it, and
+                                      for which it and what it touches take substeps, up to 64 a step, [1e-4, 10].
+                                      Default 0.2 */
     taut_material material;
     taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
     uint64_t user_data; /**< of the cloth and of each of its vertices */

@@ -19,7 +19,10 @@ extern "C" {
 /** How the world's default solver takes the elements of a deformable; the other solvers take all alike. */
 typedef enum taut_deformable_solve {
     TAUT_DEFORMABLE_DIRECT = 0, /**< all at once: exact for any stiffness and load; time grows as vertices^1.5 */
-    TAUT_DEFORMABLE_SWEPT = 1,  /**< element by element: time grows as vertices; what is stiff or heavy gives way */
+    /** element by element, in substeps of its island's own, as many as its stiffness and what it bears ask for, up to
+       64 a step: time grows as vertices; what is stiffer or heavier than these hold gives way. Cloths of links and of
+        triangles without bending stiffness, neo-Hookean tetrahedra; others are swept as joints are, far slower */
+    TAUT_DEFORMABLE_SWEPT = 1,
     TAUT_DEFORMABLE_SOLVE_MAX = 0x7fffffff
 } taut_deformable_solve;
 

@@ -11,6 +11,7 @@ constexpr Range kAreaDensity{1e-3, 1e4};     // [kg/m^2]
 constexpr Range kSheetStiffness{1e-3, 1e9};  // [N/m]
 constexpr Range kSheetPoisson{-0.999, 0.999};
 constexpr Range kSheetBending{1e-9, 1e6};  // [N m]
+constexpr Range kStretchTolerance{1e-4, 10};
 constexpr Range kShare{0, 1};
 constexpr Range kLimitStrain{1e-4, 100};
 constexpr Range kLimitCompliance{1e-9, 1e6};  // [m/N]
@@ -31,6 +32,7 @@ bool check_def(Check& check, const taut_cloth_def& def) {
         .number("stretch_compliance[1]", def.stretch_compliance[1], kCompliance)
         .number_or("shear_compliance", def.shear_compliance, kCompliance, kNoLinks)
         .number_or("bend_compliance", def.bend_compliance, kCompliance, kNoLinks)
+        .number("stretch_tolerance", def.stretch_tolerance, kStretchTolerance)
         .number("compression", def.compression, kShare)
         .number_or("strain_limit", def.strain_limit, kLimitStrain, kNoLinks)
         .number("limit_compliance", def.limit_compliance, kLimitCompliance)
@@ -61,6 +63,7 @@ Fabric fabric_of(const taut_cloth_def& def) {
     fabric.shear_compliance = def.shear_compliance;
     fabric.bend_compliance = def.bend_compliance;
     fabric.damping = def.damping;
+    fabric.tolerance = def.stretch_tolerance;
     fabric.compression = def.compression;
     fabric.strain_limit = def.strain_limit;
     fabric.limit_compliance = def.limit_compliance;
@@ -95,6 +98,7 @@ void taut_cloth_def_init(taut_cloth_def* def) {
     def->stretch_compliance[0] = def->stretch_compliance[1] = 1e-6f;
     def->shear_compliance = 1e-4f;
     def->bend_compliance = kNoLinks;
+    def->stretch_tolerance = 0.2f;
     def->compression = 1;
     def->strain_limit = kNoLinks;
     def->limit_compliance = 1e-6f;
@@ -133,7 +137,9 @@ taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, t
         plan.soft.gravity_scale = def->gravity_scale;
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->material, def->filter);
-        const char* fault = plan_cloth(mesh, kind, fabric_of(*def), solve_of(def->solve), plan);
+        Fabric fabric = fabric_of(*def);
+        fabric.shortest_substep = static_cast<double>(world.def.time_step) / kMostElasticSubsteps;
+        const char* fault = plan_cloth(mesh, kind, fabric, solve_of(def->solve), plan);
         if (!check.require(!fault, fault)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "constraints/material.h"
 #include "constraints/shape_functions.h"
+#include "models/long_links.h"
 
 namespace taut {
 namespace {
 
-constexpr double kFlat = 1e-6;    // angle between two triangles that are flat at rest [rad]
-constexpr size_t kMostSets = 10;  // of links by direction, with those that only pull, bends, limits and tethers
+constexpr double kFlat = 1e-6;  // angle between two triangles that are flat at rest [rad]
+// Of links by direction, with those that only pull, bends, limits, tethers and long links.
+constexpr size_t kMostSets = 10 + kMostStages;
 
 // Of a link: along warp, along weft, or neither, within an eighth of a turn.
 enum class Thread : uint8_t { warp, weft, shear };
@@ -102,6 +106,8 @@ private:
         ElementPlan& plan = plan_.element.emplace_back(memory_, type, part);
         plan.solve = solve_;
         plan.relaxation = fabric_.damping;
+        plan.stage = kMostStages - 1;
+        plan.tolerance = fabric_.tolerance;
         return plan;
     }
 
@@ -164,6 +170,31 @@ private:
             const Links& across = thread == Thread::shear ? shear : bend;
             for (size_t i = across.first; i < across.end; ++i)
                 add_link(plan_.element[i], edge.across[0], edge.across[1], edge.triangle[0], edge.triangle[1]);
+        }
+        if (solve_ == JointSolve::swept && fabric_.tear_strain == 0) add_long_links();
+    }
+
+    // What sweeps carry corrections far with, beside links that are stiffer than the shortest substeps hold: they make
+    // a cloth up to twice as stiff, which is less than these leave. Of their own yield they are not asked. A cloth that
+    // may tear goes without: a tear would have to part them.
+    void add_long_links() {
+        const double compliance = std::max(fabric_.stretch_compliance[0], fabric_.stretch_compliance[1]);
+        const double mass = std::reduce(plan_.soft.mass.begin(), plan_.soft.mass.end()) / mesh_.rest.size();
+        if (compliance > fabric_.shortest_substep * fabric_.shortest_substep * 2 / mass) return;
+        Array<ThreadLink> threads(memory_);
+        for (const MeshEdge& edge : edges_)
+            if (thread_of(edge) != Thread::shear) threads.push_back({edge.a, edge.b});
+        Array<LongLink> links(memory_);
+        find_long_links(mesh_.rest, threads, kMostStages - 1, links);
+        uint32_t level = kNone;
+        for (const LongLink& link : links) {
+            if (std::exchange(level, link.level) != link.level) {
+                ElementPlan& plan = add_pulling(SoftPart::bound, compliance);
+                plan.stage = static_cast<uint8_t>(kMostStages - 1 - level);
+                plan.tolerance = 0;
+            }
+            const uint32_t ends[2] = {link.a, link.b};
+            plan_.element.back().add(ends, {&link.length, 1}, link.links);
         }
     }
 

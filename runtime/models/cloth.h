@@ -25,6 +25,8 @@ struct Fabric {
     double stretch_compliance[2] = {0, 0};  // of each link along warp and weft [m/N]; 0: rigid
     double shear_compliance = 0;            // infinite: no such links
     double bend_compliance = 0;             // likewise
+    double tolerance = 0;                   // of the stretch that sweeps leave
+    double shortest_substep = 0;            // that they may take for it [s]
     double damping = 0;                     // time d of the stress D (E + d dE/dt) [s]
     double compression = 1;                 // stiffness of pressed links over that of pulled ones
     double strain_limit = 0;                // of edges; infinite: none

@@ -1,6 +1,7 @@
 #include "models/softs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "models/attachments.h"
 #include "models/bodies.h"
@@ -48,6 +49,26 @@ void add_vertices(World& world, uint32_t index, const SoftPlan& plan) {
     }
 }
 
+// By how much an element's rows would yield to what it carries where it is, within a substep of one second: J W J^T
+// lambda of each, of which the most.
+double yield_of(const World& world, const ElementSet& set, uint32_t element) {
+    const ConstraintType& row = set.type->row;
+    const auto nodes = set.nodes_of(element);
+    Pose x[kMaxNodes];
+    for (size_t n = 0; n < nodes.size(); ++n) x[n].x = world.nodes.motion[nodes[n]].x;
+    double c[kMaxRows], j[kMaxNodes * kMaxRows * kDof], most = 0;
+    row.evaluate(set.data_of(element), x, c, j);
+    for (int r = 0; r < row.rows; ++r) {
+        double force = 0, moves = 0;
+        for (int k = 0; k < row.rows; ++k) force += set.stiffness[r * row.rows + k] * c[k] / set.softness[element];
+        for (size_t n = 0; n < nodes.size(); ++n)
+            moves += world.nodes.mass[nodes[n]].inv_mass *
+                     Vec3::Map(j + (static_cast<int>(n) * row.rows + r) * kDof).squaredNorm();
+        most = std::max(most, moves * std::abs(force));
+    }
+    return most;
+}
+
 void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
     const auto nodes = static_cast<uint32_t>(plan.type->row.nodes), numbers = static_cast<uint32_t>(plan.type->numbers);
     const auto rows = static_cast<size_t>(plan.type->row.rows), count = plan.softness.size();
@@ -56,6 +77,9 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
     ElementSet& set = world.elements.set[index];
     set.form = plan.form;
     set.solve = plan.solve;
+    set.fused = plan.solve == JointSolve::swept && plan.type->sweep != nullptr;
+    set.stage = plan.stage;
+    set.tolerance = plan.tolerance;
     set.pulls = plan.pulls;
     set.collide_connected = true;  // a group keeps the vertices apart
     set_compliance(set, {plan.compliance, rows * rows}, plan.relaxation);
@@ -65,6 +89,7 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
         for (uint32_t n = 0; n < nodes; ++n) node[n] = soft.node[plan.vertex[e * nodes + n]];
         world.elements.insert(set, e, {node, nodes}, plan.softness[e]);
         std::copy_n(&plan.data[size_t{e} * numbers], numbers, set.data_of(e));
+        if (set.fused && set.tolerance > 0) set.yield = std::max(set.yield, yield_of(world, set, e));
     }
     if (soft.tear_strain > 0) soft.corner.insert(soft.corner.end(), plan.corner.begin(), plan.corner.end());
 }

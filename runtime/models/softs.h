@@ -26,6 +26,8 @@ struct ElementPlan {
     SoftPart part;
     ElementForm form = ElementForm::rows;
     JointSolve solve = JointSolve::direct;
+    uint8_t stage = 0;     // of its fused sweep, where it is swept
+    double tolerance = 0;  // likewise
     bool pulls = false;
     double compliance[kMaxRows * kMaxRows] = {};  // [rows][rows] of a unit of the material [m/N per unit]
     double relaxation = 0;                        // [s]

@@ -8,6 +8,11 @@
 namespace taut {
 namespace {
 
+// Yield of neo-Hookean rows up to which sweeps hold them, and beyond which they shake. That of a tetrahedron at rest is
+// some 2 q, q = E h^2 / (rho dx^2) of substeps h and edges dx; a beam of 1 MPa swings as it should at q = 3/4, and
+// twice as far at 1.
+constexpr double kSweptYield = 1.5;
+
 // Faces of a cell, counterclockwise as seen from outside; a triangle ends with kNone.
 constexpr uint32_t kTetFaces[4][4] = {{1, 2, 3, kNone}, {0, 3, 2, kNone}, {0, 1, 3, kNone}, {0, 2, 1, kNone}};
 constexpr uint32_t kHexFaces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
@@ -86,6 +91,7 @@ const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve sol
         return "young_modulus, poisson_ratio: no stable material";
     element.form = ElementForm::energy;
     element.solve = solve;
+    element.tolerance = kSweptYield;
     element.relaxation = solid.damping;
     plan.soft.kind = SoftKind::solid;
     plan.soft.cell_points = tets ? 1 : 8;

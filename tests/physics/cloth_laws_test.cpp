@@ -34,6 +34,7 @@ protected:
         def.solve = GetParam().solve;
         def.area_density = 50;
         def.damping = 0.02f;
+        def.stretch_tolerance = 1e-4f;  // of swept ones
         def.filter.mask = 0;
         const taut_cloth cloth = add(world, def);
         for (uint32_t v : {0u, 1u, 4u, 5u})

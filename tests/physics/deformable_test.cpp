@@ -76,6 +76,43 @@ TEST(Cloth, OfStiffLinksHardlyStretches) {
     EXPECT_LE(peak, 0.03);
 }
 
+// Swept cloths take substeps for the stretch that is asked of them, whatever the frame is, and gain no energy by it.
+class SweptCloth : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(AtHertz, SweptCloth, testing::Values(30, 60, 120, 240));
+
+TEST_P(SweptCloth, StretchesNoMoreThanItMay) {
+    constexpr int kSide = 40;
+    constexpr double kSize = 1.5, kTolerance = 0.1;
+    World world([](taut_world_def& w) { w.time_step = 1.0f / static_cast<float>(GetParam()); });
+    const Sheet sheet(kSide, kSide, kSize, kSize, 0);
+    taut_cloth_def def = sheet.def(TAUT_CLOTH_LINKS);
+    def.solve = TAUT_DEFORMABLE_SWEPT;
+    def.stretch_tolerance = static_cast<float>(kTolerance);
+    def.filter.mask = 0;
+    const taut_cloth cloth = add(world, def);
+    for (const int k : {0, kSide - 1}) ok(taut_cloth_pin(cloth, sheet.at(0, k), 1));
+    const double spacing = kSize / (kSide - 1);
+    double lowest = 0;
+    for (int i = 0; i < 4 * GetParam(); ++i) {
+        world.step();
+        const std::vector<Vec> x = points_of(cloth);
+        const auto stretch = [&](uint32_t a, uint32_t b) { return norm(x[b] - x[a]) / spacing - 1; };
+        double centre = 0, worst = 0;
+        for (int row = 0; row < kSide; ++row)
+            for (int k = 0; k < kSide; ++k) {
+                centre += x[sheet.at(row, k)].y / (kSide * kSide);
+                if (row > 0) worst = std::max(worst, stretch(sheet.at(row, k), sheet.at(row - 1, k)));
+                if (k > 0) worst = std::max(worst, stretch(sheet.at(row, k), sheet.at(row, k - 1)));
+            }
+        lowest = std::min(lowest, centre);
+        const bool settled = i >= 3 * GetParam();  // not as it snaps taut
+        ASSERT_LT(worst, settled ? kTolerance : 6 * kTolerance) << "frame " << i;
+        ASSERT_LT(centre, 0.05) << "it never swings up to where it began";
+    }
+    EXPECT_LT(lowest, -0.5) << "it falls";
+    EXPECT_GT(lowest, -0.75 * (1 + kTolerance));
+}
+
 // Wool on a table does not fall through it, and lies still.
 TEST(Cloth, LiesOnTheGround) {
     World world;
@@ -164,6 +201,37 @@ TEST_P(SoftCube, LandsAndRests) {
     double top = 0;
     for (const Vec& x : points_of(solid)) top = std::max(top, x.y);
     EXPECT_NEAR(top, 0.405, 0.02);
+}
+
+// Swept neo-Hookean cubes rest as those that are solved directly do, at any step, without shaking.
+class SweptCube : public testing::TestWithParam<std::tuple<int, double>> {};
+INSTANTIATE_TEST_SUITE_P(AtHertzAndPascal, SweptCube,
+                         testing::Combine(testing::Values(30, 60, 120, 240), testing::Values(3e4, 1e5, 1e6)));
+
+TEST_P(SweptCube, RestsAsTheDirectOneDoes) {
+    const auto [hz, young] = GetParam();
+    double height[2], speed[2];
+    for (const bool swept : {false, true}) {
+        World world([rate = hz](taut_world_def& w) { w.time_step = 1.0f / static_cast<float>(rate); });
+        world.add_ground();
+        Beam cube({0.4, 0.4, 0.4}, 5, 5, 5, false);
+        for (taut_pos& p : cube.points) p.y += 0.1;
+        taut_solid_def def = cube.def(TAUT_SOLID_NEO_HOOKEAN, young, 0.4);
+        def.damping = 0.005f;
+        def.solve = swept ? TAUT_DEFORMABLE_SWEPT : TAUT_DEFORMABLE_DIRECT;
+        const taut_solid solid = add(world, def);
+        for (int i = 0; i < 5 * hz; ++i) world.step();
+        double top = 0, sum = 0;
+        uint32_t count = 0;
+        std::vector<taut_vec3> u(cube.points.size());
+        ok(taut_solid_get_velocities(solid, u.data(), static_cast<uint32_t>(u.size()), &count));
+        for (const taut_vec3& each : u) sum += norm(each) / static_cast<double>(u.size());
+        for (const Vec& x : points_of(solid)) top = std::max(top, x.y);
+        height[swept] = top;
+        speed[swept] = sum;
+    }
+    EXPECT_NEAR(height[1], height[0], 0.02 * 0.4);
+    EXPECT_LT(speed[1], 0.05);
 }
 
 // Uniaxial stress: a bar pulled by its weight at the end thins by nu times its stretch.
