@@ -132,6 +132,10 @@ Scene make_scene(const std::string& name, const Options& options, const std::vec
         if (!family.needs_mesh && !family.takes_mesh && !options.mesh.empty())
             throw BadScene("scene '" + name + "' takes no mesh");
         Scene scene = family.build(n, r, options);
+        if (options.swept) {
+            for (Cloth& cloth : scene.cloths) cloth.def.solve = TAUT_DEFORMABLE_SWEPT;
+            for (Solid& solid : scene.solids) solid.def.solve = TAUT_DEFORMABLE_SWEPT;
+        }
         scene.name = name;
         scene.description = family.description;
         scene.steps = family.steps;

@@ -9,8 +9,9 @@
 namespace scenes {
 
 struct Options {
-    uint64_t seed = 0;  // above 0: a random start, the same for the same seed
-    std::string mesh;   // file of scenes that take one
+    uint64_t seed = 0;   // above 0: a random start, the same for the same seed
+    std::string mesh;    // file of scenes that take one
+    bool swept = false;  // cloths and solids are swept, not solved directly
 };
 
 // A family of scenes. In a pattern, N stands for a count and R for a mass, ratio or weight.

@@ -41,6 +41,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
                                               "one of taut_solver: block_ldlt, projected_gauss_seidel ...;\n"
                                               "of ode: step (default with joints) or quickstep");
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
+    app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");
     app.add_option("--mesh", options.mesh, "mesh file, of scenes that take one");
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
     app.add_flag("--adaptive-damping", options.adaptive_damping, "damp by the size of the geometric stiffness");

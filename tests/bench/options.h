@@ -27,6 +27,7 @@ struct Options {
     double ratio_limit = 0;
     std::string report;
     std::string mesh;
+    bool swept = false;
 };
 
 // Nothing: *exit_code says with what to end. Throws scenes::BadScene for what contradicts itself.

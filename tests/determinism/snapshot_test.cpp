@@ -11,18 +11,20 @@ struct Case {
     const char* scene;
     uint32_t threads;
     bool sleeping = false;
-    int first = 100;  // frames before a saving, at most
+    int first = 100;     // frames before a saving, at most
+    bool swept = false;  // of cloths and solids
 };
 
 void PrintTo(const Case& tested, std::ostream* out) {
-    *out << tested.scene << "_on_" << tested.threads << (tested.sleeping ? "_sleeping" : "");
+    *out << tested.scene << "_on_" << tested.threads << (tested.sleeping ? "_sleeping" : "")
+         << (tested.swept ? "_swept" : "");
 }
 
 class Restored : public testing::TestWithParam<Case> {};
 
 TEST_P(Restored, GoesOnAsBefore) {
     const Case& tested = GetParam();
-    scenes::Scene plan = scenes::make_scene(tested.scene);
+    scenes::Scene plan = scenes::make_scene(tested.scene, {0, {}, tested.swept});
     plan.world.threads = tested.threads;
     plan.world.sleeping = tested.sleeping;
     RestoredScene run(std::move(plan));
@@ -40,7 +42,8 @@ INSTANTIATE_TEST_SUITE_P(Of, Restored,
                                          Case{"shapes50", 5}, Case{"terrain", 2, true}, Case{"bridge_breaking", 1},
                                          Case{"hinges50", 1}, Case{"heavy_on_light_r100", 1, true},
                                          Case{"stack20", 2, true, 300}, Case{"cloth_hang12", 2},
-                                         Case{"solids2_e1e5", 1, true}),
+                                         Case{"solids2_e1e5", 1, true}, Case{"cloth_hang20", 2, false, 100, true},
+                                         Case{"solids2_e1e5", 2, true, 100, true}),
                          testing::PrintToStringParamName());
 
 // What a host's calls leave to later steps: forces, paths of kinematic bodies, time left over; and sensors, continuous
