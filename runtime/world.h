@@ -100,17 +100,18 @@ void describe(Visitor& visitor, Of& of) {
            velocity_filter, max_catch_up, threads, hooks, sleeping, sleep_speed, sleep_time, contact_events, hit_speed,
            continuous, max_bodies, max_colliders, max_joints, max_contacts, adaptive_damping, restitution_threshold,
            stepping, stabilisation, relaxation, friction_model, momentum, fixed_step, scheme, newmark_beta,
-           newmark_gamma, report] = of;
-    TAUT_FIELDS(visitor, gravity.x, gravity.y, gravity.z, time_step, substeps, restitution_threshold);
+           newmark_gamma, report, air_density, air_pressure, wind] = of;
+    TAUT_FIELDS(visitor, gravity.x, gravity.y, gravity.z, time_step, substeps, restitution_threshold, wind.x, wind.y,
+                wind.z);
     TAUT_ASIDE(visitor, contact_events, hit_speed);
 }
 
 template <class Visitor, Like<World> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, broadphase, pairs, sleep, sensors,
-           pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin, contact_persist,
-           contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke, moved_before, frozen,
-           profile, reports, observer, spring_substep, first_substep, impacts] = of;
+    auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, broadphase, pairs, sleep,
+           sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window, contact_begin,
+           contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, fell_asleep, woke,
+           moved_before, frozen, profile, reports, observer, spring_substep, first_substep, impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);

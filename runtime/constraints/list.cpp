@@ -19,6 +19,7 @@ std::span<const ElementType* const> element_types() {
         &kCorotatedHex8,     &kStretchTet4,       &kStretchHex8,
         &kStretchVolumeTet4, &kStretchVolumeHex8, &kNeoHookeanTet4,
         &kNeoHookeanHex8,    &kDihedralElement,   &kQuadraticBendElement,
+        &kDragElement,
     };
     return types;
 }

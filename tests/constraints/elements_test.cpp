@@ -174,6 +174,7 @@ TEST_P(EveryElement, ForcesAreTheGradientOfTheEnergy) {
 }
 
 TEST_P(EveryElement, EnergyKnowsNoPlaceAndNoDirectionOfIsotropicStiffness) {
+    if (GetParam()->row.nodes == 1) GTEST_SKIP() << "tied to a place";
     for_samples([](Batch b) {
         b.stiffness = Matrix::Identity(b.type.row.rows, b.type.row.rows);
         const double before = b.energy(0);
