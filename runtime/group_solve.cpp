@@ -5,6 +5,7 @@
 #include "check/quarantine.h"
 #include "detect/detect.h"
 #include "integrate/scheme.h"
+#include "models/air.h"
 #include "publish/publish.h"
 #include "solvers/restitution.h"
 #include "system/assemble.h"
@@ -23,8 +24,9 @@ GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const
       watch_(watch),
       gravity_(world.def.gravity.x, world.def.gravity.y, world.def.gravity.z),
       clock_(world.def.time_step, group_.substeps, solver.direct && world.def.fixed_substeps == 0),
+      airy_(find_loaded_surfaces(world, index)),
       one_step_(system_.scheme.is_one_step()),
-      lends_(one_step_ && world.team.size() > 1 && group_.blocks.empty() && world.nodes.load.empty() &&
+      lends_(one_step_ && world.team.size() > 1 && group_.blocks.empty() && world.nodes.load.empty() && !airy_ &&
              !world.observer && !world.def.report),
       loan_(world.team, system_, group_, world.nodes) {}
 
@@ -52,6 +54,8 @@ void GroupSolve::begin() {
                         system_.scheme.h);
     turn_kinematic(system_, w_.nodes, clock_.begin());
     predict(w_.team, system_, group_, w_.nodes, gravity_);
+    system_.gases.clear();
+    if (airy_) load_surfaces(w_, index_, clock_.begin());
     if (!one_step_)
         begin_scheme(system_, group_, w_.nodes, *scheme_types()[w_.def.scheme],
                      {w_.def.newmark_beta, w_.def.newmark_gamma});

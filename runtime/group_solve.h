@@ -56,6 +56,7 @@ private:
     Stopwatch& watch_;
     const Vec3 gravity_;
     Substeps clock_;
+    const bool airy_;              // air acts on surfaces of its soft bodies
     const bool one_step_, lends_;  // the scheme has one step; motions are lent to the seats
     MotionLoan loan_;
     bool loaded_ = false, sane_ = false;  // the nodes, as far as is known

@@ -15,6 +15,7 @@
 #include "integrate/scheme.h"
 #include "models/cable.h"
 #include "models/cloth_tearing.h"
+#include "models/plastic.h"
 #include "publish/publish.h"
 #include "sleep/sleep.h"
 #include "world.h"
@@ -137,6 +138,7 @@ void step(World& w) {
     w.profile.partition_us = watch.lap();
     solve(w, watch);
     hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, w.pairs, w.broadphase, w.nodes);
+    flow_solids(w);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.window.steps, w.sensors);
     w.nodes.load.clear();

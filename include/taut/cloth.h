@@ -79,7 +79,17 @@ typedef struct taut_cloth_def {
     uint32_t tethers;       /**< of each vertex: [0, TAUT_CLOTH_MAX_TETHERS]. Default 0 */
     float tether_slack;     /**< how much longer than the way to its pin each is, over that: [0, 10]. Default 0.01 */
     float tear_strain;      /**< 0: it does not tear; or [1e-3, 100]. Default 0 */
-    float gravity_scale;    /**< [-1000, 1000]. Default 1 */
+    /** [0, 100]; see deformable.h. Default 0. */
+    float air_drag;
+    /** [0, air_drag]. Default 0. */
+    float air_lift;
+    /** Within over the world's air_pressure [Pa], [-1e7, 1e7]; not 0 or with gas: of a closed mesh alone, solved
+     *  directly, in worlds of TAUT_SOLVER_BLOCK_LDLT. Default 0. */
+    float pressure;
+    /** 1: the pressure is that of a gas, which keeps pressure times volume (isothermal) from what they are in points
+     *  on; 0: it stays as it is. Default 0. */
+    uint32_t gas;
+    float gravity_scale;         /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve; /**< default TAUT_DEFORMABLE_DIRECT */
     float stretch_tolerance;     /**< of a swept cloth: by which it may stretch beyond what its stiffness lets it, and
                                       for which it and what it touches take substeps, up to 64 a step, [1e-4, 10].
@@ -99,8 +109,9 @@ TAUT_API taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric 
 /**
  * Adds a cloth at rest.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex on no triangle; a triangle without area at rest; a mesh that
- *         is not manifold or not all turned the same way; links of no length), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
- *         TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ *         is not manifold or not all turned the same way; links of no length; pressure within a mesh that is open or
+ *         in several pieces, or not solved directly, gas of no volume or no pressure), TAUT_STRUCT_SIZE,
+ * TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_cloth(taut_world world, const taut_cloth_def* def, taut_cloth* out);
 /** Removes a cloth with its vertices and all joints and attachments on them; taut_body_remove of one: TAUT_IN_USE. */
@@ -136,6 +147,22 @@ TAUT_API taut_result taut_cloth_get_triangles(taut_cloth cloth, uint32_t* triang
                                               uint32_t* count);
 /** Largest principal strain of each triangle, stretch - 1; results as above. */
 TAUT_API taut_result taut_cloth_get_strains(taut_cloth cloth, float* strains, uint32_t capacity, uint32_t* count);
+
+/**
+ * Volume within a closed cloth as it is now [m^3], below 0 where it is turned inside out; of its whole mesh.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (its mesh is open), TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_cloth_get_volume(taut_cloth cloth, double* out);
+/** Pressure within over the world's air_pressure, at the volume as it is now [Pa]; results as above. */
+TAUT_API taut_result taut_cloth_get_pressure(taut_cloth cloth, float* out);
+/**
+ * Pressure within over the world's air_pressure [Pa], [-1e7, 1e7]. With gas as much is let in or out as gives that at
+ * the volume as it is now: more than 0 in all.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; the mesh is open, in several pieces or not solved directly; gas
+ *         without a volume),
+ *         TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_cloth_set_pressure(taut_cloth cloth, float pressure);
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,12 @@
  * A deformable is a mesh of vertices, each a particle of the world, and of elements between them. Its vertices are
  * bodies that all other calls may read, push and attach to; they touch what is around them as spheres of half the
  * deformable's thickness, and not each other.
+ *
+ * Air pushes a triangle of area A and normal n, past which it goes at w = wind - velocity, by
+ *   1/2 air_density A |w| (drag |s| w + lift s (|w| n - s w)),   s = n . w / |w|:
+ * drag of the area that the air sees along w, lift across it. It meets both sides of a cloth's triangles, of solids and
+ * closed cloths the outer side alone. In any step it slows motion against the air, and never turns it round. What is
+ * held and swept bears less of the force than this, the more the longer a substep is.
  */
 #ifndef TAUT_DEFORMABLE_H
 #define TAUT_DEFORMABLE_H

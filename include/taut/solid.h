@@ -52,6 +52,14 @@ typedef struct taut_solid_def {
     float poisson_ratio;          /**< [0, 0.499]; more than 0 for TAUT_SOLID_FIXED_COROTATED. Default 0.3 */
     float damping;                /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
     float thickness;              /**< of the spheres by which boundary vertices touch [m], [1e-4, 1]. Default 0.01 */
+    float air_drag;               /**< of the boundary, [0, 100]; see deformable.h. Default 0 */
+    float air_lift;               /**< [0, air_drag]. Default 0 */
+    float yield_stress;           /**< in simple tension, von Mises' [Pa], [1, 1e12], or INFINITY: it stays elastic.
+                                       Default INFINITY */
+    float creep;                  /**< rate at which strain beyond the yield flows [1/s], [0, 1e6], or INFINITY: all of
+                                       it within a step. Default INFINITY */
+    float plastic_limit;          /**< largest plastic strain, by taut_solid_get_plastic_strains, [0, 10], or INFINITY.
+                                       Default 1 */
     float gravity_scale;          /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_DIRECT */
     taut_material surface;        /**< friction and restitution */
@@ -103,6 +111,12 @@ TAUT_API taut_result taut_solid_get_triangles(taut_solid solid, uint32_t* triang
 TAUT_API taut_result taut_solid_get_stresses(taut_solid solid, float* stresses, uint32_t capacity, uint32_t* count);
 /** Volume of each cell over that at rest, negative where it is inverted; results as above. */
 TAUT_API taut_result taut_solid_get_volumes(taut_solid solid, float* ratios, uint32_t capacity, uint32_t* count);
+/**
+ * Plastic strain of each cell, the mean of its Gauss points': the root of the sum of squares of stretch - 1 of what
+ * remains without load, 0 where nothing flowed; results as above.
+ */
+TAUT_API taut_result taut_solid_get_plastic_strains(taut_solid solid, float* strains, uint32_t capacity,
+                                                    uint32_t* count);
 
 #ifdef __cplusplus
 }

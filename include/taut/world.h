@@ -124,6 +124,10 @@ typedef struct taut_world_def {
     uint32_t report;                    /**< 1: each step measures what its solves leave, for taut_profile: yield,
                                              solve_residual, linearisation and energy_gain. Changes no result; a step of
                                              many contacts takes several times as long. Default 0 */
+    float air_density;                  /**< of the air about cloths and solids with air_drag [kg/m^3], [0, 1e4].
+                                             Default 1.2 */
+    float air_pressure;                 /**< of that air [Pa], [0, 1e7]; see taut_cloth_def. Default 101325 */
+    taut_vec3 wind;                     /**< velocity of that air [m/s], each within 1e3. Default 0 */
 } taut_world_def;
 
 /** What taut_world_advance did. */
@@ -178,6 +182,13 @@ TAUT_API taut_result taut_world_set_time_step(taut_world world, float time_step)
 TAUT_API taut_result taut_world_set_substeps(taut_world world, uint32_t substeps);
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
+/** Velocity of the air, everywhere the same [m/s]. */
+TAUT_API taut_result taut_world_get_wind(taut_world world, taut_vec3* out);
+/**
+ * Wind from the next step on [m/s], each within 1e3: what it does is said in deformable.h.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_set_wind(taut_world world, taut_vec3 wind);
 /** Contact events of all pairs from the next step on: sum of TAUT_CONTACT_EVENTS_ bits. */
 TAUT_API taut_result taut_world_set_contact_events(taut_world world, uint32_t contact_events);
 /** Approach speed that makes a hit event [m/s], [0, 1e4]. */

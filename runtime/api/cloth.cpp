@@ -2,6 +2,8 @@
 
 #include "api/deformable.h"
 #include "models/cloth.h"
+#include "models/gas.h"
+#include "sleep/wake.h"
 
 using namespace taut;
 
@@ -39,6 +41,7 @@ bool check_def(Check& check, const taut_cloth_def& def) {
         .count("tethers", def.tethers, 0, TAUT_CLOTH_MAX_TETHERS)
         .number("tether_slack", def.tether_slack, kTetherSlack)
         .zero_or("tear_strain", def.tear_strain, kTearStrain);
+    check_air(check, def.air_drag, def.air_lift).number("pressure", def.pressure, kPressure).boolean("gas", def.gas);
     check_soft(check, def.material, kMaterialInDef, def.filter, def.thickness, def.damping, def.gravity_scale,
                def.solve);
     const MeshDef mesh{def.points,       def.rest,      def.point_count,    3, "triangles",
@@ -71,6 +74,17 @@ Fabric fabric_of(const taut_cloth_def& def) {
     fabric.tether_slack = def.tether_slack;
     fabric.tear_strain = def.tear_strain;
     return fabric;
+}
+
+// get(world, soft) of a cloth without a rim.
+template <class T, class Get>
+taut_result read_closed(Check& check, taut_cloth handle, T* out, Get&& get) {
+    if (!check.pointer("out", out)) return check.result();
+    return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
+        if (!check.require(soft.air.side != 0, "cloth: its mesh is open")) return check.result();
+        *out = get(world, soft);
+        return TAUT_OK;
+    });
 }
 
 // Of no single sample: the order of common fabrics.
@@ -141,6 +155,8 @@ taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, t
         fabric.shortest_substep = static_cast<double>(world.def.time_step) / kMostElasticSubsteps;
         const char* fault = plan_cloth(mesh, kind, fabric, solve_of(def->solve), plan);
         if (!check.require(!fault, fault)) return check.result();
+        const AirTraits air{def->air_drag, def->air_lift, def->pressure, def->gas != 0};
+        if (!plan_checked_air(check, world, air, def->solve, plan)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);
         if (added == TAUT_OK) *out = world.cloth_handle(index);
@@ -203,5 +219,29 @@ taut_result taut_cloth_get_strains(taut_cloth handle, float* strains, uint32_t c
     return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
         return copy_out(soft.triangles(), strains, capacity, count, check.call(), "strains",
                         [&](uint32_t t) { return to_float(triangle_strain(world, soft, t)); });
+    });
+}
+
+taut_result taut_cloth_get_volume(taut_cloth handle, double* out) {
+    Check check(__func__);
+    return read_closed(check, handle, out,
+                       [](const World& world, const Soft& soft) { return volume_within(world, soft); });
+}
+
+taut_result taut_cloth_get_pressure(taut_cloth handle, float* out) {
+    Check check(__func__);
+    return read_closed(check, handle, out,
+                       [](const World& world, const Soft& soft) { return to_float(pressure_within(world, soft)); });
+}
+
+taut_result taut_cloth_set_pressure(taut_cloth handle, float pressure) {
+    Check check(__func__);
+    if (!check.number("pressure", pressure, kPressure)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        Soft& soft = world.softs.record[index];
+        const char* fault = fill(world, soft, pressure);
+        if (!check.require(!fault, fault)) return check.result();
+        for (const uint32_t node : soft.node) wake(world, node);
+        return TAUT_OK;
     });
 }

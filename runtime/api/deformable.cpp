@@ -52,6 +52,20 @@ Check& check_soft(Check& check, const taut_material& surface, const MaterialName
                          "filter.group is positive, which makes the vertices collide with each other");
 }
 
+Check& check_air(Check& check, float drag, float lift) {
+    return check.number("air_drag", drag, kAirDrag)
+        .number("air_lift", lift, kAirDrag)
+        .require(lift <= drag, "air_lift is more than air_drag, which would push a surface along itself");
+}
+
+bool plan_checked_air(Check& check, const World& world, AirTraits traits, taut_deformable_solve solve, SoftPlan& plan) {
+    traits.outside = world.def.air_pressure;
+    traits.swept = solve == TAUT_DEFORMABLE_SWEPT || !solvers()[world.def.solver]->direct;
+    const char* fault = plan_air(traits, plan);
+    check.require(!fault, fault);
+    return static_cast<bool>(check);
+}
+
 Array<Vec3> positions_of(World& world, const taut_pos* from, uint32_t count) {
     Array<Vec3> out(world.memory);
     out.resize(count);

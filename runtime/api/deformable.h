@@ -6,12 +6,15 @@
 #include "api/access.h"
 #include "api/collider_def.h"
 #include "api/copy_out.h"
+#include "models/air.h"
 #include "models/soft_reading.h"
 
 namespace taut {
 
-constexpr Range kThickness{1e-4, 1};       // [m]
-constexpr Range kSoftDamping{0, 10};       // [s]
+constexpr Range kThickness{1e-4, 1};  // [m]
+constexpr Range kSoftDamping{0, 10};  // [s]
+constexpr Range kAirDrag{0, 100};
+constexpr Range kPressure{-1e7, 1e7};      // over that of the air [Pa]
 constexpr double kLeastVertexMass = 1e-9;  // [kg], as of particles
 
 // The mesh of a def.
@@ -27,6 +30,10 @@ bool check_mesh(Check& check, const MeshDef& mesh);
 // What def structs have in common, but for the mesh.
 Check& check_soft(Check& check, const taut_material& surface, const MaterialNames& names, const taut_filter& filter,
                   float thickness, float damping, float gravity_scale, const taut_deformable_solve& solve);
+
+Check& check_air(Check& check, float drag, float lift);
+// Of a plan that has all else; false: refused.
+bool plan_checked_air(Check& check, const World& world, AirTraits traits, taut_deformable_solve solve, SoftPlan& plan);
 
 Array<Vec3> positions_of(World& world, const taut_pos* from, uint32_t count);
 JointSolve solve_of(taut_deformable_solve solve);

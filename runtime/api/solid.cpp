@@ -1,8 +1,10 @@
 #include <taut/solid.h>
 
 #include <cstdio>
+#include <limits>
 
 #include "api/deformable.h"
+#include "models/plastic.h"
 #include "models/solid.h"
 
 using namespace taut;
@@ -12,6 +14,9 @@ namespace {
 constexpr Range kSolidDensity{1e-2, 1e6};  // [kg/m^3]
 constexpr Range kYoung{1, 1e12};           // [Pa]
 constexpr Range kSolidPoisson{0, 0.499};
+constexpr Range kCreep{0, 1e6};        // [1/s]
+constexpr Range kPlasticLimit{0, 10};  // [1]
+constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr MaterialNames kSurface{"surface.friction",         "surface.restitution",      "surface.friction_rule",
                                  "surface.restitution_rule", "surface.rolling_friction", "surface.spinning_friction"};
 
@@ -24,6 +29,10 @@ bool check_def(Check& check, const taut_solid_def& def) {
         .require(def.corners == 4 || def.corners == 8, "corners is neither 4 nor 8")
         .require(def.material != TAUT_SOLID_FIXED_COROTATED || def.poisson_ratio > 0,
                  "poisson_ratio is 0, by which the volume does not resist, of a material that asks for it");
+    check_air(check, def.air_drag, def.air_lift)
+        .number_or("yield_stress", def.yield_stress, kYoung, kNever)
+        .number_or("creep", def.creep, kCreep, kNever)
+        .number_or("plastic_limit", def.plastic_limit, kPlasticLimit, kNever);
     check_soft(check, def.surface, kSurface, def.filter, def.thickness, def.damping, def.gravity_scale, def.solve);
     const MeshDef mesh{def.points,   def.rest,  def.point_count, 4,          "cells",
                        "cell_count", def.cells, def.cell_count,  def.corners};
@@ -53,6 +62,8 @@ void taut_solid_def_init(taut_solid_def* def) {
     def->young_modulus = 1e6f;
     def->poisson_ratio = 0.3f;
     def->thickness = 0.01f;
+    def->yield_stress = def->creep = kNever;
+    def->plastic_limit = 1;
     def->gravity_scale = 1;
     def->surface = kDefaultMaterial;
     def->filter = kDefaultFilter;
@@ -82,7 +93,9 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
         const Solid solid{static_cast<SolidMaterial>(def->material),
                           {def->young_modulus, def->poisson_ratio},
                           def->density,
-                          def->damping};
+                          def->damping,
+                          def->yield_stress,
+                          {0, def->creep, def->plastic_limit}};
         SoftPlan plan(world.memory);
         plan.soft.gravity_scale = def->gravity_scale;
         plan.soft.user_data = def->user_data;
@@ -94,6 +107,8 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
             check.require(false, cell == kNone ? fault : text);
             return check.result();
         }
+        const AirTraits air{def->air_drag, def->air_lift};
+        if (!plan_checked_air(check, world, air, def->solve, plan)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);
         if (added == TAUT_OK) *out = world.solid_handle(index);
@@ -165,5 +180,14 @@ taut_result taut_solid_get_volumes(taut_solid handle, float* ratios, uint32_t ca
     return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
         return copy_out(cells_of(world, soft), ratios, capacity, count, check.call(), "ratios",
                         [&](uint32_t c) { return to_float(cell_state(world, soft, c).volume); });
+    });
+}
+
+taut_result taut_solid_get_plastic_strains(taut_solid handle, float* strains, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
+        return copy_out(cells_of(world, soft), strains, capacity, count, check.call(), "strains",
+                        [&](uint32_t c) { return to_float(plastic_strain(soft, c)); });
     });
 }

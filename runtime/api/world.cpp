@@ -17,6 +17,9 @@ constexpr Range kSleepSpeed{0, 10};             // [m/s]
 constexpr Range kSleepTime{0, 1e3};             // [s]
 constexpr Range kRestitutionThreshold{0, 1e4};  // [m/s]
 constexpr Range kRelaxation{1e-3, 1.999};
+constexpr Range kAirDensity{0, 1e4};   // [kg/m^3]
+constexpr Range kAirPressure{0, 1e7};  // [Pa]
+constexpr Range kWind{-1e3, 1e3};      // [m/s]
 constexpr Range kNewmarkBeta{0.25, 0.5}, kNewmarkGamma{0.5, 1};
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
@@ -50,6 +53,9 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .boolean("adaptive_damping", def.adaptive_damping)
         .number("restitution_threshold", def.restitution_threshold, kRestitutionThreshold)
         .boolean("report", def.report)
+        .number("air_density", def.air_density, kAirDensity)
+        .number("air_pressure", def.air_pressure, kAirPressure)
+        .vector("wind", def.wind, kWind)
         .choice("stepping", def.stepping, TAUT_STEPPING_VELOCITY)
         .number("stabilisation", def.stabilisation, kUnitInterval)
         .number("relaxation", def.relaxation, kRelaxation)
@@ -88,6 +94,8 @@ void taut_world_def_init(taut_world_def* def) {
     def->relaxation = 1;
     def->newmark_beta = 0.25f;
     def->newmark_gamma = 0.5f;
+    def->air_density = 1.2f;
+    def->air_pressure = 101325;
 }
 
 const char* taut_solver_name(taut_solver solver) {
@@ -187,6 +195,26 @@ taut_result taut_world_set_gravity(taut_world handle, taut_vec3 gravity) {
         const taut_vec3 old = world.def.gravity;
         if (gravity.x != old.x || gravity.y != old.y || gravity.z != old.z) wake_all(world);
         world.def.gravity = gravity;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_get_wind(taut_world handle, taut_vec3* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        *out = world.def.wind;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_set_wind(taut_world handle, taut_vec3 wind) {
+    Check check(__func__);
+    if (!check.vector("wind", wind, kWind)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        const taut_vec3 old = world.def.wind;
+        if (wind.x != old.x || wind.y != old.y || wind.z != old.z) wake_all(world);
+        world.def.wind = wind;
         return TAUT_OK;
     });
 }

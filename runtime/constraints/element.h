@@ -63,6 +63,7 @@ extern const ElementType kStretchTet4, kStretchHex8;              // principal s
 extern const ElementType kStretchVolumeTet4, kStretchVolumeHex8;  // those and the volume: fixed corotated
 extern const ElementType kNeoHookeanTet4, kNeoHookeanHex8;
 
+extern const ElementType kDragElement;           // of air about a point
 extern const ElementType kDihedralElement;       // angle between two triangles of cloth
 extern const ElementType kQuadraticBendElement;  // bend of cloth whose rest shape is flat
 

@@ -32,6 +32,7 @@ std::span<const ElementType* const> element_types() {
         &kNeoHookeanHex8,
         &kDihedralElement,
         &kQuadraticBendElement,
+        &kDragElement,
         &point_attachment(1),
         &point_attachment(2),
         &point_attachment(3),

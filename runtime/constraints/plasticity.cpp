@@ -1,6 +1,7 @@
 #include "constraints/plasticity.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "constraints/singular_values.h"
@@ -21,8 +22,20 @@ double cube_root(double x) {
 
 Vec3 without_volume(const Vec3& stretch) { return stretch / cube_root(stretch.prod()); }
 
-// Share of an excess that flows in some time.
-double flowing(const Plasticity& law, double time) { return 1 / (1 + 1 / (law.creep * time)); }
+// Share of an excess that flows in some time: 1 - exp(-x), x = creep time, the same bits on every machine. Its series
+// below 1/2, and from there 1 - exp(-2 x) = y (2 - y), y = 1 - exp(-x).
+double flowing(const Plasticity& law, double time) {
+    const double x = law.creep * time;
+    if (!(x < 64)) return 1;
+    int exponent = 0;
+    std::frexp(x, &exponent);
+    const int doublings = std::max(exponent + 1, 0);
+    const double reduced = std::ldexp(x, -doublings);
+    double y = 0;
+    for (int k = 14; k > 0; --k) y = reduced / k * (1 - y);
+    for (int k = 0; k < doublings; ++k) y *= 2 - y;
+    return y;
+}
 
 // What is left of a size over its yield, as a share of it.
 double excess(double size, double yield) { return size > yield ? (size - yield) / size : 0; }

@@ -1,6 +1,7 @@
 // Plastic flow: what remains of a strain beyond the yield once the load is gone. A model calls it after a step, for
-// each Gauss point, and its element then forgets what has flowed. The excess flows at the rate of creep, implicitly: of
-// it r t/(1 + r t) in the time t. Volume is kept, and a set grows no further than the limit.
+// each Gauss point, and its element then forgets what has flowed. The excess flows at the rate of creep: while the
+// shape stays, of it 1 - exp(-r t) in the time t, however that is divided. Volume is kept, and a set grows no further
+// than the limit.
 #pragma once
 
 #include "base/math.h"

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "base/log.h"
+#include "models/air.h"
 #include "models/bodies.h"
 #include "models/mesh_edges.h"
 #include "models/soft_reading.h"
@@ -404,11 +405,27 @@ private:
 
 }  // namespace
 
+namespace {
+
+// A closed cloth that tears loses what is within; air goes by the new triangles, or by the old where memory fails.
+void open_air(World& world, Soft& soft) {
+    soft.air.pressure = soft.air.gas = 0;
+    if (!soft.air.any()) return;
+    try {
+        list_surface(soft, soft.vertices());
+    } catch (const std::bad_alloc&) {
+        log_line(world.def.hooks, TAUT_LOG_WARNING, "air acts on a torn cloth as if it were whole: out of memory");
+    }
+}
+
+}  // namespace
+
 void tear_cloths(World& world) {
     for (uint32_t index = 0; index < world.softs.ids.slots(); ++index) {
         if (!world.softs.ids.live(index)) continue;
-        const Soft& soft = world.softs.record[index];
+        Soft& soft = world.softs.record[index];
         if (!(soft.tear_strain > 0)) continue;
+        const uint32_t vertices = soft.vertices();
         gather(world.team, soft.triangles(), world.pairs.picked,
                [&](uint32_t t) { return is_stretched(world, soft, t); });
         if (world.pairs.picked.empty()) continue;
@@ -417,6 +434,7 @@ void tear_cloths(World& world) {
         } catch (const std::bad_alloc&) {
             log_line(world.def.hooks, TAUT_LOG_WARNING, "a cloth did not tear: out of memory");
         }
+        if (soft.vertices() > vertices) open_air(world, soft);
     }
 }
 

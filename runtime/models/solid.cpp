@@ -106,6 +106,12 @@ const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve sol
         return "is flat or inverted at rest";
     }
     find_boundary(mesh.cell, mesh.corners, plan.soft.triangle);
+    if (solid.yield_stress < std::numeric_limits<double>::infinity()) {
+        plan.soft.law = solid.law;
+        plan.soft.law.yield = yield_of_stress(solid.yield_stress, solid.elastic);
+        plan.soft.plastic.assign(9 * element.softness.size(), 0.0);
+        for (size_t i = 0; i < plan.soft.plastic.size(); ++i) plan.soft.plastic[i] = i % 9 % 4 == 0 ? 1 : 0;
+    }
     return nullptr;
 }
 

@@ -1,6 +1,7 @@
 // Solids: a mesh of tetrahedra or hexahedra and a material -> what a soft body of it is made of, with its boundary.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "constraints/material.h"
@@ -14,8 +15,10 @@ enum class SolidMaterial : uint8_t { neo_hookean, st_venant_kirchhoff, corotated
 struct Solid {
     SolidMaterial material = SolidMaterial::neo_hookean;
     Isotropic elastic{};
-    double density = 0;  // [kg/m^3]
-    double damping = 0;  // time d of the stress D (E + d dE/dt) [s]
+    double density = 0;                                             // [kg/m^3]
+    double damping = 0;                                             // time d of the stress D (E + d dE/dt) [s]
+    double yield_stress = std::numeric_limits<double>::infinity();  // in simple tension [Pa]; infinite: it never flows
+    Plasticity law{};                                               // but for its yield, which follows from that
 };
 
 // A host's mesh, checked: each vertex is on a cell.

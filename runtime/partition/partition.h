@@ -50,7 +50,9 @@ struct Block {
           solution(m),
           known(m),
           force(m),
-          elastic_force(m) {}
+          elastic_force(m),
+          gases(m),
+          gas_response(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
@@ -65,6 +67,8 @@ struct Block {
     uint32_t stride = 0;                   // of these, from tie to tie
     Array<double> solution, known, force;  // scratch of its solve
     Array<double> elastic_force;           // likewise
+    Array<uint32_t> gases;                 // that it has nodes of, in System::gases, of this substep
+    Array<double> gas_response;            // scratch of its solve; see solvers/block_gas.cpp
     bool foresees = false;                 // folded elements are evaluated where their nodes are going
     uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
     bool tower = false;                                // no ties: bodies that stand on each other or are pressed
@@ -85,9 +89,9 @@ struct Block {
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [nodes, joints, elements, elastic, pairs, links, identity, order, matrix, places, stride, solution, known,
-           force, elastic_force, foresees, first_elastic_run, elastic_runs, tower, looped, passing, failed, corrected,
-           mass_ratio, closing, first_row_block, first_contact, contact_count, first_bounded, bounded_count, turn,
-           memory] = of;
+           force, elastic_force, gases, gas_response, foresees, first_elastic_run, elastic_runs, tower, looped, passing,
+           failed, corrected, mass_ratio, closing, first_row_block, first_contact, contact_count, first_bounded,
+           bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }
@@ -168,6 +172,7 @@ public:
 
     // Of a node, in this frame; kNone where forces do not move it.
     uint32_t island_of(uint32_t node) const { return island_of_[node]; }
+    uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }  // of one that forces move
     // Elements on something that moves, in the order of incidence(); valid after build().
     std::span<const ElementRef> elements() const { return element_; }
     const Incidence& incidence() const { return incidence_; }
@@ -287,7 +292,6 @@ private:
     void choose_substeps(const PartitionRules& rules);
     void find_strains(const Elements& elements);
     void make_groups();
-    uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }
     void colour_pairs(const Pairs& pairs);
     void colour_joints();
     void distribute(const Pairs& pairs, bool by_place);

@@ -86,6 +86,7 @@ void gather(Substep& s) {
         BlockSolve solve(s, block);
         solve.analyse();
         solve.foresee();
+        solve.find_gases();
         solve.set.gather();
     }
 }

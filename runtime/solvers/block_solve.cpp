@@ -117,6 +117,7 @@ void BlockSolve::right_hand_side() {
 void BlockSolve::solve_linear() {
     right_hand_side();
     b_.matrix.solve(b_.solution.data());
+    yield_to_gas(b_.solution.data(), b_.gases.size());
 }
 
 void BlockSolve::solve_known() {
@@ -184,6 +185,7 @@ bool BlockSolve::force_grew() const {
 
 bool BlockSolve::solve_round() {
     if (!b_.matrix.factor()) return false;
+    find_gas_responses();
     set.aim_biased();
     solve_linear();
     take_solution();

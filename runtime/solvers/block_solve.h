@@ -26,6 +26,8 @@ public:
     void analyse();
     // Where elastic elements are evaluated; one block after the other.
     void foresee();
+    // Gases that it has nodes of, and memory for what they do; one block after the other.
+    void find_gases();
     // Factors at this substep's poses and solves from the unconstrained velocity, in rounds over the active set and
     // twice where the force demands it.
     bool solve_first();
@@ -77,6 +79,13 @@ private:
     void assemble_elastic();
     void take_elastic_forces();
     double elastic_work() const;
+
+    // block_gas.cpp
+    template <class Act>
+    void for_gas(const GasLoad& gas, Act&& act) const;
+    double* gas_response(size_t i) { return b_.gas_response.data() + i * (unknowns() + 1); }
+    void find_gas_responses();
+    void yield_to_gas(double* x, size_t gases);
 
     // block_solve.cpp
     Vec3 line_turn(const RowBlock& block) const;

@@ -1,6 +1,7 @@
 // Soft bodies: which nodes and element sets a host's cloth or solid is made of, and its surface.
 #pragma once
 
+#include "constraints/plasticity.h"
 #include "state/colliders.h"
 #include "state/elements.h"
 
@@ -13,9 +14,10 @@ enum class SoftPart : uint8_t {
     stretch,  // along links, or within triangles or cells, in the order in which the host gave these
     shear,
     bend,
-    bound,  // what a part of a thread never exceeds
+    bound,   // what a part of a thread never exceeds
     limit,   // of a cloth: along its edges, beyond the strain that it bears
     tether,  // of a cloth: from vertices to pinned ones
+    drag,    // of the air, at each vertex of the surface
 };
 
 struct SoftSet {
@@ -28,9 +30,40 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, set, part);
 }
 
+// What air does to the triangles of a surface.
+struct AirLoad {
+    double drag = 0, lift = 0;  // coefficients; lift is at most drag
+    int8_t side = 0;            // 0: air meets both sides of a triangle; 1: the one its normal points to; -1: the other
+    double pressure = 0;        // within over that of the world's air, where it stays as it is [Pa]
+    double gas = 0;             // else p V of what is within [J]; 0: there is none
+
+    bool encloses() const { return pressure != 0 || gas > 0; }
+    bool any() const { return drag > 0 || encloses(); }
+};
+template <class Visitor, Like<AirLoad> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [drag, lift, side, pressure, gas] = of;
+    TAUT_FIELDS(visitor, drag, lift, side, pressure, gas);
+}
+
+template <class Visitor, Like<Plasticity> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [yield, creep, limit] = of;
+    TAUT_FIELDS(visitor, yield, creep, limit);
+}
+
 struct Soft {
     explicit Soft(Memory& memory)
-        : node(memory), mass(memory), triangle(memory), rest(memory), sets(memory), corner(memory) {}
+        : node(memory),
+          mass(memory),
+          triangle(memory),
+          rest(memory),
+          sets(memory),
+          surface(memory),
+          fan_begin(memory),
+          fan(memory),
+          plastic(memory),
+          corner(memory) {}
 
     SoftKind kind = SoftKind::cloth;
     Array<uint32_t> node;      // of each vertex
@@ -41,6 +74,11 @@ struct Soft {
     uint32_t cell_points = 1;  // of a solid: elements of its set of stretch for each cell
     uint32_t shape = kNone;    // of each vertex; kNone: it touches nothing
     double gravity_scale = 1;
+    AirLoad air;
+    // Where air may act: vertices on triangles, ascending, and of each of them its triangles.
+    Array<uint32_t> surface, fan_begin, fan;
+    Plasticity law{};       // of a solid that yields
+    Array<double> plastic;  // of each element of stretch its set F_p, [3][3]; empty: it does not yield
     uint64_t user_data = 0;
     // Of a cloth.
     uint32_t tethers = 0;     // of each vertex, to so many pinned ones; models/tethers.h
@@ -54,15 +92,15 @@ struct Soft {
 };
 template <class Visitor, Like<Soft> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, user_data, tethers, tether_slack,
-           tear_strain, corner] = of;
-    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, tethers,
-                tether_slack, tear_strain, corner);
+    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, air, surface, fan_begin, fan, law,
+           plastic, user_data, tethers, tether_slack, tear_strain, corner] = of;
+    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, air, surface,
+                fan_begin, fan, law, plastic, tethers, tether_slack, tear_strain, corner);
     TAUT_ASIDE(visitor, user_data);
 }
 
 struct Softs {
-    explicit Softs(Memory& memory) : ids(memory), record(memory) {}
+    explicit Softs(Memory& memory) : ids(memory), record(memory), loaded(memory), area(memory) {}
 
     // Throws std::bad_alloc with nothing changed.
     uint32_t add(Soft&& soft) {
@@ -82,10 +120,15 @@ struct Softs {
 
     IdPool ids;
     Array<Soft> record;
+
+    // Scratch of the group being solved: those that air acts on, and areas of the triangles of one, [m^2] along their
+    // normals.
+    Array<uint32_t> loaded;
+    Array<Vec3> area;
 };
 template <class Visitor, Like<Softs> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, record] = of;
+    auto& [ids, record, loaded, area] = of;  // the last two: within a substep
     TAUT_ASIDE(visitor, ids);
     TAUT_ROWS(visitor, ids, record);
 }

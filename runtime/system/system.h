@@ -126,6 +126,29 @@ struct Rows {
     Array<RollingData> rolling_data;   // of contacts with rolling or spinning friction, after their points
 };
 
+// Gas that nodes enclose in a volume V: its pressure, which acts as a force within `exact` already, falls by
+// `stiffness` for each m^3 that the substep adds to V. In the nodes it is t h stiffness g g^T, g = dV/dx.
+struct GasLoad {
+    uint32_t first, count;  // in Gases::seat
+    double stiffness;       // -dp/dV [Pa/m^3]
+};
+struct Gases {
+    explicit Gases(Memory& memory) : list(memory), seat(memory), gradient(memory), pushed(memory) {}
+
+    void clear() {
+        list.clear();
+        seat.clear();
+        gradient.clear();
+        pushed.clear();
+    }
+    Vec3 push_of(uint32_t at) const { return pushed.empty() ? Vec3(Vec3::Zero()) : pushed[at]; }
+
+    Array<GasLoad> list;
+    Array<uint32_t> seat;  // of nodes that forces move
+    Array<Vec3> gradient;  // g of each [m^2]
+    Array<Vec3> pushed;    // by seat, or empty: velocity that pressure within surfaces gives in this substep [m/s]
+};
+
 // For sweeps, which want no -0.
 inline void set_sweep_velocity(SweepVelocity& out, const Velocity& u) {
     for (int i = 0; i < 3; ++i) {
@@ -165,6 +188,7 @@ struct System {
           sweep(memory),
           shift(memory),
           sweep_pose(memory),
+          gases(memory),
           rows(memory),
           joints(memory),
           elements(memory),
@@ -214,7 +238,8 @@ struct System {
     Array<SweepShift> shift;      // motion since contacts were found; commit()
     Array<SweepPose> sweep_pose;  // pose in floats, where there are joints; begin_frame(), predict()
 
-    Rows rows;              // of the group being solved
+    Gases gases;            // of the group being solved
+    Rows rows;              // likewise
     JointLanes joints;      // swept ones of the group being solved
     ElementLanes elements;  // likewise, of sets with a fused sweep
     ContactLanes contacts;  // of the group being solved

@@ -36,6 +36,15 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
          [](taut_world w) {
              return taut_world_set_gravity(w, {0, -1, 0});
          }},
+        {"taut_world_get_wind",
+         [](taut_world w) {
+             taut_vec3 out;
+             return taut_world_get_wind(w, &out);
+         }},
+        {"taut_world_set_wind",
+         [](taut_world w) {
+             return taut_world_set_wind(w, {0, 1, 0});
+         }},
         {"taut_world_get_counts", [](taut_world w) { return taut_world_get_counts(w, nullptr, nullptr, nullptr); }},
         {"taut_world_get_bytes",
          [](taut_world w) {

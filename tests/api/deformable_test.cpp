@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "support.h"
+#include "def_check.h"
 
 using namespace taut_test;
 
@@ -237,6 +237,74 @@ TEST_F(Deformable, PartsAreNotRemovedAloneAndGoWithTheWhole) {
     EXPECT_EQ(taut_joint_is_valid(held), 0);
     EXPECT_EQ(taut_cloth_pin(cloth, 0, 1), TAUT_STALE_HANDLE);
     expect_empty();
+}
+
+// Each number of the defs that air and plastic flow take, at its limits and beyond.
+TEST_F(Deformable, LoadsAreChecked) {
+    taut_cloth_def cloth = cloth_def();
+    cloth.air_drag = 100;
+    DefCheck(world, "taut_world_add_cloth", taut_world_add_cloth)
+        .run(cloth, {FIELD(taut_cloth_def, air_lift, 0, 100), FIELD(taut_cloth_def, air_drag, 0, 100)});
+    cloth.air_drag = 1;
+    cloth.air_lift = 1.01f;
+    taut_cloth out{};
+    EXPECT_EQ(taut_world_add_cloth(world, &cloth, &out), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "air_lift is more than air_drag")) << taut_last_error();
+    // A tetrahedron's hull is closed.
+    const uint32_t hull[] = {1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1};
+    cloth = cloth_def();
+    cloth.points = kTet;
+    cloth.triangles = hull;
+    cloth.triangle_count = 4;
+    DefCheck(world, "taut_world_add_cloth", taut_world_add_cloth)
+        .run(cloth, {FIELD(taut_cloth_def, pressure, -1e7, 1e7)});
+    cloth.gas = 1;
+    const taut_cloth full = add(cloth);
+    float pressure = 1;
+    double volume = 0;
+    EXPECT_OK(taut_cloth_get_pressure(full, &pressure));
+    EXPECT_OK(taut_cloth_get_volume(full, &volume));
+    EXPECT_NEAR(pressure, 0, 0.1);
+    EXPECT_NEAR(volume, 1.0 / 6, 1e-12);
+    EXPECT_OK(taut_cloth_set_pressure(full, 1e5f));
+    EXPECT_OK(taut_cloth_get_pressure(full, &pressure));
+    EXPECT_NEAR(pressure, 1e5f, 1);
+    EXPECT_EQ(taut_cloth_set_pressure(full, -101326), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_cloth_set_pressure(full, 1.1e7f), TAUT_INVALID_ARGUMENT);
+    taut_solid_def solid = solid_def();
+    solid.air_drag = 100;
+    DefCheck(world, "taut_world_add_solid", taut_world_add_solid)
+        .run(solid,
+             {FIELD(taut_solid_def, air_lift, 0, 100), FIELD(taut_solid_def, yield_stress, 1, 1e12, Field::or_infinite),
+              FIELD(taut_solid_def, creep, 0, 1e6, Field::or_infinite),
+              FIELD(taut_solid_def, plastic_limit, 0, 10, Field::or_infinite)});
+    uint32_t count = 0;
+    float strain = 1;
+    EXPECT_EQ(taut_solid_get_plastic_strains(add(solid), &strain, 0, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(count, 1u);
+    EXPECT_OK(taut_solid_get_plastic_strains(add(solid), &strain, 1, &count));
+    EXPECT_EQ(strain, 0);
+}
+
+TEST_F(Deformable, WindIsOfTheWorld) {
+    taut_vec3 wind{1, 1, 1};
+    EXPECT_OK(taut_world_get_wind(world, &wind));
+    EXPECT_EQ(wind.x, 0);
+    EXPECT_OK(taut_world_set_wind(world, {1, -1000, 1000}));
+    EXPECT_EQ(taut_world_set_wind(world, {1, -1001, 1000}), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_world_set_wind(world, {std::nanf(""), 0, 0}), TAUT_INVALID_ARGUMENT);
+    EXPECT_OK(taut_world_get_wind(world, &wind));
+    EXPECT_EQ(wind.y, -1000);
+    taut_world_def def;
+    EXPECT_OK(taut_world_get_def(world, &def));
+    EXPECT_EQ(def.wind.z, 1000);
+    taut_world made{};
+    taut_world_def_init(&def);
+    def.air_density = -1;
+    EXPECT_EQ(taut_world_create(&def, &made), TAUT_INVALID_ARGUMENT);
+    taut_world_def_init(&def);
+    def.wind.x = 1001;
+    EXPECT_EQ(taut_world_create(&def, &made), TAUT_INVALID_ARGUMENT);
 }
 
 // A handle of the other kind names nothing.

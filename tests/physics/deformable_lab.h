@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include "physics/lab.h"
@@ -46,6 +47,46 @@ struct Sheet {
     std::vector<float> uv;
 };
 
+// A sphere about the origin, normals outward: an icosahedron, each triangle in four so many times.
+struct Ball {
+    Ball(double radius, int times) {
+        const double a = (1 + std::sqrt(5.0)) / 2;
+        std::vector<Vec> at = {{-1, a, 0},  {1, a, 0},  {-1, -a, 0}, {1, -a, 0}, {0, -1, a},  {0, 1, a},
+                               {0, -1, -a}, {0, 1, -a}, {a, 0, -1},  {a, 0, 1},  {-a, 0, -1}, {-a, 0, 1}};
+        triangles = {0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                     4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                     6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
+        for (; times > 0; --times) {
+            std::map<std::pair<uint32_t, uint32_t>, uint32_t> middle;
+            const auto between = [&](uint32_t i, uint32_t k) {
+                const auto [found, made] = middle.insert({std::minmax(i, k), static_cast<uint32_t>(at.size())});
+                if (made) at.push_back(unit(unit(at[i]) + unit(at[k])));
+                return found->second;
+            };
+            std::vector<uint32_t> finer;
+            for (size_t t = 0; t < triangles.size(); t += 3) {
+                const uint32_t i = triangles[t], k = triangles[t + 1], l = triangles[t + 2];
+                const uint32_t ik = between(i, k), kl = between(k, l), li = between(l, i);
+                finer.insert(finer.end(), {i, ik, li, k, kl, ik, l, li, kl, ik, kl, li});
+            }
+            triangles = finer;
+        }
+        for (const Vec& x : at) points.push_back((radius * unit(x)).pos());
+    }
+    taut_cloth_def def() const {
+        taut_cloth_def out;
+        taut_cloth_def_init(&out);
+        out.points = points.data();
+        out.point_count = static_cast<uint32_t>(points.size());
+        out.triangles = triangles.data();
+        out.triangle_count = static_cast<uint32_t>(triangles.size() / 3);
+        return out;
+    }
+
+    std::vector<taut_pos> points;
+    std::vector<uint32_t> triangles;
+};
+
 inline taut_cloth add(const World& world, const taut_cloth_def& def) {
     taut_cloth out{};
     ok(taut_world_add_cloth(world.handle, &def, &out));
@@ -72,6 +113,22 @@ inline std::vector<taut_body> bodies_of(taut_cloth cloth) {
     std::vector<taut_body> out(count);
     ok(taut_cloth_get_bodies(cloth, out.data(), count, &count));
     return out;
+}
+
+inline std::vector<taut_body> bodies_of(taut_solid solid) {
+    uint32_t count = 0;
+    taut_solid_get_bodies(solid, nullptr, 0, &count);
+    std::vector<taut_body> out(count);
+    ok(taut_solid_get_bodies(solid, out.data(), count, &count));
+    return out;
+}
+inline Vec momentum_of(const std::vector<taut_body>& bodies) {
+    Vec sum;
+    for (const taut_body body : bodies) sum += mass_of(body).mass * velocity(body);
+    return sum;
+}
+inline void set_velocities(const std::vector<taut_body>& bodies, const Vec& v) {
+    for (const taut_body body : bodies) ok(taut_body_set_velocity(body, v.narrow(), {}));
 }
 
 // A box along x from 0, held at x = 0, of cells with five tetrahedra each or of hexahedra.
