@@ -1,4 +1,6 @@
 // Laws of cloths that act on one side alone: softer in compression, stiffer beyond a strain, tethers.
+#include <set>
+
 #include "physics/deformable_lab.h"
 
 namespace {
@@ -139,6 +141,57 @@ TEST_P(ClothLaw, TethersHoldWhatHangs) {
     EXPECT_GT(low[0], 1.2 * kLength);
     EXPECT_LT(low[1], (1 + kSlack) * kLength + load * kCompliance + 1e-4);
     EXPECT_GT(low[1], kLength);
+}
+
+// A net that falls into its pins, through slack, pressure and its limit: motion, height and links together lose energy
+// from step to step, where they are solved at once.
+TEST(ClothLaws, GainNoEnergy) {
+    constexpr int kSide = 9;
+    constexpr double kSpring = 500, kPressed = 0.3, kLimit = 0.02, kBeyond = 5000;
+    World world;
+    const Sheet sheet(kSide, kSide, 0.8, 0.8, 0);
+    taut_cloth_def def = sheet.def(TAUT_CLOTH_LINKS);
+    for (float& each : def.stretch_compliance) each = 1 / static_cast<float>(kSpring);
+    def.shear_compliance = std::numeric_limits<float>::infinity();
+    def.compression = static_cast<float>(kPressed);
+    def.strain_limit = static_cast<float>(kLimit);
+    def.limit_compliance = 1 / static_cast<float>(kBeyond);
+    def.area_density = 1;
+    def.filter.mask = 0;
+    const taut_cloth cloth = add(world, def);
+    for (const int k : {0, kSide - 1}) ok(taut_cloth_pin(cloth, sheet.at(0, k), 1));
+    const std::vector<taut_body> body = bodies_of(cloth);
+    bool presses = false, limits = false;
+    const auto energy = [&] {
+        const std::vector<Vec> x = points_of(cloth);
+        double sum = 0;
+        for (const taut_body each : body) {
+            const double m = mass_of(each).mass;
+            const Vec v = velocity(each);
+            sum += m * (0.5 * dot(v, v) + kG * position(each).y);
+        }
+        std::set<std::pair<uint32_t, uint32_t>> seen;
+        for (size_t i = 0; i < sheet.triangles.size(); ++i) {
+            const uint32_t a = sheet.triangles[i], b = sheet.triangles[i - i % 3 + (i + 1) % 3];
+            if (!seen.emplace(std::min(a, b), std::max(a, b)).second) continue;
+            const Vec rest = Vec(sheet.points[b]) - Vec(sheet.points[a]);
+            const double c = norm(x[b] - x[a]) - norm(rest), beyond = c - kLimit * norm(rest);
+            if (rest.x == 0 || rest.z == 0) sum += 0.5 * (c < 0 ? kPressed : 1) * kSpring * c * c;
+            if (beyond > 0) sum += 0.5 * kBeyond * beyond * beyond;
+            presses = presses || c < -1e-4;
+            limits = limits || beyond > 1e-4;
+        }
+        return sum;
+    };
+    double last = energy();
+    const double scale = totals(body).mass * kG * 0.8;
+    for (int i = 0; i < 300; ++i) {
+        world.step();
+        const double now = energy();
+        EXPECT_LE(now, last + 1e-4 * scale) << i;
+        last = now;
+    }
+    EXPECT_TRUE(presses && limits);
 }
 
 }  // namespace
