@@ -1,4 +1,5 @@
 // A tunic of two panels, sewn together at sides and shoulders, on a mannequin that sways.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +12,11 @@ namespace scenes {
 
 namespace {
 
-constexpr int kPanelRows = 34, kPanelColumns = 25;
+// Vertices of a panel, before its neck is cut.
+struct Weave {
+    int rows, columns;
+};
+
 constexpr double kHem = 0.72, kLength = 0.72;       // height of the hem, from there to the shoulders [m]
 constexpr double kArmhole = 0.47, kNeck = 0.085;    // sides are sewn up to; half of its opening [m]
 constexpr double kShoulders = 0.44, kFlare = 0.05;  // from where the panels close over the shoulders [m]
@@ -41,17 +46,17 @@ taut_pos draped(double across, double height, double front) {
 }
 
 // Vertices on the sides and shoulders are the same on both panels.
-Cloth panel(double front) {
-    Cloth cloth = grid_cloth(kPanelRows, kPanelColumns, 1, 1, 0);
+Cloth panel(const Weave& weave, double front) {
+    Cloth cloth = grid_cloth(weave.rows, weave.columns, 1, 1, 0);
     taut_cloth_def_set_fabric(&cloth.def, TAUT_FABRIC_COTTON);
     cloth.def.damping = 0.01f;
     cloth.def.material.friction = 0.4f;
     cloth.uv.clear();
     cloth.points.clear();
-    for (int i = 0; i < kPanelRows; ++i)
-        for (int k = 0; k < kPanelColumns; ++k) {
-            const double height = kLength * i / (kPanelRows - 1);
-            const double across = half_width(height) * (2.0 * k / (kPanelColumns - 1) - 1);
+    for (int i = 0; i < weave.rows; ++i)
+        for (int k = 0; k < weave.columns; ++k) {
+            const double height = kLength * i / (weave.rows - 1);
+            const double across = half_width(height) * (2.0 * k / (weave.columns - 1) - 1);
             cloth.points.push_back(draped(across, height, front));
             cloth.rest.push_back({across, height, 0});
             cloth.uv.insert(cloth.uv.end(), {static_cast<float>(height), static_cast<float>(across)});
@@ -91,12 +96,12 @@ std::vector<int> cut_neck(Cloth& cloth) {
     return place;
 }
 
-void sew(Scene& scene, const std::vector<int>& place) {
-    for (int i = 0; i < kPanelRows; ++i)
-        for (int k = 0; k < kPanelColumns; ++k) {
-            const bool side = (k == 0 || k == kPanelColumns - 1) && kLength * i / (kPanelRows - 1) < kArmhole;
-            const int vertex = place[static_cast<size_t>(i * kPanelColumns + k)];
-            if ((!side && i != kPanelRows - 1) || vertex < 0) continue;
+void sew(Scene& scene, const Weave& weave, const std::vector<int>& place) {
+    for (int i = 0; i < weave.rows; ++i)
+        for (int k = 0; k < weave.columns; ++k) {
+            const bool side = (k == 0 || k == weave.columns - 1) && kLength * i / (weave.rows - 1) < kArmhole;
+            const int vertex = place[static_cast<size_t>(i * weave.columns + k)];
+            if ((!side && i != weave.rows - 1) || vertex < 0) continue;
             Joint stitch;
             stitch.vertex_a.cloth = 0;
             stitch.vertex_b.cloth = 1;
@@ -136,12 +141,15 @@ void add_mannequin(Scene& scene) {
 
 }  // namespace
 
-Scene build_garment(double, double, const Options& options) {
+// n vertices across a panel.
+Scene build_garment(double n, double, const Options& options) {
+    const int columns = std::max(5, static_cast<int>(n));
+    const Weave weave = {columns * 34 / 25, columns};
     Scene scene = soft_hall(1.6);
     add_ground(scene);
     std::vector<int> place;
     for (const double front : {1.0, -1.0}) {
-        Cloth cloth = panel(front);
+        Cloth cloth = panel(weave, front);
         place = cut_neck(cloth);
         if (front < 0)
             for (size_t t = 0; t < cloth.triangles.size(); t += 3)
@@ -149,7 +157,7 @@ Scene build_garment(double, double, const Options& options) {
         cloth.look.most = 0.05;
         scene.add_cloth(std::move(cloth));
     }
-    sew(scene, place);
+    sew(scene, weave, place);
     add_mannequin(scene);
     scene.camera = {{0.75, 1.5, 2.3}, {-0.3, 0.95, 0}, 38};
     scene.forces = ForceScale{-2, 2};

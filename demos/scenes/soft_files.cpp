@@ -86,7 +86,7 @@ Scene build_cloth_file(double, double, const Options& options) {
 // A solid of a file, a metre along its longest side, falls on stairs.
 Scene build_solid_file(double, double, const Options& options) {
     constexpr double kSize = 1;
-    constexpr int kCubes = 700;
+    constexpr int kCubes = 500;
     Scene scene = empty_scene();
     add_ground(scene);
     Solid solid = solid_from_file(options.mesh, kCubes);

@@ -354,7 +354,7 @@ TEST(Figure, MadeHereIsOneClosedPieceOfAboutTwelveHundredVertices) {
     std::vector<uint32_t> root(solid.points.size());
     for (uint32_t i = 0; i < root.size(); ++i) root[i] = i;
     const auto find = [&](uint32_t i) {
-        while (root[i] != i) i = root[i];
+        while (root[i] != i) i = root[i] = root[root[i]];
         return i;
     };
     for (size_t c = 0; c < solid.cells.size(); ++c) root[find(solid.cells[c])] = find(solid.cells[c - c % 4]);

@@ -28,7 +28,7 @@ class SmallMesh {
 public:
     SmallMesh() {
         std::ofstream(path) << "g tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-                               "g wedge\nv 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 0 1 1\n"
+                               "g wedge\nv 3 0 0\nv 5 0 0\nv 3 1 0\nv 3 0 1\nv 5 0 1\nv 3 1 1\n"
                                "f 5 7 6\nf 8 9 10\nf 5 6 9 8\nf 6 7 10 9\nf 7 5 8 10\n";
     }
     ~SmallMesh() { std::remove(path.c_str()); }

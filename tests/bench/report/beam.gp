@@ -2,7 +2,7 @@
 # tetrahedra lock.
 eval picture(900, 460)
 set output "beam.png"
-set title "A cantilever: sink of its tip over that of Euler and Bernoulli with shear, mean of the fifth second"
+set title "A cantilever: sink of its tip over theory, mean of the fifth second"
 set logscale xy
 set xtics ("1 MPa" 1, "10 MPa" 10, "100 MPa" 100)
 set mxtics 1

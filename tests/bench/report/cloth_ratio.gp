@@ -2,7 +2,7 @@
 # corners. The paper tells that a weight of 1:500 is held in real time, and no figures.
 eval picture(900, 500)
 set output "cloth_ratio.png"
-set title "A sheet of 20 × 20 stiff links and a weight fall from horizontal, 4 s at 60 Hz: largest stretch of a link"
+set title "A sheet of 20 × 20 links and a weight fall, 4 s at 60 Hz: largest stretch"
 set logscale xy
 set xtics ("1:1" 1, "1:10" 10, "1:100" 100, "1:500" 500)
 set mxtics 1

@@ -70,7 +70,7 @@ scenes::Scene thesis_sheet(taut_solver solver, uint32_t iterations, double relax
     scene.world.substeps = scene.world.fixed_substeps = 1;
     scene.world.solver = solver;
     scene.world.sweeps = iterations;
-    scene.world.relaxation = static_cast<float>(relaxation);
+    if (relaxation > 0) scene.world.relaxation = static_cast<float>(relaxation);
     return scene;
 }
 
