@@ -56,7 +56,8 @@ using NeoHookean = Spectral<NeoHookeanRows>;
 
 }  // namespace
 
-constinit const ElementType kNeoHookeanTet4 = continuum_element<4, NeoHookean>("neo Hookean tet4", &ElementKernels::neo_hookean_tet4);
+constinit const ElementType kNeoHookeanTet4 =
+    continuum_element<4, NeoHookean>("neo Hookean tet4", &ElementKernels::neo_hookean_tet4);
 constinit const ElementType kNeoHookeanHex8 = continuum_element<8, NeoHookean>("neo Hookean hex8");
 
 }  // namespace taut

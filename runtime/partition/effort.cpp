@@ -107,7 +107,8 @@ void Partition::choose_substeps(const PartitionRules& rules) {
     if (rules.fixed) return;
     for (Island& island : island_) {  // yields fall as the square of substeps
         const double substeps = std::ceil(rules.time_step * std::sqrt(island.strain));
-        island.substeps = std::max(island.substeps, static_cast<uint32_t>(std::min<double>(substeps, kMostElasticSubsteps)));
+        island.substeps =
+            std::max(island.substeps, static_cast<uint32_t>(std::min<double>(substeps, kMostElasticSubsteps)));
     }
     for (Block& block : blocks) {
         Island& island = island_[island_of_[block.nodes[0]]];

@@ -73,9 +73,9 @@ auto named = [](const testing::TestParamInfo<GasCase>& each) {
 
 struct Still : World {
     explicit Still(const GasCase& of, double gravity = 0)
-        : World([&](taut_world_def& def) {
-              def.time_step = static_cast<float>(1 / of.hz);
-              def.gravity = {0, static_cast<float>(-gravity), 0};
+        : World([&](taut_world_def& w) {
+              w.time_step = static_cast<float>(1 / of.hz);
+              w.gravity = {0, static_cast<float>(-gravity), 0};
           }) {}
     void run(double seconds) const { step(static_cast<int>(std::lround(seconds * 1 / frame()))); }
 };

@@ -79,9 +79,9 @@ struct Led {
 
 struct Weightless : World {
     explicit Weightless(double hz = pace().hz)
-        : World([&](taut_world_def& def) {
-              def.time_step = static_cast<float>(1 / hz);
-              def.gravity = {0, 0, 0};
+        : World([&](taut_world_def& w) {
+              w.time_step = static_cast<float>(1 / hz);
+              w.gravity = {0, 0, 0};
           }) {}
     void run(double seconds) const { step(static_cast<int>(std::lround(seconds / frame()))); }
 };

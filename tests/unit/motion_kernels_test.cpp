@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "unit/motion_rig.h"
 #include "starts.h"
+#include "unit/motion_rig.h"
 
 namespace taut::test {
 namespace {
