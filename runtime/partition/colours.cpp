@@ -193,7 +193,8 @@ void Partition::list_fused_elements(uint32_t g) {
     Group& group = groups[g];
     group.fused.clear();
     group.fused_pass.clear();
-    if (!lanes_) return;
+    const auto fused = [](uint32_t pass) { return pass != kNone; };
+    if (!lanes_ || std::ranges::none_of(element_pass_, fused)) return;
     items_.clear();
     rank_begin_.assign(kMostStages * kMaxColours + 1, 0);
     for (uint32_t e = 0; e < element_.size(); ++e) {

@@ -79,14 +79,21 @@ void Partition::find_towers(const PartitionRules& rules) {
 
 // Of islands with swept elements that have a tolerance.
 void Partition::find_strains(const Elements& elements) {
-    for (Island& island : island_) island.strain = 0;
+    strain_.clear();
     for (uint32_t e = 0; e < element_.size() && lanes_; ++e) {
         const ElementSet& set = elements.set[element_[e].set];
         if (element_pass_[e] == kNone || element_in_block_[e] || set.tolerance == 0) continue;
+        if (strain_.empty()) strain_.resize(island_.size(), 0.0);
         const auto moves = std::ranges::find_if(movers_of(e), [](uint32_t node) { return node != kNone; });
-        double& strain = island_[island_of_[*moves]].strain;
+        double& strain = strain_[island_of_[*moves]];
         strain = std::max(strain, set.yield / set.tolerance);
     }
+}
+
+// Yields fall as the square of substeps.
+uint32_t Partition::swept_substeps(size_t island, double time_step) const {
+    const double substeps = strain_.empty() ? 0 : std::ceil(time_step * std::sqrt(strain_[island]));
+    return static_cast<uint32_t>(std::min<double>(substeps, kMostElasticSubsteps));
 }
 
 void Partition::choose_substeps(const PartitionRules& rules) {
@@ -105,11 +112,8 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         island.substeps = rules.fixed ? rules.substeps : (rules.substeps * halves + 1) / 2;
     }
     if (rules.fixed) return;
-    for (Island& island : island_) {  // yields fall as the square of substeps
-        const double substeps = std::ceil(rules.time_step * std::sqrt(island.strain));
-        island.substeps =
-            std::max(island.substeps, static_cast<uint32_t>(std::min<double>(substeps, kMostElasticSubsteps)));
-    }
+    for (size_t i = 0; i < island_.size() && !strain_.empty(); ++i)
+        island_[i].substeps = std::max(island_[i].substeps, swept_substeps(i, rules.time_step));
     for (Block& block : blocks) {
         Island& island = island_[island_of_[block.nodes[0]]];
         if (!block.tower && (block.mass_ratio > kExtremeMassRatio || block.memory.escalated))

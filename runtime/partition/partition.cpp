@@ -33,6 +33,7 @@ Partition::Partition(Memory& memory)
       items_(memory),
       rank_(memory),
       rank_begin_(memory),
+      strain_(memory),
       efforts_(memory),
       presses_(memory),
       squeezes_(memory),

@@ -208,7 +208,6 @@ private:
         bool may_be_column = false;  // one as a whole, which a block may hold
         bool weak = false;           // has bodies in weak_
         bool squeezed = false;       // by something kinematic, harder than sweeps hold
-        double strain = 0;           // by which fused sweeps would yield in substeps of one second, over what they may
         bool tower = false, whips = false;
 
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
@@ -303,6 +302,7 @@ private:
     void list_spans(const Pairs& pairs);
     template <class RankOf, class Take>
     uint32_t sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take);
+    uint32_t swept_substeps(size_t island, double time_step) const;
     uint8_t take_colour(std::span<const uint32_t> nodes);
     uint32_t rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const;
     bool is_in(uint32_t group, std::span<const uint32_t> nodes) const;
@@ -348,6 +348,8 @@ private:
     Array<uint32_t> items_;                        // scratch: what is put in order
     Array<uint32_t> rank_;                         // scratch: of an item, its colour, kind and place
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
+    Array<double> strain_;  // of each island, by which fused sweeps would yield in substeps of one second, over what
+                            // they may; or empty
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those
     Array<Squeeze> squeezes_;                      // scratch: in the order of reach

@@ -32,7 +32,8 @@ struct Lanes {
         set.fused = true;
         set.pulls = pulls;
         const int rows = type.row.rows;
-        Eigen::MatrixXd c = Eigen::MatrixXd::Random(rows, rows);
+        Eigen::MatrixXd c(rows, rows);
+        for (double& each : c.reshaped()) each = random.between(-1, 1);
         c = Eigen::MatrixXd(c * c.transpose() + 0.1 * Eigen::MatrixXd::Identity(rows, rows)) * 1e-4;
         set_compliance(set, {c.data(), static_cast<size_t>(rows * rows)}, 0.003);
         reserve_elements(set, kElements);
