@@ -21,6 +21,7 @@ typedef enum taut_solid_material {
     TAUT_SOLID_ST_VENANT_KIRCHHOFF = 1, /**< Green strain: cheapest; for stiff ones, as it collapses when pressed to half */
     TAUT_SOLID_COROTATED = 2,           /**< Hooke's law of the principal stretches */
     TAUT_SOLID_FIXED_COROTATED = 3,     /**< the same with the true volume (Stomakhin et al. 2012) */
+    TAUT_SOLID_ORTHOTROPIC = 4, /**< St. Venant's and Kirchhoff's with three axes: wood, muscle, composites */
     TAUT_SOLID_MATERIAL_MAX = 0x7fffffff
 } taut_solid_material;
 
@@ -33,6 +34,16 @@ typedef enum taut_substance {
     TAUT_SUBSTANCE_WOOD = 4,
     TAUT_SUBSTANCE_MAX = 0x7fffffff
 } taut_substance;
+
+/** Constants along three axes that are at right angles to each other in the rest shape. */
+typedef struct taut_orthotropic {
+    float young_moduli[3];   /**< along axes 1, 2, 3 [Pa], [1, 1e12]. Default 1e6 */
+    float poisson_ratios[3]; /**< nu_23, nu_13, nu_12: contraction along the second axis over stretch along the first,
+                                  [-10, 10], such that every strain is resisted. Default 0.3 */
+    float shear_moduli[3];   /**< in the planes 23, 13, 12 [Pa], [1, 1e12]. Default 384615 */
+    taut_quat axes;          /**< from the axes to the rest shape. Default: x, y, z */
+    const taut_quat* cells;  /**< [cell_count] of each cell in its place; null: axes. Copied */
+} taut_orthotropic;
 
 /**
  * A solid. Tetrahedra: corners 1, 2, 3 go round counterclockwise as seen from outside, where corner 0 is on the other
@@ -60,6 +71,8 @@ typedef struct taut_solid_def {
                                        it within a step. Default INFINITY */
     float plastic_limit;          /**< largest plastic strain, by taut_solid_get_plastic_strains, [0, 10], or INFINITY.
                                        Default 1 */
+    taut_orthotropic orthotropic; /**< of TAUT_SOLID_ORTHOTROPIC, which has none of the isotropic constants and does
+                                       not yield */
     float gravity_scale;          /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_DIRECT */
     taut_material surface;        /**< friction and restitution */

@@ -14,15 +14,36 @@ namespace {
 constexpr Range kSolidDensity{1e-2, 1e6};  // [kg/m^3]
 constexpr Range kYoung{1, 1e12};           // [Pa]
 constexpr Range kSolidPoisson{0, 0.499};
+constexpr Range kAxialPoisson{-10, 10};
 constexpr Range kCreep{0, 1e6};        // [1/s]
 constexpr Range kPlasticLimit{0, 10};  // [1]
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr MaterialNames kSurface{"surface.friction",         "surface.restitution",      "surface.friction_rule",
                                  "surface.restitution_rule", "surface.rolling_friction", "surface.spinning_friction"};
 
+Check& check_axes(Check& check, const taut_solid_def& def) {
+    const taut_orthotropic& of = def.orthotropic;
+    char field[48];
+    for (int i = 0; check && i < 3; ++i) {
+        const auto name = [&](const char* what) {
+            std::snprintf(field, sizeof field, "orthotropic.%s[%d]", what, i);
+            return field;
+        };
+        check.number(name("young_moduli"), of.young_moduli[i], kYoung);
+        if (check) check.number(name("poisson_ratios"), of.poisson_ratios[i], kAxialPoisson);
+        if (check) check.number(name("shear_moduli"), of.shear_moduli[i], kYoung);
+    }
+    check.rotation("orthotropic.axes", of.axes);
+    for (uint32_t c = 0; of.cells && check && c < def.cell_count; ++c) {
+        std::snprintf(field, sizeof field, "orthotropic.cells[%u]", c);
+        check.rotation(field, of.cells[c]);
+    }
+    return check.require(!(def.yield_stress < kNever), "yield_stress: an orthotropic solid does not yield");
+}
+
 bool check_def(Check& check, const taut_solid_def& def) {
     check.struct_size(def.struct_size, sizeof def)
-        .choice("material", def.material, TAUT_SOLID_FIXED_COROTATED)
+        .choice("material", def.material, TAUT_SOLID_ORTHOTROPIC)
         .number("density", def.density, kSolidDensity)
         .number("young_modulus", def.young_modulus, kYoung)
         .number("poisson_ratio", def.poisson_ratio, kSolidPoisson)
@@ -36,7 +57,29 @@ bool check_def(Check& check, const taut_solid_def& def) {
     check_soft(check, def.surface, kSurface, def.filter, def.thickness, def.damping, def.gravity_scale, def.solve);
     const MeshDef mesh{def.points,   def.rest,  def.point_count, 4,          "cells",
                        "cell_count", def.cells, def.cell_count,  def.corners};
-    return check && check_mesh(check, mesh);
+    if (!check || !check_mesh(check, mesh)) return false;
+    if (def.material == TAUT_SOLID_ORTHOTROPIC) check_axes(check, def);
+    return static_cast<bool>(check);
+}
+
+OrthotropicSolid axial_of(const taut_orthotropic& of) {
+    OrthotropicSolid out{};
+    for (int i = 0; i < 3; ++i) {
+        out.young[i] = of.young_moduli[i];
+        out.poisson[i] = of.poisson_ratios[i];
+        out.shear[i] = of.shear_moduli[i];
+    }
+    return out;
+}
+
+// Of each cell, of all, or none.
+Array<Quat> axes_of(World& world, const taut_solid_def& def) {
+    Array<Quat> out(world.memory);
+    if (def.material != TAUT_SOLID_ORTHOTROPIC) return out;
+    const taut_orthotropic& of = def.orthotropic;
+    const std::span<const taut_quat> from(of.cells ? of.cells : &of.axes, of.cells ? def.cell_count : 1);
+    for (const taut_quat& q : from) out.push_back(to_quat(q));
+    return out;
 }
 
 struct SubstanceFigures {
@@ -62,6 +105,12 @@ void taut_solid_def_init(taut_solid_def* def) {
     def->young_modulus = 1e6f;
     def->poisson_ratio = 0.3f;
     def->thickness = 0.01f;
+    for (int i = 0; i < 3; ++i) {
+        def->orthotropic.young_moduli[i] = 1e6f;
+        def->orthotropic.poisson_ratios[i] = 0.3f;
+        def->orthotropic.shear_moduli[i] = 384615;
+    }
+    def->orthotropic.axes = {0, 0, 0, 1};
     def->yield_stress = def->creep = kNever;
     def->plastic_limit = 1;
     def->gravity_scale = 1;
@@ -89,9 +138,11 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         const Array<Vec3> at = positions_of(world, def->points, def->point_count);
         const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
-        const SolidMesh mesh{at, rest, {def->cells, size_t{def->corners} * def->cell_count}, def->corners};
+        const Array<Quat> axes = axes_of(world, *def);
+        const SolidMesh mesh{at, rest, {def->cells, size_t{def->corners} * def->cell_count}, def->corners, axes};
         const Solid solid{static_cast<SolidMaterial>(def->material),
                           {def->young_modulus, def->poisson_ratio},
+                          axial_of(def->orthotropic),
                           def->density,
                           def->damping,
                           def->yield_stress,

@@ -21,20 +21,26 @@ constexpr uint32_t kHexFaces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
 struct MaterialType {
     const ElementType *tet4, *hex8;
     // D^-1 of a unit of volume, and alpha where its elements have one more number.
-    bool (*compliance)(const Isotropic& of, double* compliance, double& alpha);
+    bool (*compliance)(const Solid& of, double* compliance, double& alpha);
 };
 
 template <size_t N, bool (*make)(const Isotropic&, double (&)[N])>
-bool compliance_of(const Isotropic& of, double* out, double&) {
+bool compliance_of(const Solid& of, double* out, double&) {
     double block[N];
-    if (!make(of, block)) return false;
+    if (!make(of.elastic, block)) return false;
     std::copy_n(block, N, out);
     return true;
 }
-bool neo_hookean_compliance(const Isotropic& of, double* out, double& alpha) {
+bool neo_hookean_compliance(const Solid& of, double* out, double& alpha) {
     double block[4];
-    if (!neo_hookean(of, block, alpha)) return false;
+    if (!neo_hookean(of.elastic, block, alpha)) return false;
     std::copy_n(block, 4, out);
+    return true;
+}
+bool orthotropic_compliance(const Solid& of, double* out, double&) {
+    double block[36];
+    if (!orthotropic_solid(of.axial, block)) return false;
+    std::copy_n(block, 36, out);
     return true;
 }
 
@@ -43,39 +49,48 @@ const MaterialType kMaterials[] = {
     {&kGreenTet4, &kGreenHex8, compliance_of<36, hooke_solid>},
     {&kStretchTet4, &kStretchHex8, compliance_of<9, hooke_stretches>},
     {&kStretchVolumeTet4, &kStretchVolumeHex8, compliance_of<16, fixed_corotated>},
+    {&kGreenTet4, &kGreenHex8, orthotropic_compliance},
 };
 
-// Elements of a cell, an element a Gauss point; false: it is inverted or flat.
+// What cells have in common.
+struct CellTraits {
+    double alpha, density;
+};
+
+// Elements of a cell, an element a Gauss point; false: it is inverted or flat. Strain is along the material's axes: of
+// rest shapes turned back by these.
 template <int Nodes, size_t Points, class Find>
-bool add_cell(const Vec3 (&x)[Nodes], const uint32_t* vertex, double alpha, double density, Find&& find,
+bool add_cell(const Vec3 (&x)[Nodes], const uint32_t* vertex, const Quat& axes, const CellTraits& traits, Find&& find,
               ElementPlan& plan, Array<double>& mass) {
     GaussPoint<Nodes, 3> point[Points];
     if (!find(x, point)) return false;
     const auto numbers = static_cast<size_t>(plan.type->numbers);
+    const Mat3 back = axes.conjugate().toRotationMatrix();
+    const double density = traits.density;
     for (const GaussPoint<Nodes, 3>& at : point) {
         double data[3 * Nodes + 1];
-        std::copy_n(&at.g[0][0], 3 * Nodes, data);
-        data[3 * Nodes] = alpha;
+        for (int n = 0; n < Nodes; ++n) Vec3::Map(data + 3 * n) = back * Vec3::Map(at.g[n]);
+        data[3 * Nodes] = traits.alpha;
         plan.add({vertex, size_t{Nodes}}, {data, numbers}, 1 / at.weight);
         for (int n = 0; n < Nodes; ++n) mass[vertex[n]] += density * at.weight / Nodes;
     }
     return true;
 }
 
-bool add_tet(const Vec3* rest, const uint32_t* vertex, double alpha, double density, ElementPlan& plan,
+bool add_tet(const Vec3* rest, const uint32_t* vertex, const Quat& axes, const CellTraits& traits, ElementPlan& plan,
              Array<double>& mass) {
     Vec3 x[4];
     for (int n = 0; n < 4; ++n) x[n] = rest[vertex[n]];
     const auto find = [](const Vec3(&at)[4], GaussPoint<4, 3>(&out)[1]) { return tet4_point(at, out[0]); };
-    return add_cell<4, 1>(x, vertex, alpha, density, find, plan, mass);
+    return add_cell<4, 1>(x, vertex, axes, traits, find, plan, mass);
 }
 
-bool add_hex(const Vec3* rest, const uint32_t* vertex, double alpha, double density, ElementPlan& plan,
+bool add_hex(const Vec3* rest, const uint32_t* vertex, const Quat& axes, const CellTraits& traits, ElementPlan& plan,
              Array<double>& mass) {
     Vec3 x[8];
     for (int n = 0; n < 8; ++n) x[n] = rest[vertex[n]];
     const auto find = [](const Vec3(&at)[8], GaussPoint<8, 3>(&out)[8]) { return hex8_points(at, out); };
-    return add_cell<8, 8>(x, vertex, alpha, density, find, plan, mass);
+    return add_cell<8, 8>(x, vertex, axes, traits, find, plan, mass);
 }
 
 }  // namespace
@@ -85,10 +100,11 @@ const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve sol
     const MaterialType& material = kMaterials[static_cast<size_t>(solid.material)];
     ElementPlan& element = plan.element.emplace_back(*plan.position.get_allocator().memory,
                                                      tets ? *material.tet4 : *material.hex8, SoftPart::stretch);
-    double alpha = 0;
+    CellTraits traits{0, solid.density};
     cell = kNone;
-    if (!material.compliance(solid.elastic, element.compliance, alpha))
-        return "young_modulus, poisson_ratio: no stable material";
+    if (!material.compliance(solid, element.compliance, traits.alpha))
+        return solid.material == SolidMaterial::orthotropic ? "orthotropic: no stable material"
+                                                            : "young_modulus, poisson_ratio: no stable material";
     element.form = ElementForm::energy;
     element.solve = solve;
     element.tolerance = kSweptYield;
@@ -101,7 +117,8 @@ const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve sol
     for (uint32_t c = 0; c < cells; ++c) {
         const uint32_t* vertex = &mesh.cell[size_t{c} * mesh.corners];
         const auto add = tets ? add_tet : add_hex;
-        if (add(mesh.rest.data(), vertex, alpha, solid.density, element, plan.soft.mass)) continue;
+        const Quat axes = mesh.axes.empty() ? Quat::Identity() : mesh.axes[mesh.axes.size() > 1 ? c : 0];
+        if (add(mesh.rest.data(), vertex, axes, traits, element, plan.soft.mass)) continue;
         cell = c;
         return "is flat or inverted at rest";
     }

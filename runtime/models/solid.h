@@ -10,11 +10,12 @@
 namespace taut {
 
 // In the order of taut_solid_material.
-enum class SolidMaterial : uint8_t { neo_hookean, st_venant_kirchhoff, corotated, fixed_corotated };
+enum class SolidMaterial : uint8_t { neo_hookean, st_venant_kirchhoff, corotated, fixed_corotated, orthotropic };
 
 struct Solid {
     SolidMaterial material = SolidMaterial::neo_hookean;
     Isotropic elastic{};
+    OrthotropicSolid axial{};                                       // of an orthotropic one
     double density = 0;                                             // [kg/m^3]
     double damping = 0;                                             // time d of the stress D (E + d dE/dt) [s]
     double yield_stress = std::numeric_limits<double>::infinity();  // in simple tension [Pa]; infinite: it never flows
@@ -23,10 +24,11 @@ struct Solid {
 
 // A host's mesh, checked: each vertex is on a cell.
 struct SolidMesh {
-    std::span<const Vec3> position;  // of vertices [m]
-    std::span<const Vec3> rest;      // their rest shape [m]
-    std::span<const uint32_t> cell;  // [corners] vertices
-    uint32_t corners = 4;            // 4: tetrahedra, 8: hexahedra, as shape_functions.h orders them
+    std::span<const Vec3> position;   // of vertices [m]
+    std::span<const Vec3> rest;       // their rest shape [m]
+    std::span<const uint32_t> cell;   // [corners] vertices
+    uint32_t corners = 4;             // 4: tetrahedra, 8: hexahedra, as shape_functions.h orders them
+    std::span<const Quat> axes = {};  // of the material, to the rest shape: of each cell, of all, or none
 };
 
 // Why a mesh is no solid; null: it is one. Where that is a cell's fault, this is its index.
