@@ -108,6 +108,7 @@ private:
         plan.relaxation = fabric_.damping;
         plan.stage = kMostStages - 1;
         plan.tolerance = fabric_.tolerance;
+        plan.resolved = true;
         return plan;
     }
 

@@ -49,24 +49,43 @@ void add_vertices(World& world, uint32_t index, const SoftPlan& plan) {
     }
 }
 
-// By how much an element's rows would yield to what it carries where it is, within a substep of one second: J W J^T
-// lambda of each, of which the most.
-double yield_of(const World& world, const ElementSet& set, uint32_t element) {
+// Of an element's rows, where its nodes are: by how much they would yield to what they carry within a substep of one
+// second, J W J^T lambda, and the square of how fast they swing, J W J^T D [1/s^2]; of each the most.
+struct Swing {
+    double yield = 0, rate = 0;
+};
+Swing swing_of(const World& world, const ElementSet& set, uint32_t element) {
     const ConstraintType& row = set.type->row;
     const auto nodes = set.nodes_of(element);
     Pose x[kMaxNodes];
     for (size_t n = 0; n < nodes.size(); ++n) x[n].x = world.nodes.motion[nodes[n]].x;
-    double c[kMaxRows], j[kMaxNodes * kMaxRows * kDof], most = 0;
+    double c[kMaxRows], j[kMaxNodes * kMaxRows * kDof];
     row.evaluate(set.data_of(element), x, c, j);
+    Swing most;
     for (int r = 0; r < row.rows; ++r) {
         double force = 0, moves = 0;
         for (int k = 0; k < row.rows; ++k) force += set.stiffness[r * row.rows + k] * c[k] / set.softness[element];
         for (size_t n = 0; n < nodes.size(); ++n)
             moves += world.nodes.mass[nodes[n]].inv_mass *
                      Vec3::Map(j + (static_cast<int>(n) * row.rows + r) * kDof).squaredNorm();
-        most = std::max(most, moves * std::abs(force));
+        most.yield = std::max(most.yield, moves * std::abs(force));
+        most.rate = std::max(most.rate, moves * set.stiffness[r * (row.rows + 1)] / set.softness[element]);
     }
     return most;
+}
+
+// What fused sweeps of a set yield from the start. Those that are to be resolved are about as stiff as the material in
+// substeps of 1 / rate, which they take where the world's step has room for so many; what is stiffer counts as rigid.
+void begin_yield(const World& world, bool resolved, ElementSet& set) {
+    Swing most;
+    for (uint32_t e = 0; e < set.size(); ++e) {
+        const Swing each = swing_of(world, set, e);
+        most.yield = std::max(most.yield, each.yield);
+        most.rate = std::max(most.rate, each.rate);
+    }
+    const double shortest = static_cast<double>(world.def.time_step) / kMostElasticSubsteps;
+    if (resolved && most.rate * shortest * shortest <= 1) set.least_yield = set.tolerance * most.rate;
+    set.yield = std::max(set.least_yield, most.yield);
 }
 
 void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
@@ -89,8 +108,8 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
         for (uint32_t n = 0; n < nodes; ++n) node[n] = soft.node[plan.vertex[e * nodes + n]];
         world.elements.insert(set, e, {node, nodes}, plan.softness[e]);
         std::copy_n(&plan.data[size_t{e} * numbers], numbers, set.data_of(e));
-        if (set.fused && set.tolerance > 0) set.yield = std::max(set.yield, yield_of(world, set, e));
     }
+    if (set.fused && set.tolerance > 0) begin_yield(world, plan.resolved, set);
     if (soft.tear_strain > 0) soft.corner.insert(soft.corner.end(), plan.corner.begin(), plan.corner.end());
 }
 

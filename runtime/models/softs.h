@@ -26,8 +26,9 @@ struct ElementPlan {
     SoftPart part;
     ElementForm form = ElementForm::rows;
     JointSolve solve = JointSolve::direct;
-    uint8_t stage = 0;     // of its fused sweep, where it is swept
-    double tolerance = 0;  // likewise
+    uint8_t stage = 0;      // of its fused sweep, where it is swept
+    double tolerance = 0;   // likewise
+    bool resolved = false;  // likewise: its substeps are short against its stiffness, where they may be
     bool pulls = false;
     double compliance[kMaxRows * kMaxRows] = {};  // [rows][rows] of a unit of the material [m/N per unit]
     double relaxation = 0;                        // [s]

@@ -118,7 +118,7 @@ void age_yields(Elements& elements, double time, uint32_t substeps) {
     for (ElementSet& set : elements.set) {
         const double least = set.tolerance * substeps * substeps / (time * time);
         set.most_yield = (1 + time / kGrowth) * std::max(least, set.yield);
-        set.yield /= 1 + time / kMemory;
+        set.yield = std::max(set.least_yield, set.yield / (1 + time / kMemory));
     }
 }
 

@@ -38,7 +38,7 @@ struct ElementSet {
     uint8_t stage = 0;      // below kMostStages
     double tolerance = 0;   // of a fused sweep's yield, a strain, for which its islands take substeps; 0: the world's
     double yield = 0;       // of substeps of one second, as it was of late: that of substeps h is h^2 of it [1/s^2]
-    double most_yield = 0;  // that it may grow to in this frame
+    double least_yield = 0, most_yield = 0;  // that it may fall and, in this frame, grow to
     bool collide_connected = false;
     bool pulls = false;                           // of one row; said before its compliance and elements
     bool coupled = false;                         // the compliance is no multiple of 1
@@ -77,10 +77,10 @@ struct ElementSet {
 };
 template <class Visitor, Like<ElementSet> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [type, form, solve, fused, stage, tolerance, yield, most_yield, collide_connected, pulls, coupled, compliance,
+    auto& [type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls, coupled, compliance,
            stiffness, relaxation, stop, serial, version, node, data, softness, lambda, drift, slow_turn, loaded, fresh,
            memory] = of;
-    TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, most_yield, collide_connected, pulls,
+    TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls,
                 coupled, compliance, stiffness, relaxation, stop, node, data, softness, lambda, drift, slow_turn,
                 loaded, fresh, memory);
     TAUT_ASIDE(visitor, serial, version);

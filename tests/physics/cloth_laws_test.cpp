@@ -47,9 +47,11 @@ protected:
             world.step();
         }
         const std::vector<Vec> x = points_of(cloth);
-        EXPECT_NEAR(x[2].x, x[3].x, 1e-5);
+        EXPECT_NEAR(x[2].x, x[3].x, near());
         return 0.5 * (x[2].x + x[3].x) - kSide;
     }
+    // Swept ones yield by a few times their tolerance [m].
+    static double near() { return GetParam().solve == TAUT_DEFORMABLE_SWEPT ? 1.5e-4 : 3e-5; }
     static taut_cloth_def links(const Sheet& sheet) {
         taut_cloth_def def = sheet.def(TAUT_CLOTH_LINKS);
         for (float& each : def.stretch_compliance) each = 1 / static_cast<float>(kPulled);
@@ -67,7 +69,7 @@ TEST_P(ClothLaw, LinksArePressedBySoMuchLess) {
     for (const float share : {0.5f, 0.25f, 0.0f}) {
         def.compression = share;
         for (const double force : {4.0, -4.0})
-            EXPECT_NEAR(shift(def, force), force / (kPulled * (1 + static_cast<double>(share))), 2e-5)
+            EXPECT_NEAR(shift(def, force), force / (kPulled * (1 + static_cast<double>(share))), near())
                 << share << ' ' << force;
     }
 }
@@ -81,7 +83,7 @@ TEST_P(ClothLaw, LinksAreStifferBeyondTheLimit) {
     for (const double force : {2.0, 2.9, 3.5, 8.0}) {
         const double free = force / kPulled, least = kLimit * kSide;
         const double expected = free <= least ? free : (force + kBeyond * least) / (kPulled + kBeyond);
-        EXPECT_NEAR(shift(def, force), expected, 2e-5) << force;
+        EXPECT_NEAR(shift(def, force), expected, near()) << force;
     }
 }
 
@@ -97,7 +99,7 @@ TEST_P(ClothLaw, TrianglesAreStifferBeyondTheLimit) {
         return kSheet * (e + e * e / 2) * (1 + e) * kSide / 2 + kBeyond * kSide * std::max(0.0, e - kLimit);
     };
     for (const double strain : {0.02, 0.039, 0.043, 0.05})
-        EXPECT_NEAR(shift(def, force_at(strain)), strain * kSide, 3e-5) << strain;
+        EXPECT_NEAR(shift(def, force_at(strain)), strain * kSide, near()) << strain;
 }
 
 // Two that hang on a pin by a long way: no further than the way along the cloth and its slack.
