@@ -12,9 +12,9 @@ namespace {
 
 // n x n vertices, held by two neighbouring corners.
 Scene hung_sheet(int n) {
-    constexpr double kHeight = 2.2;
-    Scene scene = soft_hall(kHeight);
-    Cloth cloth = sheet(n, kHeight);
+    constexpr double kSheetHeight = 2.2;
+    Scene scene = soft_hall(kSheetHeight);
+    Cloth cloth = sheet(n, kSheetHeight);
     cloth.def.filter.mask = 0;
     cloth.pinned = {0, static_cast<uint32_t>(n - 1)};
     scene.add_cloth(std::move(cloth));
@@ -55,14 +55,14 @@ Scene build_cloth_row(double n, double r, const Options& options) {
 
 // A box of r times the sheet's mass falls on its middle.
 Scene build_cloth_load(double, double r, const Options& options) {
-    constexpr double kHeight = 1.8, kBox = 0.4;
+    constexpr double kSheetHeight = 1.8, kBox = 0.4;
     constexpr int kSide = 30;
-    Scene scene = soft_hall(kHeight);
+    Scene scene = soft_hall(kSheetHeight);
     add_ground(scene);
-    Cloth cloth = sheet(kSide, kHeight);
+    Cloth cloth = sheet(kSide, kSheetHeight);
     cloth.pinned = {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1};
     scene.add_cloth(std::move(cloth));
-    scene.add_body(crate(cube_shape(scene, kBox), {0, kHeight + 0.1 + kBox / 2, 0}, r * kSheetMass));
+    scene.add_body(crate(cube_shape(scene, kBox), {0, kSheetHeight + 0.1 + kBox / 2, 0}, r * kSheetMass));
     perturb(scene, options.seed);
     return scene;
 }
@@ -99,10 +99,10 @@ Scene build_cloth_loaded(double, double, const Options& options) {
 // A sheet of links beside one of triangles with the figures of cotton.
 Scene build_cloth_fem_beside_links(double, double, const Options& options) {
     constexpr int kSide = 28;
-    constexpr double kHeight = 2.1, kAside = 0.95;
-    Scene scene = soft_hall(kHeight);
+    constexpr double kSheetHeight = 2.1, kAside = 0.95;
+    Scene scene = soft_hall(kSheetHeight);
     for (const bool links : {false, true}) {
-        Cloth cloth = sheet(kSide, kHeight);
+        Cloth cloth = sheet(kSide, kSheetHeight);
         if (!links) {
             cloth.def.kind = TAUT_CLOTH_TRIANGLES;
             taut_cloth_def_set_fabric(&cloth.def, TAUT_FABRIC_COTTON);
@@ -117,7 +117,7 @@ Scene build_cloth_fem_beside_links(double, double, const Options& options) {
         scene.add_cloth(std::move(cloth));
     }
     scene.camera = {{4.3, 2.3, 0}, {-0.75, 1.35, 0}, 40};
-    scene.stage = {{-2.5, 0, -2}, {2, kHeight + 0.3, 2}};
+    scene.stage = {{-2.5, 0, -2}, {2, kSheetHeight + 0.3, 2}};
     perturb(scene, options.seed);
     return scene;
 }
@@ -125,11 +125,11 @@ Scene build_cloth_fem_beside_links(double, double, const Options& options) {
 // A mat that hardly stretches on springs of 5 kN/m in a frame, and balls (Tournier et al. 2015, section 5).
 Scene build_trampoline(double, double, const Options& options) {
     constexpr int kSide = 22;
-    constexpr double kWide = 2, kHeight = 1, kGap = 0.25, kSpring = 5e3, kRadius = 0.22;
+    constexpr double kWide = 2, kSheetHeight = 1, kGap = 0.25, kSpring = 5e3, kRadius = 0.22;
     constexpr float kHard = 1e-10f;  // [m/N]
     Scene scene = soft_hall(1.6);
     add_ground(scene);
-    Cloth mat = grid_cloth(kSide, kSide, kWide, kWide, kHeight);
+    Cloth mat = grid_cloth(kSide, kSide, kWide, kWide, kSheetHeight);
     mat.def.kind = TAUT_CLOTH_LINKS;
     mat.def.area_density = 0.4f;
     mat.def.stretch_compliance[0] = mat.def.stretch_compliance[1] = kHard;
@@ -154,16 +154,16 @@ Scene build_trampoline(double, double, const Options& options) {
         }
     const double half = kWide / 2 + kGap, thick = 0.03;
     for (const double side : {-1.0, 1.0}) {
-        add_static_box(scene, {side * (half + thick), kHeight, 0}, thick, thick, half + 2 * thick, Look::steel);
-        add_static_box(scene, {0, kHeight, side * (half + thick)}, half, thick, thick, Look::steel);
+        add_static_box(scene, {side * (half + thick), kSheetHeight, 0}, thick, thick, half + 2 * thick, Look::steel);
+        add_static_box(scene, {0, kSheetHeight, side * (half + thick)}, half, thick, thick, Look::steel);
         for (const double other : {-1.0, 1.0})
-            add_static_box(scene, {side * (half + thick), kHeight / 2, other * (half + thick)}, thick, kHeight / 2,
-                           thick, Look::steel);
+            add_static_box(scene, {side * (half + thick), kSheetHeight / 2, other * (half + thick)}, thick,
+                           kSheetHeight / 2, thick, Look::steel);
     }
     const int ball = sphere_shape(scene, kRadius);
-    scene.add_body(crate(ball, {0.05, kHeight + 1.2, 0.1}, 30));
-    scene.add_body(crate(ball, {-0.45, kHeight + 2.2, -0.4}, 8));
-    scene.add_body(crate(ball, {0.4, kHeight + 3.2, -0.3}, 3));
+    scene.add_body(crate(ball, {0.05, kSheetHeight + 1.2, 0.1}, 30));
+    scene.add_body(crate(ball, {-0.45, kSheetHeight + 2.2, -0.4}, 8));
+    scene.add_body(crate(ball, {0.4, kSheetHeight + 3.2, -0.3}, 3));
     scene.forces = ForceScale{0, 3};
     scene.camera = {{2.6, 2.5, 3.6}, {0, 1.15, 0}, 40};
     scene.stage = {{-2, 0, -2}, {2, 3.5, 2}};

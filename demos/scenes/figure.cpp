@@ -12,13 +12,13 @@ namespace scenes {
 
 namespace {
 
-struct Limb {
+struct FigureLimb {
     taut_pos from, to;
     double from_radius, to_radius;
 };
 
 // Of one side; those off the middle are mirrored [m].
-constexpr Limb kLimbs[] = {
+constexpr FigureLimb kFigureLimbs[] = {
     {{0, 0.45, 0}, {0, 0.64, 0}, 0.17, 0.13},          // trunk
     {{0, 0.42, 0.05}, {0, 0.46, 0.06}, 0.15, 0.14},    // belly
     {{0, 0.78, 0.02}, {0, 0.81, 0.08}, 0.09, 0.08},    // head
@@ -34,7 +34,7 @@ constexpr Limb kLimbs[] = {
     {{0, 0.18, -0.3}, {0, 0.08, -0.44}, 0.045, 0.028},
 };
 
-double distance_to(const Limb& limb, taut_pos p) {
+double distance_to(const FigureLimb& limb, taut_pos p) {
     const taut_pos d = minus(limb.to, limb.from), q = minus(p, limb.from);
     const double t =
         std::fmin(std::fmax((d.x * q.x + d.y * q.y + d.z * q.z) / (d.x * d.x + d.y * d.y + d.z * d.z), 0), 1);
@@ -46,7 +46,7 @@ double field(taut_pos p) {
     constexpr double kBlend = 0.012;
     double sum = 0;
     const taut_pos mirrored = {std::fabs(p.x), p.y, p.z};
-    for (const Limb& limb : kLimbs) sum += std::exp(-distance_to(limb, mirrored) / kBlend);
+    for (const FigureLimb& limb : kFigureLimbs) sum += std::exp(-distance_to(limb, mirrored) / kBlend);
     return -kBlend * std::log(sum);
 }
 
