@@ -12,7 +12,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kStep = 1.0 / 600;
+constexpr double kElementStep = 1.0 / 600;
 constexpr uint32_t kElements = 40;
 
 // Random elements of one type, no two of which share a node; some ends stay where they are.
@@ -22,7 +22,7 @@ struct Lanes {
         Random random(seed);
         const auto nodes = static_cast<uint32_t>(type.row.nodes);
         const uint32_t seats = 1 + nodes * kElements;
-        system.scheme.set_length(kStep);
+        system.scheme.set_length(kElementStep);
         system.sweep.resize(seats);
         system.sweep_pose.resize(seats);
         system.found.resize(seats);
@@ -64,7 +64,7 @@ struct Lanes {
     }
 
     void sweep(const ElementKernels& kernels) {
-        const ElementTerms terms{static_cast<float>(kStep), static_cast<float>(1 / system.scheme.act), true};
+        const ElementTerms terms{static_cast<float>(kElementStep), static_cast<float>(1 / system.scheme.act), true};
         for (const ElementPass& pass : system.elements.pass)
             (kernels.*pass.sweep)(system.elements.view(), pass.begin, pass.end, system.sweep.data(),
                                   system.sweep_pose.data(), terms);
@@ -112,7 +112,7 @@ TEST_P(FusedElements, GivesTheImpulsesThatItsRowsAskFor) {
                 const float* dx = before.sweep_pose[at].dx;
                 u.segment<3>(3 * n) = velocity(before.sweep[at]);
                 w.segment<3>(3 * n).setConstant(static_cast<double>(before.sweep[at].mass.inv_mass));
-                x[n].x = before.found[at].x + Vec3(dx[0], dx[1], dx[2]) + kStep * u.segment<3>(3 * n);
+                x[n].x = before.found[at].x + Vec3(dx[0], dx[1], dx[2]) + kElementStep * u.segment<3>(3 * n);
             }
             double c[kMaxRows], j[kMaxNodes * kMaxRows * kDof];
             type.row.evaluate(set.data_of(e), x, c, j);
@@ -123,9 +123,9 @@ TEST_P(FusedElements, GivesTheImpulsesThatItsRowsAskFor) {
             const double d = set.relaxation;
             const Eigen::MatrixXd S = J * w.asDiagonal() * J.transpose();
             const Eigen::MatrixXd soft =
-                set.softness[e] / kStep * Eigen::Map<const Eigen::MatrixXd>(set.compliance, rows, rows);
+                set.softness[e] / kElementStep * Eigen::Map<const Eigen::MatrixXd>(set.compliance, rows, rows);
             Eigen::VectorXd mu =
-                -((kStep + d) * S + soft).ldlt().solve(Eigen::Map<Eigen::VectorXd>(c, rows) + d * J * u);
+                -((kElementStep + d) * S + soft).ldlt().solve(Eigen::Map<Eigen::VectorXd>(c, rows) + d * J * u);
             if (pulls) mu[0] = std::min(mu[0], 0.0);
             const Eigen::VectorXd wanted = u + w.asDiagonal() * J.transpose() * mu;
             const double size = 1e-4 * (1 + wanted.norm());
@@ -135,7 +135,8 @@ TEST_P(FusedElements, GivesTheImpulsesThatItsRowsAskFor) {
                 for (int k = 0; k < 3; ++k)
                     EXPECT_EQ(lanes.system.sweep[at].velocity.w[k], before.sweep[at].velocity.w[k]) << "spins stay";
             }
-            for (int r = 0; r < rows; ++r) EXPECT_NEAR(kStep * set.lambda_of(e)[r], mu[r], 2e-4 * (1 + mu.norm())) << e;
+            for (int r = 0; r < rows; ++r)
+                EXPECT_NEAR(kElementStep * set.lambda_of(e)[r], mu[r], 2e-4 * (1 + mu.norm())) << e;
         }
     }
 }

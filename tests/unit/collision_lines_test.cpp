@@ -19,7 +19,7 @@ Mat3f turned(Random& random, int i, const Mat3f& other) {
     return other * rotation_from_vector(by).toRotationMatrix().cast<float>();
 }
 
-double least_of_points(const Line& a, const Line& b) {
+double least_of_points(const collision::Line& a, const collision::Line& b) {
     constexpr int kParts = 200;
     double least = 1e300;
     for (int i = 0; i <= kParts; ++i) {
@@ -53,8 +53,9 @@ TEST(LineDistance, AgreesWithGjk) {
 TEST(LineDistance, IsThatOfTheNearestPoints) {
     Random random(12);
     for (int i = 0; i < 2000; ++i) {
-        const Line a = {random.unit(), random.uniform(0, 2) * random.unit()};
-        const Line b = {random.unit(), i % 3 ? Vec3(random.uniform(0, 2) * random.unit()) : Vec3(-1.5 * a.step)};
+        const collision::Line a = {random.unit(), random.uniform(0, 2) * random.unit()};
+        const collision::Line b = {random.unit(),
+                                   i % 3 ? Vec3(random.uniform(0, 2) * random.unit()) : Vec3(-1.5 * a.step)};
         const double coarse = least_of_points(a, b);
         const Distance found = line_distance(a, b);
         ASSERT_LE(found.separation, coarse + 1e-12) << i;
@@ -63,6 +64,6 @@ TEST(LineDistance, IsThatOfTheNearestPoints) {
 }
 
 TEST(LineDistance, OfLinesThatMeetHasNoDirection) {
-    const Line a = {Vec3(-1, 0, 0), Vec3(2, 0, 0)}, b = {Vec3(0, -1, 0), Vec3(0, 2, 0)};
+    const collision::Line a = {Vec3(-1, 0, 0), Vec3(2, 0, 0)}, b = {Vec3(0, -1, 0), Vec3(0, 2, 0)};
     EXPECT_FALSE(line_distance(a, b).apart);
 }
