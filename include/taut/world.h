@@ -66,8 +66,8 @@ typedef struct taut_world_def {
     taut_vec3 gravity;       /**< [m/s^2], each within 1e4. Default (0, -9.81, 0) */
     float time_step;         /**< step [s], [1e-4, 0.1]. Default 1/60 */
     uint32_t substeps;       /**< least substeps of a frame, [1, 64]; an island may take more: up to four times as many
-                                  where walls are tall or what is heavy rests on what is light, and eight times while
-                                  its joints whip about. Default 4 */
+                                  where walls are tall or what is heavy rests on what is light, eight times while its
+                                  joints whip about, and up to 64 for swept cloths and solids. Default 4 */
     uint32_t fixed_substeps; /**< 1: no island takes more than substeps. Default 0 */
     uint32_t sweeps;         /**< iterations a substep, [0, 1000]; 0: the solver's own: 1 of sweeps, 60 of conjugate
                                   gradients, 30 of others. Default 0 */

@@ -35,9 +35,9 @@ struct ElementSet {
     // Swept at the positions that the sweep moves them to, by the type's fused sweep in lanes (element_lanes.h), in the
     // order of stages; else, and by solvers without lanes, as linearised rows.
     bool fused = false;
-    uint8_t stage = 0;      // below kMostStages
-    double tolerance = 0;   // of a fused sweep's yield, a strain, for which its islands take substeps; 0: the world's
-    double yield = 0;       // of substeps of one second, as it was of late: that of substeps h is h^2 of it [1/s^2]
+    uint8_t stage = 0;     // below kMostStages
+    double tolerance = 0;  // of a fused sweep's yield, a strain, for which its islands take substeps; 0: the world's
+    double yield = 0;      // of substeps of one second, as it was of late: that of substeps h is h^2 of it [1/s^2]
     double least_yield = 0, most_yield = 0;  // that it may fall and, in this frame, grow to
     bool collide_connected = false;
     bool pulls = false;                           // of one row; said before its compliance and elements
@@ -77,11 +77,11 @@ struct ElementSet {
 };
 template <class Visitor, Like<ElementSet> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls, coupled, compliance,
-           stiffness, relaxation, stop, serial, version, node, data, softness, lambda, drift, slow_turn, loaded, fresh,
-           memory] = of;
-    TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls,
-                coupled, compliance, stiffness, relaxation, stop, node, data, softness, lambda, drift, slow_turn,
+    auto& [type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls,
+           coupled, compliance, stiffness, relaxation, stop, serial, version, node, data, softness, lambda, drift,
+           slow_turn, loaded, fresh, memory] = of;
+    TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected,
+                pulls, coupled, compliance, stiffness, relaxation, stop, node, data, softness, lambda, drift, slow_turn,
                 loaded, fresh, memory);
     TAUT_ASIDE(visitor, serial, version);
 }
