@@ -77,6 +77,7 @@ struct Broadphase::State {
         : boxes(memory),
           leaves(memory),
           stays(memory),
+          in_grains(memory),
           partners(memory),
           found_of(memory),
           strays(memory),
@@ -104,12 +105,14 @@ struct Broadphase::State {
     void gather_gone();
     bool find_changes();
     template <class Asks>
-    void walk(const Asks& asks, Probe& probe, Visitor& visitor) const;
+    void walk(const btDbvt& of, const Asks& asks, Probe& probe, Visitor& visitor) const;
 
     Boxes boxes;
-    btDbvt tree;
+    btDbvt tree, grains;        // of all others; of grains, which do not pair with each other
+    btDbvt& tree_of(uint32_t id) { return in_grains[id] ? grains : tree; }
     Array<btDbvtNode*> leaves;  // by id, or null; their boxes stand in boxes as well: these lie somewhere else
     Array<uint8_t> stays;       // by id: how often its box changed since it got its place in the tree
+    Array<uint8_t> in_grains;   // by id: which tree its leaf is in
     static constexpr size_t kTogether = 256;     // keys
     static constexpr uint32_t kAtOnce = kLanes;  // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8, kMostRoom = 64;
@@ -158,10 +161,11 @@ void Broadphase::State::order_stale() {
 template <class Report>
 void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& report) const {
     BoxLanes lanes;
-    unsigned asking = 0;
+    unsigned asking = 0, of_grains = 0;
     for (size_t k = 0; k < kAtOnce; ++k) {
         const btDbvtNode* const leaf = k < ids.size() ? leaves[ids[k]] : nullptr;
         asking |= unsigned(leaf != nullptr) << k;
+        of_grains |= unsigned(leaf && boxes.of[ids[k]].grain) << k;
         for (int i = 0; i < 3; ++i) {
             lanes.lo[i][k] = leaf ? leaf->volume.Mins()[i] : std::numeric_limits<float>::infinity();
             lanes.hi[i][k] = leaf ? leaf->volume.Maxs()[i] : -std::numeric_limits<float>::infinity();
@@ -175,7 +179,8 @@ void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& rep
         }
     };
     Descent descent(lanes, found);
-    if (asking != 0) descent.begin_at(tree.m_root, asking);
+    if (asking != 0 && tree.m_root) descent.begin_at(tree.m_root, asking);
+    if (asking != of_grains && grains.m_root) descent.begin_at(grains.m_root, asking & ~of_grains);
     descent.run();
 }
 
@@ -273,9 +278,10 @@ Broadphase::~Broadphase() {
     memory_.release(state_, sizeof(State), HostAllocator<State>::alignment());
 }
 
-void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
+void Broadphase::add(uint32_t id, const Box& tight, bool moves, bool grain) {
     State& s = *state_;
     if (s.stays.size() <= id) s.stays.resize(size_t(id) + 1);
+    if (s.in_grains.size() <= id) s.in_grains.resize(size_t(id) + 1);
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
     if (s.boxes.of.size() <= id) s.boxes.of.resize(size_t(id) + 1);
     reserve_tree();
@@ -283,6 +289,7 @@ void Broadphase::add(uint32_t id, const Box& tight, bool moves) {
     const btDbvtVolume volume = fat_volume(tight, Vec3f::Zero());
     s.boxes.of[id].box = box_of(volume);
     s.boxes.of[id].moves = moves;
+    s.boxes.of[id].grain = grain;
     set_leaf(id, true);
 }
 
@@ -299,7 +306,7 @@ void Broadphase::State::change(uint32_t id, const btDbvtVolume& volume) {
     }
     stays[id] = 0;
     btDbvtVolume place = volume;
-    tree.update(leaves[id], place);
+    tree_of(id).update(leaves[id], place);
 }
 
 void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
@@ -337,6 +344,7 @@ void Broadphase::reserve_tree() {
     const size_t ids = s.boxes.of.capacity();
     s.leaves.reserve(ids);
     s.stays.reserve(ids);
+    s.in_grains.reserve(ids);
     s.strays.reserve(ids);
     s.boxes.stale.reserve(ids);
 }
@@ -346,6 +354,7 @@ void Broadphase::start_rebuild() {
     for (size_t id = s.boxes.of.size(); id < s.leaves.size(); ++id) set_leaf(uint32_t(id), false);
     s.leaves.resize(s.boxes.of.size());
     s.stays.resize(s.boxes.of.size());
+    s.in_grains.resize(s.boxes.of.size());
     for (FatBox& box : s.boxes.of) box.stale = false;
     for (const uint32_t id : s.boxes.stale) s.boxes.of[id].stale = true;
     s.strays.clear();
@@ -358,15 +367,16 @@ void Broadphase::set_leaf(uint32_t id, bool lives) {
     State& s = *state_;
     btDbvtNode*& leaf = s.leaves[id];
     if (!lives || !leaf) s.stays[id] = 0;
-    if (!lives) {
-        if (leaf) s.tree.remove(leaf);
+    if (!lives || (leaf && s.in_grains[id] != s.boxes.of[id].grain)) {
+        if (leaf) s.tree_of(id).remove(leaf);
         leaf = nullptr;
-        return;
     }
+    if (!lives) return;
     const FatBox& fat = s.boxes.of[id];
     const btDbvtVolume volume = tight_volume(fat.box);
     if (!leaf) {
-        leaf = s.tree.insert(volume, nullptr);
+        s.in_grains[id] = fat.grain;
+        leaf = s.tree_of(id).insert(volume, nullptr);
         leaf->dataAsInt = int(id);
     } else if (NotEqual(leaf->volume, volume)) {
         s.change(id, volume);
@@ -440,8 +450,8 @@ void Broadphase::note_stray(uint32_t id) {
 
 // Down the tree and up again by the parents: it may be of any depth, and a query has no memory of its own.
 template <class Asks>
-void Broadphase::State::walk(const Asks& asks, Probe& probe, Visitor& visitor) const {
-    const btDbvtNode* root = tree.m_root;
+void Broadphase::State::walk(const btDbvt& of, const Asks& asks, Probe& probe, Visitor& visitor) const {
+    const btDbvtNode* root = of.m_root;
     const btDbvtNode* node = root;
     while (node) {
         if (asks.meets(probe, node->volume)) {
@@ -462,10 +472,12 @@ void Broadphase::visit(Probe probe, Visitor& visitor) const {
     const State& s = *state_;
     for (const uint32_t id : s.strays)
         if (s.boxes.of[id].stray) visitor.visit(id, probe);
-    if (probe.along == Vec3::Zero() && probe.reach == 0)
-        s.walk(Overlap(probe), probe, visitor);
-    else
-        s.walk(Slabs(probe), probe, visitor);
+    for (const btDbvt* tree : {&s.tree, &s.grains}) {
+        if (probe.along == Vec3::Zero() && probe.reach == 0)
+            s.walk(*tree, Overlap(probe), probe, visitor);
+        else
+            s.walk(*tree, Slabs(probe), probe, visitor);
+    }
 }
 
 }  // namespace taut::collision

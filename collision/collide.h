@@ -138,8 +138,9 @@ public:
     Broadphase(const Broadphase&) = delete;
     Broadphase& operator=(const Broadphase&) = delete;
 
-    // moves: false for static bodies; two ids that both do not move never pair.
-    void add(uint32_t id, const Box& tight, bool moves);
+    // moves: false for static bodies; two ids that both do not move never pair, nor do two grains, which have a tree of
+    // their own.
+    void add(uint32_t id, const Box& tight, bool moves, bool grain = false);
     void remove(uint32_t id);
     // Re-inserts the leaf if the tight box (already grown by the contact margin) left its fat box; displacement [m]
     // is the motion to expect, by which the new fat box reaches ahead.
@@ -167,6 +168,7 @@ public:
     struct FatBox {
         Box box = {Vec3f::Zero(), Vec3f::Zero()};
         bool moves = false;
+        bool grain = false;
         bool stray = false;  // the collider may be outside; see note_stray()
         bool stale = false;  // its pairs must be found again; listed in Boxes::stale
     };
@@ -206,8 +208,8 @@ private:
 };
 template <class Visitor, Like<Broadphase::FatBox> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [box, moves, stray, stale] = of;  // stale: as listed
-    TAUT_FIELDS(visitor, box, moves, stray);
+    auto& [box, moves, grain, stray, stale] = of;  // stale: as listed
+    TAUT_FIELDS(visitor, box, moves, grain, stray);
 }
 template <class Visitor, Like<Broadphase::Boxes> Of>
 void describe(Visitor& visitor, Of& of) {

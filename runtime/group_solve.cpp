@@ -35,6 +35,7 @@ void GroupSolve::build() {
     build_rows(system_, group_, w_.partition.blocks, w_.joints, w_.elements, w_.pairs, w_.nodes, !solver_.lanes);
     if (solver_.lanes) {
         build_lanes(w_.team, system_, group_, w_.pairs, w_.nodes, *settings_.kernels);
+        build_grain_lanes(w_.team, system_, group_, w_.pairs.grains);
         build_joint_lanes(w_.team, system_, group_, w_.def.time_step);
         build_element_lanes(w_.team, system_, group_, w_.elements);
     }
@@ -137,6 +138,7 @@ void GroupSolve::end() {
     if (!sane_) quarantine(w_.team, w_.nodes, group_.nodes, w_.frozen);
     if (!solver_.lanes) return;
     store_lanes(w_.team, system_, w_.pairs);
+    store_grain_lanes(w_.team, system_, w_.pairs.grains);
     store_joint_lanes(w_.team, system_);
     store_element_lanes(w_.team, system_);
     store_element_yields(system_);

@@ -7,6 +7,7 @@
 #include "check/validate.h"
 #include "detect/contact_limit.h"
 #include "detect/detect.h"
+#include "detect/grains.h"
 #include "detect/impact.h"
 #include "detect/internal_faces.h"
 #include "detect/sensors.h"
@@ -52,6 +53,7 @@ void detect(World& w, Stopwatch& watch) {
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
+    find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     if (wake_touched(w)) {
         recall_pairs(w);
         find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
@@ -78,6 +80,7 @@ void solve(World& w, Stopwatch& watch) {
         &contact_kernels(),
         &joint_kernels(),
         &element_kernels(),
+        &grain_kernels(),
         w.def.adaptive_damping != 0,
         w.def.restitution_threshold,
         {static_cast<FrictionModel>(w.def.friction_model), w.def.stepping == TAUT_STEPPING_VELOCITY,

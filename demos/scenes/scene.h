@@ -74,6 +74,7 @@ struct Body {
     float friction = 0.5f;
     int32_t group = 0;  // bodies of the same negative group don't collide
     Look look = Look::crate;
+    bool grain = false;  // of particles: TAUT_COLLIDER_GRAIN
 };
 
 // A vertex of a cloth or of a solid, which a joint or cable ends at in place of a body.

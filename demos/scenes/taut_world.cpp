@@ -101,6 +101,7 @@ taut_result add_body(taut_world world, const Body& body, taut_shape shape, uint6
         def.velocity = body.linear_velocity;
         def.shape = shape;
         def.material.friction = body.friction;
+        def.collider_flags = body.grain ? TAUT_COLLIDER_GRAIN : 0;
         def.user_data = index;
         return taut_world_add_particle(world, &def, out);
     }

@@ -28,7 +28,7 @@ typedef struct taut_profile {
     /* counts */
     uint32_t bodies;   /**< dynamic bodies and particles */
     uint32_t pairs;    /**< overlapping fat boxes */
-    uint32_t touching; /**< pairs with contact points */
+    uint32_t touching; /**< pairs with contact points, those between grains too */
     uint32_t points;   /**< contact points */
     uint32_t joints;
     uint32_t islands;

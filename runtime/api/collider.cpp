@@ -33,7 +33,8 @@ Check& check_material(Check& check, const MaterialNames& names, const taut_mater
 }
 
 Check& check_asks(Check& check, const char* flags_field, uint32_t flags, uint32_t contact_events) {
-    constexpr uint32_t kFlags = TAUT_COLLIDER_SENSOR | TAUT_COLLIDER_SENSES_STATIC | TAUT_COLLIDER_PRE_SOLVE;
+    constexpr uint32_t kFlags =
+        TAUT_COLLIDER_SENSOR | TAUT_COLLIDER_SENSES_STATIC | TAUT_COLLIDER_PRE_SOLVE | TAUT_COLLIDER_GRAIN;
     return check.count(flags_field, flags, 0, kFlags)
         .count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL);
 }
@@ -63,12 +64,15 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
     out.position = to_vec(def.position);
     out.rotation = to_quat(def.rotation);
     check.require(kind != NodeKind::particle || out.position == Vec3::Zero(), "position is not 0 on a particle");
+    check.require(kind == NodeKind::particle || !(def.flags & TAUT_COLLIDER_GRAIN),
+                  "flags ask for a grain, which only a particle may be");
     out.traits.density = def.density;
     out.traits.material = def.material;
     out.traits.filter = def.filter;
     out.user_data = def.user_data;
     out.sensor = (def.flags & TAUT_COLLIDER_SENSOR) != 0;
     out.senses_static = (def.flags & TAUT_COLLIDER_SENSES_STATIC) != 0;
+    out.grain = (def.flags & TAUT_COLLIDER_GRAIN) && solvers()[world.def.solver]->lanes;
     out.asks = static_cast<uint8_t>(def.contact_events | (def.flags & TAUT_COLLIDER_PRE_SOLVE ? kAsksPreSolve : 0));
     set_one_way(def.one_way, out.traits, out);
     return check.result();
@@ -97,6 +101,7 @@ taut_collider_def def_of(const World& world, uint32_t index) {
     def.user_data = collider.user_data;
     def.flags = (collider.sensor ? TAUT_COLLIDER_SENSOR : 0) |
                 (collider.senses_static ? TAUT_COLLIDER_SENSES_STATIC : 0) |
+                (collider.grain ? TAUT_COLLIDER_GRAIN : 0) |
                 (collider.asks & kAsksPreSolve ? TAUT_COLLIDER_PRE_SOLVE : 0);
     def.contact_events = collider.asks & TAUT_CONTACT_EVENTS_ALL;
     def.one_way = to_vec3(traits.one_way.cast<double>());

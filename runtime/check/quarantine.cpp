@@ -73,6 +73,8 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints, Elements& elements) {
         for (ContactForce& p : pair.force) drop(p);
         drop(pair.torque);
     }
+    for (GrainContact& contact : pairs.grains.contact)
+        if (!contact.force.allFinite()) contact.force.setZero();
     for (Joint& joint : joints.record) {
         bool bad = false;
         for (double& force : joint.lambda) {

@@ -169,6 +169,8 @@ constexpr Invariant kInvariants[] = {
     {Stage::contacts, [](const World& w, const StageEnd&) { return validate_active(w.pairs, w.nodes); }},
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_members(w.partition, w.nodes); }},
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_pairs(w.partition, w.pairs, w.nodes); }},
+    {Stage::partition,
+     [](const World& w, const StageEnd&) { return validate_grains(w.partition, w.pairs.grains, w.nodes); }},
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_joints(w.partition, w.joints, w.nodes); }},
     {Stage::partition,
      [](const World& w, const StageEnd&) { return validate_elements(w.partition, w.elements, w.nodes); }},
@@ -260,6 +262,24 @@ MaybeFlaw validate_pairs(const Partition& partition, const Pairs& pairs, const N
     return std::nullopt;
 }
 
+MaybeFlaw validate_grains(const Partition& partition, const Grains& grains, const Nodes& nodes) {
+    std::vector<uint8_t>& listed = counts(grains.contact.size());
+    for (uint32_t g = 0; g < partition.group_count; ++g)
+        for (const uint32_t k : partition.groups[g].grains) {
+            if (k >= grains.contact.size()) return Flaw{"contacts of grains of groups are in range", k};
+            ++listed[k];
+        }
+    for (size_t k = 0; k < grains.contact.size(); ++k) {
+        const GrainContact& contact = grains.contact[k];
+        const std::array ends{contact.a, contact.b};
+        if (contact.a >= contact.b || contact.b >= nodes.slots()) return Flaw{"grains that touch are in order", k};
+        if (listed[k] != (mover(nodes, ends) != kNone ? 1 : 0)) return Flaw{"contacts of grains are swept once", k};
+        if (!in_one_island(partition, nodes, ends)) return Flaw{"contacts of grains are within an island", k};
+        if (!contact.force.allFinite()) return Flaw{"forces between grains are finite", k};
+    }
+    return std::nullopt;
+}
+
 MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, const Nodes& nodes) {
     std::vector<uint8_t>& listed = counts(joints.record.size());
     for (uint32_t g = 0; g < partition.group_count; ++g)
@@ -337,6 +357,12 @@ MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const
             colour_flaw(group.elements, group.element_colour_begin, nodes,
                         [&](const ElementRef& of) { return elements.set[of.set].nodes_of(of.element); });
         if (of_elements) return of_elements;
+        const MaybeFlaw of_grains =
+            colour_flaw(group.grains, group.grain_colour_begin, nodes, [&](uint32_t k) {
+                const GrainContact& contact = pairs.grains.contact[k];
+                return std::array{contact.a, contact.b};
+            });
+        if (of_grains) return of_grains;
     }
     return std::nullopt;
 }

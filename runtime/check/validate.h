@@ -41,6 +41,9 @@ MaybeFlaw validate_members(const Partition& partition, const Nodes& nodes);
 // Every active pair with such a node in exactly one of lanes, rows and blocks, its nodes in one island. Index: in
 // active.
 MaybeFlaw validate_pairs(const Partition& partition, const Pairs& pairs, const Nodes& nodes);
+// Every contact between grains with such a node in exactly one group, its nodes in order, in one island. Index: in
+// Grains::contact.
+MaybeFlaw validate_grains(const Partition& partition, const Grains& grains, const Nodes& nodes);
 // Every joint with such a node solved exactly once, its nodes in one island. Index: joint.
 MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, const Nodes& nodes);
 // Likewise every element. Index: of those of all sets, one after the other.

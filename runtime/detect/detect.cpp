@@ -11,17 +11,6 @@ namespace {
 
 constexpr uint32_t kGrain = 64;  // colliders that a thread takes at a time
 
-bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const PairEnds& pair) {
-    bool moves = false, tied = false;
-    for_sides(pair, [&](uint32_t a, uint32_t b) {
-        moves = moves || moves_by_forces(nodes.info[a].kind) || moves_by_forces(nodes.info[b].kind);
-        tied = tied || a == b || std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(a, b));
-    });
-    const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
-    return moves && !tied && !a.sensor && !b.sensor &&
-           filters_agree(colliders.traits[pair.collider_a()].filter, colliders.traits[pair.collider_b()].filter);
-}
-
 // Keys of nodes that a joint or element forbids to collide, sorted.
 void refresh_joined(const Joints& joints, const Elements& elements, Pairs& pairs) {
     const uint64_t version = joints.version + elements.version;  // neither ever falls
@@ -291,6 +280,17 @@ void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, con
         for_colliders(nodes, colliders, node, [&](uint32_t c) {
             broadphase.update(c, contact_box(nodes, shapes, colliders.record[c]), Vec3f::Zero());
         });
+}
+
+bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const PairEnds& pair) {
+    bool moves = false, tied = false;
+    for_sides(pair, [&](uint32_t a, uint32_t b) {
+        moves = moves || moves_by_forces(nodes.info[a].kind) || moves_by_forces(nodes.info[b].kind);
+        tied = tied || a == b || std::binary_search(pairs.joined.begin(), pairs.joined.end(), pair_key(a, b));
+    });
+    const Collider &a = colliders.record[pair.collider_a()], &b = colliders.record[pair.collider_b()];
+    return moves && !tied && !a.sensor && !b.sensor &&
+           filters_agree(colliders.traits[pair.collider_a()].filter, colliders.traits[pair.collider_b()].filter);
 }
 
 NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key) {

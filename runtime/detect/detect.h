@@ -33,6 +33,9 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
 void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
                  std::span<const uint32_t> frozen, Pairs& pairs, collision::Broadphase& broadphase);
 
+// Whether filters, joints and kinds let two colliders collide; Pairs::joined is up to date.
+bool may_collide(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const PairEnds& pair);
+
 // A record for two colliders, after update_pairs() of this step or within it: asked whether they may collide.
 NearPair new_pair(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, uint64_t key);
 

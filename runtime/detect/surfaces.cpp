@@ -35,12 +35,16 @@ bool can_turn(const Nodes& nodes, const Pair& pair) {
 
 }  // namespace
 
+float friction_of(const taut_material& a, const taut_material& b) {
+    return combine(a.friction, b.friction, a.friction_rule, b.friction_rule,
+                   [](float x, float y) { return std::sqrt(x * y); });
+}
+
 void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const ColliderTraits& b,
                       const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,
                       Pair& pair) {
     const taut_material &one = a.material, &other = b.material;
-    pair.friction = combine(one.friction, other.friction, one.friction_rule, other.friction_rule,
-                            [](float x, float y) { return std::sqrt(x * y); });
+    pair.friction = friction_of(one, other);
     pair.restitution = combine(one.restitution, other.restitution, one.restitution_rule, other.restitution_rule,
                                [](float x, float y) { return std::max(x, y); });
     pair.spinning = std::max(one.spinning_friction, other.spinning_friction);

@@ -7,6 +7,9 @@
 
 namespace taut {
 
+// Of two surfaces together.
+float friction_of(const taut_material& a, const taut_material& b);
+
 // Friction, restitution, arms and drive of a pair. from_a: of the origin of a's shape from that of its node [m].
 void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const ColliderTraits& b,
                       const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,

@@ -126,6 +126,17 @@ void Partition::colour_fused(const Elements& elements) {
     }
 }
 
+void Partition::colour_grains(const Grains& grains) {
+    std::fill(used_.begin(), used_.end(), 0);
+    grain_colour_.clear();
+    reserve_more(grain_colour_, grains.contact.size());
+    for (const GrainContact& contact : grains.contact) {
+        const uint32_t ends[] = {graph_.mover(contact.a), graph_.mover(contact.b)};
+        const bool rests = ends[0] == kNone && ends[1] == kNone;
+        grain_colour_.push_back(rests ? kUncoloured : take_colour(ends));
+    }
+}
+
 // Puts items_ in the order of their ranks, (colour * kKinds + kind) * kSlices + place, with take(at, rank, item).
 // Returns how many colours there are.
 template <class RankOf, class Take>
@@ -229,6 +240,28 @@ void Partition::list_pairs(uint32_t g, const Pairs& pairs) {
     colours = std::max(colours, used);
 }
 
+// By colour, and of each in the order of place, as they come.
+void Partition::list_grains(uint32_t g, const Grains& grains) {
+    Group& group = groups[g];
+    const auto count = static_cast<uint32_t>(grains.contact.size());
+    const auto for_own = [&](auto&& act) {
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t ends[] = {graph_.mover(grains.contact[k].a), graph_.mover(grains.contact[k].b)};
+            if (grain_colour_[k] != kUncoloured && is_in(g, ends)) act(k);
+        }
+    };
+    Array<uint32_t>& begin = group.grain_colour_begin;
+    begin.assign(kMaxColours + 1, 0);
+    for_own([&](uint32_t k) { ++begin[grain_colour_[k] + 1u]; });
+    for (uint32_t c = 0; c < kMaxColours; ++c) begin[c + 1] += begin[c];
+    group.grains.clear();
+    reserve_more(group.grains, begin[kMaxColours]);
+    group.grains.resize(begin[kMaxColours]);
+    uint32_t next[kMaxColours];
+    std::copy_n(begin.begin(), kMaxColours, next);
+    for_own([&](uint32_t k) { group.grains[next[grain_colour_[k]]++] = k; });
+}
+
 void Partition::list_spans(const Pairs& pairs) {
     auto span = graph_.spans.begin();
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
@@ -268,6 +301,7 @@ void Partition::distribute(const Pairs& pairs, bool by_place) {
         list_swept_elements(g);
         list_fused_elements(g);
         list_pairs(g, pairs);
+        list_grains(g, pairs.grains);
     }
 }
 

@@ -28,6 +28,7 @@ Partition::Partition(Memory& memory)
       spare_(memory),
       pair_colour_(memory),
       joint_colour_(memory),
+      grain_colour_(memory),
       used_(memory),
       place_(memory),
       items_(memory),
@@ -83,6 +84,8 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
             list_elements(elements);
             note_ties();
             run(team, kOfGraph, nodes);
+            unite_grains(pairs.grains);
+            colour_grains(pairs.grains);
             colour_elements();
             colour_fused(elements);
             number_islands();
@@ -177,6 +180,13 @@ void Partition::unite_touching(const Nodes&) {
     for (const TouchGraph::Tie& span : graph_.spans) unite(span);
     for (const auto& [a, b] : graph_.touches)
         if (a != kNone && b != kNone) unite(a, b);
+}
+
+void Partition::unite_grains(const Grains& grains) {
+    for (const GrainContact& contact : grains.contact) {
+        const uint32_t a = graph_.mover(contact.a), b = graph_.mover(contact.b);
+        if (a != kNone && b != kNone) unite(a, b);
+    }
 }
 
 void Partition::number_islands() {

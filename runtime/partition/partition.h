@@ -108,6 +108,8 @@ struct Group {
           pairs(memory),
           pair_colour_begin(memory),
           pair_place(memory),
+          grains(memory),
+          grain_colour_begin(memory),
           joints(memory),
           joint_colour_begin(memory),
           elements(memory),
@@ -125,6 +127,7 @@ struct Group {
     // index. The others: pairs with the most points first, then by place.
     Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
     Array<uint8_t> pair_place;                 // of each of pairs, below kSlices
+    Array<uint32_t> grains, grain_colour_begin;  // index into Grains::contact; with colours of their own
     Array<uint32_t> joints, joint_colour_begin;
     Array<ElementRef> elements;  // with colours of their own
     Array<uint32_t> element_colour_begin;
@@ -258,6 +261,8 @@ private:
     void list_elements(const Elements& elements);
     void colour_elements();
     void colour_fused(const Elements& elements);
+    void unite_grains(const Grains& grains);
+    void colour_grains(const Grains& grains);
     void number_islands();
     void find_loads(const Nodes& nodes);
     void find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
@@ -300,6 +305,7 @@ private:
     void list_fused_elements(uint32_t group);
     void list_pairs(uint32_t group, const Pairs& pairs);
     void list_spans(const Pairs& pairs);
+    void list_grains(uint32_t group, const Grains& grains);
     template <class RankOf, class Take>
     uint32_t sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take);
     uint32_t swept_substeps(size_t island, double time_step) const;
@@ -339,6 +345,7 @@ private:
     Array<Block> spare_;
     uint32_t filled_ = 0;                          // of spare_
     Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot
+    Array<uint8_t> grain_colour_;                  // by index in Grains::contact
     bool all_coloured_ = false;                    // no pair was left out in pair_colour_
     double lightest_ = 0;                          // of the nodes [kg]
     double least_footing_ = 0;                     // of those without joints [m]; see buckling.cpp

@@ -114,6 +114,8 @@ void find_islands(World& world) {
         const uint32_t sides[] = {pair.a, pair.b, pair.a2, pair.b2};
         if (touches_closely(pair)) unite(world, sides);
     }
+    for (const GrainContact& contact : world.pairs.grains.contact)
+        if (touches_closely(contact)) unite(world, std::array{contact.a, contact.b});
 }
 
 // Into the ring of its island; the root, which is the smallest, comes first.
@@ -165,6 +167,10 @@ void wake_pushed(World& world) {
         if (!touches_closely(world.pairs.list[active.pair])) continue;
         for (uint32_t node : active.nodes())
             if (node != kNone && world.nodes.sleeps(node)) wake(world, node);
+    }
+    for (const GrainContact& contact : world.pairs.grains.contact) {
+        if (world.nodes.sleeps(contact.a) == world.nodes.sleeps(contact.b) || !touches_closely(contact)) continue;
+        wake(world, world.nodes.sleeps(contact.a) ? contact.a : contact.b);
     }
 }
 

@@ -60,12 +60,22 @@ bool will_touch(const World& world, const Pair& pair) {
     return false;
 }
 
+bool will_touch(const World& world, const GrainContact& contact) {
+    const Vec3 parting = world.nodes.motion[contact.b].v - world.nodes.motion[contact.a].v;
+    const double way = static_cast<double>(world.def.time_step) * parting.dot(contact.normal.cast<double>());
+    return touches_closely(contact) || static_cast<double>(contact.separation) + way <= kClose;
+}
+
 }  // namespace
 
 bool touches_closely(const Pair& pair) {
     for (int k = 0; k < pair.manifold.count; ++k)
         if (static_cast<double>(pair.manifold.points[k].separation) <= kClose || pair.force[k].normal > 0) return true;
     return false;
+}
+
+bool touches_closely(const GrainContact& contact) {
+    return static_cast<double>(contact.separation) <= kClose || contact.pushes();
 }
 
 void recall_pairs(World& world) {
@@ -93,6 +103,12 @@ bool wake_touched(World& world) {
         if (!will_touch(world, pair)) continue;
         for (uint32_t node : active.nodes())
             if (sleeps(world.nodes, node)) wake(world, node);
+    }
+    for (const GrainContact& contact : world.pairs.grains.contact) {
+        const uint32_t ends[] = {contact.a, contact.b};
+        if (world.nodes.sleeps(contact.a) == world.nodes.sleeps(contact.b) || !will_touch(world, contact)) continue;
+        for (const uint32_t node : ends)
+            if (world.nodes.sleeps(node)) wake(world, node);
     }
     return world.sleep.recall;
 }

@@ -37,6 +37,7 @@ public:
           joint_(*s_.settings.joint_kernels),
           contact_(*s_.settings.kernels),
           elements_(s_.system.elements.view()),
+          grains_(s_.system.grains.group.data()),
           terms_{static_cast<float>(s_.system.scheme.h), static_cast<float>(1 / s_.system.scheme.act), false},
           soft_(contact_terms(s_.system.scheme.h, s_.system.stretch)) {}
 
@@ -52,6 +53,13 @@ public:
         ElementTerms terms = terms_;
         terms.first = pass == Pass::first_biased;
         (s_.settings.element_kernels->*of.sweep)(elements_, begin, end, nodes_, s_.system.sweep_pose.data(), terms);
+    }
+    void grains(Pass pass, uint32_t begin, uint32_t end) const {
+        const GrainKernels& grain = *s_.settings.grain_kernels;
+        const SweepShift* const shifts = pass == Pass::first_biased ? s_.system.shift.data() : nullptr;
+        if (pass == Pass::warm_start) grain.warm_start(grains_, begin, end, nodes_);
+        if (is_biased(pass)) grain.sweep_biased(grains_, begin, end, nodes_, shifts, soft_);
+        if (pass == Pass::relaxed) grain.sweep_relaxed(grains_, begin, end, nodes_, soft_);
     }
     void rows(Pass pass) const {
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
@@ -78,6 +86,7 @@ private:
     const JointKernels& joint_;
     const ContactKernels& contact_;
     ElementView elements_;
+    GrainGroup* grains_;
     ElementTerms terms_;
     SweepTerms soft_;
 };
@@ -93,7 +102,7 @@ public:
 
     explicit Program(Substep& s) : s_(s), kernels_(s) { first_piece_[0] = 0; }
 
-    // Joints, rows, then contacts, colour by colour, backward if asked.
+    // Joints, rows, then contacts between grains and others, colour by colour, backward if asked.
     void add_joints(Pass pass, bool backward = false) {
         if (s_.system.joints.group.empty()) return;
         const auto colours = static_cast<uint32_t>(s_.system.joints.colour_begin.size()) - 1;
@@ -112,7 +121,9 @@ public:
     }
     void add_rows_and_contacts(Pass pass, bool backward = false) {
         add_rows(pass);
+        if (!backward) add_grains(pass, false);
         add_contacts(pass, backward);
+        if (backward) add_grains(pass, true);
     }
     bool empty() const { return pieces_ == 0; }
     // publishes: moves what was swept to the solution after all of it.
@@ -140,6 +151,18 @@ private:
     }
     void add_rows(Pass pass) {
         if (s_.system.rows.lasting > s_.system.rows.joints) add_single({&Program::rows_part, pass, 0});
+    }
+    void add_grains(Pass pass, bool backward) {
+        const auto passes = static_cast<uint32_t>(s_.system.grains.pass.size());
+        for (uint32_t k = 0; k < passes; ++k) {
+            const uint32_t at = backward ? passes - 1 - k : k;
+            const GrainPass& of = s_.system.grains.pass[at];
+            groups_ += of.end - of.begin;
+            if (of.overflow || of.end - of.begin <= 1)
+                add_single({&Program::grains_part, pass, at});
+            else
+                add_alone({&Program::grains_part, pass, at});
+        }
     }
     void add_contacts(Pass pass, bool backward) {
         if (s_.system.contacts.group.empty()) return;
@@ -200,6 +223,11 @@ private:
         const uint32_t count = of.end - of.begin;
         kernels_.elements(piece.pass, of, of.begin + begin_of(part, count), of.begin + begin_of(part + 1, count));
     }
+    void grains_part(const Piece& piece, uint32_t part) const {
+        const GrainPass& of = s_.system.grains.pass[piece.colour];
+        const uint32_t count = of.end - of.begin;
+        kernels_.grains(piece.pass, of.begin + begin_of(part, count), of.begin + begin_of(part + 1, count));
+    }
     void rows_part(const Piece& piece, uint32_t part) const {
         if (part == 0) kernels_.rows(piece.pass);
     }
@@ -229,8 +257,8 @@ public:
 
 private:
     static constexpr uint32_t kMostPasses = kRelaxSweeps;
-    // Colours of joints, of elements, and of contacts twice.
-    static constexpr uint32_t kMost = kMostPasses * (4 * kMaxColours + 1) + 2 * kMaxColours + 1;
+    // Colours of joints, of elements, of grains, and of contacts twice.
+    static constexpr uint32_t kMost = kMostPasses * (5 * kMaxColours + 1) + 2 * kMaxColours + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;

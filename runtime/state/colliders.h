@@ -42,14 +42,15 @@ struct Collider {
     uint8_t asks = 0;     // bits of contact events, kAsks
     bool sensor = false;  // detects, never collides
     bool senses_static = false;
+    bool grain = false;  // its contacts with other grains are in Grains
 
     bool at_origin() const { return position == Vec3::Zero() && rotation.coeffs() == Quat::Identity().coeffs(); }
 };
 template <class Visitor, Like<Collider> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [node, node_b, shape, next, position, rotation, user_data, asks, sensor, senses_static] = of;
+    auto& [node, node_b, shape, next, position, rotation, user_data, asks, sensor, senses_static, grain] = of;
     auto decides = static_cast<uint8_t>(asks & (kAsksPreSolve | kAsksOneWay));  // events change no motion
-    TAUT_FIELDS(visitor, node, node_b, shape, next, position, rotation, decides, sensor, senses_static);
+    TAUT_FIELDS(visitor, node, node_b, shape, next, position, rotation, decides, sensor, senses_static, grain);
     TAUT_ASIDE(visitor, asks);
     TAUT_ASIDE(visitor, user_data);
 }
@@ -108,7 +109,8 @@ inline void ask_for(Collider& collider, uint32_t which, uint32_t bits) {
 }
 
 struct Colliders {
-    explicit Colliders(Memory& memory) : ids(memory), record(memory), traits(memory), sensors(memory) {}
+    explicit Colliders(Memory& memory)
+        : ids(memory), record(memory), traits(memory), sensors(memory), grains(memory) {}
 
     // Throws std::bad_alloc before anything changes.
     void reserve_one() {
@@ -116,6 +118,7 @@ struct Colliders {
         reserve_more(record, 1);
         traits.reserve(record.capacity());
         reserve_sensor();
+        if (grains.capacity() == grains.size()) grains.reserve(2 * grains.size() + 16);
     }
     void reserve_sensor() {
         if (sensors.capacity() == sensors.size()) sensors.reserve(2 * sensors.size() + 16);
@@ -130,10 +133,12 @@ struct Colliders {
         record[index] = collider;
         traits.set(index, collider.traits);
         list_sensor(index, collider.sensor);
+        list(grains, index, collider.grain);
         return index;
     }
     void remove(uint32_t index) {
         list_sensor(index, false);
+        list(grains, index, false);
         record[index] = {};
         traits.set(index, {});
         ids.destroy(index);
@@ -141,10 +146,7 @@ struct Colliders {
 
     // Brings the list of sensors up to date; reserve_sensor() went before.
     void list_sensor(uint32_t index, bool sensor) {
-        const auto at = std::lower_bound(sensors.begin(), sensors.end(), index);
-        const bool listed = at != sensors.end() && *at == index;
-        if (sensor && !listed) sensors.insert(at, index);
-        if (!sensor && listed) sensors.erase(at);
+        list(sensors, index, sensor);
     }
 
     // For a change of asks: pairs ask again.
@@ -168,14 +170,24 @@ struct Colliders {
     Array<Collider> record;
     SharedValues<ColliderTraits> traits;
     Array<uint32_t> sensors;  // slots, sorted
+    Array<uint32_t> grains;   // likewise
     uint64_t version = 0;     // counts changes
+
+private:
+    // In a sorted list, or not.
+    static void list(Array<uint32_t>& slots, uint32_t index, bool listed) {
+        const auto at = std::lower_bound(slots.begin(), slots.end(), index);
+        const bool is = at != slots.end() && *at == index;
+        if (listed && !is) slots.insert(at, index);
+        if (!listed && is) slots.erase(at);
+    }
 };
 template <class Visitor, Like<Colliders> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, record, traits, sensors, version] = of;
+    auto& [ids, record, traits, sensors, grains, version] = of;
     TAUT_ASIDE(visitor, ids, version);
     TAUT_ROWS(visitor, ids, record, traits);
-    TAUT_FIELDS(visitor, sensors);
+    TAUT_FIELDS(visitor, sensors, grains);
 }
 
 inline bool filters_agree(const taut_filter& a, const taut_filter& b) {

@@ -12,6 +12,7 @@
 #include "base/segmented_array.h"
 #include "collision/collide.h"
 #include "state/colliders.h"
+#include "state/grains.h"
 #include "state/motion.h"
 #include "threads/homes.h"
 
@@ -303,7 +304,8 @@ struct Pairs {
           homes(memory),
           carried(memory),
           carried_before(memory),
-          parts(memory) {}
+          parts(memory),
+          grains(memory) {}
 
     // In what update_bounds() fills, for so many colliders: as they come, not in the step that sees them first.
     void make_room(size_t colliders) {
@@ -354,6 +356,7 @@ struct Pairs {
     Array<Carried> carried;                 // in the order of active; hold_carried()
     Array<Carried> carried_before;          // those of the step before; hold_carried()
     collision::Parts parts;                 // of the pair looked at last
+    Grains grains;                          // contacts that are no pairs
 };
 
 // The record of a key in a sorted list; null: it has none.
@@ -421,8 +424,9 @@ template <class Visitor, Like<Pairs> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world,
            asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, any_fast, mechanisms,
-           placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts] = of;
-    TAUT_FIELDS(visitor, near, resting, mechanisms, carried);
+           placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts, grains] =
+        of;
+    TAUT_FIELDS(visitor, near, resting, mechanisms, carried, grains);
     TAUT_ASIDE(visitor, complete, ended, asks, colliders_version);
     visitor.ordered(list, [&](auto&& act) {
         for_near(of,

@@ -51,6 +51,12 @@ void build_element_lanes(Team& team, System& system, const Group& group, Element
 void store_element_lanes(Team& team, const System& system);
 void store_element_yields(const System& system);
 
+// Once a frame and group: contacts between grains by colour into lanes; their forces back.
+void build_grain_lanes(Team& team, System& system, const Group& group, const Grains& grains);
+void store_grain_lanes(Team& team, const System& system, Grains& grains);
+// Impulses of substeps of another length.
+void rescale_grain_lanes(System& system, double factor);
+
 // Where the next substep has another length: forces stay.
 void change_length(Team& team, System& system, const Group& group, Pairs& pairs, double h, double frame);
 

@@ -20,6 +20,7 @@
 #include "constraints/contact_lanes.h"
 #include "constraints/element.h"
 #include "constraints/element_lanes.h"
+#include "constraints/grain_lanes.h"
 #include "constraints/joint_lanes.h"
 #include "constraints/rolling.h"
 #include "constraints/span_contact.h"
@@ -192,6 +193,7 @@ struct System {
           rows(memory),
           joints(memory),
           elements(memory),
+          grains(memory),
           contacts(memory) {}
 
     // In what begin_frame() fills, for so many nodes: as they come, not in the step that sees them first.
@@ -242,7 +244,8 @@ struct System {
     Rows rows;              // likewise
     JointLanes joints;      // swept ones of the group being solved
     ElementLanes elements;  // likewise, of sets with a fused sweep
-    ContactLanes contacts;  // of the group being solved
+    GrainLanes grains;      // of the group being solved
+    ContactLanes contacts;  // likewise
 };
 
 // Damping time d of a row [s].

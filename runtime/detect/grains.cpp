@@ -1,0 +1,227 @@
+// Boxes about the ways of all grains are put into cells of a grid, sorted: each size of box, by powers of two, has a
+// grid whose cells it fits, so that what meets a box of the same size or a larger one has its middle in the 27 cells
+// about its own. Rows of three cells follow each other in the order of keys, and as the seekers go through a grid in
+// that order too, the places where their rows begin only ever move on (a hierarchical grid, swept instead of hashed).
+#include "detect/grains.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "detect/detect.h"
+#include "detect/surfaces.h"
+
+namespace taut {
+namespace {
+
+constexpr int kBits = 21;                          // of a cell along an axis
+constexpr float kMostCell = (1 << kBits) - 3;      // others are in the last: more are asked, none is missed
+constexpr int kFirstLevel = -24, kLastLevel = 24;  // of boxes: others count as of these
+
+// The corner of all grains' middles, and how far from it they reach.
+struct Extent {
+    Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
+
+    void add(const Vec3& x) { lo = lo.cwiseMin(x), hi = hi.cwiseMax(x); }
+};
+
+int32_t level_of(const Vec3f& size) {
+    int exponent = 0;
+    std::frexp(size.maxCoeff(), &exponent);
+    return std::clamp(exponent, kFirstLevel, kLastLevel);
+}
+
+// False: none is awake.
+bool list_balls(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, double time_step, Grains& grains) {
+    Array<GrainBall>& balls = grains.ball;
+    balls.clear();
+    reserve_more(balls, colliders.grains.size());
+    Extent extent;
+    bool any_awake = false;
+    for (const uint32_t c : colliders.grains) {
+        const Collider& collider = colliders.record[c];
+        const collision::Shape& shape = shapes[collider.shape].shape;
+        GrainBall& ball = balls.emplace_back();
+        ball.x = nodes.motion[collider.node].x;
+        ball.radius = collision::ball_radius(shape);
+        ball.margin = shapes[collider.shape].margin;
+        ball.node = collider.node;
+        ball.collider = c;
+        extent.add(ball.x);
+        any_awake = any_awake || nodes.solved(collider.node);
+    }
+    const float rounding = 0x1p-21f * static_cast<float>((extent.hi - extent.lo).maxCoeff());
+    for (GrainBall& ball : balls) {
+        const Vec3f at = (ball.x - extent.lo).cast<float>();
+        const Vec3f way = (time_step * nodes.motion[ball.node].v).cast<float>();
+        const Vec3f about = Vec3f::Constant(ball.radius + 0.5f * ball.margin + rounding);
+        ball.lo = at + way.cwiseMin(0.0f) - about;
+        ball.hi = at + way.cwiseMax(0.0f) + about;
+        ball.level = level_of(ball.hi - ball.lo);
+    }
+    return any_awake;
+}
+
+uint64_t key_of(const GrainBall& ball, int32_t level) {
+    const float per_cell = std::ldexp(1.0f, -level);
+    uint64_t key = 0;
+    for (int i = 2; i >= 0; --i) {
+        const float cell = std::max(0.0f, std::floor(per_cell * 0.5f * (ball.lo[i] + ball.hi[i])));
+        key = key << kBits | (1 + static_cast<uint64_t>(std::min(cell, kMostCell)));
+    }
+    return key;
+}
+
+// By key, and of the same by index: counting, a digit at a time, but for those in which all agree.
+void sort_cells(Array<GrainCell>& cells, Array<GrainCell>& spare) {
+    constexpr int kDigit = 11;
+    uint64_t all = ~uint64_t{0}, any = 0;
+    for (const GrainCell& cell : cells) all &= cell.key, any |= cell.key;
+    spare.resize(cells.size());
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int shift : {axis * kBits, axis * kBits + kDigit}) {
+            const int width = std::min(kDigit, (axis + 1) * kBits - shift);
+            const uint64_t mask = (uint64_t{1} << width) - 1;
+            if ((((all ^ any) >> shift) & mask) == 0) continue;
+            uint32_t begin[(1 << kDigit) + 1] = {};
+            for (const GrainCell& cell : cells) ++begin[((cell.key >> shift) & mask) + 1];
+            for (uint32_t d = 0; d < mask; ++d) begin[d + 1] += begin[d];
+            for (const GrainCell& cell : cells) spare[begin[(cell.key >> shift) & mask]++] = cell;
+            cells.swap(spare);
+        }
+}
+
+void list_cells(const Array<GrainBall>& balls, int32_t of, int32_t level, Array<GrainCell>& cells,
+                Array<GrainCell>& spare) {
+    cells.clear();
+    reserve_more(cells, balls.size());
+    for (uint32_t i = 0; i < balls.size(); ++i)
+        if (balls[i].level == of) cells.push_back({key_of(balls[i], level), i});
+    sort_cells(cells, spare);
+}
+
+// A row of three cells beside each seeker's own, of some targets.
+class Row {
+public:
+    Row(int dy, int dz) : offset_((static_cast<int64_t>(dz) << 2 * kBits) + (static_cast<int64_t>(dy) << kBits)) {}
+
+    // met(ball) for the targets in it, from `least` of them on. Seekers come in the order of their keys.
+    template <class Met>
+    void seek(const Array<GrainCell>& targets, uint64_t key, size_t least, Met&& met) {
+        const uint64_t middle = key + static_cast<uint64_t>(offset_);
+        while (begin_ < targets.size() && targets[begin_].key < middle - 1) ++begin_;
+        for (size_t t = std::max(begin_, least); t < targets.size() && targets[t].key <= middle + 1; ++t)
+            met(targets[t].ball);
+    }
+
+private:
+    int64_t offset_;
+    size_t begin_ = 0;
+};
+
+// Calls met(ball, ball) once for each two of a level that may meet.
+template <class Met>
+void seek_within(const Array<GrainCell>& cells, Met&& met) {
+    Row rows[] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  // half of those about a cell
+    for (size_t k = 0; k < cells.size(); ++k)
+        for (Row& row : rows)
+            row.seek(cells, cells[k].key, k + 1, [&](uint32_t other) { met(cells[k].ball, other); });
+}
+
+// The same for one of a level with one of a larger.
+template <class Met>
+void seek_among(const Array<GrainCell>& seekers, const Array<GrainCell>& targets, Met&& met) {
+    Row rows[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+    for (const GrainCell& seeker : seekers)
+        for (Row& row : rows)
+            row.seek(targets, seeker.key, 0, [&](uint32_t other) { met(seeker.ball, other); });
+}
+
+template <class Met>
+void for_meeting(Grains& grains, Met&& met) {
+    uint64_t levels = 0;  // that balls have, a bit each
+    for (const GrainBall& ball : grains.ball) levels |= uint64_t{1} << (ball.level - kFirstLevel);
+    for (uint64_t larger = levels; larger != 0; larger &= larger - 1) {
+        const int32_t level = std::countr_zero(larger) + kFirstLevel;
+        list_cells(grains.ball, level, level, grains.targets, grains.spare);
+        seek_within(grains.targets, met);
+        for (uint64_t smaller = levels & ((larger & ~(larger - 1)) - 1); smaller != 0; smaller &= smaller - 1) {
+            list_cells(grains.ball, std::countr_zero(smaller) + kFirstLevel, level, grains.seekers, grains.spare);
+            seek_among(grains.seekers, grains.targets, met);
+        }
+    }
+}
+
+// The contacts before, by node a; those of nodes that are gone are left out.
+class Before {
+public:
+    Before(Grains& grains, uint32_t nodes) : contact_(grains.before), first_(grains.first), by_a_(grains.by_a) {
+        leave_out(grains.gone, nodes);
+        first_.assign(nodes + 1, 0);
+        by_a_.resize(contact_.size());
+        for (const GrainContact& contact : contact_) ++first_[contact.a];
+        for (uint32_t node = 0; node < nodes; ++node) first_[node + 1] += first_[node];
+        for (auto i = static_cast<uint32_t>(contact_.size()); i-- > 0;) by_a_[--first_[contact_[i].a]] = i;
+    }
+    const GrainContact* find(uint32_t a, uint32_t b) const {
+        for (uint32_t k = first_[a]; k < first_[a + 1]; ++k)
+            if (contact_[by_a_[k]].b == b) return &contact_[by_a_[k]];
+        return nullptr;
+    }
+
+private:
+    void leave_out(Array<uint32_t>& gone, uint32_t nodes) {
+        if (gone.empty()) return;
+        first_.assign(nodes, 0);
+        for (const uint32_t node : gone) first_[node] = 1;
+        std::erase_if(contact_, [&](const GrainContact& contact) { return first_[contact.a] || first_[contact.b]; });
+        gone.clear();
+    }
+
+    Array<GrainContact>& contact_;
+    Array<uint32_t>&first_, &by_a_;
+};
+
+bool boxes_meet(const GrainBall& a, const GrainBall& b) {
+    int meet = 1;
+    for (int i = 0; i < 3; ++i) meet &= static_cast<int>(a.lo[i] <= b.hi[i]) & static_cast<int>(b.lo[i] <= a.hi[i]);
+    return meet != 0;
+}
+
+}  // namespace
+
+void find_grain_contacts(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
+                         double time_step) {
+    Grains& grains = pairs.grains;
+    if (colliders.grains.empty() && grains.contact.empty()) return;
+    if (!list_balls(nodes, colliders, shapes, time_step, grains) && !colliders.grains.empty()) return;
+    grains.contact.swap(grains.before);
+    grains.contact.clear();
+    const Before before(grains, nodes.slots());
+    const uint64_t rules = colliders.version + pairs.joined_version;
+    const bool same_rules = std::exchange(grains.rules, rules) == rules;
+    for_meeting(grains, [&](uint32_t one, uint32_t other) {
+        const GrainBall *a = &grains.ball[one], *b = &grains.ball[other];
+        if (!boxes_meet(*a, *b)) return;
+        if (b->node < a->node) std::swap(a, b);
+        const Vec3f apart = (b->x - a->x).cast<float>();
+        const float distance = apart.norm(), separation = distance - a->radius - b->radius;
+        const Vec3f normal = distance > 0 ? Vec3f((1 / distance) * apart) : Vec3f(Vec3f::UnitY());
+        const Vec3f parting = (nodes.motion[b->node].v - nodes.motion[a->node].v).cast<float>();
+        const float way = static_cast<float>(time_step) * std::min(0.0f, normal.dot(parting));
+        if (!(separation + way < std::min(a->margin, b->margin))) return;
+        const GrainContact* was = before.find(a->node, b->node);
+        if (!was || !same_rules) {
+            const PairEnds ends{pair_key(a->collider, b->collider), a->node, b->node};
+            if (!may_collide(nodes, colliders, pairs, ends)) return;
+        }
+        const float friction =
+            was && same_rules ? was->friction
+                              : friction_of(colliders.traits[a->collider].material, colliders.traits[b->collider].material);
+        grains.contact.push_back({a->node, b->node, normal, separation, friction, was ? was->force : Vec3f(Vec3f::Zero())});
+    });
+    const bool same = std::ranges::equal(grains.contact, grains.before, [](const GrainContact& x, const GrainContact& y) { return x.joins_as(y); });
+    grains.version += same ? 0 : 1;
+}
+
+}  // namespace taut
