@@ -1,6 +1,6 @@
 // Contacts between grains in lanes: kLanes of one colour side by side, of which no two share a moving node. Nothing
-// turns, so that the effective mass is the same all ways, 1/(1/m_a + 1/m_b), and friction is a vector across the normal.
-// 68 bytes a contact.
+// turns, so that the effective mass is the same all ways, 1/(1/m_a + 1/m_b), and friction is a vector across the
+// normal. 68 bytes a contact.
 #pragma once
 
 #include "constraints/contact_lanes.h"
@@ -15,9 +15,9 @@ struct alignas(64) GrainGroup {
     float gap0[kLanes];             // as the frame began [m]
     float gap[kLanes];              // at the start of the substep; the first biased sweep measures it
     float friction[kLanes];
-    float hits[kLanes];         // 1: approached faster than SweepTerms::hit before the frame's forces
-    float impulse[kLanes];      // along the normal [N s]
-    float slide[3][kLanes];     // of friction, world axes [N s]
+    float hits[kLanes];      // 1: approached faster than SweepTerms::hit before the frame's forces
+    float impulse[kLanes];   // along the normal [N s]
+    float slide[3][kLanes];  // of friction, world axes [N s]
 };
 
 // Lane groups of one colour.

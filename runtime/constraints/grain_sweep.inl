@@ -116,7 +116,8 @@ struct GrainSweep {
             sweep(g, nodes, [&](const GrainGroup& of) {
                 const F gap = F::load(of.gap), rigid = F::max(gap, F::load(of.hits));
                 return Terms{F::if_greater(gap, zero, gap * inv_h, F::max(rate * gap, least)),
-                             F::if_greater(rigid, zero, one, soft_mass), F::if_greater(rigid, zero, zero, soft_impulse)};
+                             F::if_greater(rigid, zero, one, soft_mass),
+                             F::if_greater(rigid, zero, zero, soft_impulse)};
             });
         }
     }

@@ -25,6 +25,8 @@ inline SweepTerms soft_terms(double h, double cycles) {
     t.hit = kHardSpeed;
     return t;
 }
+// By which a contact yields to a force that stays, in parts of h^2 w |f|: 1 / (om h)^2.
+constexpr float kContactYield = 0.405f;
 // stretch: h over the substep for which f is meant. Where the host changes the time step f stays what it was: what rests
 // yields by .4 / f^2 of gravity, a length that does not depend on h, and so stays where it is.
 inline SweepTerms contact_terms(double h, double stretch = 1) { return soft_terms(h, 0.25 * stretch); }

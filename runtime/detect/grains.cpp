@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constraints/soft_contact.h"
 #include "detect/detect.h"
 #include "detect/surfaces.h"
 
@@ -32,7 +33,8 @@ int32_t level_of(const Vec3f& size) {
 }
 
 // False: none is awake.
-bool list_balls(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, double time_step, Grains& grains) {
+bool list_balls(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, double time_step,
+                Grains& grains) {
     Array<GrainBall>& balls = grains.ball;
     balls.clear();
     reserve_more(balls, colliders.grains.size());
@@ -43,6 +45,8 @@ bool list_balls(const Nodes& nodes, const Colliders& colliders, const Shapes& sh
         const collision::Shape& shape = shapes[collider.shape].shape;
         GrainBall& ball = balls.emplace_back();
         ball.x = nodes.motion[collider.node].x;
+        ball.v = nodes.motion[collider.node].v.cast<float>();
+        ball.inv_mass = static_cast<float>(nodes.mass[collider.node].inv_mass);
         ball.radius = collision::ball_radius(shape);
         ball.margin = shapes[collider.shape].margin;
         ball.node = collider.node;
@@ -52,12 +56,10 @@ bool list_balls(const Nodes& nodes, const Colliders& colliders, const Shapes& sh
     }
     const float rounding = 0x1p-21f * static_cast<float>((extent.hi - extent.lo).maxCoeff());
     for (GrainBall& ball : balls) {
-        const Vec3f at = (ball.x - extent.lo).cast<float>();
-        const Vec3f way = (time_step * nodes.motion[ball.node].v).cast<float>();
+        const Vec3f at = (ball.x - extent.lo).cast<float>(), way = static_cast<float>(time_step) * ball.v;
         const Vec3f about = Vec3f::Constant(ball.radius + 0.5f * ball.margin + rounding);
-        ball.lo = at + way.cwiseMin(0.0f) - about;
-        ball.hi = at + way.cwiseMax(0.0f) + about;
-        ball.level = level_of(ball.hi - ball.lo);
+        ball.box = {at + way.cwiseMin(0.0f) - about, at + way.cwiseMax(0.0f) + about};
+        ball.level = level_of(ball.box.hi - ball.box.lo);
     }
     return any_awake;
 }
@@ -66,7 +68,7 @@ uint64_t key_of(const GrainBall& ball, int32_t level) {
     const float per_cell = std::ldexp(1.0f, -level);
     uint64_t key = 0;
     for (int i = 2; i >= 0; --i) {
-        const float cell = std::max(0.0f, std::floor(per_cell * 0.5f * (ball.lo[i] + ball.hi[i])));
+        const float cell = std::max(0.0f, std::floor(per_cell * 0.5f * (ball.box.lo[i] + ball.box.hi[i])));
         key = key << kBits | (1 + static_cast<uint64_t>(std::min(cell, kMostCell)));
     }
     return key;
@@ -91,13 +93,15 @@ void sort_cells(Array<GrainCell>& cells, Array<GrainCell>& spare) {
         }
 }
 
-void list_cells(const Array<GrainBall>& balls, int32_t of, int32_t level, Array<GrainCell>& cells,
-                Array<GrainCell>& spare) {
-    cells.clear();
-    reserve_more(cells, balls.size());
+void list_cells(const Array<GrainBall>& balls, int32_t of, int32_t level, Array<GrainCell>& spare, GrainCells& cells) {
+    cells.cell.clear();
+    cells.box.clear();
+    reserve_more(cells.cell, balls.size());
+    reserve_more(cells.box, balls.size());
     for (uint32_t i = 0; i < balls.size(); ++i)
-        if (balls[i].level == of) cells.push_back({key_of(balls[i], level), i});
-    sort_cells(cells, spare);
+        if (balls[i].level == of) cells.cell.push_back({key_of(balls[i], level), i});
+    sort_cells(cells.cell, spare);
+    for (const GrainCell& cell : cells.cell) cells.box.push_back(balls[cell.ball].box);
 }
 
 // A row of three cells beside each seeker's own, of some targets.
@@ -105,36 +109,42 @@ class Row {
 public:
     Row(int dy, int dz) : offset_((static_cast<int64_t>(dz) << 2 * kBits) + (static_cast<int64_t>(dy) << kBits)) {}
 
-    // met(ball) for the targets in it, from `least` of them on. Seekers come in the order of their keys.
+    // met(ball) for the targets in it whose boxes meet, from `least` of them on. Seekers come in the order of keys.
     template <class Met>
-    void seek(const Array<GrainCell>& targets, uint64_t key, size_t least, Met&& met) {
+    void seek(const GrainCells& targets, uint64_t key, const GrainBox& box, size_t least, Met&& met) {
         const uint64_t middle = key + static_cast<uint64_t>(offset_);
-        while (begin_ < targets.size() && targets[begin_].key < middle - 1) ++begin_;
-        for (size_t t = std::max(begin_, least); t < targets.size() && targets[t].key <= middle + 1; ++t)
-            met(targets[t].ball);
+        const size_t count = targets.cell.size();
+        while (begin_ < count && targets.cell[begin_].key < middle - 1) ++begin_;
+        while (end_ < count && targets.cell[end_].key <= middle + 1) ++end_;
+        for (size_t t = std::max(begin_, least); t < end_; ++t)
+            if (box.meets(targets.box[t])) met(targets.cell[t].ball);
     }
 
 private:
     int64_t offset_;
-    size_t begin_ = 0;
+    size_t begin_ = 0, end_ = 0;
 };
 
-// Calls met(ball, ball) once for each two of a level that may meet.
+// Calls met(ball, ball) once for each two of a level whose boxes meet.
 template <class Met>
-void seek_within(const Array<GrainCell>& cells, Met&& met) {
+void seek_within(const GrainCells& cells, Met&& met) {
     Row rows[] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};  // half of those about a cell
-    for (size_t k = 0; k < cells.size(); ++k)
+    for (size_t k = 0; k < cells.cell.size(); ++k) {
+        const auto [key, ball] = cells.cell[k];
         for (Row& row : rows)
-            row.seek(cells, cells[k].key, k + 1, [&](uint32_t other) { met(cells[k].ball, other); });
+            row.seek(cells, key, cells.box[k], k + 1, [&, one = ball](uint32_t other) { met(one, other); });
+    }
 }
 
 // The same for one of a level with one of a larger.
 template <class Met>
-void seek_among(const Array<GrainCell>& seekers, const Array<GrainCell>& targets, Met&& met) {
+void seek_among(const GrainCells& seekers, const GrainCells& targets, Met&& met) {
     Row rows[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-    for (const GrainCell& seeker : seekers)
+    for (size_t k = 0; k < seekers.cell.size(); ++k) {
+        const auto [key, ball] = seekers.cell[k];
         for (Row& row : rows)
-            row.seek(targets, seeker.key, 0, [&](uint32_t other) { met(seeker.ball, other); });
+            row.seek(targets, key, seekers.box[k], 0, [&, one = ball](uint32_t other) { met(one, other); });
+    }
 }
 
 template <class Met>
@@ -143,10 +153,10 @@ void for_meeting(Grains& grains, Met&& met) {
     for (const GrainBall& ball : grains.ball) levels |= uint64_t{1} << (ball.level - kFirstLevel);
     for (uint64_t larger = levels; larger != 0; larger &= larger - 1) {
         const int32_t level = std::countr_zero(larger) + kFirstLevel;
-        list_cells(grains.ball, level, level, grains.targets, grains.spare);
+        list_cells(grains.ball, level, level, grains.spare, grains.targets);
         seek_within(grains.targets, met);
         for (uint64_t smaller = levels & ((larger & ~(larger - 1)) - 1); smaller != 0; smaller &= smaller - 1) {
-            list_cells(grains.ball, std::countr_zero(smaller) + kFirstLevel, level, grains.seekers, grains.spare);
+            list_cells(grains.ball, std::countr_zero(smaller) + kFirstLevel, level, grains.spare, grains.seekers);
             seek_among(grains.seekers, grains.targets, met);
         }
     }
@@ -155,37 +165,63 @@ void for_meeting(Grains& grains, Met&& met) {
 // The contacts before, by node a; those of nodes that are gone are left out.
 class Before {
 public:
-    Before(Grains& grains, uint32_t nodes) : contact_(grains.before), first_(grains.first), by_a_(grains.by_a) {
-        leave_out(grains.gone, nodes);
+    Before(Grains& grains, uint32_t nodes) : first_(grains.first), memory_(grains.before) {
+        const Array<GrainContact>& contacts = grains.contact;
+        leave_out(grains.gone, nodes, grains.contact);
         first_.assign(nodes + 1, 0);
-        by_a_.resize(contact_.size());
-        for (const GrainContact& contact : contact_) ++first_[contact.a];
+        memory_.clear();
+        reserve_more(memory_, contacts.size());
+        memory_.resize(contacts.size());
+        for (const GrainContact& contact : contacts) ++first_[contact.a];
         for (uint32_t node = 0; node < nodes; ++node) first_[node + 1] += first_[node];
-        for (auto i = static_cast<uint32_t>(contact_.size()); i-- > 0;) by_a_[--first_[contact_[i].a]] = i;
+        for (auto i = static_cast<uint32_t>(contacts.size()); i-- > 0;) {
+            const GrainContact& contact = contacts[i];
+            memory_[--first_[contact.a]] = {contact.b, i, contact.friction, contact.force};
+        }
     }
-    const GrainContact* find(uint32_t a, uint32_t b) const {
+    const GrainMemory* find(uint32_t a, uint32_t b) const {
         for (uint32_t k = first_[a]; k < first_[a + 1]; ++k)
-            if (contact_[by_a_[k]].b == b) return &contact_[by_a_[k]];
+            if (memory_[k].b == b) return &memory_[k];
         return nullptr;
     }
 
 private:
-    void leave_out(Array<uint32_t>& gone, uint32_t nodes) {
+    void leave_out(Array<uint32_t>& gone, uint32_t nodes, Array<GrainContact>& contacts) {
         if (gone.empty()) return;
         first_.assign(nodes, 0);
         for (const uint32_t node : gone) first_[node] = 1;
-        std::erase_if(contact_, [&](const GrainContact& contact) { return first_[contact.a] || first_[contact.b]; });
+        std::erase_if(contacts, [&](const GrainContact& contact) { return first_[contact.a] || first_[contact.b]; });
         gone.clear();
     }
 
-    Array<GrainContact>& contact_;
-    Array<uint32_t>&first_, &by_a_;
+    Array<uint32_t>& first_;
+    Array<GrainMemory>& memory_;
 };
 
-bool boxes_meet(const GrainBall& a, const GrainBall& b) {
-    int meet = 1;
-    for (int i = 0; i < 3; ++i) meet &= static_cast<int>(a.lo[i] <= b.hi[i]) & static_cast<int>(b.lo[i] <= a.hi[i]);
-    return meet != 0;
+// Whether two touch in the frame, as they move now.
+bool touch(const GrainBall& a, const GrainBall& b, float time_step, GrainContact& contact) {
+    const Vec3f apart = (b.x - a.x).cast<float>();
+    const float distance = apart.norm();
+    contact.a = a.node;
+    contact.b = b.node;
+    contact.normal = distance > 0 ? Vec3f((1 / distance) * apart) : Vec3f(Vec3f::UnitY());
+    contact.separation = distance - a.radius - b.radius;
+    contact.force = Vec3f::Zero();
+    const float way = time_step * std::min(0.0f, contact.normal.dot(b.v - a.v));
+    return contact.separation + way < std::min(a.margin, b.margin);
+}
+
+// The yield of a swept contact under its force, .4 h^2 w |f| (soft_contact.h), in parts of the contact margin.
+float strain_of(const GrainBall& a, const GrainBall& b, const GrainContact& contact) {
+    return kContactYield * (a.inv_mass + b.inv_mass) * std::max(contact.force.dot(contact.normal), 0.0f) /
+           std::min(a.margin, b.margin);
+}
+
+// What filters, joints and surfaces say of two that touch. False: they do not collide.
+bool meet(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const GrainBall& a, const GrainBall& b,
+          GrainContact& contact) {
+    contact.friction = friction_of(colliders.traits[a.collider].material, colliders.traits[b.collider].material);
+    return may_collide(nodes, colliders, pairs, {pair_key(a.collider, b.collider), a.node, b.node});
 }
 
 }  // namespace
@@ -195,33 +231,28 @@ void find_grain_contacts(const Nodes& nodes, const Colliders& colliders, const S
     Grains& grains = pairs.grains;
     if (colliders.grains.empty() && grains.contact.empty()) return;
     if (!list_balls(nodes, colliders, shapes, time_step, grains) && !colliders.grains.empty()) return;
-    grains.contact.swap(grains.before);
-    grains.contact.clear();
     const Before before(grains, nodes.slots());
+    const size_t were = grains.contact.size();
+    grains.contact.clear();
     const uint64_t rules = colliders.version + pairs.joined_version;
     const bool same_rules = std::exchange(grains.rules, rules) == rules;
+    bool same = true;
     for_meeting(grains, [&](uint32_t one, uint32_t other) {
         const GrainBall *a = &grains.ball[one], *b = &grains.ball[other];
-        if (!boxes_meet(*a, *b)) return;
         if (b->node < a->node) std::swap(a, b);
-        const Vec3f apart = (b->x - a->x).cast<float>();
-        const float distance = apart.norm(), separation = distance - a->radius - b->radius;
-        const Vec3f normal = distance > 0 ? Vec3f((1 / distance) * apart) : Vec3f(Vec3f::UnitY());
-        const Vec3f parting = (nodes.motion[b->node].v - nodes.motion[a->node].v).cast<float>();
-        const float way = static_cast<float>(time_step) * std::min(0.0f, normal.dot(parting));
-        if (!(separation + way < std::min(a->margin, b->margin))) return;
-        const GrainContact* was = before.find(a->node, b->node);
-        if (!was || !same_rules) {
-            const PairEnds ends{pair_key(a->collider, b->collider), a->node, b->node};
-            if (!may_collide(nodes, colliders, pairs, ends)) return;
+        GrainContact contact;
+        if (!touch(*a, *b, static_cast<float>(time_step), contact)) return;
+        const GrainMemory* was = before.find(a->node, b->node);
+        if (was) {
+            contact.force = was->force;
+            contact.friction = was->friction;
         }
-        const float friction =
-            was && same_rules ? was->friction
-                              : friction_of(colliders.traits[a->collider].material, colliders.traits[b->collider].material);
-        grains.contact.push_back({a->node, b->node, normal, separation, friction, was ? was->force : Vec3f(Vec3f::Zero())});
+        if ((!was || !same_rules) && !meet(nodes, colliders, pairs, *a, *b, contact)) return;
+        contact.strain = strain_of(*a, *b, contact);
+        same = same && was && was->index == grains.contact.size();
+        grains.contact.push_back(contact);
     });
-    const bool same = std::ranges::equal(grains.contact, grains.before, [](const GrainContact& x, const GrainContact& y) { return x.joins_as(y); });
-    grains.version += same ? 0 : 1;
+    grains.version += same && grains.contact.size() == were ? 0 : 1;
 }
 
 }  // namespace taut

@@ -90,10 +90,26 @@ void Partition::find_strains(const Elements& elements) {
     }
 }
 
+// Of islands with contacts between grains.
+void Partition::find_grain_strains(const Grains& grains) {
+    grain_strain_.clear();
+    if (grains.contact.empty()) return;
+    grain_strain_.resize(island_.size(), 0.0);
+    for (const GrainContact& contact : grains.contact) {
+        const uint32_t moves = graph_.moves[contact.a] ? contact.a : contact.b;
+        if (!graph_.moves[moves]) continue;
+        double& strain = grain_strain_[island_of_[moves]];
+        strain = std::max(strain, static_cast<double>(contact.strain));
+    }
+}
+
 // Yields fall as the square of substeps.
-uint32_t Partition::swept_substeps(size_t island, double time_step) const {
-    const double substeps = strain_.empty() ? 0 : std::ceil(time_step * std::sqrt(strain_[island]));
-    return static_cast<uint32_t>(std::min<double>(substeps, kMostElasticSubsteps));
+uint32_t Partition::swept_substeps(size_t island, const PartitionRules& rules) const {
+    const auto wanted = [&](const Array<double>& strain, uint32_t most) {
+        const double substeps = strain.empty() ? 0 : std::ceil(rules.time_step * std::sqrt(strain[island]));
+        return static_cast<uint32_t>(std::min<double>(substeps, most));
+    };
+    return std::max(wanted(strain_, kMostElasticSubsteps), wanted(grain_strain_, kMostHalves * rules.substeps / 2));
 }
 
 void Partition::choose_substeps(const PartitionRules& rules) {
@@ -112,8 +128,8 @@ void Partition::choose_substeps(const PartitionRules& rules) {
         island.substeps = rules.fixed ? rules.substeps : (rules.substeps * halves + 1) / 2;
     }
     if (rules.fixed) return;
-    for (size_t i = 0; i < island_.size() && !strain_.empty(); ++i)
-        island_[i].substeps = std::max(island_[i].substeps, swept_substeps(i, rules.time_step));
+    for (size_t i = 0; i < island_.size(); ++i)
+        island_[i].substeps = std::max(island_[i].substeps, swept_substeps(i, rules));
     for (Block& block : blocks) {
         Island& island = island_[island_of_[block.nodes[0]]];
         if (!block.tower && (block.mass_ratio > kExtremeMassRatio || block.memory.escalated))

@@ -35,6 +35,7 @@ Partition::Partition(Memory& memory)
       rank_(memory),
       rank_begin_(memory),
       strain_(memory),
+      grain_strain_(memory),
       efforts_(memory),
       presses_(memory),
       squeezes_(memory),
@@ -113,6 +114,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     else
         forget_blocks(joints);
     find_strains(elements);
+    find_grain_strains(pairs.grains);
     choose_substeps(rules);
     colour_joints();
     colour_pairs(pairs);

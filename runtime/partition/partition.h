@@ -295,6 +295,7 @@ private:
     void forget_blocks(const Joints& joints);
     void choose_substeps(const PartitionRules& rules);
     void find_strains(const Elements& elements);
+    void find_grain_strains(const Grains& grains);
     void make_groups();
     void colour_pairs(const Pairs& pairs);
     void colour_joints();
@@ -308,7 +309,7 @@ private:
     void list_grains(uint32_t group, const Grains& grains);
     template <class RankOf, class Take>
     uint32_t sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take);
-    uint32_t swept_substeps(size_t island, double time_step) const;
+    uint32_t swept_substeps(size_t island, const PartitionRules& rules) const;
     uint8_t take_colour(std::span<const uint32_t> nodes);
     uint32_t rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const;
     bool is_in(uint32_t group, std::span<const uint32_t> nodes) const;
@@ -357,6 +358,7 @@ private:
     Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
     Array<double> strain_;  // of each island, by which fused sweeps would yield in substeps of one second, over what
                             // they may; or empty
+    Array<double> grain_strain_;  // likewise, of contacts between grains
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those
     Array<Squeeze> squeezes_;                      // scratch: in the order of reach
