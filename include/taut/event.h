@@ -193,7 +193,7 @@ typedef struct taut_contact {
  */
 TAUT_API taut_result taut_world_get_events(taut_world world, taut_events* out);
 /**
- * Copies the contact points of the last step, sorted by pair.
+ * Copies the contact points of the last step, sorted by pair; after them those between grains, in the order of place.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
 TAUT_API taut_result taut_world_get_contacts(taut_world world, taut_contact* contacts, uint32_t capacity,

@@ -48,6 +48,49 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
     });
 }
 
+namespace {
+
+// What impulses of contacts are told over [s].
+float told_substep(const World& world) { return static_cast<float>(world.last_step / world.least_substeps()); }
+
+taut_contact public_contact(const World& world, const Pair& pair, int i) {
+    const collision::ContactPoint& point = pair.manifold.points[i];
+    const ContactForce& force = pair.force[i];
+    const Vec3f& normal = pair.manifold.normal;
+    const float substep = told_substep(world);
+    return {world.body_handle(pair.a),
+            world.body_handle(pair.b),
+            to_pos(world.nodes.origin(pair.a) + point.position.cast<double>()),
+            {normal.x(), normal.y(), normal.z()},
+            point.separation,
+            substep * force.normal,
+            substep * std::hypot(force.tangent1, force.tangent2),
+            world.collider_handle(pair.collider_a()),
+            world.collider_handle(pair.collider_b())};
+}
+
+bool touching(const GrainContact& contact) { return contact.separation <= 0 || contact.pushes(); }
+
+// Between grains, whose spheres are about their nodes.
+taut_contact public_contact(const World& world, const GrainContact& contact) {
+    const uint32_t a = world.nodes.info[contact.a].collider, b = world.nodes.info[contact.b].collider;
+    const Vec3f& n = contact.normal;
+    const double radius = collision::ball_radius(world.shapes[world.colliders.record[a].shape].shape);
+    const double way = radius + 0.5 * static_cast<double>(contact.separation);
+    const float push = contact.force.dot(n), substep = told_substep(world);
+    return {world.body_handle(contact.a),
+            world.body_handle(contact.b),
+            to_pos(world.nodes.origin(contact.a) + way * n.cast<double>()),
+            {n.x(), n.y(), n.z()},
+            contact.separation,
+            substep * push,
+            substep * (contact.force - push * n).norm(),
+            world.collider_handle(a),
+            world.collider_handle(b)};
+}
+
+}  // namespace
+
 taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, uint32_t capacity, uint32_t* count) {
     Check check(__func__);
     if (!check.pointer("count", count)) return check.result();
@@ -56,32 +99,18 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
         for_pairs(world.pairs, [&](const Pair& pair) {
             if (pair.touching) needed += static_cast<uint32_t>(pair.manifold.count);
         });
+        for (const GrainContact& contact : world.pairs.grains.contact) needed += touching(contact);
         if (needed > capacity) {
             *count = needed;
             return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
         }
         if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
         *count = needed;
-        const auto substep = static_cast<float>(world.last_step / world.least_substeps());
         for_pairs(world.pairs, [&](const Pair& pair) {
-            if (!pair.touching) return;
-            const taut_body a = world.body_handle(pair.a), b = world.body_handle(pair.b);
-            const Vec3 origin = world.nodes.origin(pair.a);
-            const Vec3f& normal = pair.manifold.normal;
-            for (int i = 0; i < pair.manifold.count; ++i) {
-                const collision::ContactPoint& point = pair.manifold.points[i];
-                const ContactForce& force = pair.force[i];
-                *contacts++ = {a,
-                               b,
-                               to_pos(origin + point.position.cast<double>()),
-                               {normal.x(), normal.y(), normal.z()},
-                               point.separation,
-                               substep * force.normal,
-                               substep * std::hypot(force.tangent1, force.tangent2),
-                               world.collider_handle(pair.collider_a()),
-                               world.collider_handle(pair.collider_b())};
-            }
+            for (int i = 0; pair.touching && i < pair.manifold.count; ++i) *contacts++ = public_contact(world, pair, i);
         });
+        for (const GrainContact& contact : world.pairs.grains.contact)
+            if (touching(contact)) *contacts++ = public_contact(world, contact);
         return TAUT_OK;
     });
 }

@@ -27,8 +27,11 @@ inline SweepTerms soft_terms(double h, double cycles) {
 }
 // By which a contact yields to a force that stays, in parts of h^2 w |f|: 1 / (om h)^2.
 constexpr float kContactYield = 0.405f;
-// stretch: h over the substep for which f is meant. Where the host changes the time step f stays what it was: what rests
-// yields by .4 / f^2 of gravity, a length that does not depend on h, and so stays where it is.
+// Time in which it is forgotten by how much swept rows were found to yield, e-fold [s]: where substeps follow at once,
+// they swing with what swings by them.
+constexpr double kYieldMemory = 0.5;
+// stretch: h over the substep for which f is meant. Where the host changes the time step f stays what it was: what
+// rests yields by .4 / f^2 of gravity, a length that does not depend on h, and so stays where it is.
 inline SweepTerms contact_terms(double h, double stretch = 1) { return soft_terms(h, 0.25 * stretch); }
 // A joint yields by .025 h^2 of the acceleration that its force gives its ends, a sixteenth of what a contact does.
 inline SweepTerms joint_terms(double h, double stretch = 1) { return soft_terms(h, stretch); }

@@ -176,7 +176,7 @@ public:
         for (uint32_t node = 0; node < nodes; ++node) first_[node + 1] += first_[node];
         for (auto i = static_cast<uint32_t>(contacts.size()); i-- > 0;) {
             const GrainContact& contact = contacts[i];
-            memory_[--first_[contact.a]] = {contact.b, i, contact.friction, contact.force};
+            memory_[--first_[contact.a]] = {contact.b, i, contact.friction, contact.strain, contact.force};
         }
     }
     const GrainMemory* find(uint32_t a, uint32_t b) const {
@@ -236,6 +236,7 @@ void find_grain_contacts(const Nodes& nodes, const Colliders& colliders, const S
     grains.contact.clear();
     const uint64_t rules = colliders.version + pairs.joined_version;
     const bool same_rules = std::exchange(grains.rules, rules) == rules;
+    const float fading = 1 / (1 + static_cast<float>(time_step / kYieldMemory));
     bool same = true;
     for_meeting(grains, [&](uint32_t one, uint32_t other) {
         const GrainBall *a = &grains.ball[one], *b = &grains.ball[other];
@@ -249,6 +250,7 @@ void find_grain_contacts(const Nodes& nodes, const Colliders& colliders, const S
         }
         if ((!was || !same_rules) && !meet(nodes, colliders, pairs, *a, *b, contact)) return;
         contact.strain = strain_of(*a, *b, contact);
+        if (was) contact.strain = std::max(contact.strain, fading * was->strain);
         same = same && was && was->index == grains.contact.size();
         grains.contact.push_back(contact);
     });

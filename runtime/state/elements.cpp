@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "constraints/soft_contact.h"
+
 namespace taut {
 namespace {
 
@@ -114,11 +116,11 @@ uint32_t Elements::count() const {
 }
 
 void age_yields(Elements& elements, double time, uint32_t substeps) {
-    constexpr double kMemory = 0.5, kGrowth = 0.03;  // times in which they go and grow, e-fold [s]
+    constexpr double kGrowth = 0.03;  // time in which they grow, e-fold [s]
     for (ElementSet& set : elements.set) {
         const double least = set.tolerance * substeps * substeps / (time * time);
         set.most_yield = (1 + time / kGrowth) * std::max(least, set.yield);
-        set.yield = std::max(set.least_yield, set.yield / (1 + time / kMemory));
+        set.yield = std::max(set.least_yield, set.yield / (1 + time / kYieldMemory));
     }
 }
 

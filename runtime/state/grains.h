@@ -15,21 +15,21 @@ struct GrainContact {
     float separation;  // as the frame began [m]
     float friction;    // of the two surfaces together
     Vec3f force;       // on b, of the last substep, with friction [N]
-    float strain;      // by which it yields in substeps of h, in parts of what it may: strain h^2 [1/s^2]
+    float strain;      // by which it yielded of late in substeps of h, in parts of what it may: strain h^2 [1/s^2]
 
     bool pushes() const { return force.dot(normal) > 0; }
 };
 template <class Visitor, Like<GrainContact> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [a, b, normal, separation, friction, force, strain] = of;  // strain: of the step that follows
-    TAUT_FIELDS(visitor, a, b, normal, separation, friction, force);
+    auto& [a, b, normal, separation, friction, force, strain] = of;
+    TAUT_FIELDS(visitor, a, b, normal, separation, friction, force, strain);
 }
 
 // What stays of a contact, by node a.
 struct GrainMemory {
     uint32_t b;
     uint32_t index;  // in Grains::contact then
-    float friction;
+    float friction, strain;
     Vec3f force;
 };
 
