@@ -216,8 +216,8 @@ void BlockSolve::for_couplings(Act&& act) const {
     });
 }
 
-void BlockSolve::link_elastic() {
-    for_couplings([&](uint32_t a, uint32_t b, uint32_t) { b_.matrix.link(a, b); });
+void BlockSolve::link_elastic(Array<uint64_t>& out) const {
+    for_couplings([&](uint32_t a, uint32_t b, uint32_t) { out.push_back(pair_key(a, b)); });
 }
 
 void BlockSolve::find_elastic_places() {

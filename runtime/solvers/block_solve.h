@@ -51,9 +51,13 @@ private:
     uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
     int size_of(uint32_t i) const { return b_.matrix.size(i); }                   // 3: a particle
     bool looped() const;
+    bool ties_make_loops() const;
+    bool holds(const RowBlock& block, int n) const;
     bool gives(const RowBlock& block) const;
 
     // block_matrix.cpp
+    void list_unknowns(Array<Unknown>& out) const;
+    void list_links(Array<uint64_t>& out, Array<uint64_t>& slight) const;
     void find_places();
     BlockPlace& place(uint32_t j, uint32_t which);
     BlockPlace place(const BoundedRow& row, int n, int m);
@@ -74,7 +78,7 @@ private:
     template <class Batch>
     void gather_before(const Batch& batch, uint32_t i, double* out) const;
     bool foresees(const ElementSet& of) const;
-    void link_elastic();
+    void link_elastic(Array<uint64_t>& out) const;
     void find_elastic_places();
     void assemble_elastic();
     void take_elastic_forces();
@@ -96,6 +100,7 @@ private:
     void advance(bool first);
     void stop_short();
     bool factor_rounds();
+    bool factor_softly(bool with_old);
     void right_hand_side();
     double known_rate(const RowBlock& block, int r) const;
     double error_of(const RowBlock& block, int r) const {
