@@ -161,4 +161,26 @@ TEST_P(SoftLoop, OfAttachmentsWithSlightWeightsIsHeld) {
     EXPECT_LE(world.profile().joint_error, 1e-4f);
 }
 
+// Strain is no error of a joint: what elements stretch by is not counted, what a rod is off by is.
+TEST(JointError, KnowsNoStrain) {
+    const World world;
+    const Beam beam({0.4, 0.1, 0.1}, 5, 2, 2, false);
+    taut_solid_def def = beam.def(TAUT_SOLID_NEO_HOOKEAN, 2e4, 0.3);
+    def.filter.mask = 0;
+    const taut_solid solid = add(world, def);
+    beam.hold(solid);
+    const Sheet sheet(5, 5, 1, 1, 3);
+    taut_cloth_def soft = sheet.def(TAUT_CLOTH_LINKS);
+    soft.stretch_compliance[0] = soft.stretch_compliance[1] = 0.01f;
+    soft.filter.mask = 0;
+    ok(taut_cloth_pin(add(world, soft), 0, 1));
+    const taut_body bob = world.particle(1, {0.4, -1, 0});
+    const taut_joint rod = world.rod(bodies_of(solid)[beam.at(4, 0, 0)], {}, bob, {}, 1);
+    for (int i = 0; i < 30; ++i) {
+        world.step();
+        EXPECT_LE(world.profile().joint_error, 2e-3f) << i;
+        EXPECT_NEAR(static_cast<double>(world.profile().joint_error), error(rod), 1e-6);
+    }
+}
+
 }  // namespace
