@@ -254,9 +254,11 @@ bool BlockSolve::solve_first() {
         else if (!set.empty())
             b_.matrix.restore();
         add_new_stiffness();
+        renewed_ = true;
         if (!factor_rounds()) return false;
         take_forces();
     }
+    if (!search(stiffened)) return false;
     if (stiffened) limit_gain();
     return true;
 }

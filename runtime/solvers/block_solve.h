@@ -83,6 +83,20 @@ private:
     void assemble_elastic();
     void take_elastic_forces();
     double elastic_work() const;
+    bool has_energy_forms() const;
+    void along_way(uint32_t seat, double part, Vec3& u, Vec3& way) const;
+    double elastic_energy(double part, double* slope) const;
+    void elastic_damping(double& linear, double& square) const;
+    void relinearise(double part);
+
+    // block_search.cpp
+    struct Way;
+    Way way_of_step(bool with_old) const;
+    void add_stiffness_along(Way& way) const;
+    double part_of_step(const Way& way) const;
+    void begin_way(const Array<Velocity>& at);
+    void go_part(double part);
+    bool search(bool with_old);
 
     // block_gas.cpp
     template <class Act>
@@ -128,6 +142,12 @@ private:
     // The second half of Block::solution: while rounds go on the iterate (active_set.h), then the iterate less the
     // solution of the last round.
     double* iterate() { return b_.solution.data() + unknowns(); }
+    // The third: of each node the velocity from which a step of the search goes to System::exact.
+    double* way_begin(uint32_t i) { return b_.solution.data() + 2 * unknowns() + size_t{i} * kDof; }
+    const double* way_begin(uint32_t i) const { return const_cast<BlockSolve*>(this)->way_begin(i); }
+    // After that 1 where elements are linearised at System::foreseen, where the search came to, else 0.
+    void set_relinearised(bool is) { b_.solution.back() = is ? 1 : 0; }
+    bool relinearised() const { return b_.solution.back() != 0; }
     // Of a node h^2 K s, of a tie how fast its rows close their gaps [1/s].
     double* known(uint32_t i) { return &b_.known[i * kDof]; }
     double* tie_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
@@ -138,6 +158,7 @@ private:
     Block& b_;
     uint32_t nodes_;
     bool relaxed_ = false;  // System::kept belongs to the present solution
+    bool renewed_ = false;  // the matrix has K of new forces
     EnergyGain gained_;     // by a guarded block's solution, before limit_gain
 };
 
