@@ -36,11 +36,11 @@ typedef struct taut_profile {
     uint32_t colours;
     uint32_t substeps;    /**< largest number of substeps that an island took */
     uint32_t solves;      /**< direct block solves, all substeps together */
-    uint32_t resolves;    /**< of these, second solves on a grown force */
+    uint32_t resolves;    /**< solves on top of these: on a grown force, or where elements' energy had not fallen */
     uint32_t guard_trips; /**< blocks on which the energy guard tripped */
     /* quality */
     float residual;       /**< largest remaining joint velocity error of the last substep, J v - target [m/s] */
-    float joint_error;    /**< largest error of a joint or element after the step [m] */
+    float joint_error;    /**< largest gap of a joint, and of a link or attachment without compliance, after it [m] */
     float penetration;    /**< deepest overlap found by the step [m] */
     uint64_t bytes;       /**< held from the allocator */
     uint64_t allocations; /**< calls of the allocator during the step */

@@ -68,7 +68,8 @@ Tally tally(World& world) {
         for (uint32_t e = 0; set.type && e < set.size(); ++e) {
             if (!set.lives(e)) continue;
             ++t.elements;
-            if (asleep(world.nodes, set.nodes_of(e))) continue;
+            if (set.compliance[0] > 0 || asleep(world.nodes, set.nodes_of(e)))
+                continue;  // what gives way is apart by law
             double value[kMaxRows], squared = 0;
             view_of(set, e).read(world.nodes, value);
             if (set.pulls) value[0] = std::max(0.0, value[0]);

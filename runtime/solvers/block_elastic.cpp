@@ -6,7 +6,8 @@
 // -D (C + h J (u - u_0) + d J u), as if it were an unknown (Tournier et al. 2015, eq. 21). Energy: lambda = -D C and
 // the positive part is that of the sum, a step of Newton's method on W = 1/2 C^T D C.
 //
-// u_0 of energy is 0; of folded elements it is the velocity before the solve, which foresees how they turn.
+// u_0 of energy is 0; of folded elements it is the velocity before the solve, which foresees how they turn. Both are
+// what block_search.cpp found where that solution gained energy.
 //
 // Elements that only pull act or do not, one semismooth step of Newton's method: act those that the velocity of the
 // last substep makes long, and of those that pulled in it the ones that without forces would be long. By the latter
@@ -201,7 +202,9 @@ void BlockSolve::for_elastic(Act&& act) const {
     }
 }
 
-bool BlockSolve::foresees(const ElementSet& of) const { return b_.foresees && of.form == ElementForm::folded; }
+bool BlockSolve::foresees(const ElementSet& of) const {
+    return relinearised() || (b_.foresees && of.form == ElementForm::folded);
+}
 
 // act(local node, local node, place) for the pairs of nodes that an element couples.
 template <class Act>
@@ -216,8 +219,8 @@ void BlockSolve::for_couplings(Act&& act) const {
     });
 }
 
-void BlockSolve::link_elastic() {
-    for_couplings([&](uint32_t a, uint32_t b, uint32_t) { b_.matrix.link(a, b); });
+void BlockSolve::link_elastic(Array<uint64_t>& out) const {
+    for_couplings([&](uint32_t a, uint32_t b, uint32_t) { out.push_back(pair_key(a, b)); });
 }
 
 void BlockSolve::find_elastic_places() {
@@ -232,6 +235,7 @@ void BlockSolve::find_elastic_places() {
 // (measured: balloons of a fifth more stretch in some steps); memory for the solve, which may take none.
 void BlockSolve::foresee() {
     b_.foresees = false;
+    set_relinearised(false);
     b_.elastic_force.resize(b_.elastic_runs > 0 ? nodes_ * kDof : 0);
     if (b_.elastic_runs == 0) return;
     const double h = sys_.scheme.h;
@@ -337,6 +341,100 @@ void BlockSolve::take_elastic_forces() {
             stress(batch, i, c, batch.lambda(i));
             for (int r = 0; r < rows; ++r) batch.lambda(i)[r] = -batch.lambda(i)[r];
             if (batch.set.pulls) batch.lambda(i)[0] = std::min(0.0, batch.lambda(i)[0]);
+        }
+    });
+}
+
+bool BlockSolve::has_energy_forms() const {
+    const auto* run = sys_.rows.elastic.data() + b_.first_elastic_run;
+    return std::any_of(run, run + b_.elastic_runs,
+                       [](const ElasticRun& each) { return each.set->form == ElementForm::energy; });
+}
+
+// Of an element's node: u at a part of the way, and the way.
+void BlockSolve::along_way(uint32_t seat, double part, Vec3& u, Vec3& way) const {
+    const uint32_t i = local(seat);
+    u = sys_.exact[seat].v;
+    way.setZero();
+    if (i == kNone) return;
+    way = u - Vec3::Map(way_begin(i));
+    u -= (1 - part) * way;
+}
+
+double BlockSolve::elastic_energy(double part, double* slope) const {
+    double sum = 0;
+    if (slope) *slope = 0;
+    for_elastic([&](const auto& batch) {
+        const auto nodes = static_cast<uint32_t>(batch.nodes()), rows = static_cast<uint32_t>(batch.rows());
+        const auto freedoms = static_cast<uint32_t>(batch.type().freedoms);
+        uint32_t in_order[kBatch * kMaxNodes];
+        Pose moved[kBatch * kMaxNodes];
+        Vec3 way[kBatch * kMaxNodes], u;
+        for (uint32_t k = 0; k < batch.at.count * nodes; ++k) {
+            const uint32_t seat = batch.at.node[k];
+            in_order[k] = k;
+            along_way(seat, part, u, way[k]);
+            moved[k] = {sys_.pose[seat].x + sys_.scheme.h * u, sys_.pose[seat].R};
+        }
+        ElementBatch at = batch.at;
+        at.node = in_order;
+        at.x = moved;
+        double error[kBatch * kMaxRows], jacobian[kBatch * kMaxRows * kMostFreedoms], f[kMaxRows];
+        batch.type().evaluate(at, error, slope ? jacobian : nullptr, batch.type().freedoms);
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            const double* c = error + i * rows;
+            if (batch.set.pulls && c[0] <= 0) continue;
+            stress(batch, i, c, f);
+            for (uint32_t r = 0; r < rows; ++r) sum += 0.5 * c[r] * f[r];
+            for (uint32_t n = 0; slope && n < nodes; ++n)
+                for (uint32_t r = 0; r < rows; ++r)
+                    *slope +=
+                        f[r] * Vec3::Map(jacobian + ((i * nodes + n) * rows + r) * freedoms).dot(way[i * nodes + n]);
+        }
+    });
+    if (slope) *slope *= sys_.scheme.act;
+    return sys_.scheme.act / sys_.scheme.h * sum;
+}
+
+// t d/2 (J u)^T D (J u), where they are linearised: what it adds for a part of the way, and for its square.
+void BlockSolve::elastic_damping(double& linear, double& square) const {
+    for_elastic([&](const auto& batch) {
+        if (batch.set.relaxation == 0) return;
+        const auto nodes = static_cast<uint32_t>(batch.nodes()), rows = static_cast<uint32_t>(batch.rows());
+        const auto freedoms = static_cast<uint32_t>(batch.type().freedoms);
+        double error[kBatch * kMaxRows], jacobian[kBatch * kMaxRows * kMostFreedoms], f[kMaxRows];
+        batch.type().evaluate(batch.at, error, jacobian, batch.type().freedoms);
+        const double weight = sys_.scheme.act * batch.set.relaxation;
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            double begin[kMaxRows] = {}, along[kMaxRows] = {};
+            for (uint32_t n = 0; n < nodes; ++n) {
+                Vec3 u, way;
+                along_way(batch.seats(i)[n], 0, u, way);
+                for (uint32_t r = 0; r < rows; ++r) {
+                    const Vec3 j = Vec3::Map(jacobian + ((i * nodes + n) * rows + r) * freedoms);
+                    begin[r] += j.dot(u);
+                    along[r] += j.dot(way);
+                }
+            }
+            stress(batch, i, along, f);
+            for (uint32_t r = 0; r < rows; ++r) {
+                linear += weight * begin[r] * f[r];
+                square += 0.5 * weight * along[r] * f[r];
+            }
+        }
+    });
+}
+
+// To a part of the way.
+void BlockSolve::relinearise(double part) {
+    b_.foresees = true;
+    set_relinearised(true);
+    for_elastic([&](const auto& batch) {
+        for (uint32_t k = 0; k < batch.at.count * static_cast<uint32_t>(batch.nodes()); ++k) {
+            const uint32_t seat = batch.at.node[k];
+            Vec3 u, way;
+            along_way(seat, part, u, way);
+            sys_.foreseen[seat] = {sys_.pose[seat].x + sys_.scheme.h * u, sys_.pose[seat].R};
         }
     });
 }

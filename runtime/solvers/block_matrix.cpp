@@ -1,7 +1,9 @@
 // The numbers of a block's matrix: masses, joints and stiffness into its entries, bounded rows on top of them.
 #include <Eigen/LU>
 #include <algorithm>
+#include <utility>
 
+#include "linear/held_order.h"
 #include "solvers/adaptive_damping.h"
 #include "solvers/block_solve.h"
 
@@ -71,33 +73,63 @@ private:
 void BlockSolve::analyse() {
     SparseBlockLdlt& matrix = b_.matrix;
     if (matrix.analysed()) return;
+    const auto memory = b_.order.get_allocator();
+    Array<Unknown> unknown(memory);
+    Array<uint64_t> links(memory), slight(memory);
+    list_unknowns(unknown);
+    list_links(links, slight);
     matrix.begin(nodes_ + ties());
+    for (uint32_t i = 0; i < unknown.size(); ++i)
+        matrix.set_unknown(i, unknown[i].size, unknown[i].multiplier, unknown[i].rows);
+    for (const uint64_t link : links) matrix.link(static_cast<uint32_t>(link >> 32), static_cast<uint32_t>(link));
+    b_.solution.resize(2 * unknowns() + nodes_ * kDof + 1);
+    b_.known.resize((nodes_ + ties()) * kDof);
+    b_.force.resize(ties() * kMaxRows);
+    if (b_.order.empty()) {  // else it was restored
+        b_.looped = looped();
+        if (!b_.elastic.empty() && !b_.looped) b_.order = HeldOrder(*memory.memory, unknown, links, slight).order;
+    }
+    matrix.analyse(b_.order);
+    find_places();
+    b_.order.assign(matrix.order().begin(), matrix.order().end());
+}
+
+void BlockSolve::list_unknowns(Array<Unknown>& out) const {
     for (uint32_t i = 0; i < nodes_; ++i)
-        matrix.set_unknown(i, s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6, false);
+        out.push_back({static_cast<uint8_t>(s_.nodes.info[b_.nodes[i]].kind == NodeKind::particle ? 3 : 6), false});
+    for (uint32_t j = 0; j < ties(); ++j)
+        out.push_back({static_cast<uint8_t>(row(j).held() > 3 ? 6 : 3), true,
+                       static_cast<uint8_t>(gives(row(j)) ? 0 : locked_rows(row(j)))});
+}
+
+// Pairs of unknowns, smaller << 32 | larger; of these slight: a tie and a node that hardly holds it.
+void BlockSolve::list_links(Array<uint64_t>& out, Array<uint64_t>& slight) const {
     for (uint32_t j = 0; j < ties(); ++j) {
         const ConstraintType& type = *row(j).type;
-        matrix.set_unknown(nodes_ + j, row(j).held() > 3 ? 6 : 3, true, gives(row(j)) ? 0 : locked_rows(row(j)));
         for (int n = 0; n < type.nodes; ++n) {
             const uint32_t i = local(row(j).node[n]);
             if (i == kNone) continue;
-            matrix.link(nodes_ + j, i);
+            out.push_back(pair_key(i, nodes_ + j));
+            if (!holds(row(j), n)) slight.push_back(out.back());
             for (int m = 0; m < n && (type.couples_nodes || row(j).axis); ++m) {
                 const uint32_t k = local(row(j).node[m]);
-                if (k != kNone) matrix.link(i, k);
+                if (k != kNone) out.push_back(pair_key(i, k));
             }
         }
     }
-    link_elastic();
-    for (uint64_t link : b_.links)
-        matrix.link(local(sys_.at(static_cast<uint32_t>(link >> 32))), local(sys_.at(static_cast<uint32_t>(link))));
-    b_.solution.resize(2 * unknowns());
-    b_.known.resize((nodes_ + ties()) * kDof);
-    b_.force.resize(ties() * kMaxRows);
-    matrix.analyse(b_.order);
-    find_places();
-    if (!b_.order.empty()) return;  // it was restored
-    b_.order.assign(matrix.order().begin(), matrix.order().end());
-    b_.looped = looped();
+    link_elastic(out);
+    for (const uint64_t link : b_.links)
+        out.push_back(
+            pair_key(local(sys_.at(static_cast<uint32_t>(link >> 32))), local(sys_.at(static_cast<uint32_t>(link)))));
+}
+
+// Whether a node has a part of each row's effective inverse mass that a pivot may rest on.
+bool BlockSolve::holds(const RowBlock& block, int n) const {
+    const double* j = jacobian_of(sys_, block, n).data();
+    for (int r = 0; r < block.type->rows; ++r, j += kDof)
+        if (block.locked(r) && !(inverse_mass_along(sys_.sweep[block.node[n]].mass, j) > loop_compliance(block, r)))
+            return false;
+    return true;
 }
 
 // Whether each row of a joint gives way so far that the matrix needs no freedom of a node for it.
@@ -110,13 +142,39 @@ bool BlockSolve::gives(const RowBlock& block) const {
 
 // More joints than a tree on the nodes (and the ground, where something is held) can have, soft ones included; or a
 // loop by contacts. Then nodes are not eliminated from leaf to root, and two joints may come right after the body
-// between them, which cannot part them: it has no freedom for all their rows.
+// between them, which cannot part them: it has no freedom for all their rows. Elastic elements give way to what ties
+// ask for, so that with these no more than the ties themselves make loops, whatever hangs together by elements.
 bool BlockSolve::looped() const {
+    if (!b_.elastic.empty()) return ties_make_loops();
     if (!b_.links.empty() && ties() > 1) return true;
     bool held = false;
     for (uint32_t j = 0; j < ties(); ++j)
         for (int n = 0; n < row(j).type->nodes; ++n) held = held || local(row(j).node[n]) == kNone;
     return ties() + 1 > nodes_ + (held ? 1u : 0u);
+}
+
+// Whether a tie that does not give way is between nodes that others tie already, the ground being one.
+bool BlockSolve::ties_make_loops() const {
+    Array<uint32_t> parent(b_.order.get_allocator());
+    parent.resize(nodes_ + 1);
+    for (uint32_t i = 0; i <= nodes_; ++i) parent[i] = i;
+    const auto root = [&](uint32_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    for (uint32_t j = 0; j < ties(); ++j) {
+        if (gives(row(j))) continue;
+        bool held = false;
+        uint32_t first = kNone;
+        for (int n = 0; n < row(j).type->nodes; ++n) {
+            const uint32_t at = local(row(j).node[n]), i = root(at == kNone ? nodes_ : at);
+            if (at == kNone && std::exchange(held, true)) continue;
+            if (i == first) return true;
+            if (first == kNone) first = i;
+            parent[i] = first;
+        }
+    }
+    return false;
 }
 
 BlockPlace& BlockSolve::place(uint32_t j, uint32_t which) { return b_.places[nodes_ + j * b_.stride + which]; }

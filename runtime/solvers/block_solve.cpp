@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace taut {
 namespace {
@@ -232,12 +233,19 @@ bool BlockSolve::factor_rounds() {
     return true;
 }
 
+// Once more and from now on with soft rows, where some turned out to depend on each other that the graph holds apart.
+bool BlockSolve::factor_softly(bool with_old) {
+    if (ties() == 0 || std::exchange(b_.looped, true)) return false;
+    assemble(with_old);
+    return factor_rounds();
+}
+
 bool BlockSolve::solve_first() {
     ++s_.report.solves;
     b_.closing = 1;
     const bool guarded = b_.memory.guard_left > 0, stiffened = s_.settings.geometric_stiffness && ties() > 0;
     assemble(stiffened);
-    if (!factor_rounds()) return false;
+    if (!factor_rounds() && !factor_softly(stiffened)) return false;
     take_forces();
     if (stiffened && (b_.memory.solved == 0 || guarded || force_grew())) {
         ++s_.report.resolves;
@@ -246,9 +254,11 @@ bool BlockSolve::solve_first() {
         else if (!set.empty())
             b_.matrix.restore();
         add_new_stiffness();
+        renewed_ = true;
         if (!factor_rounds()) return false;
         take_forces();
     }
+    if (!search(stiffened)) return false;
     if (stiffened) limit_gain();
     return true;
 }

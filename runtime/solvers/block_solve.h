@@ -51,9 +51,13 @@ private:
     uint32_t local(uint32_t sweep_node) const { return sys_.place[sweep_node]; }  // in b_.nodes, or kNone
     int size_of(uint32_t i) const { return b_.matrix.size(i); }                   // 3: a particle
     bool looped() const;
+    bool ties_make_loops() const;
+    bool holds(const RowBlock& block, int n) const;
     bool gives(const RowBlock& block) const;
 
     // block_matrix.cpp
+    void list_unknowns(Array<Unknown>& out) const;
+    void list_links(Array<uint64_t>& out, Array<uint64_t>& slight) const;
     void find_places();
     BlockPlace& place(uint32_t j, uint32_t which);
     BlockPlace place(const BoundedRow& row, int n, int m);
@@ -74,11 +78,25 @@ private:
     template <class Batch>
     void gather_before(const Batch& batch, uint32_t i, double* out) const;
     bool foresees(const ElementSet& of) const;
-    void link_elastic();
+    void link_elastic(Array<uint64_t>& out) const;
     void find_elastic_places();
     void assemble_elastic();
     void take_elastic_forces();
     double elastic_work() const;
+    bool has_energy_forms() const;
+    void along_way(uint32_t seat, double part, Vec3& u, Vec3& way) const;
+    double elastic_energy(double part, double* slope) const;
+    void elastic_damping(double& linear, double& square) const;
+    void relinearise(double part);
+
+    // block_search.cpp
+    struct Way;
+    Way way_of_step(bool with_old) const;
+    void add_stiffness_along(Way& way) const;
+    double part_of_step(const Way& way) const;
+    void begin_way(const Array<Velocity>& at);
+    void go_part(double part);
+    bool search(bool with_old);
 
     // block_gas.cpp
     template <class Act>
@@ -96,6 +114,7 @@ private:
     void advance(bool first);
     void stop_short();
     bool factor_rounds();
+    bool factor_softly(bool with_old);
     void right_hand_side();
     double known_rate(const RowBlock& block, int r) const;
     double error_of(const RowBlock& block, int r) const {
@@ -123,6 +142,12 @@ private:
     // The second half of Block::solution: while rounds go on the iterate (active_set.h), then the iterate less the
     // solution of the last round.
     double* iterate() { return b_.solution.data() + unknowns(); }
+    // The third: of each node the velocity from which a step of the search goes to System::exact.
+    double* way_begin(uint32_t i) { return b_.solution.data() + 2 * unknowns() + size_t{i} * kDof; }
+    const double* way_begin(uint32_t i) const { return const_cast<BlockSolve*>(this)->way_begin(i); }
+    // After that 1 where elements are linearised at System::foreseen, where the search came to, else 0.
+    void set_relinearised(bool is) { b_.solution.back() = is ? 1 : 0; }
+    bool relinearised() const { return b_.solution.back() != 0; }
     // Of a node h^2 K s, of a tie how fast its rows close their gaps [1/s].
     double* known(uint32_t i) { return &b_.known[i * kDof]; }
     double* tie_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
@@ -133,6 +158,7 @@ private:
     Block& b_;
     uint32_t nodes_;
     bool relaxed_ = false;  // System::kept belongs to the present solution
+    bool renewed_ = false;  // the matrix has K of new forces
     EnergyGain gained_;     // by a guarded block's solution, before limit_gain
 };
 

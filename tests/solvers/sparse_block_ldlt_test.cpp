@@ -10,6 +10,8 @@
 #include <map>
 #include <random>
 
+#include "linear/held_order.h"
+
 namespace taut::test {
 namespace {
 
@@ -347,6 +349,64 @@ TEST(SparseBlockLdlt, RefusesPivotsOfTheWrongSign) {
         p.block[{bad, bad}] = good;  // and is as good as new
         p.fill(matrix);
         EXPECT_TRUE(matrix.factor());
+    }
+}
+
+// Rods along x from sheet to sheet of particles that couplings hold, over knots that have nothing else: those of a knot
+// have the same rows there, and are told apart by what sheets give at their other ends, whatever comes first.
+TEST(SparseBlockLdlt, HoldsRodsInALineByWhatTheirEndsGive) {
+    constexpr uint32_t kSide = 4;
+    for (uint64_t seed = 0; seed < 50; ++seed) {
+        Problem p(seed);
+        std::vector<uint32_t> sheet[2];
+        for (auto& nodes : sheet)
+            for (uint32_t i = 0; i < kSide * kSide; ++i) {
+                nodes.push_back(p.add_node(3));
+                for (const uint32_t step : {1u, kSide})
+                    if (i >= step && (step > 1 || i % kSide > 0))
+                        p.block[{nodes[i], nodes[i - step]}] = 0.001 * p.random(3, 3);
+            }
+        const auto rod = [&](uint32_t a, uint32_t b) {
+            const uint32_t m = p.add_multiplier(3, 0);
+            RowMajor row = RowMajor::Zero(3, 3);
+            row(0, 0) = 1;
+            p.block[{m, m}] = RowMajor(Vector{{0, -1, -1}}.asDiagonal());
+            p.block[{m, a}] = -row;
+            p.block[{m, b}] = row;
+        };
+        for (uint32_t chain = 0; chain < 1 + p.pick(3); ++chain) {
+            uint32_t last = sheet[0][chain * kSide + p.pick(kSide)];
+            for (uint32_t knots = 1 + p.pick(4); knots > 0; --knots) {
+                const uint32_t knot = p.add_node(3);
+                rod(last, knot);
+                last = knot;
+            }
+            rod(last, sheet[p.pick(2)][chain * kSide + p.pick(kSide)]);
+        }
+        const Matrix a = p.dense();
+        if (Eigen::FullPivLU<Matrix>(a).rank() < a.rows()) continue;  // a rod from a vertex to itself
+        const Vector b = p.random(static_cast<int>(a.rows()), 1);
+        SparseBlockLdlt matrix(p.memory);
+        matrix.begin(static_cast<uint32_t>(p.unknown.size()));
+        std::vector<Unknown> unknown;
+        std::vector<uint64_t> links;
+        for (uint32_t i = 0; i < p.unknown.size(); ++i) {
+            unknown.push_back({3, p.unknown[i].multiplier, 1});
+            matrix.set_unknown(i, 3, p.unknown[i].multiplier, 1);
+        }
+        for (const auto& [at, m] : p.block) {
+            if (at.first == at.second) continue;
+            matrix.link(at.first, at.second);
+            links.push_back(static_cast<uint64_t>(std::min(at.first, at.second)) << 32 | std::max(at.first, at.second));
+        }
+        matrix.analyse(HeldOrder(p.memory, unknown, links, {}).order);
+        Array<double> x = p.by_blocks(b);
+        p.fill(matrix);
+        ASSERT_TRUE(matrix.factor()) << seed;
+        matrix.solve(x.data());
+        const Vector exact = a.fullPivLu().solve(b);
+        for (long i = 0; i < exact.size(); ++i)
+            EXPECT_NEAR(x[static_cast<size_t>(6 * (i / 3) + i % 3)], exact[i], 1e-8 * exact.norm()) << seed;
     }
 }
 
