@@ -217,6 +217,12 @@ float strain_of(const GrainBall& a, const GrainBall& b, const GrainContact& cont
            std::min(a.margin, b.margin);
 }
 
+// What is made of it where it was more. A load that softer contacts let down swings to twice its weight: so much is
+// kept, or substeps that grow with the force and shrink with it would keep it swinging for ever.
+float held(float strain, float was, float fading) {
+    return std::max(strain, std::min(was, std::max(2 * strain, fading * was)));
+}
+
 // What filters, joints and surfaces say of two that touch. False: they do not collide.
 bool meet(const Nodes& nodes, const Colliders& colliders, const Pairs& pairs, const GrainBall& a, const GrainBall& b,
           GrainContact& contact) {
@@ -250,7 +256,7 @@ void find_grain_contacts(const Nodes& nodes, const Colliders& colliders, const S
         }
         if ((!was || !same_rules) && !meet(nodes, colliders, pairs, *a, *b, contact)) return;
         contact.strain = strain_of(*a, *b, contact);
-        if (was) contact.strain = std::max(contact.strain, fading * was->strain);
+        if (was) contact.strain = held(contact.strain, was->strain, fading);
         same = same && was && was->index == grains.contact.size();
         grains.contact.push_back(contact);
     });
