@@ -198,17 +198,29 @@ private:
     Array<GrainMemory>& memory_;
 };
 
-// Whether two touch in the frame, as they move now.
+// When two that close in on each other first touch, or come nearest within a time, as they move now [s].
+float meeting_time(const Vec3f& apart, const Vec3f& parting, float both, float time) {
+    const float closing = -apart.dot(parting), squared = parting.squaredNorm(),
+                beyond = apart.squaredNorm() - both * both;
+    if (!(closing > 0 && beyond > 0)) return 0;
+    const float under = closing * closing - squared * beyond;
+    return std::min(time, under > 0 ? beyond / (closing + std::sqrt(under)) : closing / squared);
+}
+
+// Whether two touch in the frame, as they move now: with the normal of where they do. Along it they are as far apart as
+// they come nearer until then.
 bool touch(const GrainBall& a, const GrainBall& b, float time_step, GrainContact& contact) {
-    const Vec3f apart = (b.x - a.x).cast<float>();
-    const float distance = apart.norm();
+    const Vec3f apart = (b.x - a.x).cast<float>(), parting = b.v - a.v;
+    const float both = a.radius + b.radius, time = meeting_time(apart, parting, both, time_step);
+    const Vec3f then = time > 0 ? Vec3f(apart + time * parting) : apart;
+    const float distance = then.norm();
+    if (!(distance - both < std::min(a.margin, b.margin))) return false;
     contact.a = a.node;
     contact.b = b.node;
-    contact.normal = distance > 0 ? Vec3f((1 / distance) * apart) : Vec3f(Vec3f::UnitY());
-    contact.separation = distance - a.radius - b.radius;
+    contact.normal = distance > 0 ? Vec3f((1 / distance) * then) : Vec3f(Vec3f::UnitY());
+    contact.separation = time > 0 ? contact.normal.dot(apart) - both : distance - both;
     contact.force = Vec3f::Zero();
-    const float way = time_step * std::min(0.0f, contact.normal.dot(b.v - a.v));
-    return contact.separation + way < std::min(a.margin, b.margin);
+    return true;
 }
 
 // The yield of a swept contact under its force, .4 h^2 w |f| (soft_contact.h), in parts of the contact margin.
