@@ -13,8 +13,9 @@ namespace taut {
 namespace {
 
 constexpr double kArmijo = 1e-4;     // share of the first slope by which the energy is to fall
+constexpr double kSteep = 0.9;       // of the first slope, that the last one may have
 constexpr double kRounding = 1e-12;  // of sums of energy
-constexpr uint32_t kMostSteps = 8, kMostHalves = 6;
+constexpr uint32_t kMostSteps = 16, kMostHalves = 6;
 
 }  // namespace
 
@@ -91,16 +92,22 @@ void BlockSolve::add_stiffness_along(Way& way) const {
     }
 }
 
-// The first of 1, 1/2, 1/4, ... at which the energy has fallen far enough, or the last of them.
-double BlockSolve::part_of_step(const Way& way) const {
-    double slope;
-    const double begin = elastic_energy(0, &slope);
+// The first of 1, 1/2, 1/4, ... at which the energy has fallen far enough, or the last of them. done: that is the whole
+// way, and at its end the energy neither falls nor rises as steeply as at its begin.
+double BlockSolve::part_of_step(const Way& way, bool& done) const {
+    double slope, last_slope;
+    const double begin = elastic_energy(0, &slope), end = elastic_energy(1, &last_slope);
     slope = std::min(0.0, slope + way.linear);
-    double part = 1;
-    for (uint32_t halves = 0; halves < kMostHalves; ++halves, part *= 0.5) {
-        const double end = elastic_energy(part, nullptr);
-        if (way.at(part) + end - begin <= kArmijo * part * slope + kRounding * (begin + end)) break;
-    }
+    last_slope += way.linear + 2 * way.square;
+    const auto falls = [&](double part, double energy) {
+        return way.at(part) + energy - begin <= kArmijo * part * slope + kRounding * (begin + energy);
+    };
+    const bool whole = falls(1, end);
+    done = whole && std::abs(last_slope) <= kSteep * -slope + kRounding * (begin + end);
+    if (whole) return 1;
+    double part = 0.5;
+    for (uint32_t halves = 1; halves < kMostHalves && !falls(part, elastic_energy(part, nullptr)); ++halves)
+        part *= 0.5;
     return part;
 }
 
@@ -112,6 +119,8 @@ void BlockSolve::begin_way(const Array<Velocity>& at) {
     }
 }
 
+void BlockSolve::begin_still() { std::fill_n(way_begin(0), nodes_ * kDof, 0.0); }
+
 // Back from the solution, which what is solved on the same factor is as far from from now on.
 void BlockSolve::go_part(double part) {
     for (size_t i = 0; i < nodes_ * kDof; ++i) {
@@ -122,12 +131,23 @@ void BlockSolve::go_part(double part) {
     take_solution();
 }
 
+// At the velocity without elements or at none, of which E is lower: by the former nodes may meet what holds them far
+// worse than where they are.
+void BlockSolve::begin_search(bool with_old) {
+    begin_still();
+    const double still = elastic_energy(0, nullptr) - way_of_step(with_old).at(1);  // E but for W at the end
+    begin_way(sys_.free);
+    const double moving = elastic_energy(0, nullptr) - way_of_step(with_old).at(1);
+    if (still < moving) begin_still();
+}
+
 bool BlockSolve::search(bool with_old) {
     if (!has_energy_forms() || !b_.gases.empty()) return true;
-    begin_way(sys_.free);
+    begin_search(with_old);
     for (uint32_t step = 1;; ++step) {
-        const double part = part_of_step(way_of_step(with_old));
-        if (part == 1) return true;
+        bool done;
+        const double part = part_of_step(way_of_step(with_old), done);
+        if (done) return true;
         if (step == kMostSteps) {
             go_part(part);
             return true;

@@ -93,8 +93,10 @@ private:
     struct Way;
     Way way_of_step(bool with_old) const;
     void add_stiffness_along(Way& way) const;
-    double part_of_step(const Way& way) const;
+    double part_of_step(const Way& way, bool& done) const;
     void begin_way(const Array<Velocity>& at);
+    void begin_still();
+    void begin_search(bool with_old);
     void go_part(double part);
     bool search(bool with_old);
 
