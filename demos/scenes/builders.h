@@ -14,6 +14,7 @@ Scene build_heavy_on_light(double n, double r, const Options& options);
 Scene build_deep_start(double n, double r, const Options& options);
 Scene build_hulls(double n, double r, const Options& options);
 Scene build_grains(double n, double r, const Options& options);
+Scene build_grains_box(double n, double r, const Options& options);
 Scene build_shapes(double n, double r, const Options& options);
 Scene build_terrain(double n, double r, const Options& options);
 Scene build_mesh_drop(double n, double r, const Options& options);

@@ -87,6 +87,7 @@ const std::vector<Family>& families() {
         {"ragdollsN", "ragdolls6", "N ragdolls of 12 bodies dropped into a bin", 600, false, build_ragdolls, 1000},
         {"grainsN_rR", "grains300_r1", "N grains of friction R poured onto a rough bed", 600, false, build_grains,
          20000},
+        {"grains_boxN", "grains_box300", "N grains fall as a lattice into a box", 300, false, build_grains_box, 20000},
         {"terrain", "terrain", "a hundred bodies dropped on hills and stairs of triangles", 600, false, build_terrain,
          0},
         {"cloth_hangN", "cloth_hang30", "a sheet of N x N vertices hung by two corners, released level", 240, false,

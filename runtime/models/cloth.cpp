@@ -221,6 +221,8 @@ private:
         return true;
     }
 
+    // An edge of length e between areas A bends by theta with 1/2 B e^2/A theta^2: of equilateral triangles the plate's
+    // energy, 2/sqrt(3) B an edge (Seung and Nelson 1988), and of cells of two right triangles that along their rows.
     void add_bends() {
         ElementPlan& flat = add_plan(kQuadraticBendElement, SoftPart::bend);
         for (int r = 0; r < 3; ++r) flat.compliance[4 * r] = 1 / fabric_.bending_stiffness;
@@ -240,9 +242,9 @@ private:
             double angle, weight[4], area;
             kDihedralElement.row.evaluate(&none, pose, &angle, nullptr);
             if (std::abs(angle) < kFlat && quadratic_bend_weights(x, weight, area))
-                flat_plan.add(vertex, weight, area / 3, corner);
+                flat_plan.add(vertex, weight, area, corner);
             else
-                folded.add(vertex, {&angle, 1}, area_of(edge) / (3 * (x[1] - x[0]).squaredNorm()), corner);
+                folded.add(vertex, {&angle, 1}, area_of(edge) / (x[1] - x[0]).squaredNorm(), corner);
         }
     }
     double area_of(const MeshEdge& edge) const {

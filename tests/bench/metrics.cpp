@@ -67,7 +67,9 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   engine scene threads bodies steps runs
                                       what ran; bodies counts dynamic bodies and particles
   mean_ms median_ms p99_ms max_ms     wall time of one step, the quietest of the runs
-  late_ms                             the same, median of the last 60 steps
+  thread_mean_ms thread_median_ms thread_max_ms
+                                      what the calling thread worked of it: on one thread, without what else ran
+  late_ms                             wall time, median of the last 60 steps
   worst_step worst_ratio worst_stage  the slowest, in parts of the median, and what made it slow; by the time that
                                       the calling thread worked
   beside beside_mean_ms beside_median_ms mean_ratio median_ratio
@@ -78,6 +80,8 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   pen_mean_mm pen_max_mm              overlap of the pairs that overlap; meshes and height fields are left out
   rest_speed                          mean speed over the last second [m/s]
   escaped                             bodies outside the bin, below the ground or not finite
+  overlap_mean_pct overlap_max_pct fallen
+                                      of grains: pen_mean_mm and pen_max_mm in % of a radius, and escaped
  stacks: the top body against its start
   drop_mm drop_pct lateral_mm         sinking, the same in % of its height, sideways drift
   standing                            1 if it sank and drifted by less than 250 mm
@@ -212,14 +216,27 @@ Metrics::Overlaps Metrics::overlaps() const {
     for (int body : scene_.roles.pile) in_pile[static_cast<size_t>(body)] = true;
     const std::vector<scenes::Shape> shapes = unscaled(scene_.shapes);
     auto shape_of = [&](size_t i) { return &shapes[static_cast<size_t>(scene_.bodies[i].shape)]; };
+    // Sweep along x: those that reach as far as a body begins.
+    struct Reach {
+        double low, high;
+        size_t body;
+    };
+    std::vector<Reach> order;
+    for (size_t i = 0; i < scene_.bodies.size(); ++i) {
+        if (scene_.bodies[i].shape < 0 || is_surface(*shape_of(i))) continue;
+        const double x = motions_[i].position.x, radius = bounding_radius(*shape_of(i));
+        order.push_back({x - radius, x + radius, i});
+    }
+    std::sort(order.begin(), order.end(),
+              [](const Reach& a, const Reach& b) { return std::pair(a.low, a.body) < std::pair(b.low, b.body); });
     Overlaps result;
     size_t count = 0;
-    for (size_t i = 0; i < scene_.bodies.size(); ++i)
-        for (size_t k = i + 1; k < scene_.bodies.size(); ++k) {
+    for (auto first = order.begin(); first != order.end(); ++first)
+        for (auto second = first + 1; second != order.end() && second->low <= first->high; ++second) {
+            const auto [i, k] = std::minmax(first->body, second->body);
             const scenes::Body &a = scene_.bodies[i], &b = scene_.bodies[k];
             if ((!in_pile[i] && !in_pile[k]) || (a.group < 0 && a.group == b.group)) continue;
-            if (a.shape < 0 || b.shape < 0 || joined.contains({static_cast<int>(i), static_cast<int>(k)})) continue;
-            if (is_surface(*shape_of(i)) || is_surface(*shape_of(k))) continue;
+            if (joined.contains({static_cast<int>(i), static_cast<int>(k)})) continue;
             double near = bounding_radius(*shape_of(i)) + bounding_radius(*shape_of(k));
             if (length(of(motions_[k].position) - of(motions_[i].position)) > near) continue;
             double depth = overlap_depth({shape_of(i), motions_[i].position, motions_[i].rotation},
@@ -252,6 +269,21 @@ void Metrics::report_pile(nlohmann::ordered_json& json) const {
     json["pen_max_mm"] = 1e3 * found.max;
     json["rest_speed"] = rest_count_ > 0 ? rest_sum_ / static_cast<double>(rest_count_) : 0.0;
     json["escaped"] = escaped();
+    const double radius = grain_radius();
+    if (!(radius > 0)) return;
+    json["overlap_mean_pct"] = 100 * found.mean / radius;
+    json["overlap_max_pct"] = 100 * found.max / radius;
+    json["fallen"] = escaped();
+}
+
+// Of a pile of particles alone, which have one shape; else 0 [m].
+double Metrics::grain_radius() const {
+    const auto body = [&](int index) -> const scenes::Body& { return scene_.bodies[static_cast<size_t>(index)]; };
+    const std::vector<int>& pile = scene_.roles.pile;
+    const bool grains = std::all_of(pile.begin(), pile.end(), [&](int i) {
+        return body(i).kind == TAUT_BODY_PARTICLE && body(i).shape == body(pile.front()).shape;
+    });
+    return grains ? static_cast<double>(scene_.shapes[static_cast<size_t>(body(pile.front()).shape)].radius) : 0;
 }
 
 void Metrics::report_stack(nlohmann::ordered_json& json) const {

@@ -44,6 +44,7 @@ private:
     double joint_gap(const scenes::Joint& joint) const;
     Overlaps overlaps() const;
     uint32_t escaped() const;
+    double grain_radius() const;
     void report_chain(nlohmann::ordered_json& json) const;
     void report_pile(nlohmann::ordered_json& json) const;
     void report_stack(nlohmann::ordered_json& json) const;

@@ -63,6 +63,9 @@ void StepTimes::report(nlohmann::ordered_json& json) const {
     json["median_ms"] = median();
     json["p99_ms"] = part_of(whole_, 0.99);
     json["max_ms"] = part_of(whole_, 1);
+    json["thread_mean_ms"] = std::accumulate(thread_.begin(), thread_.end(), 0.0) / static_cast<double>(thread_.size());
+    json["thread_median_ms"] = part_of(thread_, 0.5);
+    json["thread_max_ms"] = part_of(thread_, 1);
     json["late_ms"] = part_of(from(whole_, whole_.size() - std::min(kLate, whole_.size())), 0.5);
 }
 

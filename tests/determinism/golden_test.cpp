@@ -62,4 +62,35 @@ TEST_P(GoldenMatrix, HoldsWithAnyWorkersAndLanes) {
 INSTANTIATE_TEST_SUITE_P(Of, GoldenMatrix, testing::ValuesIn(kGolden),
                          [](const auto& tested) -> std::string { return tested.param.scene; });
 
+// Fused sweeps of cloths and solids, which none of the golden scenes has, and grains.
+class SweptMatrix : public testing::TestWithParam<const char*> {
+protected:
+    void TearDown() override { taut::set_kernel_width(taut::widest()); }
+    static uint64_t hash_with(uint32_t threads) {
+        const bool triangles = std::string(GetParam()) == "triangles";
+        scenes::Scene plan = scenes::make_scene(triangles ? "cloth_hang20" : GetParam(), {0, {}, true});
+        if (triangles) plan.cloths.front().def.kind = TAUT_CLOTH_TRIANGLES;
+        plan.world.threads = threads;
+        RunningScene run(std::move(plan));
+        for (int i = 0; i < 40; ++i) run.step();
+        uint64_t hash = 0;
+        ok(taut_world_get_state_hash(run.world.world, &hash));
+        return hash;
+    }
+};
+
+TEST_P(SweptMatrix, HoldsWithAnyWorkersAndLanes) {
+    taut::set_kernel_width(Width::scalar);
+    const uint64_t expected = hash_with(1);
+    for (const Width width : {Width::scalar, Width::sse2, Width::avx2, Width::avx512}) {
+        if (width > taut::widest()) continue;
+        taut::set_kernel_width(width);
+        for (const uint32_t threads : {1u, 2u, 5u})
+            EXPECT_EQ(hash_with(threads), expected) << threads << " threads, width " << static_cast<int>(width);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SweptMatrix, testing::Values("cloth_hang20", "triangles", "solids2_e1e5", "grains300_r1"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
 }  // namespace

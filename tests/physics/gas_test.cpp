@@ -146,6 +146,26 @@ TEST(Pressure, IsRefusedWhereItCannotBe) {
     EXPECT_NE(std::string(taut_last_error()).find("solved directly"), std::string::npos) << taut_last_error();
 }
 
+// Of all solvers, those that take elements one by one have no row for what is within.
+TEST(Pressure, IsRefusedBySolversWithoutIt) {
+    int refused = 0;
+    for (int solver = 0; taut_solver_name(static_cast<taut_solver>(solver)); ++solver) {
+        const World world([&](taut_world_def& of) { of.solver = static_cast<taut_solver>(solver); });
+        const Ball ball(0.2, 1);
+        taut_cloth_def def = ball.def();
+        const taut_cloth limp = add(world, def);
+        def.pressure = 1000;
+        taut_cloth out{};
+        const taut_result wanted = solver == TAUT_SOLVER_BLOCK_LDLT ? TAUT_OK : TAUT_INVALID_ARGUMENT;
+        EXPECT_EQ(taut_world_add_cloth(world.handle, &def, &out), wanted) << solver;
+        EXPECT_EQ(taut_cloth_set_pressure(limp, 1000), wanted) << solver;
+        if (wanted == TAUT_OK) continue;
+        ++refused;
+        EXPECT_NE(std::string(taut_last_error()).find("pressure"), std::string::npos) << taut_last_error();
+    }
+    EXPECT_EQ(refused, 7);
+}
+
 class Balloon : public testing::TestWithParam<GasCase> {};
 std::vector<GasCase> gas_cases() {
     std::vector<GasCase> out;

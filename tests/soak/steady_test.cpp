@@ -24,6 +24,7 @@ struct Steady {
     const char* name;
     const char* scene;  // null: the bin
     int warm_up;
+    bool swept = false;  // of cloths and solids
 };
 
 void PrintTo(const Steady& s, std::ostream* out) { *out << s.name; }
@@ -67,7 +68,7 @@ TEST_P(SteadyShort, TakesNoMemoryAfterWarmUp) {
     struct Hook {
         uint64_t taken = 0;
     } hook;
-    scenes::Scene scene = GetParam().scene ? scenes::make_scene(GetParam().scene) : bin();
+    scenes::Scene scene = GetParam().scene ? scenes::make_scene(GetParam().scene, {0, {}, GetParam().swept}) : bin();
     scene.world.hooks.allocate = [](size_t size, size_t alignment, void* self) -> void* {
         ++static_cast<Hook*>(self)->taken;
         return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
@@ -94,7 +95,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Steady{"stack10", "stack10", 60}, Steady{"stack20", "stack20", 60},
                     Steady{"pyramid10", "pyramid10", 60}, Steady{"chain10_r1000", "chain10_r1000", 60},
                     Steady{"swing_r100", "swing_r100", 60}, Steady{"cable50_r1000", "cable50_r1000", 60},
-                    Steady{"heavy_on_light_r10", "heavy_on_light_r10", 60}, Steady{"bin", nullptr, 60}),
+                    Steady{"heavy_on_light_r10", "heavy_on_light_r10", 60}, Steady{"bin", nullptr, 60},
+                    Steady{"cloth_hang12", "cloth_hang12", 60}, Steady{"cloth_hang12_swept", "cloth_hang12", 60, true},
+                    Steady{"cloth_hang20_swept", "cloth_hang20", 60, true}, Steady{"solids2_e1e5", "solids2_e1e5", 120},
+                    Steady{"solids2_swept", "solids2_e1e5", 120, true}, Steady{"knee", "knee", 120},
+                    Steady{"grains_box300", "grains_box300", 240}),
     [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

@@ -9,7 +9,5 @@ namespace bench {
 void cloth_ratio(const std::filesystem::path& folder);
 // A cantilever against Euler and Bernoulli's with shear, solved directly and by sweeps.
 void beam(const std::filesystem::path& folder);
-// Frâncu 2016, figures 8.3, 8.4 and 8.7: a sheet of 50 x 50 by each solver.
-void cloth_solvers(const std::filesystem::path& folder);
 
 }  // namespace bench

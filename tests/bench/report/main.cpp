@@ -7,7 +7,9 @@
 #include "csv.h"
 #include "deformables.h"
 #include "experiment.h"
+#include "forms.h"
 #include "scenes/catalogue.h"
+#include "thesis.h"
 
 namespace bench {
 
@@ -142,8 +144,22 @@ constexpr struct {
     const char* name;
     void (*measure)(const fs::path& folder);
 } kSections[] = {
-    {"table1", table_1}, {"stable_step", stable_step}, {"energy", energy}, {"mass_ratio", mass_ratio},
-    {"links", links},    {"cloth_ratio", cloth_ratio}, {"beam", beam},     {"cloth_solvers", cloth_solvers}};
+    {"table1", table_1},
+    {"stable_step", stable_step},
+    {"energy", energy},
+    {"mass_ratio", mass_ratio},
+    {"links", links},
+    {"cloth_ratio", cloth_ratio},
+    {"beam", beam},
+    {"table2", conditioning},
+    {"minres", minres},
+    {"beam_forms", beam_forms},
+    {"cloth_solvers", cloth_solvers},
+    {"cloth_rest", cloth_rest},
+    {"cloth_large", cloth_large},
+    {"solver_times", solver_times},
+    {"cloth_energy", cloth_energy},
+};
 
 int report(const std::vector<std::string>& arguments) {
     if (arguments.empty() || arguments[0].starts_with('-')) {
