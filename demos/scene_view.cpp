@@ -451,7 +451,8 @@ void SceneView::add_softs(render::DrawList& list) {
     }
     for (size_t i = 0; i < scene_.solids.size(); ++i) {
         const scenes::Solid& solid = scene_.solids[i];
-        const Paint paint = paint_of(solid.look, 0x4E8C6A, false);
+        Paint paint = paint_of(solid.look, 0x4E8C6A, false);
+        if (solid.cells.empty()) paint.most = 0;  // what samples tell is nobody's cells
         read_surface(world_.solids[i]);
         at_vertices_.clear();
         if (paint.most > 0) {

@@ -36,6 +36,7 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       broken(memory),
       detached(memory),
       torn(memory),
+      yielded(memory),
       fell_asleep(memory),
       woke(memory),
       moved_before(memory),

@@ -70,6 +70,7 @@ struct World {
     Array<taut_joint_break_event> broken;
     Array<taut_attachment_break_event> detached;
     Array<taut_tear_event> torn;
+    Array<taut_yield_event> yielded;
     Array<taut_sleep_event> fell_asleep, woke;
     Array<uint8_t> moved_before;  // by node, scratch; publish_motion()
 
@@ -116,8 +117,8 @@ void describe(Visitor& visitor, Of& of) {
     auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, attachments, broadphase,
            pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
            contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
-           torn, fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep, first_substep,
-           impacts] = of;
+           torn, yielded, fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep,
+           first_substep, impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,
                 broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);

@@ -122,6 +122,34 @@ Scene build_cloth_fem_beside_links(double, double, const Options& options) {
     return scene;
 }
 
+// A flag on a pole in a wind that is too strong for its two cords: it tears from them on.
+Scene build_tearing_flag(double, double, const Options& options) {
+    constexpr int kLong = 37, kTall = 25;
+    constexpr double kLength = 1.8, kHeight = 1.2, kTop = 2.1;
+    Scene scene = soft_hall(kTop);
+    add_ground(scene);
+    Cloth flag = grid_cloth(kLong, kTall, kLength, kHeight, 0);
+    for (taut_pos& p : flag.points) p = {p.x + kLength / 2, kTop - kHeight / 2 - p.z, 0.08 * std::sin(4 * p.x)};
+    flag.def.kind = TAUT_CLOTH_TRIANGLES;
+    flag.def.area_density = 0.2f;
+    flag.def.stretch_stiffness[0] = flag.def.stretch_stiffness[1] = 2500;
+    flag.def.shear_stiffness = 600;
+    flag.def.bending_stiffness = 1e-5f;
+    flag.def.stiffness_damping = 0.001f;
+    flag.def.air_drag = 1.2f;
+    flag.def.air_lift = 1;
+    flag.def.tear_strain = 0.22f;
+    flag.look.most = 0.2;
+    flag.pinned = {0, kTall / 2, kTall - 1};
+    scene.add_cloth(std::move(flag));
+    scene.world.wind = {14, 0.5f, 6};
+    add_static_box(scene, {-0.03, kTop / 2 + 0.05, 0}, 0.03, kTop / 2 + 0.05, 0.03, Look::steel);
+    scene.camera = {{0.9, 1.7, 4.0}, {0.75, 1.35, 0}, 38};
+    scene.stage = {{-1, 0, -2}, {3, 2.5, 2}};
+    perturb(scene, options.seed);
+    return scene;
+}
+
 // A mat that hardly stretches on springs of 5 kN/m in a frame, and balls (Tournier et al. 2015, section 5).
 Scene build_trampoline(double, double, const Options& options) {
     constexpr int kSide = 22;

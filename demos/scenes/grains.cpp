@@ -13,6 +13,7 @@ Body grain_at(int shape, taut_pos at, float friction) {
     Body grain = crate(shape, at, kMass, Look::particle);
     grain.kind = TAUT_BODY_PARTICLE;
     grain.friction = friction;
+    grain.grain = true;
     return grain;
 }
 

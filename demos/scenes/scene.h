@@ -132,6 +132,7 @@ struct Cloth {
     std::vector<taut_pos> points;
     std::vector<taut_pos> rest;  // or none: points
     std::vector<uint32_t> triangles;
+    std::vector<uint32_t> quads;        // in their place, of quadrilaterals
     std::vector<float> uv;              // two a point, or none
     std::vector<uint32_t> pinned;       // vertices
     std::vector<taut_vec3> velocities;  // one a point, or none
@@ -142,6 +143,7 @@ struct Solid {
     taut_solid_def def{};  // initialised
     std::vector<taut_pos> points;
     std::vector<uint32_t> cells;
+    std::vector<uint32_t> triangles;  // of the boundary, without a mesh
     std::vector<uint32_t> pinned;
     std::vector<taut_vec3> velocities;
     Skin skin;           // none: its own boundary

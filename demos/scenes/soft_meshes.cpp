@@ -1,7 +1,9 @@
 #include "soft_meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "parts.h"
 
@@ -103,6 +105,33 @@ Bounds box_about(const std::vector<taut_pos>& points) {
         box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
     }
     return box;
+}
+
+Solid without_mesh(Solid solid) {
+    static constexpr uint32_t kTet[4][4] = {{1, 2, 3, 3}, {0, 3, 2, 2}, {0, 1, 3, 3}, {0, 2, 1, 1}};
+    static constexpr uint32_t kHex[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                            {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    const bool tets = solid.def.corners == 4;
+    std::map<std::array<uint32_t, 4>, std::pair<std::array<uint32_t, 4>, int>> faces;  // sorted: as it goes round, seen
+    for (size_t c = 0; c < solid.cells.size(); c += solid.def.corners)
+        for (uint32_t f = 0; f < (tets ? 4u : 6u); ++f) {
+            std::array<uint32_t, 4> face{}, sorted;
+            for (size_t k = 0; k < 4; ++k) face[k] = solid.cells[c + (tets ? kTet : kHex)[f][k]];
+            sorted = face;
+            std::sort(sorted.begin(), sorted.end());
+            auto& seen = faces[sorted];
+            seen.first = face;
+            ++seen.second;
+        }
+    for (const auto& [sorted, seen] : faces) {
+        if (seen.second > 1) continue;
+        const auto& v = seen.first;
+        solid.triangles.insert(solid.triangles.end(), {v[0], v[1], v[2]});
+        if (!tets) solid.triangles.insert(solid.triangles.end(), {v[0], v[2], v[3]});
+    }
+    solid.cells.clear();
+    solid.def.corners = TAUT_SOLID_MESHLESS;
+    return solid;
 }
 
 void stand_up(std::vector<taut_pos>& points, double tall, double height) {

@@ -31,6 +31,9 @@ Solid box_of_tets(const double (&size)[3], const int (&nodes)[3], taut_pos corne
 // Box of hexahedra.
 Solid box_of_hexahedra(const double (&size)[3], const int (&nodes)[3], taut_pos corner);
 
+// The same vertices without the mesh, with its boundary.
+Solid without_mesh(Solid solid);
+
 // Moves and scales points so that their box stands on the height, about the y axis, and is so tall [m].
 void stand_up(std::vector<taut_pos>& points, double tall, double height);
 

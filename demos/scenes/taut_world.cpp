@@ -208,8 +208,11 @@ taut_cloth TautWorld::add(Cloth plan, uint64_t index) const {
     plan.def.points = plan.points.data();
     plan.def.rest = plan.rest.empty() ? nullptr : plan.rest.data();
     plan.def.point_count = static_cast<uint32_t>(plan.points.size());
-    plan.def.triangles = plan.triangles.data();
+    const bool quads = plan.def.kind == TAUT_CLOTH_QUADS;
+    plan.def.triangles = quads ? nullptr : plan.triangles.data();
     plan.def.triangle_count = static_cast<uint32_t>(plan.triangles.size() / 3);
+    plan.def.quads = quads ? plan.quads.data() : nullptr;
+    plan.def.quad_count = static_cast<uint32_t>(plan.quads.size() / 4);
     plan.def.uv = plan.uv.empty() ? nullptr : plan.uv.data();
     plan.def.user_data = index;
     taut_cloth handle{};
@@ -222,8 +225,13 @@ taut_cloth TautWorld::add(Cloth plan, uint64_t index) const {
 taut_solid TautWorld::add(Solid plan, uint64_t index) const {
     plan.def.points = plan.points.data();
     plan.def.point_count = static_cast<uint32_t>(plan.points.size());
-    plan.def.cells = plan.cells.data();
-    plan.def.cell_count = static_cast<uint32_t>(plan.cells.size()) / plan.def.corners;
+    if (plan.def.corners != TAUT_SOLID_MESHLESS) {
+        plan.def.cells = plan.cells.data();
+        plan.def.cell_count = static_cast<uint32_t>(plan.cells.size()) / plan.def.corners;
+    } else if (!plan.triangles.empty()) {
+        plan.def.triangles = plan.triangles.data();
+        plan.def.triangle_count = static_cast<uint32_t>(plan.triangles.size() / 3);
+    }
     plan.def.user_data = index;
     taut_solid handle{};
     const std::string what = plan.source.empty() ? "adding a solid" : plan.source;

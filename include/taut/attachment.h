@@ -14,6 +14,10 @@
  *   fixed     each vertex of one anchor where it is at creation on the other, which is a rigid body or the world: welds
  *             a triangle or cell to it, its weights are not looked at
  *
+ * A distance may hold one side alone (pulls): as a rope or strap does, where the anchors are further apart than length.
+ * And it may have a limit, a length from which on a second spring pulls beside it, that of limit_compliance: soft at
+ * first and stiff at its end, as ligaments and bungees are. What is read is the force of both.
+ *
  * force = -(error / compliance) - damping * d(error)/dt; compliance 0 is rigid, damping then has no effect. Of a fixed
  * one that is the law of each vertex.
  *
@@ -66,7 +70,9 @@ typedef struct taut_attachment_def {
     float break_torque;         /**< of a fixed one [N m], [0, 1e24]; 0: never. Default 0 */
     uint32_t collide_connected; /**< 1: bodies of a still collide with bodies of b. Default 0 */
     taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_DIRECT */
-    uint32_t reserved;          /**< zero */
+    uint32_t pulls;             /**< of a distance, 1: it holds where it is longer than length alone. Default 0 */
+    float limit;                /**< of a distance [m], 0 or [1e-4, 1e6], at least its length; 0: none. Default 0 */
+    float limit_compliance;     /**< of what pulls beyond limit [m/N], [0, 1e6]; 0: rigid. Default 0 */
     uint64_t user_data;
 } taut_attachment_def;
 
@@ -110,16 +116,17 @@ TAUT_API taut_result taut_solid_get_anchor(taut_solid solid, uint32_t triangle, 
 TAUT_API taut_result taut_cloth_find_anchor(taut_cloth cloth, taut_pos point, taut_anchor* out, uint32_t* triangle);
 /**
  * The anchor in a solid that is nearest to a point of the world now: within one of its cells, or on the boundary. Of a
- * hexahedron it is in one of five tetrahedra of its corners, of which one is within and the others lie beside it. Looks
- * at all cells.
- * @param cell that it is in; null if not asked for.
+ * hexahedron it is in one of five tetrahedra of its corners, of which one is within and the others lie beside it. Of a
+ * solid without a mesh it is on one of its triangles, or without these at a vertex. Looks at all of them.
+ * @param cell that it is in, or the triangle or vertex; null if not asked for.
  */
 TAUT_API taut_result taut_solid_find_anchor(taut_solid solid, taut_pos point, taut_anchor* out, uint32_t* cell);
 
 /**
  * Adds an attachment. A body on both sides is on one by the difference of its weights.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a body twice in an anchor; a point off a particle; nothing moves; both
- *         anchors the same point of the same bodies; anchors of a distance closer than 1e-4 m; a fixed one that is not
+ *         anchors the same point of the same bodies; anchors of a distance closer than 1e-4 m; a limit below the
+ *         length; pulls or a limit of what is no distance; a fixed one that is not
  *         of particles on one side and of a rigid body or the world on the other), TAUT_STALE_HANDLE,
  *         TAUT_FOREIGN_HANDLE, TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
@@ -138,8 +145,8 @@ TAUT_API taut_result taut_attachment_get_points(taut_attachment attachment, taut
 TAUT_API taut_result taut_attachment_get_force(taut_attachment attachment, taut_vec3* out);
 /** Torque of a fixed one on b about the anchor whose vertices it holds, likewise [N m]; 0 of the others. */
 TAUT_API taut_result taut_attachment_get_torque(taut_attachment attachment, taut_vec3* out);
-/** How far it is off at the present poses [m]: gap, |length error| of a distance, of a fixed one its widest gap; what a
- *  compliant one gives counts too. */
+/** How far it is off at the present poses [m]: gap, |length error| of a distance, of one that pulls 0 where it is
+ *  slack, of a fixed one its widest gap; what a compliant one gives counts too. */
 TAUT_API taut_result taut_attachment_get_error(taut_attachment attachment, float* out);
 /**
  * All attachments of a world, in the order of their slots.
@@ -150,7 +157,8 @@ TAUT_API taut_result taut_world_get_attachments(taut_world world, taut_attachmen
 
 /** Changes compliance [m/N] and damping [N s/m]; ranges as in the def. May be TAUT_OUT_OF_MEMORY. */
 TAUT_API taut_result taut_attachment_set_compliance(taut_attachment attachment, float compliance, float damping);
-/** Changes the length of a distance [m], [1e-4, 1e6], over the next step; TAUT_INVALID_ARGUMENT for another kind. */
+/** Changes the length of a distance [m], [1e-4, 1e6], over the next step; TAUT_INVALID_ARGUMENT for another kind, and
+ *  for one with a limit below the new length. */
 TAUT_API taut_result taut_attachment_set_length(taut_attachment attachment, float length);
 /** Changes what it breaks at [N], [N m], [0, 1e24]; 0: never. The torque of what is not fixed must be 0. */
 TAUT_API taut_result taut_attachment_set_break(taut_attachment attachment, float force, float torque);

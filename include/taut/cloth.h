@@ -22,8 +22,16 @@ extern "C" {
 typedef enum taut_cloth_kind {
     TAUT_CLOTH_TRIANGLES = 0, /**< a sheet of finite stiffness: St-Venant-Kirchhoff triangles, and bending */
     TAUT_CLOTH_LINKS = 1,     /**< links along the edges and across them, each rigid or soft */
+    TAUT_CLOTH_QUADS = 2,     /**< as triangles, of quadrilaterals with two by two Gauss points each */
     TAUT_CLOTH_KIND_MAX = 0x7fffffff
 } taut_cloth_kind;
+
+/** How triangles and quadrilaterals measure strain; stress is linear in it. */
+typedef enum taut_cloth_strain {
+    TAUT_CLOTH_STRAIN_GREEN = 0,     /**< (F^T F - 1) / 2 */
+    TAUT_CLOTH_STRAIN_COROTATED = 1, /**< stretch - 1, of F turned back by its rotation */
+    TAUT_CLOTH_STRAIN_MAX = 0x7fffffff
+} taut_cloth_strain;
 
 /** Fabrics whose figures taut_cloth_def_set_fabric() writes. */
 typedef enum taut_fabric {
@@ -39,6 +47,9 @@ typedef enum taut_fabric {
  * coordinates warp is the direction of the first triangle's first edge. A link that goes by less than an eighth of a
  * turn from warp or weft counts as such, others as shear. Across each inner edge there is a link between the two
  * vertices beside it, which resists bending, or shear where the edge itself does.
+ *
+ * Quadrilaterals are given in place of triangles; each is read as two triangles, of its corners 0, 1, 2 and 0, 2, 3,
+ * in this order, by all that counts triangles, and by bending, limits, air and contact. They do not tear.
  *
  * Tethers keep cloth from stretching that sweeps do not hold: each vertex is tied to its nearest pinned vertices, one
  * link each that only pulls, as long as the way there along edges at rest. They cost a swept link each, and nothing
@@ -58,8 +69,16 @@ typedef struct taut_cloth_def {
     const taut_pos* points;      /**< of the vertices [m]; copied */
     const taut_pos* rest;        /**< of the vertices in the rest shape [m]; null: points. Copied */
     uint32_t point_count;        /**< [3, TAUT_DEFORMABLE_MAX] */
-    uint32_t triangle_count;     /**< [1, TAUT_DEFORMABLE_MAX] */
-    const uint32_t* triangles;   /**< [triangle_count][3] vertices, all turned the same way; copied */
+    uint32_t triangle_count;     /**< [1, TAUT_DEFORMABLE_MAX]; of quadrilaterals 0 */
+    const uint32_t* triangles;   /**< [triangle_count][3] vertices, all turned the same way, null of quadrilaterals;
+                                      copied */
+    const uint32_t* quads;       /**< [quad_count][4] vertices, round each and all turned the same way; null of other
+                                      kinds. Copied */
+    uint32_t quad_count;         /**< [1, TAUT_DEFORMABLE_MAX / 2]; of other kinds 0 */
+    taut_cloth_strain strain;    /**< of triangles and quadrilaterals. Default TAUT_CLOTH_STRAIN_GREEN */
+    uint32_t plane_strain;       /**< 1: what lies in the sheet is a slice of something that keeps its thickness, of one
+                                      stretch_stiffness both ways and a poisson_ratio below 1/2; 0: it thins freely
+                                      (plane stress). Default 0 */
     const float* uv;             /**< [point_count][2] texture coordinates; null: none. Copied */
     float area_density;          /**< [kg/m^2], [1e-3, 1e4]. Default 0.2 */
     float thickness;             /**< of the material, and of what touches others [m], [1e-4, 1]. Default 0.005 */
@@ -71,6 +90,8 @@ typedef struct taut_cloth_def {
     float shear_compliance;      /**< of each such link [m/N], [0, 1e6], or INFINITY: there are none. Default 1e-4 */
     float bend_compliance;       /**< likewise. Default INFINITY */
     float damping;               /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
+    float mass_damping;          /**< Rayleigh's, see deformable.h [1/s], [0, 1e4]. Default 0 */
+    float stiffness_damping;     /**< likewise [s], [0, 10]. Default 0 */
     float compression;      /**< stiffness of links that are pressed over that of pulled ones, but of those that resist
                                  bending: [0, 1]; below 1 these may not be rigid. Default 1 */
     float strain_limit;     /**< stretch of edges - 1 from which on limit_compliance acts too: [1e-4, 100], or INFINITY:
@@ -108,10 +129,10 @@ TAUT_API taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric 
 
 /**
  * Adds a cloth at rest.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex on no triangle; a triangle without area at rest; a mesh that
- *         is not manifold or not all turned the same way; links of no length; pressure within a mesh that is open or
- *         in several pieces, or not solved directly, gas of no volume or no pressure), TAUT_STRUCT_SIZE,
- * TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex on no triangle; a triangle without area at rest, a
+ *         quadrilateral that is not convex there; a mesh that is not manifold or not all turned the same way; links of
+ * no length; pressure within a mesh that is open or in several pieces, or not solved directly, gas of no volume or no
+ * pressure), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_cloth(taut_world world, const taut_cloth_def* def, taut_cloth* out);
 /** Removes a cloth with its vertices and all joints and attachments on them; taut_body_remove of one: TAUT_IN_USE. */

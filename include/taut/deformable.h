@@ -6,6 +6,13 @@
  * bodies that all other calls may read, push and attach to; they touch what is around them as spheres of half the
  * deformable's thickness, and not each other.
  *
+ * Damping by Rayleigh's rule pulls with -(mass_damping M + stiffness_damping K) v. M are the masses, against the world:
+ * at the velocity v as a substep begins, over 1 + h mass_damping. K is what the elements' forces change by over the
+ * way, taken as a substep begins and its negative part left out, so that it only takes energy (Gast and Schroeder 2014,
+ * section 4.2): also that of tension across itself, which the damping of a strain does not see. A mode of frequency w
+ * [rad/s] decays at (mass_damping + stiffness_damping w^2) / 2 [1/s]. Where elements are swept, or solved as rows, the
+ * part of tension is left out of K.
+ *
  * Air pushes a triangle of area A and normal n, past which it goes at w = wind - velocity, by
  *   1/2 air_density A |w| (drag |s| w + lift s (|w| n - s w)),   s = n . w / |w|:
  * drag of the area that the air sees along w, lift across it. It meets both sides of a cloth's triangles, of solids and

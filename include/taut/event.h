@@ -123,6 +123,19 @@ typedef struct taut_tear_event {
     uint32_t step;       /**< as of a contact event */
 } taut_tear_event;
 
+/**
+ * A cell of a solid that began to flow: for the first time, or after it had been unloaded to less than nine tenths of
+ * the strain at which it yields; see taut_solid_def::yield_stress.
+ */
+typedef struct taut_yield_event {
+    taut_solid solid;
+    uint64_t user_data; /**< of the solid */
+    uint32_t cell;
+    float stress;  /**< von Mises', of what is left after it has flowed, as taut_solid_get_stresses says [Pa] */
+    float strain;  /**< plastic, as taut_solid_get_plastic_strains says */
+    uint32_t step; /**< as of a contact event */
+} taut_yield_event;
+
 /** A body or particle that fell asleep or woke; see sleep.h. */
 typedef struct taut_sleep_event {
     taut_body body;
@@ -170,7 +183,8 @@ typedef struct taut_events {
     const taut_attachment_break_event* detached; /**< in the order of the attachments' slots */
     const taut_tear_event* torn;                 /**< by cloths' slots, of each the largest strain first */
     uint32_t detached_count;
-    uint32_t reserved_detached; /**< zero */
+    uint32_t yielded_count;
+    const taut_yield_event* yielded; /**< step by step; within one by solids' slots, then cells */
 } taut_events;
 
 /** One point of a touching pair. */

@@ -31,7 +31,18 @@ typedef enum taut_lint_kind {
     TAUT_LINT_CABLE_COARSE = 14,         /**< angle between two segments on a sphere, capsule or cylinder in the last
                                               step [rad]; body: of the segment behind the bend */
     TAUT_LINT_CABLE_SHORT_SEGMENTS = 15, /**< mean segment over the diameter; body: the cable's first */
-    TAUT_LINT_CABLE_STRAIN = 16, /**< of the most stretched segment in the last step [1]; body: of the segment */
+    TAUT_LINT_CABLE_STRAIN = 16,   /**< of the most stretched segment in the last step [1]; body: of the segment */
+    TAUT_LINT_SOFT_SLIVER = 17,    /**< least height over longest edge at rest of a cloth's triangle or a solid's
+                                        tetrahedron, least over mean volume that the Gauss points of a hexahedron stand
+                                        for: counts its vertices as stiff and slow; body: a vertex of the worst */
+    TAUT_LINT_SOFT_INVERTED = 18,  /**< volume of a solid's cell over that at rest, below 0: turned inside out; body: a
+                                        vertex of the worst */
+    TAUT_LINT_SOFT_TOO_STIFF = 19, /**< substeps that a swept cloth or solid takes for its stiffness at rest over the
+                                        most that it may take: acts softer; body: a vertex of the stiffest element */
+    TAUT_LINT_SOFT_SEAM = 20,      /**< distance of two vertices of a cloth or solid that lie in one place and are not
+                                        joined, over its size: the mesh comes apart there; body: the first of them */
+    TAUT_LINT_SOFT_NOT_MANIFOLD = 21, /**< triangles of a solid's boundary that meet at an edge: cells that touch along
+                                           it alone; body: a vertex of the first such edge */
     TAUT_LINT_KIND_MAX = 0x7fffffff
 } taut_lint_kind;
 
@@ -49,7 +60,8 @@ typedef struct taut_lint_entry {
 /**
  * Looks at joints, masses, contacts and forces as they are now; contacts and forces are those of the last step.
  * Entries come in the order of their kinds, within a kind in that of slots. Of a cable's finding taut_body_get_cable
- * names the cable; loads and stiffness that its joints do not hold are findings of bodies and joints as everywhere.
+ * names the cable, of a cloth's or solid's, of which there is one of a kind at most, taut_body_get_cloth and
+ * taut_body_get_solid; loads and stiffness that its joints do not hold are findings of bodies and joints as everywhere.
  * Changes nothing. Takes memory of the world while it runs, and time that grows with the cube of a looped mechanism's
  * rows, seconds for a thousand; of more than 1200 it does not look for redundant ones.
  * @param entries null if capacity is 0.

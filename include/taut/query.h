@@ -1,9 +1,12 @@
 /**
  * @file query.h
- * Questions about where colliders are now: rays, shapes on their way, overlaps, distances.
+ * Questions about where colliders, and the triangles of cloths and solids, are now: rays, shapes on their way,
+ * overlaps, distances.
  *
  * Meshes and height fields are met triangle by triangle, from the front alone unless they have two sides; nothing is
  * inside them, and what overlaps one of their triangles overlaps them.
+ * Of cloths and solids these see the spheres by which vertices touch. Their triangles answer calls of their own, at the
+ * end of this file, in time that grows with the number of triangles.
  * All answers are of the poses at the time of the call. They depend on the scene alone: hits are sorted by fraction,
  * colliders where they tie or where there is no fraction by their slots, which are those of the order of creation as
  * long as none is removed.
@@ -152,6 +155,41 @@ TAUT_API taut_result taut_collider_distance(taut_collider a, taut_collider b, ta
 TAUT_API taut_result taut_world_nearest_collider(taut_world world, taut_shape shape, const taut_pose* pose,
                                                  float max_distance, const taut_query_filter* filter,
                                                  taut_distance* out);
+
+// ---------------------------------------------------------------- triangles of cloths and solids
+
+/** A point of a triangle of a cloth, or of the boundary of a solid. */
+typedef struct taut_surface_hit {
+    taut_cloth cloth; /**< null: it is a solid's. Both null: nothing is met or near, and all else is 0 */
+    taut_solid solid;
+    taut_pos point;    /**< [m] */
+    taut_vec3 normal;  /**< unit, of the triangle as its corners go round; 0 where it has no area */
+    uint32_t triangle; /**< as taut_cloth_get_triangles and taut_solid_get_triangles number them */
+    float weights[3];  /**< of its corners, not negative, of sum 1: as taut_cloth_get_anchor takes them */
+    float distance;    /**< from the ray's origin along it, or from the point asked about [m] */
+} taut_surface_hit;
+
+/**
+ * The first triangle that a ray meets, from either side; of those at the same distance the first of the first cloth or
+ * solid by slots. Triangles whose plane holds the ray are not met. A triangle is seen by a filter if one of its
+ * vertices is: its collider, or where it has none, as it touches nothing, its kind alone.
+ * @param filter null: all. @return as taut_world_cast_ray.
+ */
+TAUT_API taut_result taut_world_cast_ray_surface(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
+                                                 taut_surface_hit* out);
+/**
+ * The point of all triangles that is nearest to a point, no further than max_distance, [0, 1e7]; ties and filter as
+ * above.
+ */
+TAUT_API taut_result taut_world_closest_surface(taut_world world, taut_pos point, float max_distance,
+                                                const taut_query_filter* filter, taut_surface_hit* out);
+/**
+ * The triangles that come within radius [m], [0, 1e7], of a point, each with its point nearest to that, sorted by slots
+ * and triangles; filter as above. @return also TAUT_TOO_SMALL with the number needed in *count.
+ */
+TAUT_API taut_result taut_world_overlap_surfaces(taut_world world, taut_pos point, float radius,
+                                                 const taut_query_filter* filter, taut_surface_hit* hits,
+                                                 uint32_t capacity, uint32_t* count);
 
 #ifdef __cplusplus
 }

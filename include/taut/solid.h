@@ -1,6 +1,7 @@
 /**
  * @file solid.h
- * Deformable solids: meshes of tetrahedra or hexahedra, in one system with rigid bodies, cables and cloths.
+ * Deformable solids: meshes of tetrahedra or hexahedra, or clouds of points without a mesh, in one system with rigid
+ * bodies, cables and cloths.
  * Each function here: thread safety: one thread at a time per world, not inside a step.
  */
 #ifndef TAUT_SOLID_H
@@ -18,12 +19,18 @@ extern "C" {
 /** The law between strain and stress. */
 typedef enum taut_solid_material {
     TAUT_SOLID_NEO_HOOKEAN = 0, /**< rubber: nothing inverts by itself; Poisson's ratio to 0.49 */
-    TAUT_SOLID_ST_VENANT_KIRCHHOFF = 1, /**< Green strain: cheapest; for stiff ones, as it collapses when pressed to half */
-    TAUT_SOLID_COROTATED = 2,           /**< Hooke's law of the principal stretches */
-    TAUT_SOLID_FIXED_COROTATED = 3,     /**< the same with the true volume (Stomakhin et al. 2012) */
-    TAUT_SOLID_ORTHOTROPIC = 4, /**< St. Venant's and Kirchhoff's with three axes: wood, muscle, composites */
+    TAUT_SOLID_ST_VENANT_KIRCHHOFF =
+        1,                          /**< Green strain: cheapest; for stiff ones, as it collapses when pressed to half */
+    TAUT_SOLID_COROTATED = 2,       /**< Hooke's law of the principal stretches */
+    TAUT_SOLID_FIXED_COROTATED = 3, /**< the same with the true volume (Stomakhin et al. 2012) */
+    TAUT_SOLID_ORTHOTROPIC = 4,     /**< St. Venant's and Kirchhoff's with three axes: wood, muscle, composites */
     TAUT_SOLID_MATERIAL_MAX = 0x7fffffff
 } taut_solid_material;
+
+/** What taut_solid_def::corners is of a solid without a mesh. */
+#define TAUT_SOLID_MESHLESS 0
+/** Fewest vertices of a solid without a mesh, and those that each of its samples knows. */
+#define TAUT_SOLID_NEIGHBOURS 8
 
 /** Substances whose figures taut_solid_def_set_substance() writes. */
 typedef enum taut_substance {
@@ -42,12 +49,22 @@ typedef struct taut_orthotropic {
                                   [-10, 10], such that every strain is resisted. Default 0.3 */
     float shear_moduli[3];   /**< in the planes 23, 13, 12 [Pa], [1, 1e12]. Default 384615 */
     taut_quat axes;          /**< from the axes to the rest shape. Default: x, y, z */
-    const taut_quat* cells;  /**< [cell_count] of each cell in its place; null: axes. Copied */
+    const taut_quat* cells;  /**< [cell_count] of each cell in its place, null without a mesh; null: axes. Copied */
 } taut_orthotropic;
 
 /**
  * A solid. Tetrahedra: corners 1, 2, 3 go round counterclockwise as seen from outside, where corner 0 is on the other
  * side. Hexahedra: corners 0 to 3 go round the bottom counterclockwise as seen from above, 4 to 7 lie over them.
+ *
+ * Without a mesh (TAUT_SOLID_MESHLESS) vertices are nodes of a field that is fitted to them by moving least squares,
+ * exact where it is linear. Strain is taken at samples: points of the rest shape, each with the volume that it stands
+ * for, which take the place of cells in all that is read. A sample knows its 8 nearest vertices, by the weight
+ * (1 - (distance / reach)^2)^2, where reach is the distance of the ninth, or neighbour_radius where that is less; of
+ * those further than it none. At least four of them may not lie in a plane. Samples in the middle between vertices that
+ * surround them alike do not feel it when these move to and fro in turns: better are some about each vertex. Without
+ * samples the library makes such, up to 8 about each vertex: half way to the mean of the up to 8 vertices that are
+ * nearest to it within each octant of the axes, with the volume of a brick of the same second moments over 8. The
+ * boundary is what triangles say; without them each vertex touches, and air finds nothing to push.
  */
 typedef struct taut_solid_def {
     uint32_t struct_size;
@@ -55,22 +72,33 @@ typedef struct taut_solid_def {
     const taut_pos* points;       /**< of the vertices [m]; copied */
     const taut_pos* rest;         /**< of the vertices in the rest shape [m]; null: points. Copied */
     uint32_t point_count;         /**< [4, TAUT_DEFORMABLE_MAX] */
-    uint32_t cell_count;          /**< [1, TAUT_DEFORMABLE_MAX] */
-    const uint32_t* cells;        /**< [cell_count][corners] vertices; copied */
-    uint32_t corners;             /**< 4: tetrahedra, 8: hexahedra. Default 4 */
-    float density;                /**< [kg/m^3], [1e-2, 1e6]. Default 1000 */
-    float young_modulus;          /**< [Pa], [1, 1e12]. Default 1e6 */
-    float poisson_ratio;          /**< [0, 0.499]; more than 0 for TAUT_SOLID_FIXED_COROTATED. Default 0.3 */
-    float damping;                /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
-    float thickness;              /**< of the spheres by which boundary vertices touch [m], [1e-4, 1]. Default 0.01 */
-    float air_drag;               /**< of the boundary, [0, 100]; see deformable.h. Default 0 */
-    float air_lift;               /**< [0, air_drag]. Default 0 */
-    float yield_stress;           /**< in simple tension, von Mises' [Pa], [1, 1e12], or INFINITY: it stays elastic.
-                                       Default INFINITY */
-    float creep;                  /**< rate at which strain beyond the yield flows [1/s], [0, 1e6], or INFINITY: all of
-                                       it within a step. Default INFINITY */
-    float plastic_limit;          /**< largest plastic strain, by taut_solid_get_plastic_strains, [0, 10], or INFINITY.
-                                       Default 1 */
+    uint32_t cell_count;          /**< [1, TAUT_DEFORMABLE_MAX]; without a mesh 0 */
+    const uint32_t* cells;        /**< [cell_count][corners] vertices, null without a mesh; copied */
+    uint32_t corners;             /**< 4: tetrahedra, 8: hexahedra, or TAUT_SOLID_MESHLESS. Default 4 */
+    uint32_t sample_count;        /**< of samples, without a mesh: [0, TAUT_DEFORMABLE_MAX]; else 0. Default 0 */
+    const taut_pos* samples;      /**< of the rest shape [m]; null: made by the library. Copied */
+    const float* sample_volumes;  /**< [m^3], [1e-18, 1e12]; of samples, else null. Copied */
+    const uint32_t* triangles; /**< [triangle_count][3] of the boundary, outward, without a mesh; null: none. Copied */
+    uint32_t triangle_count;   /**< [0, TAUT_DEFORMABLE_MAX], with a mesh 0. Default 0 */
+    float neighbour_radius;    /**< without a mesh [m], 0 or [1e-4, 1e6]; 0: twice the mean distance of vertices to
+                                    their sixth-nearest other one. Default 0 */
+    float density;             /**< [kg/m^3], [1e-2, 1e6]. Default 1000 */
+    float young_modulus;       /**< [Pa], [1, 1e12]. Default 1e6 */
+    float poisson_ratio;       /**< [0, 0.499]; more than 0 for TAUT_SOLID_FIXED_COROTATED. Default 0.3 */
+    float damping;             /**< d in stress = D (strain + d rate of strain) [s], [0, 10]. Default 0 */
+    float mass_damping;        /**< Rayleigh's, see deformable.h [1/s], [0, 1e4]. Default 0 */
+    float stiffness_damping;   /**< likewise [s], [0, 10]. Default 0 */
+    float thickness;           /**< of the spheres by which boundary vertices touch [m], [1e-4, 1]. Default 0.01 */
+    float air_drag;            /**< of the boundary, [0, 100]; see deformable.h. Default 0 */
+    float air_lift;            /**< [0, air_drag]. Default 0 */
+    float yield_stress;        /**< in simple tension, von Mises' [Pa], [1, 1e12], or INFINITY: it stays elastic.
+                                    Default INFINITY */
+    float creep;               /**< rate at which strain beyond the yield flows [1/s], [0, 1e6], or INFINITY: all of
+                                    it within a step. Default INFINITY */
+    float hardening;           /**< isotropic: yield stress over plastic strain in simple tension [Pa], [0, 1e12].
+                                    Default 0 */
+    float plastic_limit;       /**< largest plastic strain, by taut_solid_get_plastic_strains, [0, 10], or INFINITY.
+                                    Default 1 */
     taut_orthotropic orthotropic; /**< of TAUT_SOLID_ORTHOTROPIC, which has none of the isotropic constants and does
                                        not yield */
     float gravity_scale;          /**< [-1000, 1000]. Default 1 */
@@ -89,9 +117,10 @@ TAUT_API taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_subs
 
 /**
  * Adds a solid at rest.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex in no cell; a cell that is flat or inverted at rest, whose
- *         number the text gives), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LIMIT, TAUT_LOCKED,
- *         TAUT_OUT_OF_MEMORY.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; a vertex in no cell; a cell that is flat or inverted at rest, a
+ *         sample with too few neighbours or with neighbours that lie in a plane, whose number the text gives; what is
+ *         of the other kind, mesh or not), TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LIMIT,
+ * TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_solid(taut_world world, const taut_solid_def* def, taut_solid* out);
 /** Removes a solid with its vertices and all joints and attachments on them; taut_body_remove of one: TAUT_IN_USE. */

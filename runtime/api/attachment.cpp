@@ -119,7 +119,11 @@ bool check_def(Check& check, const taut_attachment_def& def) {
     check_break(check, def.kind == TAUT_ATTACHMENT_FIXED, def.break_force, def.break_torque)
         .boolean("collide_connected", def.collide_connected)
         .choice("solve", def.solve, TAUT_JOINT_SOLVE_BY_LOAD)
-        .zero("reserved", def.reserved);
+        .boolean("pulls", def.pulls)
+        .zero_or("limit", def.limit, kJointLength)
+        .number("limit_compliance", def.limit_compliance, kCompliance)
+        .require(def.kind == TAUT_ATTACHMENT_DISTANCE || (def.pulls == 0 && def.limit == 0),
+                 "pulls, limit: the attachment is none at a distance");
     return static_cast<bool>(check);
 }
 
@@ -130,6 +134,9 @@ Attachment attachment_of(const taut_attachment_def& def) {
     out.damping = def.damping;
     out.solve = static_cast<JointSolve>(def.solve);
     out.collide_connected = def.collide_connected != 0;
+    out.pulls = def.pulls != 0;
+    out.limit = def.limit;
+    out.limit_compliance = def.limit_compliance;
     out.break_force = or_never(def.break_force);
     out.break_torque = or_never(def.break_torque);
     out.user_data = def.user_data;
@@ -161,10 +168,17 @@ Check& place_fixed(Check& check, const World& world, Attachment& attachment) {
     return check;
 }
 
+// Both as single-precision numbers: a limit may be the length that is read.
+Check& check_limit(Check& check, double limit, double length) {
+    return check.require(limit == 0 || static_cast<float>(limit) >= static_cast<float>(length),
+                         "limit is less than the length");
+}
+
 Check& place_distance(Check& check, const World& world, float length, Attachment& attachment) {
     const double now = (point_of(world.nodes, attachment.end[1]) - point_of(world.nodes, attachment.end[0])).norm();
     attachment.length = length > 0 ? static_cast<double>(length) : now;
-    return check.number("distance between the anchors", now, kJointLength);
+    check.number("distance between the anchors", now, kJointLength);
+    return check_limit(check, attachment.limit, attachment.length);
 }
 
 taut_result add(Check& check, World& world, const taut_attachment_def& def, taut_attachment* out) {
@@ -207,6 +221,7 @@ taut_result anchor_of_triangle(Check& check, Handle handle, uint32_t triangle, c
     if (!check_sum(check, weights, 3, sum)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const Soft& soft = world.softs.record[index];
+        if (!check.require(soft.triangles() > 0, "solid: it has no triangles")) return check.result();
         if (!check.count("triangle", triangle, 0, soft.triangles() - 1)) return check.result();
         uint32_t node[3];
         double weight[3];
@@ -322,6 +337,9 @@ taut_result taut_attachment_get_def(taut_attachment handle, taut_attachment_def*
         out->break_torque = breaks_at(of.break_torque);
         out->collide_connected = of.collide_connected ? 1 : 0;
         out->solve = static_cast<taut_joint_solve>(of.solve);
+        out->pulls = of.pulls ? 1 : 0;
+        out->limit = static_cast<float>(of.limit);
+        out->limit_compliance = static_cast<float>(of.limit_compliance);
         out->user_data = of.user_data;
     });
 }
@@ -405,8 +423,9 @@ taut_result taut_attachment_set_length(taut_attachment handle, float length) {
     Check check(__func__);
     if (!check.number("length", length, kJointLength)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
-        const bool has_length = world.attachments.record[index].kind == AttachmentKind::distance;
-        if (!check.require(has_length, "the attachment is none at a distance")) return check.result();
+        const Attachment& of = world.attachments.record[index];
+        check.require(of.kind == AttachmentKind::distance, "the attachment is none at a distance");
+        if (!check_limit(check, of.limit, length)) return check.result();
         change_length(world, index, length);
         return TAUT_OK;
     });

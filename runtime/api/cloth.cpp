@@ -21,9 +21,23 @@ constexpr Range kTetherSlack{0, 10};
 constexpr Range kTearStrain{1e-3, 100};
 constexpr float kNoLinks = std::numeric_limits<float>::infinity();
 
+// What one kind has and others do not.
+bool check_kind(Check& check, const taut_cloth_def& def) {
+    const bool quads = def.kind == TAUT_CLOTH_QUADS;
+    check.choice("strain", def.strain, TAUT_CLOTH_STRAIN_COROTATED)
+        .boolean("plane_strain", def.plane_strain)
+        .require(quads || (!def.quads && def.quad_count == 0), "quads, quad_count: the cloth is of another kind")
+        .require(!quads || (!def.triangles && def.triangle_count == 0),
+                 "triangles, triangle_count: the cloth is of quadrilaterals");
+    if (def.plane_strain == 1)
+        check.require(def.stretch_stiffness[0] == def.stretch_stiffness[1] && def.poisson_ratio < 0.5f,
+                      "plane_strain: asks for one stretch_stiffness both ways and a poisson_ratio below 1/2");
+    return static_cast<bool>(check);
+}
+
 bool check_def(Check& check, const taut_cloth_def& def) {
     check.struct_size(def.struct_size, sizeof def)
-        .choice("kind", def.kind, TAUT_CLOTH_LINKS)
+        .choice("kind", def.kind, TAUT_CLOTH_QUADS)
         .number("area_density", def.area_density, kAreaDensity)
         .number("stretch_stiffness[0]", def.stretch_stiffness[0], kSheetStiffness)
         .number("stretch_stiffness[1]", def.stretch_stiffness[1], kSheetStiffness)
@@ -44,9 +58,12 @@ bool check_def(Check& check, const taut_cloth_def& def) {
     check_air(check, def.air_drag, def.air_lift).number("pressure", def.pressure, kPressure).boolean("gas", def.gas);
     check_soft(check, def.material, kMaterialInDef, def.filter, def.thickness, def.damping, def.gravity_scale,
                def.solve);
-    const MeshDef mesh{def.points,       def.rest,      def.point_count,    3, "triangles",
-                       "triangle_count", def.triangles, def.triangle_count, 3};
-    if (!check || !check_mesh(check, mesh)) return false;
+    check_rayleigh(check, def.mass_damping, def.stiffness_damping);
+    if (!check || !check_kind(check, def)) return false;
+    const MeshDef triangles{def.points,       def.rest,      def.point_count,    3, "triangles",
+                            "triangle_count", def.triangles, def.triangle_count, 3};
+    const MeshDef quads{def.points, def.rest, def.point_count, 4, "quads", "quad_count", def.quads, def.quad_count, 4};
+    if (!check_mesh(check, def.kind == TAUT_CLOTH_QUADS ? quads : triangles)) return false;
     for (size_t i = 0; def.uv && check && i < 2 * size_t{def.point_count}; ++i)
         check.number("uv", def.uv[i], Range{-1e6, 1e6});
     return static_cast<bool>(check);
@@ -66,6 +83,9 @@ Fabric fabric_of(const taut_cloth_def& def) {
     fabric.shear_compliance = def.shear_compliance;
     fabric.bend_compliance = def.bend_compliance;
     fabric.damping = def.damping;
+    fabric.rayleigh = def.stiffness_damping;
+    fabric.strain = static_cast<SheetStrain>(def.strain);
+    fabric.plane_strain = def.plane_strain != 0;
     fabric.tolerance = def.stretch_tolerance;
     fabric.compression = def.compression;
     fabric.strain_limit = def.strain_limit;
@@ -74,6 +94,17 @@ Fabric fabric_of(const taut_cloth_def& def) {
     fabric.tether_slack = def.tether_slack;
     fabric.tear_strain = def.tear_strain;
     return fabric;
+}
+
+// Those of the def, or two of each of its quadrilaterals.
+Array<uint32_t> triangles_of(World& world, const taut_cloth_def& def) {
+    Array<uint32_t> out(world.memory);
+    if (def.triangles) out.assign(def.triangles, def.triangles + 3 * size_t{def.triangle_count});
+    for (uint32_t q = 0; q < def.quad_count; ++q) {
+        const uint32_t* v = def.quads + 4 * size_t{q};
+        out.insert(out.end(), {v[0], v[1], v[2], v[0], v[2], v[3]});
+    }
+    return out;
 }
 
 // get(world, soft) of a cloth without a rim.
@@ -145,9 +176,11 @@ taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, t
         const Array<Vec3> at = positions_of(world, def->points, def->point_count);
         const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
         const std::span<const float> uv(def->uv, def->uv ? 2 * size_t{def->point_count} : 0);
-        const ClothMesh mesh{at, rest, {def->triangles, 3 * size_t{def->triangle_count}}, uv};
-        const ClothKind kind = def->kind == TAUT_CLOTH_LINKS ? ClothKind::links : ClothKind::triangles;
+        const Array<uint32_t> triangles = triangles_of(world, *def);
+        const ClothMesh mesh{at, rest, triangles, uv};
+        const auto kind = static_cast<ClothKind>(def->kind);
         SoftPlan plan(world.memory);
+        plan.soft.mass_damping = def->mass_damping;
         plan.soft.gravity_scale = def->gravity_scale;
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->material, def->filter);

@@ -3,7 +3,6 @@
 #include <cstdio>
 
 namespace taut {
-namespace {
 
 bool check_positions(Check& check, const char* name, const taut_pos* points, uint32_t count) {
     for (uint32_t i = 0; check && i < count; ++i) {
@@ -30,8 +29,6 @@ bool check_cells(Check& check, const MeshDef& mesh) {
     return static_cast<bool>(check);
 }
 
-}  // namespace
-
 bool check_mesh(Check& check, const MeshDef& mesh) {
     check.count("point_count", mesh.point_count, mesh.least_points, TAUT_DEFORMABLE_MAX)
         .count(mesh.count_name, mesh.cell_count, 1, TAUT_DEFORMABLE_MAX)
@@ -50,6 +47,11 @@ Check& check_soft(Check& check, const taut_material& surface, const MaterialName
     check_material(check, names, surface).zero("filter.reserved", filter.reserved);
     return check.require(filter.group <= 0,
                          "filter.group is positive, which makes the vertices collide with each other");
+}
+
+Check& check_rayleigh(Check& check, float mass_damping, float stiffness_damping) {
+    return check.number("mass_damping", mass_damping, kMassDamping)
+        .number("stiffness_damping", stiffness_damping, kSoftDamping);
 }
 
 Check& check_air(Check& check, float drag, float lift) {

@@ -11,8 +11,9 @@
 
 namespace taut {
 
-constexpr Range kThickness{1e-4, 1};  // [m]
-constexpr Range kSoftDamping{0, 10};  // [s]
+constexpr Range kThickness{1e-4, 1};   // [m]
+constexpr Range kSoftDamping{0, 10};   // [s]
+constexpr Range kMassDamping{0, 1e4};  // [1/s]
 constexpr Range kAirDrag{0, 100};
 constexpr Range kPressure{-1e7, 1e7};      // over that of the air [Pa]
 constexpr double kLeastVertexMass = 1e-9;  // [kg], as of particles
@@ -25,12 +26,15 @@ struct MeshDef {
     const uint32_t* cells;
     uint32_t cell_count, corners;
 };
-// Counts, pointers, positions and indices: each cell has corners that differ, each vertex is on a cell.
+// Counts, pointers, positions and indices: each cell has corners that differ.
 bool check_mesh(Check& check, const MeshDef& mesh);
+bool check_positions(Check& check, const char* name, const taut_pos* points, uint32_t count);
+bool check_cells(Check& check, const MeshDef& mesh);
 // What def structs have in common, but for the mesh.
 Check& check_soft(Check& check, const taut_material& surface, const MaterialNames& names, const taut_filter& filter,
                   float thickness, float damping, float gravity_scale, const taut_deformable_solve& solve);
 
+Check& check_rayleigh(Check& check, float mass_damping, float stiffness_damping);
 Check& check_air(Check& check, float drag, float lift);
 // Of a plan that has all else; false: refused.
 bool plan_checked_air(Check& check, const World& world, AirTraits traits, taut_deformable_solve solve, SoftPlan& plan);

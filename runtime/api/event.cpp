@@ -43,7 +43,8 @@ taut_result taut_world_get_events(taut_world handle, taut_events* out) {
                 world.detached.data(),
                 world.torn.data(),
                 size(world.detached),
-                0};
+                size(world.yielded),
+                world.yielded.data()};
         return TAUT_OK;
     });
 }

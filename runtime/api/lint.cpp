@@ -28,6 +28,11 @@ constexpr const char* kText[] = {
     "a cable turns a corner at each segment on something round: cut it into more segments",
     "a cable's segments are shorter than it is thick and act as balls: cut it into fewer",
     "a cable is pulled so hard that it stretches visibly: lower its compliance or the load",
+    "a triangle or cell is so thin that it is stiff and slow to solve: mesh it more evenly",
+    "a cell is turned inside out: its material will push it back; look at what crushed it",
+    "a swept cloth or solid is stiffer than its substeps hold and will act softer: solve it directly",
+    "two vertices in one place are not joined, and the mesh comes apart there: weld them",
+    "a solid hangs together by an edge alone, about which it turns: join its cells by faces",
 };
 
 }  // namespace

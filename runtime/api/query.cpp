@@ -7,18 +7,6 @@ using namespace taut;
 
 namespace {
 
-constexpr double kShortest = 1e-6;  // way [m]
-
-Check& check_translation(Check& check, const taut_vec3& translation) {
-    check.bounded("translation", translation, kPosition);
-    return check.require(to_vec(translation).norm() >= kShortest, "translation is shorter than 1e-6");
-}
-
-Check& check_ray(Check& check, const taut_ray& ray) {
-    check.vector("origin", ray.origin, kPosition);
-    return check_translation(check, ray.translation).zero("reserved", ray.reserved);
-}
-
 Check& check_cast(Check& check, const taut_shape_cast& cast) {
     check.pose("pose.position", "pose.rotation", cast.pose);
     return check_translation(check, cast.translation).zero("reserved", cast.reserved);

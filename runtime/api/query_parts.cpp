@@ -1,6 +1,21 @@
 #include "api/query_parts.h"
 
 namespace taut {
+namespace {
+
+constexpr double kShortest = 1e-6;  // way [m]
+
+}  // namespace
+
+Check& check_translation(Check& check, const taut_vec3& translation) {
+    check.bounded("translation", translation, kPosition);
+    return check.require(to_vec(translation).norm() >= kShortest, "translation is shorter than 1e-6");
+}
+
+Check& check_ray(Check& check, const taut_ray& ray) {
+    check.vector("origin", ray.origin, kPosition);
+    return check_translation(check, ray.translation).zero("reserved", ray.reserved);
+}
 
 Check& check_filter(Check& check, const taut_query_filter& filter) {
     check.within("filter.")

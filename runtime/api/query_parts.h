@@ -8,6 +8,8 @@
 
 namespace taut {
 
+Check& check_ray(Check& check, const taut_ray& ray);
+Check& check_translation(Check& check, const taut_vec3& translation);
 Check& check_filter(Check& check, const taut_query_filter& filter);
 taut_result find_ignored(const char* call, const World& world, const taut_query_filter& filter);
 // The shape that a query takes along.
@@ -32,6 +34,10 @@ inline bool before(const taut_query_hit& a, const taut_query_hit& b) {
     return a.fraction < b.fraction || (a.fraction == b.fraction && a.collider.bits < b.collider.bits);
 }
 inline bool before(const taut_collider& a, const taut_collider& b) { return a.bits < b.bits; }
+inline bool before(const taut_surface_hit& a, const taut_surface_hit& b) {
+    const uint64_t of_a = a.cloth.bits | a.solid.bits, of_b = b.cloth.bits | b.solid.bits;  // one of them is 0
+    return of_a < of_b || (of_a == of_b && a.triangle < b.triangle);
+}
 
 // Keeps as many as there is room for, and counts all.
 template <class Item>

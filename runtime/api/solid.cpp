@@ -15,8 +15,11 @@ constexpr Range kSolidDensity{1e-2, 1e6};  // [kg/m^3]
 constexpr Range kYoung{1, 1e12};           // [Pa]
 constexpr Range kSolidPoisson{0, 0.499};
 constexpr Range kAxialPoisson{-10, 10};
-constexpr Range kCreep{0, 1e6};        // [1/s]
-constexpr Range kPlasticLimit{0, 10};  // [1]
+constexpr Range kCreep{0, 1e6};               // [1/s]
+constexpr Range kPlasticLimit{0, 10};         // [1]
+constexpr Range kHardening{0, 1e12};          // [Pa]
+constexpr Range kSampleVolume{1e-18, 1e12};   // [m^3]
+constexpr Range kNeighbourRadius{1e-4, 1e6};  // [m]
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr MaterialNames kSurface{"surface.friction",         "surface.restitution",      "surface.friction_rule",
                                  "surface.restitution_rule", "surface.rolling_friction", "surface.spinning_friction"};
@@ -33,12 +36,59 @@ Check& check_axes(Check& check, const taut_solid_def& def) {
         if (check) check.number(name("poisson_ratios"), of.poisson_ratios[i], kAxialPoisson);
         if (check) check.number(name("shear_moduli"), of.shear_moduli[i], kYoung);
     }
-    check.rotation("orthotropic.axes", of.axes);
+    check.rotation("orthotropic.axes", of.axes)
+        .require(!of.cells || def.corners != TAUT_SOLID_MESHLESS, "orthotropic.cells: the solid has no mesh");
     for (uint32_t c = 0; of.cells && check && c < def.cell_count; ++c) {
         std::snprintf(field, sizeof field, "orthotropic.cells[%u]", c);
         check.rotation(field, of.cells[c]);
     }
     return check.require(!(def.yield_stress < kNever), "yield_stress: an orthotropic solid does not yield");
+}
+
+// What one kind has and the other does not.
+bool check_kind(Check& check, const taut_solid_def& def) {
+    if (def.corners != TAUT_SOLID_MESHLESS) {
+        return static_cast<bool>(
+            check
+                .require(!def.samples && !def.sample_volumes && def.sample_count == 0,
+                         "samples, sample_volumes, sample_count: the solid has a mesh")
+                .require(!def.triangles && def.triangle_count == 0, "triangles, triangle_count: the solid has a mesh")
+                .require(def.neighbour_radius == 0, "neighbour_radius: the solid has a mesh"));
+    }
+    return static_cast<bool>(
+        check.require(!def.cells && def.cell_count == 0, "cells, cell_count: the solid has no mesh")
+            .zero_or("neighbour_radius", def.neighbour_radius, kNeighbourRadius)
+            .count("sample_count", def.sample_count, 0, TAUT_DEFORMABLE_MAX)
+            .count("triangle_count", def.triangle_count, 0, TAUT_DEFORMABLE_MAX)
+            .require((def.sample_count > 0) == (def.samples != nullptr) &&
+                         (def.sample_count > 0) == (def.sample_volumes != nullptr),
+                     "samples, sample_volumes, sample_count: some are there and others are not")
+            .require((def.triangle_count > 0) == (def.triangles != nullptr),
+                     "triangles, triangle_count: one is there and the other is not")
+            .require(def.air_drag == 0 || def.triangle_count > 0, "air_drag: the solid has no triangles"));
+}
+
+bool check_points(Check& check, const taut_solid_def& def) {
+    check.count("point_count", def.point_count, TAUT_SOLID_NEIGHBOURS, TAUT_DEFORMABLE_MAX)
+        .pointer("points", def.points);
+    if (!check || !check_positions(check, "points", def.points, def.point_count)) return false;
+    if (def.rest && !check_positions(check, "rest", def.rest, def.point_count)) return false;
+    if (def.samples && !check_positions(check, "samples", def.samples, def.sample_count)) return false;
+    char field[48];
+    for (uint32_t s = 0; check && s < def.sample_count; ++s) {
+        std::snprintf(field, sizeof field, "sample_volumes[%u]", s);
+        check.number(field, def.sample_volumes[s], kSampleVolume);
+    }
+    const MeshDef surface{def.points,
+                          def.rest,
+                          def.point_count,
+                          TAUT_SOLID_NEIGHBOURS,
+                          "triangles",
+                          "triangle_count",
+                          def.triangles,
+                          def.triangle_count,
+                          3};
+    return check && check_cells(check, surface);
 }
 
 bool check_def(Check& check, const taut_solid_def& def) {
@@ -47,17 +97,21 @@ bool check_def(Check& check, const taut_solid_def& def) {
         .number("density", def.density, kSolidDensity)
         .number("young_modulus", def.young_modulus, kYoung)
         .number("poisson_ratio", def.poisson_ratio, kSolidPoisson)
-        .require(def.corners == 4 || def.corners == 8, "corners is neither 4 nor 8")
+        .require(def.corners == 4 || def.corners == 8 || def.corners == TAUT_SOLID_MESHLESS,
+                 "corners is neither 4, 8 nor TAUT_SOLID_MESHLESS")
         .require(def.material != TAUT_SOLID_FIXED_COROTATED || def.poisson_ratio > 0,
                  "poisson_ratio is 0, by which the volume does not resist, of a material that asks for it");
     check_air(check, def.air_drag, def.air_lift)
         .number_or("yield_stress", def.yield_stress, kYoung, kNever)
         .number_or("creep", def.creep, kCreep, kNever)
-        .number_or("plastic_limit", def.plastic_limit, kPlasticLimit, kNever);
+        .number_or("plastic_limit", def.plastic_limit, kPlasticLimit, kNever)
+        .number("hardening", def.hardening, kHardening);
     check_soft(check, def.surface, kSurface, def.filter, def.thickness, def.damping, def.gravity_scale, def.solve);
+    check_rayleigh(check, def.mass_damping, def.stiffness_damping);
     const MeshDef mesh{def.points,   def.rest,  def.point_count, 4,          "cells",
                        "cell_count", def.cells, def.cell_count,  def.corners};
-    if (!check || !check_mesh(check, mesh)) return false;
+    if (!check || !check_kind(check, def)) return false;
+    if (!(def.corners == TAUT_SOLID_MESHLESS ? check_points(check, def) : check_mesh(check, mesh))) return false;
     if (def.material == TAUT_SOLID_ORTHOTROPIC) check_axes(check, def);
     return static_cast<bool>(check);
 }
@@ -79,6 +133,14 @@ Array<Quat> axes_of(World& world, const taut_solid_def& def) {
     const taut_orthotropic& of = def.orthotropic;
     const std::span<const taut_quat> from(of.cells ? of.cells : &of.axes, of.cells ? def.cell_count : 1);
     for (const taut_quat& q : from) out.push_back(to_quat(q));
+    return out;
+}
+
+Array<Sample> samples_of(World& world, const taut_solid_def& def) {
+    Array<Sample> out(world.memory);
+    out.reserve(def.sample_count);
+    for (uint32_t s = 0; s < def.sample_count; ++s)
+        out.push_back({to_vec(def.samples[s]), static_cast<double>(def.sample_volumes[s])});
     return out;
 }
 
@@ -139,27 +201,35 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
         const Array<Vec3> at = positions_of(world, def->points, def->point_count);
         const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
         const Array<Quat> axes = axes_of(world, *def);
-        const SolidMesh mesh{at, rest, {def->cells, size_t{def->corners} * def->cell_count}, def->corners, axes};
+        const Array<Sample> samples = samples_of(world, *def);
+        const SolidMesh mesh{
+            at,   rest,    {def->cells, size_t{def->corners} * def->cell_count}, def->corners,
+            axes, samples, {def->triangles, 3 * size_t{def->triangle_count}},    def->neighbour_radius};
         const Solid solid{static_cast<SolidMaterial>(def->material),
                           {def->young_modulus, def->poisson_ratio},
                           axial_of(def->orthotropic),
                           def->density,
                           def->damping,
+                          def->stiffness_damping,
                           def->yield_stress,
+                          def->hardening,
                           {0, def->creep, def->plastic_limit}};
         SoftPlan plan(world.memory);
         plan.soft.gravity_scale = def->gravity_scale;
+        plan.soft.mass_damping = def->mass_damping;
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->surface, def->filter);
         uint32_t cell;
         if (const char* fault = plan_solid(mesh, solid, solve_of(def->solve), plan, cell)) {
             char text[96];
-            std::snprintf(text, sizeof text, "cells[%u] %s", cell, fault);
+            const char* kind = def->corners == TAUT_SOLID_MESHLESS ? "samples" : "cells";
+            std::snprintf(text, sizeof text, "%s[%u] %s", kind, cell, fault);
             check.require(false, cell == kNone ? fault : text);
             return check.result();
         }
         const AirTraits air{def->air_drag, def->air_lift};
-        if (!plan_checked_air(check, world, air, def->solve, plan)) return check.result();
+        if (!plan.soft.triangle.empty() && !plan_checked_air(check, world, air, def->solve, plan))
+            return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);
         if (added == TAUT_OK) *out = world.solid_handle(index);

@@ -15,6 +15,7 @@ Array<taut_lint_entry> lint(World& world) {
     lint_loops(context);
     lint_poses(context);
     lint_cables(context);
+    lint_softs(context);
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
     return found;
 }

@@ -109,5 +109,6 @@ void lint_softness(const LintContext& context);  // of swept joints
 void lint_loops(const LintContext& context);     // rows that other rows hold already
 void lint_poses(const LintContext& context);   // joints apart or beyond their stops, and stops too close to each other
 void lint_cables(const LintContext& context);  // at most one finding of a kind for each cable
+void lint_softs(const LintContext& context);   // likewise of each cloth and solid
 
 }  // namespace taut

@@ -338,6 +338,11 @@ MaybeFlaw validate_attachments(const Attachments& attachments, const Elements& e
             if (nodes.size() != way.count || !std::ranges::all_of(nodes, is_end))
                 return Flaw{"elements of an attachment are on its nodes", index};
         }
+        if (attachment.limit_set == kNone) continue;
+        const ElementSet& limit = elements.set[attachment.limit_set];
+        if (!limit.pulls || attachment.limit_element >= limit.size() ||
+            !std::ranges::equal(limit.nodes_of(attachment.limit_element), set.nodes_of(attachment.element[0])))
+            return Flaw{"limits of attachments pull on their nodes", index};
     }
     return std::nullopt;
 }

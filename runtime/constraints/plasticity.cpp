@@ -52,9 +52,16 @@ Vec3 resized(Vec3 stretch, double size) {
     return stretch;
 }
 
-void limit_set(double limit, Mat3& set) {
+// True where it was larger.
+bool limit_set(double limit, Mat3& set) {
     const SingularValues<3> at = singular_values<3>(set);
-    if ((at.sigma - Vec3::Ones()).norm() > limit) set = at.u * resized(at.sigma, limit).asDiagonal() * at.v.transpose();
+    if (!((at.sigma - Vec3::Ones()).norm() > limit)) return false;
+    set = at.u * resized(at.sigma, limit).asDiagonal() * at.v.transpose();
+    return true;
+}
+
+double yield_after(const Plasticity& law, const double* flowed) {
+    return law.yield + (flowed ? law.hardening * *flowed : 0);
 }
 
 double norm_of_rows(const double* e) {
@@ -69,16 +76,21 @@ double yield_of_stress(double stress, const Isotropic& of) {
     return stress / (std::sqrt(6.0) * mu);
 }
 
-bool flow(const Mat3& f, const Plasticity& law, double time, Mat3& set) {
+double hardening_of_modulus(double modulus, const Isotropic& of) {
+    const double mu = of.young / (2 * (1 + of.poisson));
+    return modulus / (3 * mu);
+}
+
+bool flow(const Mat3& f, const Plasticity& law, double time, Mat3& set, double* flowed) {
     const SingularValues<3> at = singular_values<3>(f * set.inverse());
     if (!(at.sigma[2] > 0)) return false;
     const Vec3 stretch = without_volume(at.sigma);
     const double size = (stretch - Vec3::Ones()).norm();
-    const double share = flowing(law, time) * excess(size, law.yield);
+    const double share = flowing(law, time) * excess(size, yield_after(law, flowed)) / (1 + law.hardening);
     if (!(share > 0)) return false;
-    const Vec3 flowed = stretch.cwiseQuotient(resized(stretch, (1 - share) * size));
-    set = at.v * flowed.asDiagonal() * at.v.transpose() * set;
-    limit_set(law.limit, set);
+    const Vec3 gone = stretch.cwiseQuotient(resized(stretch, (1 - share) * size));
+    set = at.v * gone.asDiagonal() * at.v.transpose() * set;
+    if (!limit_set(law.limit, set) && flowed) *flowed += share * size;
     return true;
 }
 
@@ -90,17 +102,20 @@ void apply_set(const Mat3& set, const double (*g)[3], int nodes, double (*out)[3
     }
 }
 
-bool flow(const double (&strain)[6], const Plasticity& law, double time, double (&offset)[6]) {
+bool flow(const double (&strain)[6], const Plasticity& law, double time, double (&offset)[6], double* flowed) {
     double elastic[6];
     for (int r = 0; r < 6; ++r) elastic[r] = strain[r] - offset[r];
     const double mean = (elastic[0] + elastic[1] + elastic[2]) / 3;
     for (int r = 0; r < 3; ++r) elastic[r] -= mean;
-    const double share = flowing(law, time) * excess(norm_of_rows(elastic), law.yield);
+    const double norm = norm_of_rows(elastic);
+    const double share = flowing(law, time) * excess(norm, yield_after(law, flowed)) / (1 + law.hardening);
     if (!(share > 0)) return false;
     for (int r = 0; r < 6; ++r) offset[r] += share * elastic[r];
     const double size = norm_of_rows(offset);
     if (size > law.limit)
         for (double& each : offset) each *= law.limit / size;
+    else if (flowed)
+        *flowed += share * norm;
     return true;
 }
 

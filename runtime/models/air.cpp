@@ -84,6 +84,22 @@ void drag_alone(System& system, uint32_t at, double mass, const Mat3& b, const V
     set_sweep_velocity(system.sweep[at].velocity, u);
 }
 
+// Rayleigh's damping of masses, at the velocity v_n as the substep begins: v* = v_n/(1 + h a) + h f/M. What rests under
+// a load does so as without it.
+void damp_masses(World& world, const Soft& soft, uint32_t group) {
+    System& system = world.system;
+    const double x = system.scheme.h * soft.mass_damping, share = x / (1 + x);
+    world.team.for_ranges(soft.vertices(), kAirGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t v = begin; v < end; ++v) {
+            const uint32_t node = soft.node[v];
+            if (!is_solved_in(world, node, group)) continue;
+            const uint32_t at = system.at(node);
+            system.exact[at].v -= share * world.nodes.motion[node].v;
+            set_sweep_velocity(system.sweep[at].velocity, system.exact[at]);
+        }
+    });
+}
+
 void drag_along(World& world, const Soft& soft, uint32_t group) {
     const taut_vec3 blows = world.def.wind;
     const Vec3 wind(blows.x, blows.y, blows.z);
@@ -179,8 +195,8 @@ bool find_loaded_surfaces(World& world, uint32_t group) {
     softs.loaded.clear();
     for (uint32_t s = 0; s < softs.record.size(); ++s) {
         const Soft& soft = softs.record[s];
-        if (soft.air.any() &&
-            std::ranges::any_of(soft.surface, [&](uint32_t v) { return is_solved_in(world, soft.node[v], group); }))
+        const auto solved = [&](uint32_t node) { return is_solved_in(world, node, group); };
+        if ((soft.air.any() || soft.mass_damping > 0) && std::ranges::any_of(soft.node, solved))
             softs.loaded.push_back(s);
     }
     return !softs.loaded.empty();
@@ -189,6 +205,8 @@ bool find_loaded_surfaces(World& world, uint32_t group) {
 void load_surfaces(World& world, uint32_t group, double time) {
     for (const uint32_t s : world.softs.loaded) {
         const Soft& soft = world.softs.record[s];
+        if (soft.mass_damping > 0) damp_masses(world, soft, group);
+        if (!soft.air.any()) continue;
         find_areas(world, soft, time);
         if (soft.air.drag > 0) drag_along(world, soft, group);
         if (soft.air.encloses()) push_by_pressure(world, soft, group, time);

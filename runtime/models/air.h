@@ -1,4 +1,5 @@
-// Air about the surfaces of soft bodies: drag and lift of their triangles; gas.h is what they enclose.
+// Air about the surfaces of soft bodies: drag and lift of their triangles; gas.h is what they enclose. And what slows
+// them without air, Rayleigh's damping of masses.
 //
 // With w = wind - v at a vertex, the force of a triangle of area A and normal n, a third of it at each corner, is
 //   1/2 rho A |w| (C_d |s| w + C_l s (|w| n - s w)) = B w,   s = n.w/|w|,
@@ -35,9 +36,9 @@ bool is_solved_in(const World& world, uint32_t node, uint32_t group);
 // Vertices on triangles, and the triangles about each. Throws std::bad_alloc with nothing changed.
 void list_surface(Soft& soft, uint32_t vertices);
 
-// Lists the soft bodies of a group that air acts on, in Softs::loaded; false: none.
+// Lists the soft bodies of a group that either acts on, in Softs::loaded; false: none.
 bool find_loaded_surfaces(World& world, uint32_t group);
-// What air does in the substep that begins `time` after the frame's begin, after predict(): of the listed ones.
+// What they do in the substep that begins `time` after the frame's begin, after predict(): of the listed ones.
 void load_surfaces(World& world, uint32_t group, double time);
 
 }  // namespace taut

@@ -12,6 +12,7 @@
 namespace taut {
 namespace {
 
+constexpr const char* kUnstable = "stretch_stiffness, shear_stiffness, poisson_ratio: no stable material";
 constexpr double kFlat = 1e-6;  // angle between two triangles that are flat at rest [rad]
 // Of links by direction, with those that only pull, bends, limits, tethers and long links.
 constexpr size_t kMostSets = 10 + kMostStages;
@@ -36,6 +37,7 @@ public:
         if (fault == MeshFault::not_oriented)
             return "triangles: two that meet at an edge go along it in the same direction";
         if (!find_points()) return "triangles: one has no area at rest";
+        if (kind == ClothKind::quads && fabric_.tear_strain > 0) return "tear_strain: quadrilaterals do not tear";
         plan_.soft.kind = SoftKind::cloth;
         plan_.position.assign(mesh_.position.begin(), mesh_.position.end());
         plan_.soft.triangle.assign(mesh_.triangle.begin(), mesh_.triangle.end());
@@ -48,7 +50,7 @@ public:
             if (!may_give_way()) return "compression: below 1 it is of links that are not rigid";
             add_links();
         } else {
-            if (!add_triangles()) return "stretch_stiffness, shear_stiffness, poisson_ratio: no stable material";
+            if (const char* sheet = kind == ClothKind::quads ? add_quads() : add_triangles()) return sheet;
             if (fabric_.bending_stiffness > 0) add_bends();
         }
         if (std::isfinite(fabric_.strain_limit)) add_limits();
@@ -106,6 +108,7 @@ private:
         ElementPlan& plan = plan_.element.emplace_back(memory_, type, part);
         plan.solve = solve_;
         plan.relaxation = fabric_.damping;
+        plan.rayleigh = fabric_.rayleigh;
         plan.stage = kMostStages - 1;
         plan.tolerance = fabric_.tolerance;
         plan.resolved = true;
@@ -204,21 +207,53 @@ private:
         for (const MeshEdge& edge : edges_) add_edge(plan, edge, 1 + fabric_.strain_limit);
     }
 
-    bool add_triangles() {
-        ElementPlan& plan = add_plan(kGreenTri3, SoftPart::stretch);
-        plan.form = ElementForm::folded;
-        const double t = fabric_.thickness;
+    // Of what keeps its thickness: E' = E/(1 - nu^2), nu' = nu/(1 - nu).
+    bool find_sheet(double (&compliance)[9]) const {
+        const double t = fabric_.thickness, nu = fabric_.poisson;
+        OrthotropicSheet sheet{
+            {fabric_.stretch_stiffness[0] / t, fabric_.stretch_stiffness[1] / t}, nu, fabric_.shear_stiffness / t};
+        if (fabric_.plane_strain) {
+            for (double& young : sheet.young) young /= 1 - nu * nu;
+            sheet.poisson_12 = nu / (1 - nu);
+        }
+        return orthotropic_sheet(sheet, compliance);
+    }
+    // Of one of the sheet's elements, by its strain.
+    ElementPlan* add_sheet(const ElementType& green, const ElementType& corotated) {
         double compliance[9];
-        const OrthotropicSheet sheet{{fabric_.stretch_stiffness[0] / t, fabric_.stretch_stiffness[1] / t},
-                                     fabric_.poisson,
-                                     fabric_.shear_stiffness / t};
-        if (!orthotropic_sheet(sheet, compliance)) return false;
+        if (!find_sheet(compliance)) return nullptr;
+        ElementPlan& plan = add_plan(fabric_.strain == SheetStrain::green ? green : corotated, SoftPart::stretch);
+        plan.form = ElementForm::folded;
         std::copy_n(compliance, 9, plan.compliance);
+        return &plan;
+    }
+
+    const char* add_quads() {
+        ElementPlan* plan = add_sheet(kGreenQuad4, kCorotatedQuad4);
+        if (!plan) return kUnstable;
+        for (uint32_t t = 0; t < triangles(); t += 2) {
+            const uint32_t vertex[4] = {corners(t)[0], corners(t)[1], corners(t)[2], corners(t + 1)[2]};
+            const Vec3 x[4] = {rest(vertex[0]), rest(vertex[1]), rest(vertex[2]), rest(vertex[3])};
+            const Vec3 along = warp({x[0], x[1], x[2]}, t);
+            GaussPoint<4, 2> point[4];
+            if (!quad4_points(x, along, point) && !quad4_points(x, x[1] - x[0], point))
+                return "quads: one is not convex at rest";
+            for (const GaussPoint<4, 2>& at : point)
+                plan->add(vertex, {&at.g[0][0], 8}, 1 / (fabric_.thickness * at.weight));
+        }
+        return nullptr;
+    }
+
+    const char* add_triangles() {
+        ElementPlan* sheet = add_sheet(kGreenTri3, kCorotatedTri3);
+        if (!sheet) return kUnstable;
+        ElementPlan& plan = *sheet;
+        const double t = fabric_.thickness;
         for (uint32_t i = 0; i < triangles(); ++i) {
             const uint32_t corner[3] = {3 * i, 3 * i + 1, 3 * i + 2};
             plan.add({corners(i), 3}, {&point_[i].g[0][0], 6}, 1 / (t * point_[i].weight), corner);
         }
-        return true;
+        return nullptr;
     }
 
     // An edge of length e between areas A bends by theta with 1/2 B e^2/A theta^2: of equilateral triangles the plate's

@@ -2,8 +2,9 @@
 //
 // Of links: springs along the edges, as warp, weft or shear by their direction, and across the edges between the two
 // vertices on either side. Of triangles: a sheet of St-Venant-Kirchhoff material under plane stress (Green strain),
-// bent by the angle between its triangles, or by the quadratic form where it is flat at rest. Of both, where they are
-// asked for: links along the edges that only pull, beyond a strain; tethers (tethers.h).
+// bent by the angle between its triangles, or by the quadratic form where it is flat at rest; or under plane strain; or
+// of quadrilaterals, which are two triangles each for all but the sheet. Of all, where they are asked for: links along
+// the edges that only pull, beyond a strain; tethers (tethers.h).
 #pragma once
 
 #include <span>
@@ -13,7 +14,8 @@
 
 namespace taut {
 
-enum class ClothKind : uint8_t { triangles, links };
+enum class ClothKind : uint8_t { triangles, links, quads };
+enum class SheetStrain : uint8_t { green, corotated };
 
 struct Fabric {
     double area_density = 0;                // [kg/m^2]
@@ -28,20 +30,24 @@ struct Fabric {
     double tolerance = 0;                   // of the stretch that sweeps leave
     double shortest_substep = 0;            // that they may take for it [s]
     double damping = 0;                     // time d of the stress D (E + d dE/dt) [s]
-    double compression = 1;                 // stiffness of pressed links over that of pulled ones
-    double strain_limit = 0;                // of edges; infinite: none
-    double limit_compliance = 0;            // beyond that, and of tethers [m/N]
-    uint32_t tethers = 0;                   // of each vertex
-    double tether_slack = 0;                // over their length
-    double tear_strain = 0;                 // 0: it does not tear
+    double rayleigh = 0;                    // of stiffness [s]
+    SheetStrain strain = SheetStrain::green;
+    bool plane_strain = false;
+    double compression = 1;       // stiffness of pressed links over that of pulled ones
+    double strain_limit = 0;      // of edges; infinite: none
+    double limit_compliance = 0;  // beyond that, and of tethers [m/N]
+    uint32_t tethers = 0;         // of each vertex
+    double tether_slack = 0;      // over their length
+    double tear_strain = 0;       // 0: it does not tear
 };
 
 // A host's mesh, checked: each vertex is on a triangle.
 struct ClothMesh {
-    std::span<const Vec3> position;      // of vertices [m]
-    std::span<const Vec3> rest;          // their rest shape [m]
-    std::span<const uint32_t> triangle;  // [3] vertices
-    std::span<const float> uv;           // [2] of each vertex: u grows along the warp; empty: along the first edge
+    std::span<const Vec3> position;  // of vertices [m]
+    std::span<const Vec3> rest;      // their rest shape [m]
+    std::span<const uint32_t>
+        triangle;               // [3] vertices; of quadrilaterals two each, (0, 1, 2) and (0, 2, 3) of its corners
+    std::span<const float> uv;  // [2] of each vertex: u grows along the warp; empty: along the first edge
 };
 
 // Why a mesh is no cloth; null: it is one.

@@ -7,6 +7,7 @@
 
 namespace taut {
 
+// With an event of each cell that did not flow in the step before.
 void flow_solids(World& world);
 
 // Of a cell, mean of its Gauss points: |stretch - 1| of their sets; 0 of what does not yield.

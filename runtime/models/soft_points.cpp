@@ -43,6 +43,16 @@ void offer_triangle(const World& world, const Soft& soft, uint32_t t, const Vec3
     offer(point, best);
 }
 
+void offer_vertex(const World& world, const Soft& soft, uint32_t v, const Vec3& to, SoftPoint& best) {
+    SoftPoint point;
+    point.element = v;
+    point.count = 1;
+    point.node[0] = soft.node[v];
+    point.weight[0] = 1;
+    point.squared = (vertex_of(world, soft, v) - to).squaredNorm();
+    offer(point, best);
+}
+
 }  // namespace
 
 // In its plane, else on the nearest of its edges.
@@ -97,8 +107,13 @@ void nearest_of_tetrahedron(const Vec3 (&x)[4], const Vec3& to, double (&weight)
 
 SoftPoint nearest_point(const World& world, const Soft& soft, const Vec3& to) {
     SoftPoint best;
-    if (soft.kind == SoftKind::cloth) {
+    const bool meshless = is_meshless(world, soft);
+    if (soft.kind == SoftKind::cloth || (meshless && soft.triangles() > 0)) {
         for (uint32_t t = 0; t < soft.triangles(); ++t) offer_triangle(world, soft, t, to, best);
+        return best;
+    }
+    if (meshless) {
+        for (uint32_t v = 0; v < soft.vertices(); ++v) offer_vertex(world, soft, v, to, best);
         return best;
     }
     const ElementSet& set = world.elements.set[soft.sets[0].set];

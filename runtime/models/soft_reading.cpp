@@ -69,6 +69,11 @@ uint32_t cells_of(const World& world, const Soft& soft) {
     return world.elements.set[soft.sets[0].set].size() / soft.cell_points;
 }
 
+bool is_meshless(const World& world, const Soft& soft) {
+    return soft.kind == SoftKind::solid && soft.cell_points == 1 &&
+           world.elements.set[soft.sets[0].set].type->row.nodes == 8;
+}
+
 CellState cell_state(const World& world, const Soft& soft, uint32_t cell) {
     const ElementSet& set = world.elements.set[soft.sets[0].set];
     CellState sum;

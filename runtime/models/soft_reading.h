@@ -21,6 +21,8 @@ struct CellState {
     double volume = 0;  // over that at rest: det F
 };
 uint32_t cells_of(const World& world, const Soft& soft);
+// Whose cells are samples, each of the vertices about it.
+bool is_meshless(const World& world, const Soft& soft);
 CellState cell_state(const World& world, const Soft& soft, uint32_t cell);
 
 }  // namespace taut

@@ -33,7 +33,8 @@ void add_vertices(World& world, uint32_t index, const SoftPlan& plan) {
         sphere.traits = plan.traits;
         if (sphere.traits.filter.group == 0) sphere.traits.filter.group = kFirstSoftGroup - static_cast<int32_t>(index);
     }
-    Array<uint8_t> outside(plan.position.size(), 0, soft.node.get_allocator());
+    // A solid without a surface is touched at each vertex.
+    Array<uint8_t> outside(plan.position.size(), soft.triangle.empty() ? 1 : 0, soft.node.get_allocator());
     for (const uint32_t vertex : soft.triangle) outside[vertex] = 1;
     soft.node.reserve(plan.position.size());
     NodeInfo info;
@@ -101,7 +102,8 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
     set.tolerance = plan.tolerance;
     set.pulls = plan.pulls;
     set.collide_connected = true;  // a group keeps the vertices apart
-    set_compliance(set, {plan.compliance, rows * rows}, plan.relaxation);
+    set_compliance(set, {plan.compliance, rows * rows}, plan.relaxation + plan.rayleigh);
+    set.rayleigh = plan.rayleigh;
     reserve_elements(set, static_cast<uint32_t>(count));
     for (uint32_t e = 0; e < count; ++e) {
         uint32_t node[kMaxNodes];

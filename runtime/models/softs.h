@@ -32,6 +32,7 @@ struct ElementPlan {
     bool pulls = false;
     double compliance[kMaxRows * kMaxRows] = {};  // [rows][rows] of a unit of the material [m/N per unit]
     double relaxation = 0;                        // [s]
+    double rayleigh = 0;                          // beside it, of stiffness [s]
     Array<uint32_t> vertex;                       // [elements][nodes]
     Array<double> data;                           // [elements][numbers]
     Array<double> softness;                       // [elements]

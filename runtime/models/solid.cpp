@@ -93,10 +93,64 @@ bool add_hex(const Vec3* rest, const uint32_t* vertex, const Quat& axes, const C
     return add_cell<8, 8>(x, vertex, axes, traits, find, plan, mass);
 }
 
+const char* add_cells(const SolidMesh& mesh, const CellTraits& traits, ElementPlan& element, Array<double>& mass,
+                      uint32_t& cell) {
+    const auto cells = static_cast<uint32_t>(mesh.cell.size() / mesh.corners);
+    for (uint32_t c = 0; c < cells; ++c) {
+        const uint32_t* vertex = &mesh.cell[size_t{c} * mesh.corners];
+        const auto add = mesh.corners == 4 ? add_tet : add_hex;
+        const Quat axes = mesh.axes.empty() ? Quat::Identity() : mesh.axes[mesh.axes.size() > 1 ? c : 0];
+        if (add(mesh.rest.data(), vertex, axes, traits, element, mass)) continue;
+        cell = c;
+        return "is flat or inverted at rest";
+    }
+    return nullptr;
+}
+
+// An element a sample; a vertex bears of its mass by its weight.
+bool add_sample(const SolidMesh& mesh, const Neighbours& neighbours, double radius, const Sample& sample,
+                const CellTraits& traits, ElementPlan& element, Array<double>& mass) {
+    const SampleNodes nodes = nodes_of_sample(neighbours, sample.at, std::min(radius, sample.reach));
+    Vec3 x[kSampleNodes];
+    double sum = 0;
+    for (uint32_t n = 0; n < kSampleNodes; ++n) {
+        x[n] = mesh.rest[nodes.vertex[n]];
+        sum += nodes.weight[n];
+    }
+    GaussPoint<8, 3> at;
+    if (!meshless_point(x, nodes.weight, sample.volume, at)) return false;
+    const Mat3 back = (mesh.axes.empty() ? Quat::Identity() : mesh.axes[0]).conjugate().toRotationMatrix();
+    double data[3 * kSampleNodes + 1];
+    for (uint32_t n = 0; n < kSampleNodes; ++n) {
+        Vec3::Map(data + 3 * n) = back * Vec3::Map(at.g[n]);
+        mass[nodes.vertex[n]] += traits.density * sample.volume * nodes.weight[n] / sum;
+    }
+    data[3 * kSampleNodes] = traits.alpha;
+    element.add(nodes.vertex, {data, static_cast<size_t>(element.type->numbers)}, 1 / sample.volume);
+    return true;
+}
+
+const char* add_samples(const SolidMesh& mesh, const CellTraits& traits, ElementPlan& element, Array<double>& mass,
+                        uint32_t& cell) {
+    Memory& memory = *mass.get_allocator().memory;
+    const Neighbours neighbours(mesh.rest, memory);
+    const double radius = mesh.radius > 0 ? mesh.radius : usual_radius(mesh.rest, neighbours);
+    Array<Sample> made(memory);
+    if (mesh.sample.empty()) make_samples(mesh.rest, neighbours, radius, made);
+    const std::span<const Sample> samples = mesh.sample.empty() ? std::span<const Sample>(made) : mesh.sample;
+    for (uint32_t s = 0; s < samples.size(); ++s) {
+        if (add_sample(mesh, neighbours, radius, samples[s], traits, element, mass)) continue;
+        if (mesh.sample.empty()) continue;
+        cell = s;
+        return "has fewer than four neighbours, or they lie in a plane";
+    }
+    return element.softness.empty() ? "points: none has neighbours that do not lie in a plane with it" : nullptr;
+}
+
 }  // namespace
 
 const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve solve, SoftPlan& plan, uint32_t& cell) {
-    const bool tets = mesh.corners == 4;
+    const bool tets = mesh.corners == 4, meshless = mesh.corners == 0;
     const MaterialType& material = kMaterials[static_cast<size_t>(solid.material)];
     ElementPlan& element = plan.element.emplace_back(*plan.position.get_allocator().memory,
                                                      tets ? *material.tet4 : *material.hex8, SoftPart::stretch);
@@ -109,23 +163,23 @@ const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve sol
     element.solve = solve;
     element.tolerance = kSweptYield;
     element.relaxation = solid.damping;
+    element.rayleigh = solid.rayleigh;
     plan.soft.kind = SoftKind::solid;
-    plan.soft.cell_points = tets ? 1 : 8;
+    plan.soft.cell_points = tets || meshless ? 1 : 8;
     plan.position.assign(mesh.position.begin(), mesh.position.end());
     plan.soft.mass.assign(mesh.rest.size(), 0.0);
-    const auto cells = static_cast<uint32_t>(mesh.cell.size() / mesh.corners);
-    for (uint32_t c = 0; c < cells; ++c) {
-        const uint32_t* vertex = &mesh.cell[size_t{c} * mesh.corners];
-        const auto add = tets ? add_tet : add_hex;
-        const Quat axes = mesh.axes.empty() ? Quat::Identity() : mesh.axes[mesh.axes.size() > 1 ? c : 0];
-        if (add(mesh.rest.data(), vertex, axes, traits, element, plan.soft.mass)) continue;
-        cell = c;
-        return "is flat or inverted at rest";
-    }
-    find_boundary(mesh.cell, mesh.corners, plan.soft.triangle);
+    const auto add = meshless ? add_samples : add_cells;
+    if (const char* fault = add(mesh, traits, element, plan.soft.mass, cell)) return fault;
+    if (meshless)
+        plan.soft.triangle.assign(mesh.triangle.begin(), mesh.triangle.end());
+    else
+        find_boundary(mesh.cell, mesh.corners, plan.soft.triangle);
     if (solid.yield_stress < std::numeric_limits<double>::infinity()) {
         plan.soft.law = solid.law;
         plan.soft.law.yield = yield_of_stress(solid.yield_stress, solid.elastic);
+        plan.soft.law.hardening = hardening_of_modulus(solid.hardening, solid.elastic);
+        plan.soft.flowed.assign(element.softness.size(), 0.0);
+        plan.soft.flows.assign(element.softness.size(), uint8_t{0});
         plan.soft.plastic.assign(9 * element.softness.size(), 0.0);
         for (size_t i = 0; i < plan.soft.plastic.size(); ++i) plan.soft.plastic[i] = i % 9 % 4 == 0 ? 1 : 0;
     }

@@ -15,6 +15,7 @@ void for_event_lists(World& w, Act&& act) {
     act(w.broken);
     act(w.detached);
     act(w.torn);
+    act(w.yielded);
     act(w.fell_asleep), act(w.woke);
 }
 

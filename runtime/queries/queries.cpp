@@ -91,6 +91,12 @@ bool Sight::sees(uint32_t collider) const {
     return !filter_.accept || filter_.accept(body, handle, filter_.user_data) != 0;
 }
 
+bool Sight::sees_node(uint32_t node) const {
+    const NodeInfo& info = world_.nodes.info[node];
+    if (info.collider != kNone) return sees(info.collider);
+    return filter_.kinds >> static_cast<uint32_t>(info.kind) & 1;
+}
+
 // The shape's box about its origin, which far from the world's is exact only so.
 Probe CastQuery::probe() const {
     const collision::Box box = collision::bounds(shape, {Vec3::Zero(), from.rotation});

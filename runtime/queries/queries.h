@@ -15,6 +15,8 @@ public:
     Sight(const World& world, const taut_query_filter& filter) : world_(world), filter_(filter) {}
 
     bool sees(uint32_t collider) const;
+    // By its collider; without one by its kind.
+    bool sees_node(uint32_t node) const;
     const World& world() const { return world_; }
 
 private:

@@ -2,6 +2,7 @@
 // the positions, x' = x_n + h u, and elements evaluated at x_n + h u_0,
 //   t J^T D J (h + d) + t h K   into the matrix,
 //   t h (J^T D J + K) u_0 - t J^T D C   onto the known side,
+// and t b (J^T D J + K) into the matrix for Rayleigh's damping of time b, of which d is the time beside it,
 // t and d as in scheme.h. Folded: K is that of the force lambda carried over, its positive part, and lambda becomes
 // -D (C + h J (u - u_0) + d J u), as if it were an unknown (Tournier et al. 2015, eq. 21). Energy: lambda = -D C and
 // the positive part is that of the sum, a step of Newton's method on W = 1/2 C^T D C.
@@ -105,7 +106,7 @@ public:
     const double* jacobian(uint32_t i) const { return jacobian_ + i * rows() * width(); }
     double* matrix(uint32_t i) { return matrix_ + i * width() * width(); }  // [width][width]
 
-    // -t J^T D C + t h (J^T D J + K) u_0 of an element; then the damping joins its matrix.
+    // -t J^T D C + t h (J^T D J + K) u_0 of an element; then damping joins its matrix.
     void known_side(uint32_t i, const double* u_0, double* out) {
         double f[kMaxRows];
         stress(batch_, i, error(i), f);
@@ -116,7 +117,10 @@ public:
                 for (uint32_t c = 0; c < freedoms; ++c)
                     out[n * freedoms + c] -= scheme_.act * f[r] * jacobian(i)[(n * rows() + r) * freedoms + c];
         add_times(i, u_0, 1, out);
-        if (batch_.set.relaxation > 0) add_material(i, scheme_.act * batch_.set.relaxation);
+        const double along = batch_.set.relaxation - batch_.set.rayleigh;
+        if (batch_.set.rayleigh > 0)
+            for (uint32_t k = 0; k < width() * width(); ++k) matrix(i)[k] *= 1 + batch_.set.rayleigh / scheme_.h;
+        if (along > 0) add_material(i, scheme_.act * along);
     }
     // out += weight matrix u.
     void add_times(uint32_t i, const double* u, double weight, double* out) {

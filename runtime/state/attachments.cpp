@@ -82,6 +82,11 @@ AttachmentLoad load_of(const Nodes& nodes, const Elements& elements, const Attac
         if (attachment.kind == AttachmentKind::fixed)
             load.torque += (nodes.motion[attachment.end[attachment.held_end].node[i]].x - about).cross(force);
     }
+    if (attachment.limit_set != kNone) {
+        const ElementSet& limit = elements.set[attachment.limit_set];
+        const uint32_t e = attachment.limit_element;
+        if (!limit.fresh[e]) load.force += *limit.lambda_of(e) * (b - a).normalized();
+    }
     return load;
 }
 
@@ -91,6 +96,7 @@ double gap_of(const Nodes& nodes, const Elements& elements, const Attachment& at
         double c[kMaxRows] = {}, squared = 0;
         const ConstraintView view = view_of(elements.set[attachment.set], attachment.element[i]);
         view.read(nodes, c);
+        if (attachment.pulls) c[0] = std::max(0.0, c[0]);
         for (int r = 0; r < view.type->rows; ++r) squared += c[r] * c[r];
         most = std::max(most, std::sqrt(squared));
     }

@@ -1,5 +1,7 @@
 // Attachments: points that move with some nodes, held on each other. Each owns elements in sets that attachments of one
 // type and law share, and is read by where its two ends are.
+//
+// A distance may only pull, and may have a second element that only pulls, from its limit on: a biphasic spring.
 #pragma once
 
 #include <array>
@@ -43,8 +45,12 @@ struct Attachment {
     bool collide_connected = false;
     double break_force = std::numeric_limits<double>::infinity();   // removed when a step ends with more [N]
     double break_torque = std::numeric_limits<double>::infinity();  // of a fixed one [N m]
+    bool pulls = false;                                             // of a distance
+    double limit = 0;                                               // of a distance [m]; 0: none
+    double limit_compliance = 0;                                    // of what pulls beyond it [m/N]
     uint32_t set = kNone;
     std::array<uint32_t, kAnchorNodes> element{kNone, kNone, kNone, kNone};
+    uint32_t limit_set = kNone, limit_element = kNone;  // kNone: without a limit
     // Of a fixed one: the end whose nodes are held one by one, and where each is on the other, as Anchor::point.
     uint8_t held_end = 0;
     std::array<Vec3, kAnchorNodes> place{Vec3(Vec3::Zero()), Vec3(Vec3::Zero()), Vec3(Vec3::Zero()),
@@ -57,10 +63,10 @@ struct Attachment {
 };
 template <class Visitor, Like<Attachment> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, end, length, compliance, damping, solve, collide_connected, break_force, break_torque, set, element,
-           held_end, place, user_data, serial] = of;
+    auto& [kind, end, length, compliance, damping, solve, collide_connected, break_force, break_torque, pulls, limit,
+           limit_compliance, set, element, limit_set, limit_element, held_end, place, user_data, serial] = of;
     TAUT_FIELDS(visitor, kind, end, length, compliance, damping, solve, collide_connected, break_force, break_torque,
-                set, element, held_end, place);
+                pulls, limit, limit_compliance, set, element, limit_set, limit_element, held_end, place);
     TAUT_ASIDE(visitor, user_data, serial);
 }
 
@@ -71,7 +77,7 @@ struct Attachments {
     void reserve_one() {
         ids.reserve_one();
         if (record.capacity() == record.size()) record.reserve(2 * record.size() + 4);
-        if (sets.capacity() == sets.size()) sets.reserve(2 * sets.size() + 4);
+        if (sets.capacity() < sets.size() + 2) sets.reserve(2 * sets.size() + 4);
     }
     uint32_t add(const Attachment& attachment) {
         const uint32_t index = ids.create();

@@ -45,6 +45,7 @@ struct ElementSet {
     double compliance[kMaxRows * kMaxRows] = {};  // [rows][rows], symmetric, positive definite or 0: rigid
     double stiffness[kMaxRows * kMaxRows] = {};   // its inverse; 0 where it is rigid
     double relaxation = 0;                        // damping over stiffness: time d of scheme.h [s]
+    double rayleigh = 0;                          // the part of that which also damps what K resists [s]
     Axis stop;                                    // of a set that pulls, for a softness of 1
     uint64_t serial = 0;                          // tells sets of one slot apart
     uint64_t version = 0;                         // grows with each change of which elements there are, and on what
@@ -78,11 +79,11 @@ struct ElementSet {
 template <class Visitor, Like<ElementSet> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls,
-           coupled, compliance, stiffness, relaxation, stop, serial, version, node, data, softness, lambda, drift,
-           slow_turn, loaded, fresh, memory] = of;
+           coupled, compliance, stiffness, relaxation, rayleigh, stop, serial, version, node, data, softness, lambda,
+           drift, slow_turn, loaded, fresh, memory] = of;
     TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected,
-                pulls, coupled, compliance, stiffness, relaxation, stop, node, data, softness, lambda, drift, slow_turn,
-                loaded, fresh, memory);
+                pulls, coupled, compliance, stiffness, relaxation, rayleigh, stop, node, data, softness, lambda, drift,
+                slow_turn, loaded, fresh, memory);
     TAUT_ASIDE(visitor, serial, version);
 }
 

@@ -48,8 +48,8 @@ void describe(Visitor& visitor, Of& of) {
 
 template <class Visitor, Like<Plasticity> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [yield, creep, limit] = of;
-    TAUT_FIELDS(visitor, yield, creep, limit);
+    auto& [yield, creep, limit, hardening] = of;
+    TAUT_FIELDS(visitor, yield, creep, limit, hardening);
 }
 
 struct Soft {
@@ -63,6 +63,8 @@ struct Soft {
           fan_begin(memory),
           fan(memory),
           plastic(memory),
+          flowed(memory),
+          flows(memory),
           corner(memory) {}
 
     SoftKind kind = SoftKind::cloth;
@@ -74,11 +76,14 @@ struct Soft {
     uint32_t cell_points = 1;  // of a solid: elements of its set of stretch for each cell
     uint32_t shape = kNone;    // of each vertex; kNone: it touches nothing
     double gravity_scale = 1;
+    double mass_damping = 0;  // share of a vertex's momentum that goes in a second [1/s]
     AirLoad air;
     // Where air may act: vertices on triangles, ascending, and of each of them its triangles.
     Array<uint32_t> surface, fan_begin, fan;
     Plasticity law{};       // of a solid that yields
     Array<double> plastic;  // of each element of stretch its set F_p, [3][3]; empty: it does not yield
+    Array<double> flowed;   // of each, or empty likewise: strain that has flowed, in all [1]
+    Array<uint8_t> flows;   // of each, or empty likewise: whether it flowed and was not unloaded since
     uint64_t user_data = 0;
     // Of a cloth.
     uint32_t tethers = 0;     // of each vertex, to so many pinned ones; models/tethers.h
@@ -92,10 +97,10 @@ struct Soft {
 };
 template <class Visitor, Like<Soft> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, air, surface, fan_begin, fan, law,
-           plastic, user_data, tethers, tether_slack, tear_strain, corner] = of;
-    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, air, surface,
-                fan_begin, fan, law, plastic, tethers, tether_slack, tear_strain, corner);
+    auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, mass_damping, air, surface,
+           fan_begin, fan, law, plastic, flowed, flows, user_data, tethers, tether_slack, tear_strain, corner] = of;
+    TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, mass_damping, air,
+                surface, fan_begin, fan, law, plastic, flowed, flows, tethers, tether_slack, tear_strain, corner);
     TAUT_ASIDE(visitor, user_data);
 }
 
@@ -121,8 +126,8 @@ struct Softs {
     IdPool ids;
     Array<Soft> record;
 
-    // Scratch of the group being solved: those that air acts on, and areas of the triangles of one, [m^2] along their
-    // normals.
+    // Scratch of the group being solved: those that air or damping of masses acts on, and areas of the triangles of
+    // one, [m^2] along their normals.
     Array<uint32_t> loaded;
     Array<Vec3> area;
 };

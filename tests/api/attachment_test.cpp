@@ -243,12 +243,69 @@ TEST_F(Attachments, BadDefsAreRefused) {
     def.solve = static_cast<taut_joint_solve>(9);
     refused(def, TAUT_INVALID_ARGUMENT, "solve");
     def = good();
-    def.reserved = 1;
-    refused(def, TAUT_INVALID_ARGUMENT, "reserved");
+    def.pulls = 1;
+    refused(def, TAUT_INVALID_ARGUMENT, "pulls");
+    def = good();
+    def.limit = 1;
+    refused(def, TAUT_INVALID_ARGUMENT, "limit");
+    def = good();
+    def.kind = TAUT_ATTACHMENT_DISTANCE;
+    def.pulls = 2;
+    refused(def, TAUT_INVALID_ARGUMENT, "pulls");
+    def.pulls = 1;
+    def.length = 0.5f;
+    def.limit = 0.4f;
+    refused(def, TAUT_INVALID_ARGUMENT, "limit is less than the length");
+    def.limit = nan;
+    refused(def, TAUT_INVALID_ARGUMENT, "limit");
+    def.limit = 0.6f;
+    def.limit_compliance = -1;
+    refused(def, TAUT_INVALID_ARGUMENT, "limit_compliance");
     taut_attachment out{};
     EXPECT_EQ(taut_world_add_attachment(world, nullptr, &out), TAUT_NULL_POINTER);
     def = good();
     EXPECT_EQ(taut_world_add_attachment(world, &def, nullptr), TAUT_NULL_POINTER);
+}
+
+// Of two elements, in sets that several share: each goes with its attachment, and the others stay what they are.
+TEST_F(Attachments, OfTwoLawsReadBackAndGoOneByOne) {
+    taut_attachment_def def = good();
+    def.kind = TAUT_ATTACHMENT_DISTANCE;
+    def.length = 0.1f;
+    def.compliance = 1e-3f;
+    def.pulls = 1;
+    def.limit = 0.2f;
+    def.limit_compliance = 1e-5f;
+    EXPECT_OK(taut_world_step(world));
+    const uint32_t before = elements();
+    const taut_attachment first = add(def);
+    def.length = def.limit = 0.15f;
+    def.limit_compliance = 0;
+    const taut_attachment second = add(def);
+    def.limit = 0;
+    const taut_attachment third = add(def);
+    EXPECT_OK(taut_world_step(world));
+    EXPECT_EQ(elements(), before + 5);
+    taut_attachment_def read;
+    EXPECT_OK(taut_attachment_get_def(first, &read));
+    EXPECT_EQ(read.pulls, 1u);
+    EXPECT_EQ(read.limit, 0.2f);
+    EXPECT_EQ(read.limit_compliance, 1e-5f);
+    EXPECT_OK(taut_attachment_set_compliance(first, 2e-3f, 1));
+    EXPECT_EQ(taut_attachment_set_length(second, 0.2f), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "limit is less")) << taut_last_error();
+    EXPECT_OK(taut_attachment_set_length(third, 0.3f));
+    EXPECT_OK(taut_attachment_remove(first));
+    EXPECT_OK(taut_world_step(world));
+    EXPECT_EQ(elements(), before + 3);
+    EXPECT_OK(taut_attachment_get_def(second, &read));
+    EXPECT_EQ(read.limit, 0.15f);
+    EXPECT_OK(taut_attachment_get_def(third, &read));
+    EXPECT_EQ(read.length, 0.3f);
+    EXPECT_OK(taut_attachment_remove(second));
+    EXPECT_OK(taut_attachment_remove(third));
+    EXPECT_OK(taut_world_step(world));
+    EXPECT_EQ(elements(), before);
 }
 
 TEST_F(Attachments, EndsThatHoldNothingAreRefused) {

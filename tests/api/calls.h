@@ -311,6 +311,23 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              uint32_t count;
              return taut_world_overlap_box(w, {-1, -1, -1}, {1, 1, 1}, nullptr, out, 8, &count);
          }},
+        {"taut_world_cast_ray_surface",
+         [](taut_world w) {
+             const taut_ray ray{{0, 3, 0}, {0, -4, 0}, 0};
+             taut_surface_hit out;
+             return taut_world_cast_ray_surface(w, &ray, nullptr, &out);
+         }},
+        {"taut_world_closest_surface",
+         [](taut_world w) {
+             taut_surface_hit out;
+             return taut_world_closest_surface(w, {0, 0.5, 0}, 10, nullptr, &out);
+         }},
+        {"taut_world_overlap_surfaces",
+         [](taut_world w) {
+             taut_surface_hit out[8];
+             uint32_t count;
+             return taut_world_overlap_surfaces(w, {0, 0.5, 0}, 1, nullptr, out, 8, &count);
+         }},
         {"taut_world_nearest_collider",
          [&p](taut_world w) {
              taut_distance out;

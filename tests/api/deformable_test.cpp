@@ -180,6 +180,120 @@ TEST_F(Deformable, BadMeshesAreRefused) {
     refused(solid, TAUT_INVALID_ARGUMENT, "corners");
 }
 
+TEST_F(Deformable, BadQuadrilateralsAreRefused) {
+    taut_cloth_def def = cloth_def();
+    const uint32_t quad[] = {0, 1, 3, 2}, bow[] = {0, 1, 2, 3}, beyond[] = {0, 1, 3, 4};
+    def.kind = TAUT_CLOTH_QUADS;
+    refused(def, TAUT_INVALID_ARGUMENT, "triangles");
+    def.triangles = nullptr, def.triangle_count = 0;
+    refused(def, TAUT_INVALID_ARGUMENT, "quad_count");
+    def.quad_count = 1;
+    refused(def, TAUT_NULL_POINTER, "quads");
+    def.quads = beyond;
+    refused(def, TAUT_INVALID_ARGUMENT, "quads[0][3]");
+    def.quads = bow;
+    refused(def, TAUT_INVALID_ARGUMENT, "");
+    const taut_pos dart[] = {{0, 5, 0}, {0.2, 5, 0.2}, {1, 5, 0}, {0, 5, 1}};
+    const uint32_t dented[] = {3, 1, 2, 0};
+    def.points = dart;
+    def.quads = dented;
+    refused(def, TAUT_INVALID_ARGUMENT, "");
+    def.points = kSquare;
+    def.quads = quad;
+    def.tear_strain = 0.5f;
+    refused(def, TAUT_INVALID_ARGUMENT, "tear_strain");
+    def.tear_strain = 0;
+    def.plane_strain = 1;
+    def.stretch_stiffness[1] = 6000;
+    refused(def, TAUT_INVALID_ARGUMENT, "plane_strain");
+    def.stretch_stiffness[1] = def.stretch_stiffness[0];
+    def.poisson_ratio = 0.5f;
+    refused(def, TAUT_INVALID_ARGUMENT, "plane_strain");
+    def.poisson_ratio = 0.3f;
+    def.strain = static_cast<taut_cloth_strain>(2);
+    refused(def, TAUT_INVALID_ARGUMENT, "strain");
+    def.strain = TAUT_CLOTH_STRAIN_GREEN;
+    const taut_cloth cloth = add(def);
+    uint32_t triangles[6], count = 0;
+    EXPECT_OK(taut_cloth_get_triangles(cloth, triangles, 2, &count));
+    EXPECT_EQ(count, 2u);
+    EXPECT_TRUE(std::equal(triangles, triangles + 6, kTriangles));
+    EXPECT_OK(taut_cloth_remove(cloth));
+    taut_cloth_def sheet = cloth_def();
+    sheet.quads = quad, sheet.quad_count = 1;
+    refused(sheet, TAUT_INVALID_ARGUMENT, "quads");
+}
+
+TEST_F(Deformable, BadCloudsAreRefused) {
+    taut_solid_def def;
+    taut_solid_def_init(&def);
+    std::vector<taut_pos> cube;
+    for (int i = 0; i < 8; ++i) cube.push_back({0.1 * (i & 1), 5 + 0.1 * (i >> 1 & 1), 0.1 * (i >> 2)});
+    def.corners = TAUT_SOLID_MESHLESS;
+    def.points = cube.data();
+    def.point_count = 7;
+    refused(def, TAUT_INVALID_ARGUMENT, "point_count");
+    def.point_count = 8;
+    def.cells = kCell, def.cell_count = 1;
+    refused(def, TAUT_INVALID_ARGUMENT, "cells");
+    def.cells = nullptr, def.cell_count = 0;
+    const taut_pos samples[] = {{0.05, 5.05, 0.05}, {0.02, 5.02, 0.02}};
+    const float volumes[] = {5e-4f, 5e-4f}, empty[] = {5e-4f, 0};
+    def.samples = samples;
+    def.sample_count = 2;
+    refused(def, TAUT_INVALID_ARGUMENT, "sample_volumes");
+    def.sample_volumes = empty;
+    refused(def, TAUT_INVALID_ARGUMENT, "sample_volumes[1]");
+    def.sample_volumes = volumes;
+    def.neighbour_radius = 0.04f;
+    refused(def, TAUT_INVALID_ARGUMENT, "samples[0] has fewer than four neighbours");
+    def.neighbour_radius = 0;
+    const uint32_t beyond[] = {0, 1, 8};
+    def.triangles = beyond;
+    refused(def, TAUT_INVALID_ARGUMENT, "triangles");
+    def.triangle_count = 1;
+    refused(def, TAUT_INVALID_ARGUMENT, "triangles[0][2]");
+    def.triangles = nullptr, def.triangle_count = 0;
+    def.air_drag = 1;
+    refused(def, TAUT_INVALID_ARGUMENT, "air_drag");
+    def.air_drag = 0;
+    const std::vector<taut_pos> whole = cube;
+    for (taut_pos& p : cube) p.y = 5;
+    refused(def, TAUT_INVALID_ARGUMENT, "samples[0]");
+    def.samples = nullptr, def.sample_volumes = nullptr, def.sample_count = 0;
+    refused(def, TAUT_INVALID_ARGUMENT, "points");
+    cube = whole;
+    const taut_quat turns[] = {{0, 0, 0, 1}};
+    def.points = cube.data();
+    def.material = TAUT_SOLID_ORTHOTROPIC;
+    def.orthotropic.cells = turns;
+    refused(def, TAUT_INVALID_ARGUMENT, "orthotropic.cells");
+    def.orthotropic.cells = nullptr;
+    const taut_solid solid = add(def);
+    uint32_t count = 0;
+    EXPECT_EQ(taut_solid_get_stresses(solid, nullptr, 0, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(count, 8u);
+    uint32_t none[3];
+    EXPECT_OK(taut_solid_get_triangles(solid, none, 1, &count));
+    EXPECT_EQ(count, 0u);
+    taut_anchor anchor{};
+    uint32_t vertex = 9;
+    EXPECT_OK(taut_solid_find_anchor(solid, {0.1, 5.1, 0.1}, &anchor, &vertex));
+    EXPECT_EQ(vertex, 7u);
+    EXPECT_EQ(anchor.count, 1u);
+    const float thirds[] = {0.4f, 0.3f, 0.3f};
+    EXPECT_EQ(taut_solid_get_anchor(solid, 0, thirds, &anchor), TAUT_INVALID_ARGUMENT);
+    EXPECT_OK(taut_world_step(world));
+    taut_solid_def mesh = solid_def();
+    mesh.samples = samples;
+    EXPECT_EQ(taut_world_add_solid(world, &mesh, nullptr), TAUT_NULL_POINTER);
+    EXPECT_OK(taut_solid_remove(solid));
+    refused(mesh, TAUT_INVALID_ARGUMENT, "samples");
+    mesh = solid_def();
+    mesh.neighbour_radius = 1;
+    refused(mesh, TAUT_INVALID_ARGUMENT, "neighbour_radius");
+}
+
 TEST_F(Deformable, BadNumbersAreRefused) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     taut_cloth_def cloth = cloth_def();
@@ -218,6 +332,18 @@ TEST_F(Deformable, BadNumbersAreRefused) {
     solid.material = TAUT_SOLID_FIXED_COROTATED;
     solid.poisson_ratio = 0;
     refused(solid, TAUT_INVALID_ARGUMENT, "poisson_ratio");
+    const auto bad_solid = [&](const char* field, float taut_solid_def::*member, std::initializer_list<float> values) {
+        for (const float value : values) {
+            taut_solid_def def = solid_def();
+            def.*member = value;
+            refused(def, TAUT_INVALID_ARGUMENT, field);
+        }
+    };
+    bad_solid("mass_damping", &taut_solid_def::mass_damping, {-1.0f, 2e4f, nan});
+    bad_solid("stiffness_damping", &taut_solid_def::stiffness_damping, {-1.0f, 11.0f, nan});
+    bad_solid("hardening", &taut_solid_def::hardening, {-1.0f, 2e12f, nan});
+    bad("mass_damping", [&](taut_cloth_def& d) { d.mass_damping = nan; });
+    bad("stiffness_damping", [](taut_cloth_def& d) { d.stiffness_damping = -1; });
 }
 
 TEST_F(Deformable, PartsAreNotRemovedAloneAndGoWithTheWhole) {

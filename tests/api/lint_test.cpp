@@ -381,6 +381,124 @@ TEST_P(LintCable, HeavierLoadThanABlockHolds) {
     expect_of(cable, TAUT_LINT_BLOCK_MASS_RATIO, 1e4, 1e5);
 }
 
+// ---------------------------------------------------------------- cloths and solids
+
+struct LintSoft : LintWorld {
+    static taut_solid_def solid_def(const std::vector<taut_pos>& points, const std::vector<uint32_t>& cells) {
+        taut_solid_def def;
+        taut_solid_def_init(&def);
+        def.points = points.data();
+        def.point_count = static_cast<uint32_t>(points.size());
+        def.cells = cells.data();
+        def.cell_count = static_cast<uint32_t>(cells.size() / 4);
+        return def;
+    }
+    taut_solid add(const taut_solid_def& def) const {
+        taut_solid out{};
+        EXPECT_OK(taut_world_add_solid(world, &def, &out));
+        return out;
+    }
+    taut_cloth add(const std::vector<taut_pos>& points, const std::vector<uint32_t>& triangles, float stiffness = 5000,
+                   taut_deformable_solve solve = TAUT_DEFORMABLE_DIRECT) const {
+        taut_cloth_def def;
+        taut_cloth_def_init(&def);
+        def.points = points.data();
+        def.point_count = static_cast<uint32_t>(points.size());
+        def.triangles = triangles.data();
+        def.triangle_count = static_cast<uint32_t>(triangles.size() / 3);
+        def.stretch_stiffness[0] = def.stretch_stiffness[1] = stiffness;
+        def.solve = solve;
+        taut_cloth out{};
+        EXPECT_OK(taut_world_add_cloth(world, &def, &out));
+        return out;
+    }
+    // The one finding, of a vertex of a cloth or solid.
+    taut_lint_entry only(taut_lint_kind kind) const {
+        const std::vector<taut_lint_entry> found = lint(world);
+        EXPECT_EQ(found.size(), 1u);
+        if (found.empty()) return {};
+        EXPECT_EQ(found[0].kind, kind);
+        taut_cloth cloth{};
+        taut_solid solid{};
+        EXPECT_OK(taut_body_get_cloth(found[0].body, &cloth));
+        EXPECT_OK(taut_body_get_solid(found[0].body, &solid));
+        EXPECT_NE(cloth.bits | solid.bits, 0u);
+        return found[0];
+    }
+    const std::vector<taut_pos> square = {{0, 5, 0}, {0, 5, 1}, {1, 5, 0}, {1, 5, 1}};
+    const std::vector<uint32_t> halves = {0, 1, 3, 0, 3, 2};
+    const std::vector<taut_pos> corner = {{0, 5, 0}, {1, 5, 0}, {0, 6, 0}, {0, 5, 1}};
+    const std::vector<uint32_t> cell = {0, 1, 2, 3};
+};
+
+TEST_F(LintSoft, FindsNothingInThoseWellMade) {
+    add(square, halves);
+    add(solid_def(corner, cell));
+    taut_solid_def cloud = solid_def(corner, cell);
+    const std::vector<taut_pos> cube = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                                        {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+    cloud.corners = TAUT_SOLID_MESHLESS;
+    cloud.cells = nullptr, cloud.cell_count = 0;
+    cloud.points = cube.data(), cloud.point_count = 8;
+    add(cloud);
+    EXPECT_TRUE(kinds(world).empty());
+}
+
+TEST_F(LintSoft, Slivers) {
+    std::vector<taut_pos> thin = square;
+    thin[1].z = thin[3].z = 0.05;  // height over hypotenuse
+    add(thin, halves);
+    EXPECT_NEAR(only(TAUT_LINT_SOFT_SLIVER).value, 0.05 / std::sqrt(1.0025) / std::sqrt(1.0025), 1e-6);
+}
+TEST_F(LintSoft, SliversOfSolids) {
+    std::vector<taut_pos> flat = corner;
+    flat[2].y = 5.05;
+    add(solid_def(flat, cell));
+    // Volume times 3 over the largest face, that of three corners across, over its longest edge.
+    const double area = 0.5 * std::sqrt(1 + 2 * 0.05 * 0.05);
+    EXPECT_NEAR(only(TAUT_LINT_SOFT_SLIVER).value, 3 * (0.05 / 6) / area / std::sqrt(2.0), 1e-5);
+}
+
+TEST_F(LintSoft, CellsTurnedInsideOut) {
+    std::vector<taut_pos> mirrored = corner;
+    mirrored[1].x = -0.5;
+    taut_solid_def def = solid_def(mirrored, cell);
+    def.rest = corner.data();
+    add(def);
+    EXPECT_NEAR(only(TAUT_LINT_SOFT_INVERTED).value, -0.5, 1e-6);
+}
+
+// w^2 of a triangle's row, over that of 64 substeps a step.
+TEST_F(LintSoft, StiffnessBeyondSubsteps) {
+    add(square, halves, 1e9f, TAUT_DEFORMABLE_SWEPT);
+    const float value = only(TAUT_LINT_SOFT_TOO_STIFF).value;
+    // Along the warp: E t/(1 - nu^2) over half a square metre pulls on masses of a third and two thirds of 0.1 kg.
+    const double stiffness = 1e9 / (1 - 0.09) * 0.5, moves = 1 / (0.2 / 3) + 1 / (0.1 / 3);
+    EXPECT_NEAR(value, std::sqrt(stiffness * moves) / 60 / 64, 0.01 * value);
+}
+
+TEST_F(LintSoft, Seams) {
+    std::vector<taut_pos> two = square;
+    two.push_back(square[1]);
+    two.push_back(square[3]);
+    two.push_back({0, 5, 2});
+    two.push_back({1, 5, 2});
+    std::vector<uint32_t> sewn = halves;
+    sewn.insert(sewn.end(), {4, 6, 7, 4, 7, 5});
+    add(two, sewn);
+    EXPECT_EQ(only(TAUT_LINT_SOFT_SEAM).value, 0);
+}
+
+TEST_F(LintSoft, SolidsThatHangByAnEdge) {
+    std::vector<taut_pos> two = corner;
+    two.push_back({-1, 5, 0});
+    two.push_back({0, 5, -1});
+    std::vector<uint32_t> cells = cell;
+    cells.insert(cells.end(), {0, 4, 2, 5});
+    add(solid_def(two, cells));
+    EXPECT_EQ(only(TAUT_LINT_SOFT_NOT_MANIFOLD).value, 4);
+}
+
 TEST_F(LintWorld, ArgumentsAndTexts) {
     ball(body(1, 0, 0), body(2e4f, 0, 3));
     uint32_t count = 7;
@@ -391,9 +509,9 @@ TEST_F(LintWorld, ArgumentsAndTexts) {
     EXPECT_EQ(taut_world_lint(world, nullptr, 0, &count), TAUT_TOO_SMALL);
     EXPECT_EQ(count, 1u);
     std::set<std::string> texts;
-    for (int kind = 0; kind <= TAUT_LINT_CABLE_STRAIN; ++kind)
+    for (int kind = 0; kind <= TAUT_LINT_SOFT_NOT_MANIFOLD; ++kind)
         texts.insert(taut_lint_text(static_cast<taut_lint_kind>(kind)));
-    EXPECT_EQ(texts.size(), static_cast<size_t>(TAUT_LINT_CABLE_STRAIN) + 1);
+    EXPECT_EQ(texts.size(), static_cast<size_t>(TAUT_LINT_SOFT_NOT_MANIFOLD) + 1);
     EXPECT_FALSE(texts.contains("unknown"));
     EXPECT_STREQ(taut_lint_text(TAUT_LINT_KIND_MAX), "unknown");
 }

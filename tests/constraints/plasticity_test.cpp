@@ -56,6 +56,40 @@ TEST(Plasticity, CreepsAtItsRateWhateverTheStep) {
     }
 }
 
+// Led to a strain e step by step, of which y was elastic, it yields at y + H (e - y)/(1 + H) in the end and what flowed
+// is (e - y)/(1 + H), for small e; let go and led there again nothing flows.
+TEST(Plasticity, HardensByWhatHasFlowed) {
+    const Plasticity law{0.005, kAtOnce, 10, 0.25};
+    const double strain = 0.02, gone = (strain - law.yield) / (1 + law.hardening);
+    Mat3 set = Mat3::Identity();
+    double flowed = 0;
+    const Vec3 way = Vec3(2, -1, -1) / std::sqrt(6.0);
+    const auto at = [&](double size) { return Mat3((Vec3::Ones() + size * way).asDiagonal()); };
+    for (int i = 1; i <= 200; ++i) {
+        const double size = strain * i / 200;
+        const bool flows = flow(at(size), law, 0.01, set, &flowed);
+        if (std::abs(size - law.yield) > 0.02 * law.yield) EXPECT_EQ(flows, size > law.yield) << i;
+    }
+    EXPECT_NEAR(flowed, gone, 0.02 * gone);
+    EXPECT_NEAR(strain_of(at(strain) * set.inverse()), law.yield + law.hardening * gone, 0.02 * strain);
+    const double then = flowed;
+    for (int i = 0; i < 99; ++i) EXPECT_FALSE(flow(at(gone + (strain - gone) * i / 100), law, 0.01, set, &flowed)) << i;
+    EXPECT_EQ(flowed, then);
+}
+// The same of additive flow, which adds up exactly.
+TEST(Plasticity, HardensAdditively) {
+    const Plasticity law{0.005, kAtOnce, 10, 0.25};
+    const double strain = 0.02, gone = (strain - law.yield) / (1 + law.hardening);
+    double offset[6] = {}, flowed = 0;
+    for (int i = 1; i <= 100; ++i) {
+        const double e = strain * i / 100 / std::sqrt(6.0);
+        const double rows[6] = {2 * e, -e, -e, 0, 0, 0};
+        flow(rows, law, 0.01, offset, &flowed);
+    }
+    EXPECT_NEAR(flowed, gone, 1e-12);
+    EXPECT_NEAR(offset[0], 2 * gone / std::sqrt(6.0), 1e-12);
+}
+
 TEST(Plasticity, SetsStopAtTheirLimit) {
     Mat3 set = Mat3::Identity();
     for (const double stretch : {1.5, 2.0, 4.0, 8.0})

@@ -103,7 +103,8 @@ INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams,
                                          OnTeams{"bridge"}, OnTeams{"ragdolls20"}, OnTeams{"grains1000_r1"},
                                          OnTeams{"terrain"}, OnTeams{"net47"}, OnTeams{"cloth_hang20"},
                                          OnTeams{"solids3_e1e5"}, OnTeams{"cloth_hang40", true},
-                                         OnTeams{"solids3_e1e5", true}, OnTeams{"knee"}, OnTeams{"grains_box1000"}),
+                                         OnTeams{"solids3_e1e5", true}, OnTeams{"knee"}, OnTeams{"grains_box1000"},
+                                         OnTeams{"meshless3_e1e5"}, OnTeams{"quads"}, OnTeams{"plastic_bar"}),
                          testing::PrintToStringParamName());
 
 // Islands fall asleep, and a brick that is kicked wakes its own.

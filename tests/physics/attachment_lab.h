@@ -37,6 +37,8 @@ struct AttachmentPlan {
     double length = 0, compliance = 0, damping = 0, break_force = 0, break_torque = 0;
     taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT;
     bool collide = false;
+    bool pulls = false;
+    double limit = 0, limit_compliance = 0;
 };
 
 inline taut_attachment attach(const World& world, const taut_anchor& a, const taut_anchor& b,
@@ -53,6 +55,9 @@ inline taut_attachment attach(const World& world, const taut_anchor& a, const ta
     def.break_torque = static_cast<float>(plan.break_torque);
     def.solve = plan.solve;
     def.collide_connected = plan.collide ? 1 : 0;
+    def.pulls = plan.pulls ? 1 : 0;
+    def.limit = static_cast<float>(plan.limit);
+    def.limit_compliance = static_cast<float>(plan.limit_compliance);
     taut_attachment out{};
     ok(taut_world_add_attachment(world.handle, &def, &out));
     return out;

@@ -70,6 +70,88 @@ TEST(Attachment, IsBetweenTheBodiesThatItIsSkinnedTo) {
     (void)hold_one, (void)hold_two;
 }
 
+// ---------------------------------------------------------------- springs of two laws
+
+// A spring of length L and compliance c whose limit takes over from l on, with C: below the limit it is c m g longer,
+// beyond it (x - L)/c + (x - l)/C = m g. The force that is read is that of both.
+TEST(Biphasic, HangsAsLongAsItsTwoLawsSay) {
+    constexpr double kLength = 0.5, kSoft = 1e-2, kLimit = 0.8;
+    for (const double mass : {1.0, 2.0, 10.0, 30.0})
+        for (const double stiff : {1e-4, 0.0})
+            for (const bool pulls : {false, true})
+                for (const taut_joint_solve solve : {TAUT_JOINT_SOLVE_DIRECT, TAUT_JOINT_SOLVE_SOFT}) {
+                    const World world;
+                    const taut_body weight = world.particle(mass, {0, -kLength, 0});
+                    const taut_attachment spring =
+                        attach(world, anchor_in_world(world, {}), anchor_on(world, weight, {}),
+                               {.kind = TAUT_ATTACHMENT_DISTANCE,
+                                .length = kLength,
+                                .compliance = kSoft,
+                                .damping = 30,
+                                .solve = solve,
+                                .pulls = pulls,
+                                .limit = kLimit,
+                                .limit_compliance = stiff});
+                    world.step(600);
+                    const double alone = kLength + kSoft * mass * kG;
+                    const double both =
+                        stiff > 0 ? (mass * kG + kLength / kSoft + kLimit / stiff) / (1 / kSoft + 1 / stiff) : kLimit;
+                    const double expected = alone < kLimit ? alone : both;
+                    EXPECT_NEAR(-position(weight).y, expected, 2e-4 * expected) << mass << ' ' << stiff << ' ' << solve;
+                    EXPECT_NEAR(force_of(spring).y, mass * kG, 1e-3 * mass * kG)
+                        << mass << ' ' << stiff << ' ' << solve;
+                }
+}
+
+// What only pulls is not there while it is slack: a weight below it falls freely, and one pressed together is not
+// pushed apart.
+TEST(Biphasic, OneThatPullsDoesNotPush) {
+    for (const double compliance : {0.0, 1e-4}) {
+        const World world;
+        const taut_body weight = world.particle(1, {0, -0.2, 0});
+        const taut_attachment rope = attach(
+            world, anchor_in_world(world, {}), anchor_on(world, weight, {}),
+            {.kind = TAUT_ATTACHMENT_DISTANCE, .length = 1, .compliance = compliance, .damping = 50, .pulls = true});
+        const int steps = 18;  // .3 s: .44 m
+        world.step(steps);
+        const double h = world.frame() / world.def.substeps, n = steps * world.def.substeps;
+        EXPECT_NEAR(position(weight).y, -0.2 - kG * h * h * n * (n + 1) / 2, 1e-6);
+        EXPECT_EQ(norm(force_of(rope)), 0);
+        EXPECT_EQ(error_of(rope), 0);
+        world.step(300);
+        EXPECT_NEAR(position(weight).y, -1 - compliance * kG, 2e-4);
+        EXPECT_NEAR(force_of(rope).y, kG, 1e-3 * kG);
+    }
+}
+
+// Between points within two beams, which it pulls alike.
+TEST(Biphasic, PullsSkinnedPointsOfBothSides) {
+    const World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+    const Beam beam({0.2, 0.2, 0.2}, 3, 3, 3, false);
+    std::vector<taut_solid> solids;
+    for (const double x : {0.0, 1.0}) {
+        Beam at = beam;
+        for (taut_pos& p : at.points) p.x += x;
+        taut_solid_def def = at.def(TAUT_SOLID_NEO_HOOKEAN, 1e5, 0.3);
+        def.filter.mask = 0;
+        solids.push_back(add(world, def));
+    }
+    const taut_attachment spring =
+        attach(world, anchor_on(solids[0], {0.15, 0.1, 0.1}), anchor_on(solids[1], {1.05, 0.1, 0.1}),
+               {.kind = TAUT_ATTACHMENT_DISTANCE,
+                .length = 0.3,
+                .compliance = 0.05,
+                .pulls = true,
+                .limit = 0.6,
+                .limit_compliance = 1e-3});
+    const double length = 0.9, force = (length - 0.3) / 0.05 + (length - 0.6) / 1e-3;
+    world.step(1);
+    EXPECT_NEAR(norm(force_of(spring)), force, 0.25 * force);  // it gave way within the step
+    const Vec one = momentum_of(bodies_of(solids[0])), two = momentum_of(bodies_of(solids[1]));
+    EXPECT_GT(one.x, 0.5 * force * world.frame());
+    EXPECT_LE(norm(one + two), 1e-6 * one.x);
+}
+
 // Kinds of ends that hold a weight by a spring.
 TEST(Attachment, GivesByTheForceTimesItsCompliance) {
     constexpr double kWeight = 2, kCompliance = 2e-3, kDamping = 100;

@@ -185,6 +185,85 @@ TEST(PlasticBar, KeepsWhatIsBeyondItsElasticStrain) {
     for (const float each : ratio) EXPECT_NEAR(each, 1, 0.01);
 }
 
+struct YieldCase {
+    double hz, hardening;  // [Pa]
+};
+class OnePull : public testing::TestWithParam<YieldCase> {};
+INSTANTIATE_TEST_SUITE_P(At, OnePull,
+                         testing::Values(YieldCase{60, 5e4}, YieldCase{60, 2e5}, YieldCase{240, 2e5},
+                                         YieldCase{30, 1e6}));
+
+// A bar pulled slowly: each cell of its middle tells once that it yields, at the def's stress. In the end it bears
+// y + H p under the plastic strain p = (e - y/E) E/(E + H) of simple tension, and keeps p once it is let go.
+TEST_P(OnePull, YieldsOnceAndKeepsWhatTheoryHas) {
+    constexpr double kStress = 1e4, kPulled = 0.04;
+    const double hardening = GetParam().hardening;
+    const Weightless world(GetParam().hz);
+    const Beam bar({1, 0.1, 0.1}, 11, 2, 2, true);
+    taut_solid_def def = bar.def(TAUT_SOLID_COROTATED, kYoung, kNu);
+    def.yield_stress = static_cast<float>(kStress);
+    def.hardening = static_cast<float>(hardening);
+    def.damping = 0.02f;
+    def.mass_damping = 20;
+    def.filter.mask = 0;
+    def.user_data = 77;
+    const taut_solid solid = add(world, def);
+    const std::vector<taut_body> bodies = bodies_of(solid);
+    const auto ends = [&](auto&& act) {
+        for (const int i : {0, 10})
+            for (int j = 0; j < 2; ++j)
+                for (int k = 0; k < 2; ++k) act(bar.at(i, j, k), i == 10);
+    };
+    ends([&](uint32_t v, bool) { ok(taut_solid_pin(solid, v, 1)); });
+    ends([&](uint32_t v, bool far) {
+        if (far) ok(taut_body_set_velocity(bodies[v], {static_cast<float>(kPulled / 2), 0, 0}, {}));
+    });
+    const size_t cells = bar.cells.size() / 8;
+    std::vector<std::vector<taut_yield_event>> told(cells);
+    const auto run = [&](double seconds) {
+        for (int i = 0; i < static_cast<int>(std::lround(seconds * GetParam().hz)); ++i) {
+            world.step();
+            taut_events events{};
+            ok(taut_world_get_events(world.handle, &events));
+            for (uint32_t e = 0; e < events.yielded_count; ++e) {
+                const taut_yield_event& event = events.yielded[e];
+                EXPECT_EQ(event.solid.bits, solid.bits);
+                EXPECT_EQ(event.user_data, 77u);
+                ASSERT_LT(event.cell, cells);
+                told[event.cell].push_back(event);
+            }
+        }
+    };
+    run(2);
+    ends([&](uint32_t v, bool far) {
+        if (far) ok(taut_body_set_velocity(bodies[v], {}, {}));
+    });
+    run(1);
+    const auto gauge = [&] {
+        const std::vector<Vec> x = points_of(solid);
+        return norm(x[bar.at(7, 1, 1)] - x[bar.at(3, 1, 1)]) / 0.4 - 1;
+    };
+    const double strain = gauge(), gone = (strain - kStress / kYoung) * kYoung / (kYoung + hardening);
+    uint32_t count = 0;
+    std::vector<float> stress(cells), plastic(cells);
+    ok(taut_solid_get_stresses(solid, stress.data(), static_cast<uint32_t>(cells), &count));
+    ok(taut_solid_get_plastic_strains(solid, plastic.data(), static_cast<uint32_t>(cells), &count));
+    // Plastic strain by its tensor's norm is that of simple tension times sqrt(3/2).
+    for (size_t c = 3; c < 7; ++c) {
+        ASSERT_EQ(told[c].size(), 1u) << c;
+        EXPECT_NEAR(static_cast<double>(told[c][0].stress), kStress, 0.03 * kStress) << c;
+        EXPECT_GT(told[c][0].strain, 0);
+        EXPECT_LE(static_cast<double>(told[c][0].strain), 0.1 * gone);
+        EXPECT_NEAR(static_cast<double>(stress[c]), kStress + hardening * gone, 0.04 * (kStress + hardening * gone))
+            << c;
+        EXPECT_NEAR(static_cast<double>(plastic[c]), std::sqrt(1.5) * gone, 0.05 * std::sqrt(1.5) * gone) << c;
+    }
+    ends([&](uint32_t v, bool) { ok(taut_solid_pin(solid, v, 0)); });
+    run(2);
+    EXPECT_NEAR(gauge(), gone, 0.04 * gone);
+    for (size_t c = 3; c < 7; ++c) EXPECT_EQ(told[c].size(), 1u) << c;
+}
+
 // Cells that are crushed or turned inside out do not flow into something that bursts.
 TEST(Plastic, WhatIsTangledDoesNotBlowUp) {
     for (const double hz : {30.0, 60.0, 240.0})

@@ -23,7 +23,9 @@ protected:
         def.collide_connected = byte() & 1;
         spoil(def.collide_connected);
         def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 4 : 3));
-        spoil(def.reserved);
+        if (one_in(3)) def.pulls = 1;
+        spoil(def.pulls);
+        if (one_in(3)) def.limit = real(0, 5), def.limit_compliance = one_in(2) ? real(0, 0.01) : 0;
         taut_attachment out = {0};
         if (run("taut_world_add_attachment", [&] { return taut_world_add_attachment(worlds_[w], &def, &out); }))
             keep(attachments_, out, w);
