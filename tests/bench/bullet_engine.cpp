@@ -2,13 +2,17 @@
 // btConvexHullShape as games make them, whose margin of 4 cm comes on top of the points. Friction of joints is left
 // out. Cloths are its soft bodies of links in btSoftRigidDynamicsWorld, as stiff as they go (kLST 1), with twenty
 // iterations of positions, and touch rigid shapes by their vertices at 5 mm; weights on vertices are added to theirs.
+// Solids are the same along the edges of their tetrahedra: its stiffness has no unit, and Young's modulus goes unused.
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -62,11 +66,10 @@ public:
         : substeps_(substeps), step_(scene.world.time_step / static_cast<float>(substeps)) {
         if (!scene.cables.empty())
             throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' has cables, which Bullet lacks");
-        if (!scene.solids.empty())
-            throw scenes::BadScene("--engine bullet: scene '" + scene.name + "' has solids, which are not made here");
         make_world(scene);
         world_->setGravity(vec(scene.world.gravity));
         for (const scenes::Cloth& cloth : scene.cloths) add(cloth);
+        for (const scenes::Solid& solid : scene.solids) add(solid);
         for (const scenes::Shape& shape : scene.shapes) shapes_.push_back(make_shape(shape));
         for (const scenes::Body& body : scene.bodies)
             if (!load(scene, body)) add(scene, body);
@@ -78,6 +81,7 @@ public:
         for (auto& body : bodies_)
             if (body) world_->removeRigidBody(body.get());
         for (auto& cloth : cloths_) soft_world_->removeSoftBody(cloth.get());
+        for (auto& solid : solids_) soft_world_->removeSoftBody(solid.get());
     }
 
     const char* name() const override { return "bullet"; }
@@ -107,28 +111,22 @@ public:
         return {bodies_[body]->getMass(), {1 / inverse.x(), 1 / inverse.y(), 1 / inverse.z(), 0, 0, 0}};
     }
 
-    void read_cloth(size_t index, SoftState& state) const override {
-        const auto& nodes = cloths_[index]->m_nodes;
-        const auto count = static_cast<size_t>(nodes.size());
-        state.points.resize(count);
-        state.velocities.resize(count);
-        for (int i = 0; i < nodes.size(); ++i) {
-            const btVector3 &x = nodes[i].m_x, &v = nodes[i].m_v;
-            state.points[static_cast<size_t>(i)] = {x.x(), x.y(), x.z()};
-            state.velocities[static_cast<size_t>(i)] = {v.x(), v.y(), v.z()};
-        }
-    }
+    void read_cloth(size_t index, SoftState& state) const override { read(*cloths_[index], state); }
+    void read_solid(size_t index, SoftState& state) const override { read(*solids_[index], state); }
 
     uint64_t state_hash() const override {
         uint64_t hash = hash_of_motions(*this, bodies_.size());
-        for (const auto& cloth : cloths_)
-            for (int i = 0; i < cloth->m_nodes.size(); ++i)
+        const auto add = [&](const btSoftBody& soft) {
+            for (int i = 0; i < soft.m_nodes.size(); ++i)
                 for (int axis = 0; axis < 3; ++axis) {
-                    const float value = cloth->m_nodes[i].m_x[axis];
+                    const float value = soft.m_nodes[i].m_x[axis];
                     uint32_t bits = 0;
                     std::memcpy(&bits, &value, sizeof bits);
                     hash = (hash ^ bits) * 0x100000001b3u;
                 }
+        };
+        for (const auto& cloth : cloths_) add(*cloth);
+        for (const auto& solid : solids_) add(*solid);
         return hash;
     }
 
@@ -141,10 +139,11 @@ private:
     };
 
     void make_world(const scenes::Scene& scene) {
-        configuration_ = scene.cloths.empty() ? std::make_unique<btDefaultCollisionConfiguration>()
-                                              : std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>();
+        const bool rigid = scene.cloths.empty() && scene.solids.empty();
+        configuration_ = rigid ? std::make_unique<btDefaultCollisionConfiguration>()
+                               : std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>();
         dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
-        if (scene.cloths.empty()) {
+        if (rigid) {
             world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_,
                                                                configuration_.get());
             return;
@@ -167,27 +166,56 @@ private:
             }
     }
 
+    static void read(const btSoftBody& soft, SoftState& state) {
+        const auto count = static_cast<size_t>(soft.m_nodes.size());
+        state.points.resize(count);
+        state.velocities.resize(count);
+        for (int i = 0; i < soft.m_nodes.size(); ++i) {
+            const btVector3 &x = soft.m_nodes[i].m_x, &v = soft.m_nodes[i].m_v;
+            state.points[static_cast<size_t>(i)] = {x.x(), x.y(), x.z()};
+            state.velocities[static_cast<size_t>(i)] = {v.x(), v.y(), v.z()};
+        }
+    }
+
     void add(const scenes::Cloth& cloth) {
+        const SoftShape shape(cloth);
+        auto body = made(cloth.points, shape, shape.sides, cloth.def.material.friction);
+        if (cloth.def.filter.mask == 0) body->m_cfg.collisions = 0;
+        soft_world_->addSoftBody(body.get());
+        cloths_.push_back(std::move(body));
+    }
+
+    void add(const scenes::Solid& solid) {
+        const SoftShape shape(solid);
+        std::set<std::array<uint32_t, 2>> edges;
+        for (const auto& tet : shape.tets)
+            for (size_t a = 0; a < 4; ++a)
+                for (size_t b = a + 1; b < 4; ++b) edges.insert({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
+        auto body = made(solid.points, shape, {edges.begin(), edges.end()}, solid.def.surface.friction);
+        if (solid.def.filter.mask == 0) body->m_cfg.collisions = 0;
+        soft_world_->addSoftBody(body.get());
+        solids_.push_back(std::move(body));
+    }
+
+    std::unique_ptr<btSoftBody> made(const std::vector<taut_pos>& at, const SoftShape& shape,
+                                     const std::vector<std::array<uint32_t, 2>>& links, float friction) {
         constexpr int kIterations = 20;
         constexpr float kThickness = 0.005f;
-        const SoftShape shape(cloth);
         std::vector<btVector3> points;
         std::vector<btScalar> mass;
-        for (const taut_pos& p : cloth.points) points.push_back(vec(p));
+        for (const taut_pos& p : at) points.push_back(vec(p));
         for (const double m : shape.mass) mass.push_back(static_cast<btScalar>(m));
         auto body = std::make_unique<btSoftBody>(&soft_world_->getWorldInfo(), static_cast<int>(points.size()),
                                                  points.data(), mass.data());
         body->m_materials[0]->m_kLST = 1;
-        for (const auto& [a, b] : shape.sides) body->appendLink(static_cast<int>(a), static_cast<int>(b));
+        for (const auto& [a, b] : links) body->appendLink(static_cast<int>(a), static_cast<int>(b));
         for (const auto& f : shape.faces)
             body->appendFace(static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2]));
         body->m_cfg.piterations = kIterations;
-        body->m_cfg.kDF = cloth.def.material.friction;
+        body->m_cfg.kDF = friction;
         body->m_cfg.kDP = 0;
         body->getCollisionShape()->setMargin(kThickness);
-        if (cloth.def.filter.mask == 0) body->m_cfg.collisions = 0;
-        soft_world_->addSoftBody(body.get());
-        cloths_.push_back(std::move(body));
+        return body;
     }
 
     // Whether the body is a weight on a vertex; it is added to that.
@@ -283,8 +311,8 @@ private:
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> joints_;
-    btSoftRigidDynamicsWorld* soft_world_ = nullptr;  // world_, in scenes with cloths
-    std::vector<std::unique_ptr<btSoftBody>> cloths_;
+    btSoftRigidDynamicsWorld* soft_world_ = nullptr;  // world_, in scenes with cloths or solids
+    std::vector<std::unique_ptr<btSoftBody>> cloths_, solids_;
     std::vector<Weight> weights_;  // by body, in scenes with cloths
 };
 

@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Steady{"swing_r100", "swing_r100", 60}, Steady{"cable50_r1000", "cable50_r1000", 60},
                     Steady{"heavy_on_light_r10", "heavy_on_light_r10", 60}, Steady{"bin", nullptr, 60},
                     Steady{"cloth_hang12", "cloth_hang12", 60}, Steady{"cloth_hang12_swept", "cloth_hang12", 60, true},
-                    Steady{"cloth_hang20_swept", "cloth_hang20", 60, true}, Steady{"solids2_e1e5", "solids2_e1e5", 120},
+                    Steady{"cloth_hang20_swept", "cloth_hang20", 60, true}, Steady{"solids1_e1e5", "solids1_e1e5", 120},
                     Steady{"solids2_swept", "solids2_e1e5", 120, true}, Steady{"knee", "knee", 120},
                     Steady{"grains_box300", "grains_box300", 240}),
     [](const auto& tested) { return tested.param.name; });

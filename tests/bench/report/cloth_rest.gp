@@ -2,7 +2,7 @@
 # improved Jacobi is below SOR below Gauss-Seidel (8.7).
 eval picture(1060, 480)
 set output "cloth_rest.png"
-set multiplot layout 1, 2 margins 0.08, 0.78, 0.13, 0.92 spacing 0.10, 0
+set multiplot layout 1, 2 margins 0.08, 0.76, 0.13, 0.92 spacing 0.10, 0
 set logscale y
 set format y "10^{%T}"
 set ylabel "mean strain of a link" offset 1,0

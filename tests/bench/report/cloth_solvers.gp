@@ -2,7 +2,7 @@
 # equal iterations (8.3); 35 iterations of Gauss-Seidel take 7.7 ms, 12 of conjugate residuals 5 ms (8.4).
 eval picture(1060, 480)
 set output "cloth_solvers.png"
-set multiplot layout 1, 2 margins 0.08, 0.80, 0.13, 0.92 spacing 0.10, 0
+set multiplot layout 1, 2 margins 0.08, 0.77, 0.13, 0.92 spacing 0.10, 0
 set logscale y
 set xlabel "time, s"
 set ylabel "mean strain of a link" offset 1,0

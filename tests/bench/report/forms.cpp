@@ -32,6 +32,11 @@ double milliseconds(const std::function<void()>& act) {
 
 }  // namespace
 
+void take_as_rows(const Engine& engine) {
+    const taut::Hold hold(taut::world_of(engine.world()), taut::Use::write);
+    for (taut::ElementSet& set : hold.world()->elements.set) set.form = taut::ElementForm::rows;
+}
+
 // The paper gives neither masses nor step nor thickness. 0.1 kg a vertex and 10 ms here; its figures of triangles are
 // met with a sheet as thick as it is wide, as where Gauss points are weighed by area; one of 1 mm stands beside it.
 void conditioning(const fs::path& folder) {
@@ -145,10 +150,7 @@ void beam_forms(const fs::path& folder) {
         scene.solids.front() = beam;
         scene.world.geometric_stiffness = form.curvature ? 1 : 0;
         const std::unique_ptr<Engine> engine = make_taut_engine(scene);
-        if (form.rows) {
-            const taut::Hold hold(taut::world_of(engine->world()), taut::Use::write);
-            for (taut::ElementSet& set : hold.world()->elements.set) set.form = taut::ElementForm::rows;
-        }
+        if (form.rows) take_as_rows(*engine);
         const uint32_t tip = scenes::box_vertex(kNodes, kNodes[0] - 1, 1, 1);
         const double start = beam.points[tip].y;
         SoftState state;

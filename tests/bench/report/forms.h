@@ -4,7 +4,12 @@
 
 #include <filesystem>
 
+#include "engine.h"
+
 namespace bench {
+
+// Of a Taut engine before its first step: all elements as rows with multipliers, which geometric_stiffness is for.
+void take_as_rows(const Engine& engine);
 
 // Table 2: condition numbers of both systems while a stiff sheet of 10 x 10 falls.
 void conditioning(const std::filesystem::path& folder);

@@ -8,7 +8,7 @@ set yrange [0.5:500]
 set style data histograms
 set style histogram clustered gap 2
 set style fill solid 0.9 noborder
-set xtics rotate by 0
+set xtics rotate by 0 noenhanced
 of(solver, threads) = rows(sprintf('$2 == "%s" && $3 == %d', solver, threads), "solver_times.csv")
 plot of("gauss_seidel", 1) using 4:xtic(1) lc rgb ode title "Gauss-Seidel", \
     of("gauss_seidel", 2) using 4 lc rgb "#8fbc8f" title "the same, 2 threads", \

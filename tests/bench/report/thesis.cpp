@@ -96,8 +96,10 @@ void as_in_thesis(scenes::Scene& scene, const Method& method, uint32_t iteration
     if (method.relaxation > 0) scene.world.relaxation = static_cast<float>(method.relaxation);
 }
 
+// Links along the threads alone.
 scenes::Scene thesis_sheet(int side, const Method& method, uint32_t iterations, float step) {
     scenes::Scene scene = scenes::make_scene("cloth_hang" + std::to_string(side));
+    scene.cloths.front().def.shear_compliance = INFINITY;
     as_in_thesis(scene, method, iterations, step);
     return scene;
 }
@@ -123,14 +125,14 @@ double median(std::vector<double> values) {
 }  // namespace
 
 void cloth_solvers(const fs::path& folder) {
-    constexpr uint32_t kIterations = 30, kTimed = 30;
+    constexpr uint32_t kIterations = 30, kTimed = 15;
     constexpr int kSide = 50;
     Csv curve(folder / "cloth_solvers.csv", "solver,time_s,error");
     Csv cost(folder / "cloth_solvers_cost.csv", "solver,iterations,step_ms,error");
     for (const Method& method : {kGaussSeidel, kOverRelaxed, kJacobi, kMinimumResidual, kConjugateResiduals, kDirect}) {
         const double error = curve_of(curve, method, thesis_sheet(kSide, method, kIterations, kShort), 2);
         say("sheet of 50 x 50, %s: mean strain %.3g after 2 s\n", method.name, error);
-        for (const uint32_t iterations : {8u, 12u, 15u, 30u, 35u, 60u}) {
+        for (const uint32_t iterations : {8u, 12u, 20u, 35u, 60u}) {
             SheetRun timed(thesis_sheet(kSide, method, iterations, kShort));
             std::vector<double> times;
             for (uint32_t frame = 0; frame < kTimed; ++frame) times.push_back(timed.step());
@@ -141,11 +143,11 @@ void cloth_solvers(const fs::path& folder) {
 }
 
 void cloth_rest(const fs::path& folder) {
-    constexpr double kSeconds = 4;
-    constexpr int kMeant = 100;  // of the last frames
+    constexpr double kSeconds = 2;
+    constexpr int kMeant = 60;  // of the last frames
     Csv csv(folder / "cloth_rest.csv", "solver,iterations,error");
-    for (const Method& method : {kGaussSeidel, kOverRelaxed, kJacobi, kMinimumResidual, kConjugateResiduals})
-        for (const uint32_t iterations : {2u, 4u, 6u, 9u, 12u, 18u, 25u, 35u}) {
+    for (const Method& method : {kGaussSeidel, kJacobi, kConjugateResiduals})
+        for (const uint32_t iterations : {2u, 4u, 9u, 18u, 35u}) {
             const scenes::Scene scene = thesis_sheet(50, method, iterations, kShort);
             SheetRun run(scene);
             const int frames = static_cast<int>(kSeconds / static_cast<double>(kShort));
@@ -162,15 +164,14 @@ void cloth_rest(const fs::path& folder) {
 void cloth_large(const fs::path& folder) {
     constexpr uint32_t kIterations = 15;
     Csv csv(folder / "cloth_large.csv", "solver,time_s,error");
-    for (const Method& method :
-         {kGaussSeidel, kOverRelaxed, kJacobi, kImprovedJacobi, kMinimumResidual, kConjugateResiduals, kDirect}) {
-        const double error = curve_of(csv, method, thesis_sheet(100, method, kIterations, kLong), 3);
-        say("sheet of 100 x 100, %s: mean strain %.3g after 3 s\n", method.name, error);
+    for (const Method& method : {kGaussSeidel, kOverRelaxed, kJacobi, kImprovedJacobi, kConjugateResiduals, kDirect}) {
+        const double error = curve_of(csv, method, thesis_sheet(100, method, kIterations, kLong), 2);
+        say("sheet of 100 x 100, %s: mean strain %.3g after 2 s\n", method.name, error);
     }
 }
 
 void solver_times(const fs::path& folder) {
-    constexpr uint32_t kIterations = 15, kTimed = 20;
+    constexpr uint32_t kIterations = 15, kTimed = 12;
     struct Case {
         const char* scene;
         uint32_t before;                           // frames until it works
