@@ -115,7 +115,7 @@ const std::vector<Family>& families() {
         {"bow", "bow", "a bow of wood shoots an arrow, eight times slower", 400, false, build_bow, 0},
         {"knee", "knee", "a knee with ligaments, stretched and bent by a muscle", 420, false, build_knee, 0},
         {"quads", "quads", "patches of orthotropic quadrilaterals pulled", 300, false, build_quads, 0},
-        {"tearing_flag", "tearing_flag", "a flag in a rising wind that tears it", 480, false, build_tearing_flag, 0},
+        {"tearing_flag", "tearing_flag", "a flag in a wind that tears it", 480, false, build_tearing_flag, 0},
         {"plastic_bar", "plastic_bar", "bars bent and let go, one of which yields", 300, false, build_plastic_bar, 0},
         {"meshlessN_eR", "meshless3_e1e5", "N cubes of R Pa of points without a mesh dropped", 240, false,
          build_meshless, 50},

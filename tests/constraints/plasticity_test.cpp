@@ -68,7 +68,9 @@ TEST(Plasticity, HardensByWhatHasFlowed) {
     for (int i = 1; i <= 200; ++i) {
         const double size = strain * i / 200;
         const bool flows = flow(at(size), law, 0.01, set, &flowed);
-        if (std::abs(size - law.yield) > 0.02 * law.yield) EXPECT_EQ(flows, size > law.yield) << i;
+        if (std::abs(size - law.yield) > 0.02 * law.yield) {
+            EXPECT_EQ(flows, size > law.yield) << i;
+        }
     }
     EXPECT_NEAR(flowed, gone, 0.02 * gone);
     EXPECT_NEAR(strain_of(at(strain) * set.inverse()), law.yield + law.hardening * gone, 0.02 * strain);
