@@ -138,8 +138,8 @@ Scene build_tearing_flag(double, double, const Options& options) {
     flag.def.stiffness_damping = 0.001f;
     flag.def.air_drag = 1.2f;
     flag.def.air_lift = 1;
-    flag.def.tear_strain = 0.05f;
-    flag.look.most = 0.2;
+    flag.def.tear_strain = 0.04f;
+    flag.look.most = 0.05;
     for (uint32_t k = 0; k < kTall; ++k) flag.pinned.push_back(k);
     // The lower lip of the slit: vertices of their own for the triangles below it.
     std::vector<uint32_t> lip(flag.points.size());
@@ -156,7 +156,7 @@ Scene build_tearing_flag(double, double, const Options& options) {
             if (lip[corner[k]] != 0) corner[k] = lip[corner[k]];
     }
     scene.add_cloth(std::move(flag));
-    scene.world.wind = {18, 0.5f, 7};
+    scene.world.wind = {18.5f, 0.5f, 7};
     add_static_box(scene, {-0.03, kTop / 2 + 0.05, 0}, 0.03, kTop / 2 + 0.05, 0.03, Look::steel);
     scene.camera = {{0.9, 1.7, 4.0}, {0.75, 1.35, 0}, 38};
     scene.stage = {{-1, 0, -2}, {3, 2.5, 2}};
