@@ -33,16 +33,16 @@ public:
 };
 
 // Twenty segments from the origin, where the cable is clamped, straight to a point.
-struct Beam {
-    Beam(taut_cable_kind kind, const Vec& tip) : path{{0, 0, 0}, tip.pos()}, def(CableLab::plan(kind)) {
+struct CableBeam {
+    CableBeam(taut_cable_kind kind, const Vec& tip) : path{{0, 0, 0}, tip.pos()}, def(CableLab::plan(kind)) {
         def.points = path;
         def.point_count = 2;
         def.end[0] = to_world({0, 0, 0});
         def.end[0].clamped = 1;
         def.segment_count = 20;
     }
-    Beam(const Beam&) = delete;
-    Beam& operator=(const Beam&) = delete;
+    CableBeam(const CableBeam&) = delete;
+    CableBeam& operator=(const CableBeam&) = delete;
 
     taut_pos path[2];
     taut_cable_def def;

@@ -104,7 +104,7 @@ TEST_P(EitherCable, SagsAsABeam) {
     constexpr double kLength = 2, kPerMetre = 1, kStiffness = 400;
     for (const double load : {0.0, 2.0}) {
         CableLab lab(calm);
-        Beam beam(GetParam(), {kLength, 0, 0});
+        CableBeam beam(GetParam(), {kLength, 0, 0});
         taut_cable_def& d = beam.def;
         d.mass_per_metre = kPerMetre;
         d.bending_stiffness = kStiffness;
@@ -122,7 +122,7 @@ TEST_P(EitherCable, SagsAsABeam) {
 TEST_P(EitherCable, SwingsAsABeam) {
     constexpr double kLength = 2, kPerMetre = 1, kStiffness = 50;
     CableLab lab([](taut_world_def& def) { def.gravity = {}; });
-    Beam beam(GetParam(), {kLength, 0, 0});
+    CableBeam beam(GetParam(), {kLength, 0, 0});
     taut_cable_def& d = beam.def;
     d.mass_per_metre = kPerMetre;
     d.bending_stiffness = kStiffness;
@@ -154,7 +154,7 @@ TEST_P(EitherCable, BucklesAsEulersColumn) {
     const double critical = kPi * kPi * kStiffness / (4 * kLength * kLength);
     for (const double share : {0.9, 1.1}) {
         CableLab lab(calm);
-        Beam beam(GetParam(), {0, kLength, 0});
+        CableBeam beam(GetParam(), {0, kLength, 0});
         taut_cable_def& d = beam.def;
         d.mass_per_metre = 0.01f;
         d.gravity_scale = 0;
