@@ -30,7 +30,7 @@ Track there_and_back(double way, double begin, double there, double back) {
 // their sides: along the stiff direction, across it, and at an eighth of a turn to it, where they shear (Tournier et
 // al. 2015, figure 6 left).
 Scene build_quads(double, double, const Options& options) {
-    constexpr int kSide = 15;
+    constexpr int kSide = 11;
     constexpr double kWide = 0.7, kStiff = 4000, kSoft = 400, kPulled = 0.22;
     struct Kind {
         const char* label;
@@ -101,7 +101,7 @@ Scene build_quads(double, double, const Options& options) {
 // Bars that are bent down and let go: one that yields and hardens keeps a part of the bend, the other comes back.
 Scene build_plastic_bar(double, double, const Options& options) {
     constexpr double kBar[3] = {1.2, 0.08, 0.08}, kBent = 0.45;
-    constexpr int kNodes[3] = {31, 3, 3};
+    constexpr int kNodes[3] = {25, 3, 3};
     Scene scene = soft_hall(1.2);
     for (const bool yields : {true, false}) {
         const double z = yields ? 0.15 : -0.2;
