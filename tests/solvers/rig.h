@@ -138,7 +138,8 @@ public:
     double h;
     Vec3 gravity{0, -9.81, 0};
     Solver solver = kBlockLdlt;
-    SolverSettings settings{0, true, 0.25, 9.81 * 9.81, &kContactKernelsSse2, &kJointKernelsSse2, &kElementKernelsSse2};
+    SolverSettings settings{0, true, 0.25, 9.81 * 9.81, &kContactKernelsSse2, &kJointKernelsSse2, &kElementKernelsSse2,
+                            &kGrainKernelsSse2};
     SolverReport report;
 
 private:
