@@ -90,7 +90,7 @@ typedef struct taut_cloth_def {
      *  on; 0: it stays as it is. Default 0. */
     uint32_t gas;
     float gravity_scale;         /**< [-1000, 1000]. Default 1 */
-    taut_deformable_solve solve; /**< default TAUT_DEFORMABLE_DIRECT */
+    taut_deformable_solve solve; /**< default TAUT_DEFORMABLE_AUTO */
     float stretch_tolerance;     /**< of a swept cloth: by which it may stretch beyond what its stiffness lets it, and
                                       for which it and what it touches take substeps, up to 64 a step, [1e-4, 10].
                                       Default 0.2 */
@@ -119,6 +119,8 @@ TAUT_API taut_result taut_cloth_remove(taut_cloth cloth);
 /** 1 if the handle names a live cloth, else 0. */
 TAUT_API int32_t taut_cloth_is_valid(taut_cloth cloth);
 TAUT_API taut_result taut_cloth_get_user_data(taut_cloth cloth, uint64_t* out);
+/** How the world's default solver takes its elements: TAUT_DEFORMABLE_DIRECT or TAUT_DEFORMABLE_SWEPT. */
+TAUT_API taut_result taut_cloth_get_solve(taut_cloth cloth, taut_deformable_solve* out);
 /** The cloth that a body is a vertex of; null for any other body. */
 TAUT_API taut_result taut_body_get_cloth(taut_body body, taut_cloth* out);
 

@@ -74,7 +74,7 @@ typedef struct taut_solid_def {
     taut_orthotropic orthotropic; /**< of TAUT_SOLID_ORTHOTROPIC, which has none of the isotropic constants and does
                                        not yield */
     float gravity_scale;          /**< [-1000, 1000]. Default 1 */
-    taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_DIRECT */
+    taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_AUTO */
     taut_material surface;        /**< friction and restitution */
     taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the solid has a negative one */
     uint64_t user_data; /**< of the solid and of each of its vertices */
@@ -99,6 +99,8 @@ TAUT_API taut_result taut_solid_remove(taut_solid solid);
 /** 1 if the handle names a live solid, else 0. */
 TAUT_API int32_t taut_solid_is_valid(taut_solid solid);
 TAUT_API taut_result taut_solid_get_user_data(taut_solid solid, uint64_t* out);
+/** As taut_cloth_get_solve. */
+TAUT_API taut_result taut_solid_get_solve(taut_solid solid, taut_deformable_solve* out);
 /** The solid that a body is a vertex of; null for any other body. */
 TAUT_API taut_result taut_body_get_solid(taut_body body, taut_solid* out);
 

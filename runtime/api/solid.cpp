@@ -114,6 +114,7 @@ void taut_solid_def_init(taut_solid_def* def) {
     def->yield_stress = def->creep = kNever;
     def->plastic_limit = 1;
     def->gravity_scale = 1;
+    def->solve = TAUT_DEFORMABLE_AUTO;
     def->surface = kDefaultMaterial;
     def->filter = kDefaultFilter;
 }
@@ -152,14 +153,16 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->surface, def->filter);
         uint32_t cell;
-        if (const char* fault = plan_solid(mesh, solid, solve_of(def->solve), plan, cell)) {
+        taut_deformable_solve solve = def->solve;
+        const auto plan_as = [&](JointSolve as, SoftPlan& to) { return plan_solid(mesh, solid, as, to, cell); };
+        if (const char* fault = plan_soft(world, false, plan_as, solve, plan)) {
             char text[96];
             std::snprintf(text, sizeof text, "cells[%u] %s", cell, fault);
             check.require(false, cell == kNone ? fault : text);
             return check.result();
         }
         const AirTraits air{def->air_drag, def->air_lift};
-        if (!plan_checked_air(check, world, air, def->solve, plan)) return check.result();
+        if (!plan_checked_air(check, world, air, solve, plan)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);
         if (added == TAUT_OK) *out = world.solid_handle(index);
@@ -179,6 +182,11 @@ int32_t taut_solid_is_valid(taut_solid handle) { return is_valid(handle); }
 taut_result taut_solid_get_user_data(taut_solid handle, uint64_t* out) {
     Check check(__func__);
     return soft_user_data(check, handle, out);
+}
+
+taut_result taut_solid_get_solve(taut_solid handle, taut_deformable_solve* out) {
+    Check check(__func__);
+    return soft_solve(check, handle, out);
 }
 
 taut_result taut_body_get_solid(taut_body handle, taut_solid* out) {
