@@ -140,6 +140,8 @@ TAUT_API taut_result taut_cloth_remove(taut_cloth cloth);
 /** 1 if the handle names a live cloth, else 0. */
 TAUT_API int32_t taut_cloth_is_valid(taut_cloth cloth);
 TAUT_API taut_result taut_cloth_get_user_data(taut_cloth cloth, uint64_t* out);
+/** How the world's default solver takes its elements: TAUT_DEFORMABLE_DIRECT or TAUT_DEFORMABLE_SWEPT. */
+TAUT_API taut_result taut_cloth_get_solve(taut_cloth cloth, taut_deformable_solve* out);
 /** The cloth that a body is a vertex of; null for any other body. */
 TAUT_API taut_result taut_body_get_cloth(taut_body body, taut_cloth* out);
 

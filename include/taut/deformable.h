@@ -36,6 +36,11 @@ typedef enum taut_deformable_solve {
        64 a step: time grows as vertices; what is stiffer or heavier than these hold gives way. Cloths of links and of
         triangles without bending stiffness, neo-Hookean tetrahedra; others are swept as joints are, far slower */
     TAUT_DEFORMABLE_SWEPT = 1,
+    /** the one of these that is predicted to hold its stiffness and its own weight at the lower cost: swept where its
+        substeps are as short as its stiffness asks for at any load, and faster; or where a direct solve would take
+        longer than the step lasts, and swept it stretches by its own weight within its tolerance. Chosen as it is
+        added; taut_cloth_get_solve and taut_solid_get_solve tell */
+    TAUT_DEFORMABLE_AUTO = 2,
     TAUT_DEFORMABLE_SOLVE_MAX = 0x7fffffff
 } taut_deformable_solve;
 

@@ -128,6 +128,8 @@ TAUT_API taut_result taut_solid_remove(taut_solid solid);
 /** 1 if the handle names a live solid, else 0. */
 TAUT_API int32_t taut_solid_is_valid(taut_solid solid);
 TAUT_API taut_result taut_solid_get_user_data(taut_solid solid, uint64_t* out);
+/** As taut_cloth_get_solve. */
+TAUT_API taut_result taut_solid_get_solve(taut_solid solid, taut_deformable_solve* out);
 /** The solid that a body is a vertex of; null for any other body. */
 TAUT_API taut_result taut_body_get_solid(taut_body body, taut_solid* out);
 

@@ -186,10 +186,12 @@ taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, t
         plan_spheres(plan, def->thickness, def->material, def->filter);
         Fabric fabric = fabric_of(*def);
         fabric.shortest_substep = static_cast<double>(world.def.time_step) / kMostElasticSubsteps;
-        const char* fault = plan_cloth(mesh, kind, fabric, solve_of(def->solve), plan);
-        if (!check.require(!fault, fault)) return check.result();
         const AirTraits air{def->air_drag, def->air_lift, def->pressure, def->gas != 0};
-        if (!plan_checked_air(check, world, air, def->solve, plan)) return check.result();
+        taut_deformable_solve solve = def->solve;
+        const auto plan_as = [&](JointSolve as, SoftPlan& to) { return plan_cloth(mesh, kind, fabric, as, to); };
+        const char* fault = plan_soft(world, air.pressure != 0 || air.gas, plan_as, solve, plan);
+        if (!check.require(!fault, fault)) return check.result();
+        if (!plan_checked_air(check, world, air, solve, plan)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);
         if (added == TAUT_OK) *out = world.cloth_handle(index);
@@ -209,6 +211,11 @@ int32_t taut_cloth_is_valid(taut_cloth handle) { return is_valid(handle); }
 taut_result taut_cloth_get_user_data(taut_cloth handle, uint64_t* out) {
     Check check(__func__);
     return soft_user_data(check, handle, out);
+}
+
+taut_result taut_cloth_get_solve(taut_cloth handle, taut_deformable_solve* out) {
+    Check check(__func__);
+    return soft_solve(check, handle, out);
 }
 
 taut_result taut_body_get_cloth(taut_body handle, taut_cloth* out) {

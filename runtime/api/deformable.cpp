@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "integrate/scheme.h"
+
 namespace taut {
 
 bool check_positions(Check& check, const char* name, const taut_pos* points, uint32_t count) {
@@ -43,7 +45,7 @@ Check& check_soft(Check& check, const taut_material& surface, const MaterialName
     check.number("thickness", thickness, kThickness)
         .number("damping", damping, kSoftDamping)
         .number("gravity_scale", gravity_scale, kGravityScale)
-        .choice("solve", solve, TAUT_DEFORMABLE_SWEPT);
+        .choice("solve", solve, TAUT_DEFORMABLE_AUTO);
     check_material(check, names, surface).zero("filter.reserved", filter.reserved);
     return check.require(filter.group <= 0,
                          "filter.group is positive, which makes the vertices collide with each other");
@@ -75,8 +77,9 @@ Array<Vec3> positions_of(World& world, const taut_pos* from, uint32_t count) {
     return out;
 }
 
-JointSolve solve_of(taut_deformable_solve solve) {
-    return solve == TAUT_DEFORMABLE_SWEPT ? JointSolve::swept : JointSolve::direct;
+bool may_sweep(const World& world) {
+    const Solver& solver = *solvers()[world.def.solver];
+    return solver.direct && solver.lanes && !scheme_types()[world.def.scheme]->start;
 }
 
 void plan_spheres(SoftPlan& plan, float thickness, const taut_material& surface, const taut_filter& filter) {

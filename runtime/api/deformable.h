@@ -7,6 +7,7 @@
 #include "api/collider_def.h"
 #include "api/copy_out.h"
 #include "models/air.h"
+#include "models/soft_cost.h"
 #include "models/soft_reading.h"
 
 namespace taut {
@@ -40,7 +41,22 @@ Check& check_air(Check& check, float drag, float lift);
 bool plan_checked_air(Check& check, const World& world, AirTraits traits, taut_deformable_solve solve, SoftPlan& plan);
 
 Array<Vec3> positions_of(World& world, const taut_pos* from, uint32_t count);
-JointSolve solve_of(taut_deformable_solve solve);
+// Whether the world's solver takes what is swept apart from the rest.
+bool may_sweep(const World& world);
+// plan_as(solve, plan) fills an empty plan, of which air has no part yet, and says why it cannot; null: it has. As a
+// def asks for it or, left to choose, as is cheapest; then `solve` says which.
+template <class PlanAs>
+const char* plan_soft(World& world, bool encloses, PlanAs&& plan_as, taut_deformable_solve& solve, SoftPlan& plan) {
+    const JointSolve first = solve == TAUT_DEFORMABLE_SWEPT ? JointSolve::swept : JointSolve::direct;
+    if (const char* fault = plan_as(first, plan)) return fault;
+    if (solve != TAUT_DEFORMABLE_AUTO) return nullptr;
+    solve = TAUT_DEFORMABLE_DIRECT;
+    if (encloses || !may_sweep(world) || cheapest_solve(world, plan) == JointSolve::direct) return nullptr;
+    solve = TAUT_DEFORMABLE_SWEPT;
+    plan.element.clear();
+    plan.soft.triangle.clear();
+    return plan_as(JointSolve::swept, plan);
+}
 // Spheres of the vertices.
 void plan_spheres(SoftPlan& plan, float thickness, const taut_material& surface, const taut_filter& filter);
 // Room for the plan, masses that a particle may have; then it is added.
@@ -60,6 +76,16 @@ taut_result soft_user_data(Check& check, Handle handle, uint64_t* out) {
     if (!check.pointer("out", out)) return check.result();
     return read_soft(check.call(), handle, [&](const World&, const Soft& soft) {
         *out = soft.user_data;
+        return TAUT_OK;
+    });
+}
+
+template <class Handle>
+taut_result soft_solve(Check& check, Handle handle, taut_deformable_solve* out) {
+    if (!check.pointer("out", out)) return check.result();
+    return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
+        const bool swept = world.elements.set[soft.sets[0].set].solve == JointSolve::swept;
+        *out = swept ? TAUT_DEFORMABLE_SWEPT : TAUT_DEFORMABLE_DIRECT;
         return TAUT_OK;
     });
 }

@@ -220,7 +220,9 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->surface, def->filter);
         uint32_t cell;
-        if (const char* fault = plan_solid(mesh, solid, solve_of(def->solve), plan, cell)) {
+        taut_deformable_solve solve = def->solve;
+        const auto plan_as = [&](JointSolve as, SoftPlan& to) { return plan_solid(mesh, solid, as, to, cell); };
+        if (const char* fault = plan_soft(world, false, plan_as, solve, plan)) {
             char text[96];
             const char* kind = def->corners == TAUT_SOLID_MESHLESS ? "samples" : "cells";
             std::snprintf(text, sizeof text, "%s[%u] %s", kind, cell, fault);
@@ -228,8 +230,7 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
             return check.result();
         }
         const AirTraits air{def->air_drag, def->air_lift};
-        if (!plan.soft.triangle.empty() && !plan_checked_air(check, world, air, def->solve, plan))
-            return check.result();
+        if (!plan.soft.triangle.empty() && !plan_checked_air(check, world, air, solve, plan)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);
         if (added == TAUT_OK) *out = world.solid_handle(index);
@@ -249,6 +250,11 @@ int32_t taut_solid_is_valid(taut_solid handle) { return is_valid(handle); }
 taut_result taut_solid_get_user_data(taut_solid handle, uint64_t* out) {
     Check check(__func__);
     return soft_user_data(check, handle, out);
+}
+
+taut_result taut_solid_get_solve(taut_solid handle, taut_deformable_solve* out) {
+    Check check(__func__);
+    return soft_solve(check, handle, out);
 }
 
 taut_result taut_body_get_solid(taut_body handle, taut_solid* out) {

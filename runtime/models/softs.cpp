@@ -50,29 +50,15 @@ void add_vertices(World& world, uint32_t index, const SoftPlan& plan) {
     }
 }
 
-// Of an element's rows, where its nodes are: by how much they would yield to what they carry within a substep of one
-// second, J W J^T lambda, and the square of how fast they swing, J W J^T D [1/s^2]; of each the most.
-struct Swing {
-    double yield = 0, rate = 0;
-};
 Swing swing_of(const World& world, const ElementSet& set, uint32_t element) {
-    const ConstraintType& row = set.type->row;
     const auto nodes = set.nodes_of(element);
     Pose x[kMaxNodes];
-    for (size_t n = 0; n < nodes.size(); ++n) x[n].x = world.nodes.motion[nodes[n]].x;
-    double c[kMaxRows], j[kMaxNodes * kMaxRows * kDof];
-    row.evaluate(set.data_of(element), x, c, j);
-    Swing most;
-    for (int r = 0; r < row.rows; ++r) {
-        double force = 0, moves = 0;
-        for (int k = 0; k < row.rows; ++k) force += set.stiffness[r * row.rows + k] * c[k] / set.softness[element];
-        for (size_t n = 0; n < nodes.size(); ++n)
-            moves += world.nodes.mass[nodes[n]].inv_mass *
-                     Vec3::Map(j + (static_cast<int>(n) * row.rows + r) * kDof).squaredNorm();
-        most.yield = std::max(most.yield, moves * std::abs(force));
-        most.rate = std::max(most.rate, moves * set.stiffness[r * (row.rows + 1)] / set.softness[element]);
+    double inverse[kMaxNodes];
+    for (size_t n = 0; n < nodes.size(); ++n) {
+        x[n].x = world.nodes.motion[nodes[n]].x;
+        inverse[n] = world.nodes.mass[nodes[n]].inv_mass;
     }
-    return most;
+    return swing_of(set.type->row, set.stiffness, set.data_of(element), set.softness[element], x, inverse);
 }
 
 // What fused sweeps of a set yield from the start. Those that are to be resolved are about as stiff as the material in
@@ -116,6 +102,22 @@ void add_elements(World& world, Soft& soft, const ElementPlan& plan) {
 }
 
 }  // namespace
+
+Swing swing_of(const ConstraintType& row, const double* stiffness, const double* data, double softness, const Pose* x,
+               const double* inverse_mass) {
+    double c[kMaxRows], j[kMaxNodes * kMaxRows * kDof];
+    row.evaluate(data, x, c, j);
+    Swing most;
+    for (int r = 0; r < row.rows; ++r) {
+        double force = 0, moves = 0;
+        for (int k = 0; k < row.rows; ++k) force += stiffness[r * row.rows + k] * c[k] / softness;
+        for (int n = 0; n < row.nodes; ++n)
+            moves += inverse_mass[n] * Vec3::Map(j + (n * row.rows + r) * kDof).squaredNorm();
+        most.yield = std::max(most.yield, moves * std::abs(force));
+        most.rate = std::max(most.rate, moves * stiffness[r * (row.rows + 1)] / softness);
+    }
+    return most;
+}
 
 uint32_t add_soft(World& world, const SoftPlan& plan) {
     Soft soft(world.memory);

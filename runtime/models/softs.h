@@ -49,6 +49,14 @@ struct SoftPlan {
     ColliderTraits traits;  // of these
 };
 
+// Of an element's rows: by how much they would yield to what they carry within a substep of one second, J W J^T lambda,
+// and the square of how fast they swing, J W J^T D [1/s^2]; of each the most.
+struct Swing {
+    double yield = 0, rate = 0;
+};
+Swing swing_of(const ConstraintType& row, const double* stiffness, const double* data, double softness, const Pose* x,
+               const double* inverse_mass);
+
 // At rest. Throws std::bad_alloc with nothing changed.
 uint32_t add_soft(World& world, const SoftPlan& plan);
 // With every joint and attachment on it. Throws std::bad_alloc with nothing changed.
