@@ -223,7 +223,12 @@ void SoftGround::kick() {
     if (group.cloth.bits) bodies = bodies_of(group.cloth);
     if (group.solid.bits) bodies = bodies_of(group.solid);
     const Vec v = 6.0 * Vec(random_.direction());
-    for (const taut_body body : bodies) ok(taut_body_set_velocity(body, v.narrow(), {}));
+    for (const taut_body body : bodies) {
+        taut_body_kind kind{};
+        ok(taut_body_get_kind(body, &kind));
+        if (kind != TAUT_BODY_KINEMATIC)
+            ok(taut_body_set_velocity(body, v.narrow(), {}));  // a pin would go on for ever
+    }
 }
 
 // A vertex of a cloth or solid, or lets it go.
