@@ -7,10 +7,10 @@ namespace scenes {
 
 namespace {
 
-constexpr double kRadius = 0.05, kMass = 1;  // [m, kg]
+constexpr double kGrainRadius = 0.05, kGrainMass = 1;  // [m, kg]
 
 Body grain_at(int shape, taut_pos at, float friction) {
-    Body grain = crate(shape, at, kMass, Look::particle);
+    Body grain = crate(shape, at, kGrainMass, Look::particle);
     grain.kind = TAUT_BODY_PARTICLE;
     grain.friction = friction;
     grain.grain = true;
@@ -21,11 +21,11 @@ Body grain_at(int shape, taut_pos at, float friction) {
 
 // R is the friction of the grains. They do not turn, so that even round ones heap up.
 Scene build_grains(double n, double r, const Options& options) {
-    constexpr double kBed = 3.2, kBump = 2.2 * kRadius;  // [m]
-    constexpr int kRow = 4;                              // of the column that is poured
+    constexpr double kBed = 3.2, kBump = 2.2 * kGrainRadius;  // [m]
+    constexpr int kRow = 4;                                   // of the column that is poured
     Scene scene = empty_scene();
     add_ground(scene);
-    const int ball = sphere_shape(scene, kRadius);
+    const int ball = sphere_shape(scene, kGrainRadius);
     const auto friction = static_cast<float>(r);
     // A bed of grains held fast.
     for (double x = -kBed / 2; x <= kBed / 2; x += kBump)
@@ -39,10 +39,11 @@ Scene build_grains(double n, double r, const Options& options) {
     for (int i = 0; i < static_cast<int>(n); ++i) {
         // A loose column, out of line enough to scatter as it lands.
         const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
-        const double middle = 0.5 * (kRow - 1), beside = 3 * kRadius, above = 2.6 * kRadius;
-        const taut_vec3 jitter = random.in_cube(0.45 * kRadius);
-        const taut_pos at = plus({(column - middle) * beside, 4 * kRadius + layer * above, (row - middle) * beside},
-                                 jitter.x, 0.4 * jitter.y, jitter.z);
+        const double middle = 0.5 * (kRow - 1), beside = 3 * kGrainRadius, above = 2.6 * kGrainRadius;
+        const taut_vec3 jitter = random.in_cube(0.45 * kGrainRadius);
+        const taut_pos at =
+            plus({(column - middle) * beside, 4 * kGrainRadius + layer * above, (row - middle) * beside}, jitter.x,
+                 0.4 * jitter.y, jitter.z);
         scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, friction)));
     }
     perturb(scene, options.seed);
@@ -53,23 +54,23 @@ Scene build_grains(double n, double r, const Options& options) {
 
 // A lattice of grains, each a centimetre out of its place, falls into a box of 2 x 2 m.
 Scene build_grains_box(double n, double, const Options& options) {
-    constexpr double kHalf = 1, kJitter = 0.01, kSpacing = 2.4 * kRadius;  // [m]
+    constexpr double kHalf = 1, kJitter = 0.01, kSpacing = 2.4 * kGrainRadius;  // [m]
     constexpr int kRow = 16;
     Scene scene = empty_scene();
     add_ground(scene);
     const int count = static_cast<int>(n), layers = (count + kRow * kRow - 1) / (kRow * kRow);
-    const double tall = 2 * kRadius + layers * kSpacing;
+    const double tall = 2 * kGrainRadius + layers * kSpacing;
     add_bin(scene, kHalf, tall, 0.5);
     scene.roles.bin = Bounds{{-kHalf, -0.5, -kHalf}, {kHalf, 2 * tall, kHalf}};
-    const int ball = sphere_shape(scene, kRadius);
+    const int ball = sphere_shape(scene, kGrainRadius);
     Random random(1);
     for (int i = 0; i < count; ++i) {
         const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
         const double middle = 0.5 * (kRow - 1);
         const taut_vec3 jitter = random.in_cube(kJitter);
         const taut_pos at =
-            plus({(column - middle) * kSpacing, 2 * kRadius + layer * kSpacing, (row - middle) * kSpacing}, jitter.x,
-                 jitter.y, jitter.z);
+            plus({(column - middle) * kSpacing, 2 * kGrainRadius + layer * kSpacing, (row - middle) * kSpacing},
+                 jitter.x, jitter.y, jitter.z);
         scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, 0.5f)));
     }
     perturb(scene, options.seed);
