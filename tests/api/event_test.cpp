@@ -60,14 +60,15 @@ TEST_F(EventCalls, DefsRefuseWhatIsOutOfRange) {
         taut_collider out{};
         expect_refused(p.world, text, [&] { return taut_body_add_collider(p.crate, &bad, &out); });
     };
-    refuse("flags is 8", [](auto& d) { d.flags = 8; });
+    refuse("flags is 16", [](auto& d) { d.flags = 16; });
+    refuse("which only a particle", [](auto& d) { d.flags = TAUT_COLLIDER_GRAIN; });
     refuse("contact_events is 16", [](auto& d) { d.contact_events = 16; });
     refuse("one_way.x", [](auto& d) { d.one_way.x = NAN; });
     refuse("reserved", [](auto& d) { d.reserved = 1; });
     taut_body_def body = body_def(TAUT_BODY_DYNAMIC, p.box);
     taut_body out{};
-    body.collider_flags = 8;
-    expect_refused(p.world, "collider_flags is 8", [&] { return taut_world_add_body(p.world, &body, &out); });
+    body.collider_flags = 16;
+    expect_refused(p.world, "collider_flags is 16", [&] { return taut_world_add_body(p.world, &body, &out); });
     taut_particle_def grain;
     taut_particle_def_init(&grain);
     grain.contact_events = 16;
