@@ -70,6 +70,7 @@ struct Block {
     Array<uint32_t> gases;                 // that it has nodes of, in System::gases, of this substep
     Array<double> gas_response;            // scratch of its solve; see solvers/block_gas.cpp
     bool foresees = false;                 // folded elements are evaluated where their nodes are going
+    bool relinearised = false;             // all are, where the line search came to; see solvers/block_search.cpp
     uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
     bool tower = false;                                // no ties: bodies that stand on each other or are pressed
     bool looped = false;                               // more joints than a tree
@@ -89,9 +90,9 @@ struct Block {
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [nodes, joints, elements, elastic, pairs, links, identity, order, matrix, places, stride, solution, known,
-           force, elastic_force, gases, gas_response, foresees, first_elastic_run, elastic_runs, tower, looped, passing,
-           failed, corrected, mass_ratio, closing, first_row_block, first_contact, contact_count, first_bounded,
-           bounded_count, turn, memory] = of;
+           force, elastic_force, gases, gas_response, foresees, relinearised, first_elastic_run, elastic_runs, tower,
+           looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact, contact_count,
+           first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }
@@ -125,8 +126,8 @@ struct Group {
     Array<uint32_t> nodes;  // moved by forces, in the order of PartitionRules
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one, in order of
     // index. The others: pairs with the most points first, then by place.
-    Array<uint32_t> pairs, pair_colour_begin;  // index into Pairs::active
-    Array<uint8_t> pair_place;                 // of each of pairs, below kSlices
+    Array<uint32_t> pairs, pair_colour_begin;    // index into Pairs::active
+    Array<uint8_t> pair_place;                   // of each of pairs, below kSlices
     Array<uint32_t> grains, grain_colour_begin;  // index into Grains::contact; with colours of their own
     Array<uint32_t> joints, joint_colour_begin;
     Array<ElementRef> elements;  // with colours of their own
@@ -144,10 +145,10 @@ void note_loads(Joints& joints, Elements& elements, const Nodes& nodes);
 constexpr uint8_t kLoadedAfter = 3, kLoadedFor = 60;  // frames
 
 constexpr uint32_t kMostElasticSubsteps = 64;  // a frame, for fused sweeps of elements
-constexpr uint32_t kMaxColours = 64;  // the last is the overflow colour
-constexpr float kHeavyOnLight = 10;   // load over support mass, from which on a load is heavy
-constexpr uint32_t kMostTower = 60;   // bodies of an island that is solved directly, or what a heavy one of it presses
-constexpr uint32_t kSlices = 64;      // along the line on which the moving nodes are spread widest
+constexpr uint32_t kMaxColours = 64;           // the last is the overflow colour
+constexpr float kHeavyOnLight = 10;            // load over support mass, from which on a load is heavy
+constexpr uint32_t kMostTower = 60;  // bodies of an island that is solved directly, or what a heavy one of it presses
+constexpr uint32_t kSlices = 64;     // along the line on which the moving nodes are spread widest
 
 struct PartitionRules {
     uint32_t substeps;  // least
@@ -344,21 +345,21 @@ private:
     bool folds_ = true, lanes_ = true;  // likewise
     Array<uint32_t> block_of_;          // by slot: its block in the last frame, or kNone
     Array<Block> spare_;
-    uint32_t filled_ = 0;                          // of spare_
-    Array<uint8_t> pair_colour_, joint_colour_;    // by index in Pairs::active, by slot
-    Array<uint8_t> grain_colour_;                  // by index in Grains::contact
-    bool all_coloured_ = false;                    // no pair was left out in pair_colour_
-    double lightest_ = 0;                          // of the nodes [kg]
-    double least_footing_ = 0;                     // of those without joints [m]; see buckling.cpp
-    bool heavy_on_light_ = false;                  // some node is kHeavyOnLight times as heavy as another
-    Array<uint64_t> used_;                         // by slot: colours taken
-    Array<uint8_t> place_;                         // by slot, of what moves
-    Array<uint32_t> items_;                        // scratch: what is put in order
-    Array<uint32_t> rank_;                         // scratch: of an item, its colour, kind and place
-    Array<uint32_t> rank_begin_;                   // scratch: where items of a rank go
+    uint32_t filled_ = 0;                        // of spare_
+    Array<uint8_t> pair_colour_, joint_colour_;  // by index in Pairs::active, by slot
+    Array<uint8_t> grain_colour_;                // by index in Grains::contact
+    bool all_coloured_ = false;                  // no pair was left out in pair_colour_
+    double lightest_ = 0;                        // of the nodes [kg]
+    double least_footing_ = 0;                   // of those without joints [m]; see buckling.cpp
+    bool heavy_on_light_ = false;                // some node is kHeavyOnLight times as heavy as another
+    Array<uint64_t> used_;                       // by slot: colours taken
+    Array<uint8_t> place_;                       // by slot, of what moves
+    Array<uint32_t> items_;                      // scratch: what is put in order
+    Array<uint32_t> rank_;                       // scratch: of an item, its colour, kind and place
+    Array<uint32_t> rank_begin_;                 // scratch: where items of a rank go
     Array<double> strain_;  // of each island, by which fused sweeps would yield in substeps of one second, over what
                             // they may; or empty
-    Array<double> grain_strain_;  // likewise, of contacts between grains
+    Array<double> grain_strain_;                   // likewise, of contacts between grains
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those
     Array<Squeeze> squeezes_;                      // scratch: in the order of reach

@@ -207,7 +207,7 @@ void BlockSolve::for_elastic(Act&& act) const {
 }
 
 bool BlockSolve::foresees(const ElementSet& of) const {
-    return relinearised() || (b_.foresees && of.form == ElementForm::folded);
+    return b_.relinearised || (b_.foresees && of.form == ElementForm::folded);
 }
 
 // act(local node, local node, place) for the pairs of nodes that an element couples.
@@ -239,7 +239,7 @@ void BlockSolve::find_elastic_places() {
 // (measured: balloons of a fifth more stretch in some steps); memory for the solve, which may take none.
 void BlockSolve::foresee() {
     b_.foresees = false;
-    set_relinearised(false);
+    b_.relinearised = false;
     b_.elastic_force.resize(b_.elastic_runs > 0 ? nodes_ * kDof : 0);
     if (b_.elastic_runs == 0) return;
     const double h = sys_.scheme.h;
@@ -432,7 +432,7 @@ void BlockSolve::elastic_damping(double& linear, double& square) const {
 // To a part of the way.
 void BlockSolve::relinearise(double part) {
     b_.foresees = true;
-    set_relinearised(true);
+    b_.relinearised = true;
     for_elastic([&](const auto& batch) {
         for (uint32_t k = 0; k < batch.at.count * static_cast<uint32_t>(batch.nodes()); ++k) {
             const uint32_t seat = batch.at.node[k];

@@ -82,7 +82,7 @@ void BlockSolve::analyse() {
     for (uint32_t i = 0; i < unknown.size(); ++i)
         matrix.set_unknown(i, unknown[i].size, unknown[i].multiplier, unknown[i].rows);
     for (const uint64_t link : links) matrix.link(static_cast<uint32_t>(link >> 32), static_cast<uint32_t>(link));
-    b_.solution.resize(2 * unknowns() + nodes_ * kDof + 1);
+    b_.solution.resize(2 * unknowns() + nodes_ * kDof);
     b_.known.resize((nodes_ + ties()) * kDof);
     b_.force.resize(ties() * kMaxRows);
     if (b_.order.empty()) {  // else it was restored

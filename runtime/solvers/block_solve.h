@@ -147,11 +147,6 @@ private:
     // The third: of each node the velocity from which a step of the search goes to System::exact.
     double* way_begin(uint32_t i) { return b_.solution.data() + 2 * unknowns() + size_t{i} * kDof; }
     const double* way_begin(uint32_t i) const { return const_cast<BlockSolve*>(this)->way_begin(i); }
-    // After that 1 where elements are linearised at System::foreseen, where the search came to, else 0.
-    void set_relinearised(bool is) {
-        if (!b_.solution.empty()) b_.solution.back() = is ? 1 : 0;
-    }
-    bool relinearised() const { return !b_.solution.empty() && b_.solution.back() != 0; }
     // Of a node h^2 K s, of a tie how fast its rows close their gaps [1/s].
     double* known(uint32_t i) { return &b_.known[i * kDof]; }
     double* tie_force(uint32_t j) { return &b_.force[j * kMaxRows]; }
