@@ -14,6 +14,7 @@
 #include "state/colliders.h"
 #include "state/grains.h"
 #include "state/motion.h"
+#include "state/surface_contacts.h"
 #include "threads/homes.h"
 
 namespace taut {
@@ -22,16 +23,6 @@ namespace taut {
 constexpr double kBoxLag = 0.5;
 // A frame's motion counts towards the contact margin up to this [m].
 constexpr double kMaxReach = 0.5;
-
-struct ContactForce {  // of one contact point [N], in the frame (normal, tangent1, tangent2) of its manifold
-    float normal = 0, tangent1 = 0, tangent2 = 0;
-    float slip = -1;  // of points in blocks: compliance of sliding friction [1/kg]; 0: sticks; -1: new
-};
-template <class Visitor, Like<ContactForce> Of>
-void describe(Visitor& visitor, Of& of) {
-    auto& [normal, tangent1, tangent2, slip] = of;
-    TAUT_FIELDS(visitor, normal, tangent1, tangent2, slip);
-}
 
 // Who meets whom.
 struct PairEnds {
@@ -305,7 +296,8 @@ struct Pairs {
           carried(memory),
           carried_before(memory),
           parts(memory),
-          grains(memory) {}
+          grains(memory),
+          surfaces(memory) {}
 
     // In what update_bounds() fills, for so many colliders: as they come, not in the step that sees them first.
     void make_room(size_t colliders) {
@@ -356,7 +348,8 @@ struct Pairs {
     Array<Carried> carried;                 // in the order of active; hold_carried()
     Array<Carried> carried_before;          // those of the step before; hold_carried()
     collision::Parts parts;                 // of the pair looked at last
-    Grains grains;                          // contacts that are no pairs
+    Grains grains;                          // contacts that are no pairs,
+    SurfaceContacts surfaces;               // likewise
 };
 
 // The record of a key in a sorted list; null: it has none.
@@ -424,9 +417,9 @@ template <class Visitor, Like<Pairs> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world,
            asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, any_fast, mechanisms,
-           placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts, grains] =
-        of;
-    TAUT_FIELDS(visitor, near, resting, mechanisms, carried, grains);
+           placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts,
+           grains, surfaces] = of;
+    TAUT_FIELDS(visitor, near, resting, mechanisms, carried, grains, surfaces);
     TAUT_ASIDE(visitor, complete, ended, asks, colliders_version);
     visitor.ordered(list, [&](auto&& act) {
         for_near(of,

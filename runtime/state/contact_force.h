@@ -1,0 +1,18 @@
+// What a contact point carries from substep to substep.
+#pragma once
+
+#include "base/describe.h"
+
+namespace taut {
+
+struct ContactForce {  // of one contact point [N], in the frame (normal, tangent1, tangent2) of its manifold
+    float normal = 0, tangent1 = 0, tangent2 = 0;
+    float slip = -1;  // of points in blocks: compliance of sliding friction [1/kg]; 0: sticks; -1: new
+};
+template <class Visitor, Like<ContactForce> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [normal, tangent1, tangent2, slip] = of;
+    TAUT_FIELDS(visitor, normal, tangent1, tangent2, slip);
+}
+
+}  // namespace taut
