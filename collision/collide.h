@@ -271,6 +271,8 @@ inline bool has_parts(const Shape& shape) { return shape.kind == ShapeKind::surf
 struct PartManifold {
     uint32_t part;  // never 0; the same part keeps its number
     Manifold manifold;
+
+    bool is_face() const { return part < 1u << 30; }
 };
 
 // At most so many parts touch at a time: the deepest.
@@ -296,6 +298,16 @@ void collide_parts(const Shape& a, const Placement& at_a, const Shape& b, const 
 // and depth are MPR's: the depth is not the least, on the mean some 10 % more. Round shapes get one point.
 void collide_support_mapped(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, float margin,
                             Manifold& out);
+
+// A point of a shape that stands out, as a ball: corners of polytopes, ends of the axes of spheres and capsules, of a
+// cone its apex, and points of rims; vertices at sharp edges of surfaces.
+struct Corner {
+    Vec3f at;      // in the shape's frame [m]
+    float radius;  // [m]
+    uint32_t number;
+};
+// Those within a box, in the shape's frame, into out.
+void list_corners(const Shape& shape, const Box& near, Array<Corner>& out);
 
 // ---------------------------------------------------------------- queries
 

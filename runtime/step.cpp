@@ -11,6 +11,7 @@
 #include "detect/impact.h"
 #include "detect/internal_faces.h"
 #include "detect/sensors.h"
+#include "detect/surface_contacts.h"
 #include "group_solve.h"
 #include "integrate/integrate.h"
 #include "integrate/scheme.h"
@@ -54,6 +55,7 @@ void detect(World& w, Stopwatch& watch) {
     w.profile.broadphase_us = watch.lap();
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
     find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step});
     if (wake_touched(w)) {
         recall_pairs(w);
         find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);

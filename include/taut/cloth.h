@@ -116,6 +116,7 @@ typedef struct taut_cloth_def {
                                       for which it and what it touches take substeps, up to 64 a step, [1e-4, 10].
                                       Default 0.2 */
     taut_material material;
+    uint32_t self_collision; /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
     taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
     uint64_t user_data; /**< of the cloth and of each of its vertices */
 } taut_cloth_def;

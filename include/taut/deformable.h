@@ -4,7 +4,11 @@
  *
  * A deformable is a mesh of vertices, each a particle of the world, and of elements between them. Its vertices are
  * bodies that all other calls may read, push and attach to; they touch what is around them as spheres of half the
- * deformable's thickness, and not each other.
+ * deformable's thickness. Edges and triangles of its surface, as thick, touch those of other deformables and what
+ * shapes have no vertex of it before: corners, edges, balls, cables. With self_collision its own touch each other too,
+ * but for those that have a vertex in common, and no thicker than half of their shortest edge. What touches is kept on
+ * the side it came from; of two that begin as they overlap, a solid's outside counts, of cloth the side on which most
+ * of it is.
  *
  * Damping by Rayleigh's rule pulls with -(mass_damping M + stiffness_damping K) v. M are the masses, against the world:
  * at the velocity v as a substep begins, over 1 + h mass_damping. K is what the elements' forces change by over the

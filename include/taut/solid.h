@@ -104,6 +104,7 @@ typedef struct taut_solid_def {
     float gravity_scale;          /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_DIRECT */
     taut_material surface;        /**< friction and restitution */
+    uint32_t self_collision; /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
     taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the solid has a negative one */
     uint64_t user_data; /**< of the solid and of each of its vertices */
 } taut_solid_def;

@@ -26,6 +26,7 @@ bool check_kind(Check& check, const taut_cloth_def& def) {
     const bool quads = def.kind == TAUT_CLOTH_QUADS;
     check.choice("strain", def.strain, TAUT_CLOTH_STRAIN_COROTATED)
         .boolean("plane_strain", def.plane_strain)
+        .boolean("self_collision", def.self_collision)
         .require(quads || (!def.quads && def.quad_count == 0), "quads, quad_count: the cloth is of another kind")
         .require(!quads || (!def.triangles && def.triangle_count == 0),
                  "triangles, triangle_count: the cloth is of quadrilaterals");
@@ -181,6 +182,7 @@ taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, t
         const auto kind = static_cast<ClothKind>(def->kind);
         SoftPlan plan(world.memory);
         plan.soft.mass_damping = def->mass_damping;
+        plan.soft.self = def->self_collision != 0;
         plan.soft.gravity_scale = def->gravity_scale;
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->material, def->filter);

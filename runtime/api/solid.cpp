@@ -94,6 +94,7 @@ bool check_points(Check& check, const taut_solid_def& def) {
 bool check_def(Check& check, const taut_solid_def& def) {
     check.struct_size(def.struct_size, sizeof def)
         .choice("material", def.material, TAUT_SOLID_ORTHOTROPIC)
+        .boolean("self_collision", def.self_collision)
         .number("density", def.density, kSolidDensity)
         .number("young_modulus", def.young_modulus, kYoung)
         .number("poisson_ratio", def.poisson_ratio, kSolidPoisson)
@@ -217,6 +218,7 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
         SoftPlan plan(world.memory);
         plan.soft.gravity_scale = def->gravity_scale;
         plan.soft.mass_damping = def->mass_damping;
+        plan.soft.self = def->self_collision != 0;
         plan.soft.user_data = def->user_data;
         plan_spheres(plan, def->thickness, def->surface, def->filter);
         uint32_t cell;

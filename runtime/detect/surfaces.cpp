@@ -40,13 +40,17 @@ float friction_of(const taut_material& a, const taut_material& b) {
                    [](float x, float y) { return std::sqrt(x * y); });
 }
 
+float restitution_of(const taut_material& a, const taut_material& b) {
+    return combine(a.restitution, b.restitution, a.restitution_rule, b.restitution_rule,
+                   [](float x, float y) { return std::max(x, y); });
+}
+
 void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const ColliderTraits& b,
                       const collision::Placement& at_a, const collision::Placement& at_b, const Vec3f& from_a,
                       Pair& pair) {
     const taut_material &one = a.material, &other = b.material;
     pair.friction = friction_of(one, other);
-    pair.restitution = combine(one.restitution, other.restitution, one.restitution_rule, other.restitution_rule,
-                               [](float x, float y) { return std::max(x, y); });
+    pair.restitution = restitution_of(one, other);
     pair.spinning = std::max(one.spinning_friction, other.spinning_friction);
     pair.rolling = std::max(one.rolling_friction, other.rolling_friction);
     if (pair.twists() && !can_turn(nodes, pair)) pair.spinning = pair.rolling = pair.patch = 0;

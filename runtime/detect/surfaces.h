@@ -9,6 +9,7 @@ namespace taut {
 
 // Of two surfaces together.
 float friction_of(const taut_material& a, const taut_material& b);
+float restitution_of(const taut_material& a, const taut_material& b);
 
 // Friction, restitution, arms and drive of a pair. from_a: of the origin of a's shape from that of its node [m].
 void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const ColliderTraits& b,

@@ -74,7 +74,8 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     try {
         const bool moves = world.nodes.info[record.node].kind != NodeKind::fixed;
         reserve_more(world.pairs.grains.gone, world.colliders.grains.size());
-        world.broadphase.add(index, contact_box(world.nodes, world.shapes, record), moves, record.grain);
+        world.broadphase.add(index, contact_box(world.nodes, world.shapes, record), moves,
+                             record.grain || is_surface_vertex(world.nodes, world.softs, record.node));
     } catch (...) {
         world.colliders.remove(index);
         throw;

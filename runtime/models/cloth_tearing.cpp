@@ -59,6 +59,7 @@ public:
         find_mesh();
         find_stretched();
         for (const Stretched& each : stretched_) tear_at(each);
+        soft_.mesh_version = ++world_.softs.version;
     }
 
 private:

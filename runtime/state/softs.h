@@ -4,6 +4,7 @@
 #include "constraints/plasticity.h"
 #include "state/colliders.h"
 #include "state/elements.h"
+#include "state/surface_mesh.h"
 
 namespace taut {
 
@@ -84,7 +85,9 @@ struct Soft {
     Array<double> plastic;  // of each element of stretch its set F_p, [3][3]; empty: it does not yield
     Array<double> flowed;   // of each, or empty likewise: strain that has flowed, in all [1]
     Array<uint8_t> flows;   // of each, or empty likewise: whether it flowed and was not unloaded since
+    bool self = false;      // touches itself
     uint64_t user_data = 0;
+    uint64_t mesh_version = 0;  // changes with its triangles, and is no other's in this world
     // Of a cloth.
     uint32_t tethers = 0;     // of each vertex, to so many pinned ones; models/tethers.h
     double tether_slack = 0;  // over their length along the cloth
@@ -98,14 +101,16 @@ struct Soft {
 template <class Visitor, Like<Soft> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, mass_damping, air, surface,
-           fan_begin, fan, law, plastic, flowed, flows, user_data, tethers, tether_slack, tear_strain, corner] = of;
+           fan_begin, fan, law, plastic, flowed, flows, self, user_data, mesh_version, tethers, tether_slack,
+           tear_strain, corner] = of;
     TAUT_FIELDS(visitor, kind, node, mass, triangle, rest, sets, cell_points, shape, gravity_scale, mass_damping, air,
-                surface, fan_begin, fan, law, plastic, flowed, flows, tethers, tether_slack, tear_strain, corner);
-    TAUT_ASIDE(visitor, user_data);
+                surface, fan_begin, fan, law, plastic, flowed, flows, self, tethers, tether_slack, tear_strain, corner);
+    TAUT_ASIDE(visitor, user_data, mesh_version);
 }
 
 struct Softs {
-    explicit Softs(Memory& memory) : ids(memory), record(memory), loaded(memory), area(memory) {}
+    explicit Softs(Memory& memory)
+        : ids(memory), record(memory), loaded(memory), area(memory), mesh(memory), listed(memory) {}
 
     // Throws std::bad_alloc with nothing changed.
     uint32_t add(Soft&& soft) {
@@ -116,6 +121,7 @@ struct Softs {
             record.push_back(std::move(soft));
         else
             record[index] = std::move(soft);
+        record[index].mesh_version = ++version;
         return index;
     }
     void remove(uint32_t index) {
@@ -130,12 +136,23 @@ struct Softs {
     // one, [m^2] along their normals.
     Array<uint32_t> loaded;
     Array<Vec3> area;
+
+    uint64_t version = 0;  // the last that a mesh got
+    // Scratch of find_surface_contacts(): by slot, and those that have something to touch, ascending.
+    Array<SurfaceMesh> mesh;
+    Array<uint32_t> listed;
 };
 template <class Visitor, Like<Softs> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, record, loaded, area] = of;  // the last two: within a substep
-    TAUT_ASIDE(visitor, ids);
+    auto& [ids, record, loaded, area, version, mesh, listed] = of;  // loaded and area: within a substep; mesh: derived
+    TAUT_ASIDE(visitor, ids, version);
     TAUT_ROWS(visitor, ids, record);
+}
+
+// Whether it is a vertex of a soft body with a surface, whose contacts with other such are in SurfaceContacts.
+inline bool is_surface_vertex(const Nodes& nodes, const Softs& softs, uint32_t node) {
+    const uint32_t soft = nodes.info[node].soft;
+    return soft != kNone && !softs.record[soft].triangle.empty();
 }
 
 }  // namespace taut

@@ -6,6 +6,7 @@
 
 #include "base/math.h"
 #include "base/memory.h"
+#include "collision/collide.h"
 #include "state/contact_force.h"
 #include "state/nodes.h"
 
@@ -14,7 +15,7 @@ namespace taut {
 // A point of one side against one of the other. Each is on a body, or shares the motion of up to three particles:
 //   C = n . sum w_i p_i + offset [m], p_0 = x_0 + lever, p_i = x_i, sum w_i = 0;  J_i = w_i n^T (I, -hat lever)
 struct SurfaceContact {
-    uint64_t a = 0, b = 0;                            // the two features, a < b; by these it is known again
+    uint64_t a = 0, b = 0;                            // the two features, by which it is known again
     uint32_t node[4] = {kNone, kNone, kNone, kNone};  // the first alone may turn; kNone: no weight
     float weight[4] = {};
     Vec3f lever = Vec3f::Zero();   // of the first, world axes as it was found [m]; 0 of particles
@@ -36,16 +37,34 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, lever, normal, gap, friction, restitution, drive, collider[0], collider[1], force, in_block);
 }
 
-struct SurfaceContacts {
-    explicit SurfaceContacts(Memory& memory) : contact(memory), gone(memory) {}
+// Of all of a surface along one axis [m].
+struct SurfaceSpan {
+    double lo, hi;
+    uint32_t soft;
+};
 
-    Array<SurfaceContact> contact;  // ascending by a, then b; find_surface_contacts()
-    Array<uint32_t> gone;           // nodes removed since: what contacts say of these means nothing
-    uint64_t version = 0;           // counts changes of who touches whom
+struct SurfaceContacts {
+    explicit SurfaceContacts(Memory& memory)
+        : contact(memory),
+          gone(memory),
+          found(memory),
+          order(memory),
+          near(memory),
+          colliders(memory),
+          corner(memory),
+          span(memory) {}
+
+    Array<SurfaceContact> contact;           // ascending by a, then b; find_surface_contacts()
+    Array<uint32_t> gone;                    // nodes removed since: what contacts say of these means nothing
+    uint64_t version = 0;                    // counts changes of who touches whom
+    Array<SurfaceContact> found;             // scratch of find_surface_contacts()
+    Array<uint32_t> order, near, colliders;  // likewise
+    Array<SurfaceSpan> span;
+    Array<collision::Corner> corner;  // likewise
 };
 template <class Visitor, Like<SurfaceContacts> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [contact, gone, version] = of;
+    auto& [contact, gone, version, found, order, near, colliders, corner, span] = of;
     TAUT_FIELDS(visitor, contact, gone);
     TAUT_ASIDE(visitor, version);
 }

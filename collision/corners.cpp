@@ -1,0 +1,99 @@
+// What stands out of a shape: points at which it may touch what is flat before any of its edges does.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "collision/narrowphase/core.h"
+#include "collision/surface.h"
+
+namespace taut::collision {
+namespace {
+
+constexpr uint32_t kRim = 16;  // corners of a circle: the chord between two is 2 % of its radius within it
+
+class CornerList {
+public:
+    CornerList(const Box& near, Array<Corner>& out) : near_(near), out_(out) {}
+
+    void add(const Vec3f& at, float radius, uint32_t number) {
+        const bool within =
+            ((at.array() + radius >= near_.lo.array()) && (at.array() - radius <= near_.hi.array())).all();
+        if (within) out_.push_back({at, radius, number});
+    }
+    void add_rim(float radius, float height, uint32_t first) {
+        for (uint32_t k = 0; k < kRim; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kRim;
+            add({radius * static_cast<float>(std::cos(angle)), height, radius * static_cast<float>(std::sin(angle))}, 0,
+                first + k);
+        }
+    }
+
+private:
+    const Box& near_;
+    Array<Corner>& out_;
+};
+
+// Vertices at sharp edges, each once.
+void list_surface_corners(const Shape& shape, const Box& near, Array<Corner>& out) {
+    struct Vertices final : TriangleSink {
+        Vertices(const Surface& of, const Vec3f& by, Array<Corner>& list) : surface(of), scale(by), corners(list) {}
+        void take(uint32_t triangle) override {
+            const Corners corner = surface.corners(triangle);
+            for (int e = 0; e < 3; ++e) {
+                if (!(surface.sharp[triangle] >> e & 1)) continue;
+                for (const uint32_t vertex : {corner[size_t(e)], corner[size_t(next_corner(e))]})
+                    corners.push_back({surface.vertex(vertex).cwiseProduct(scale), 0, vertex});
+            }
+        }
+        const Surface& surface;
+        Vec3f scale;
+        Array<Corner>& corners;
+    };
+    Vertices vertices(*shape.surface, shape.size, out);
+    const Vec3f p = near.lo.cwiseQuotient(shape.size), q = near.hi.cwiseQuotient(shape.size);
+    shape.surface->find({p.cwiseMin(q), p.cwiseMax(q)}, vertices);
+    std::sort(out.begin(), out.end(), [](const Corner& a, const Corner& b) { return a.number < b.number; });
+    const auto same = [](const Corner& a, const Corner& b) { return a.number == b.number; };
+    out.erase(std::unique(out.begin(), out.end(), same), out.end());
+}
+
+}  // namespace
+
+void list_corners(const Shape& shape, const Box& near, Array<Corner>& out) {
+    out.clear();
+    CornerList list(near, out);
+    const Vec3f& size = shape.size;
+    switch (shape.kind) {
+        case ShapeKind::plane:
+            break;
+        case ShapeKind::box: {
+            const auto corners = box_corners(size);
+            for (uint32_t i = 0; i < corners.size(); ++i) list.add(corners[i], 0, i);
+            break;
+        }
+        case ShapeKind::hull:
+            for (uint32_t i = 0; i < shape.hull->vertices.size(); ++i) list.add(shape.hull->vertices[i], 0, i);
+            break;
+        case ShapeKind::sphere:
+            list.add(Vec3f::Zero(), size.x(), 0);
+            break;
+        case ShapeKind::capsule:
+        case ShapeKind::tapered_capsule:
+            list.add({0, -size.y(), 0}, size.x(), 0);
+            list.add({0, size.y(), 0}, shape.kind == ShapeKind::capsule ? size.x() : size.z(), 1);
+            break;
+        case ShapeKind::cylinder:
+            list.add_rim(size.x(), -size.y(), 0);
+            list.add_rim(size.x(), size.y(), kRim);
+            break;
+        case ShapeKind::cone:
+            list.add_rim(size.x(), -size.y(), 0);
+            list.add({0, size.y(), 0}, 0, kRim);
+            break;
+        case ShapeKind::surface:
+            list_surface_corners(shape, near, out);
+            break;
+    }
+}
+
+}  // namespace taut::collision

@@ -1,0 +1,162 @@
+#include "detect/surface_finder.h"
+
+#include <cmath>
+#include <limits>
+
+#include "detect/surface_tree.h"
+#include "detect/surfaces.h"
+
+namespace taut {
+namespace {
+
+constexpr int kMostSteps = 8;  // of an advance; what is not there by then counts as there: the contact is one to come
+
+// Of its owner, a soft body or a shape.
+bool is_still(const SurfaceScene& scene, uint64_t feature) {
+    const auto index = static_cast<uint32_t>(feature >> 32);
+    constexpr uint32_t kShape = 1u << 31;
+    return index & kShape ? !moves_now(scene, index & ~kShape) : !scene.softs.mesh[index].awake;
+}
+
+auto key_of(const SurfaceContact& contact) { return std::pair(contact.a, contact.b); }
+
+}  // namespace
+
+const SurfaceContact* SurfaceFinder::before(uint64_t a, uint64_t b) const {
+    const auto at = std::ranges::lower_bound(before_, std::pair(a, b), {}, key_of);
+    return at != before_.end() && key_of(*at) == std::pair(a, b) ? &*at : nullptr;
+}
+
+void SurfaceFinder::keep_still() {
+    for (const SurfaceContact& contact : before_)
+        if (is_still(scene_, contact.a) && is_still(scene_, contact.b)) found_.push_back(contact);
+}
+
+SurfaceTouch SurfaceFinder::touch_of(uint32_t positive, uint32_t negative) const {
+    SurfaceTouch touch{};
+    touch.collider[0] = positive;
+    touch.collider[1] = negative;
+    const taut_material &one = scene_.colliders.traits[positive].material,
+                        &other = scene_.colliders.traits[negative].material;
+    touch.friction = friction_of(one, other);
+    touch.restitution = restitution_of(one, other);
+    return touch;
+}
+
+bool SurfaceFinder::tied(std::span<const uint32_t> a, std::span<const uint32_t> b) const {
+    const Array<uint64_t>& joined = scene_.pairs.joined;
+    if (joined.empty()) return false;
+    for (const uint32_t one : a)
+        for (const uint32_t other : b)
+            if (one == other || std::binary_search(joined.begin(), joined.end(), pair_key(one, other))) return true;
+    return false;
+}
+
+bool moves_now(const SurfaceScene& scene, uint32_t collider) {
+    const Collider& of = scene.colliders.record[collider];
+    return moves_now(scene.nodes, of.node) || (of.node_b != kNone && moves_now(scene.nodes, of.node_b));
+}
+
+Nearest Passing::nearest(const Vec3f (&at)[4]) const {
+    switch (of) {
+        case Of::vertex_face:
+            return nearest_of_face(at);
+        case Of::edge_edge:
+            return nearest_of_segments(at);
+        case Of::vertex_edge:
+            return nearest_of_edge(at, 1, 2);
+        case Of::vertex_vertex:
+            break;
+    }
+    return {at[0] - at[1], {1, -1, 0, 0}, true};
+}
+
+float Passing::speed() const {
+    float squared = 0;
+    for (int i = 0; i < first(); ++i)
+        for (int k = first(); k < points(); ++k) squared = std::max(squared, (v[i] - v[k]).squaredNorm());
+    return std::sqrt(squared);
+}
+
+float Passing::size() const {
+    float squared = std::numeric_limits<float>::infinity();
+    for (const int begin : {0, first()})
+        for (int i = begin, end = begin == 0 ? first() : points(); i < end; ++i)
+            for (int k = begin; k < i; ++k) squared = std::min(squared, (x[i] - x[k]).squaredNorm());
+    return std::sqrt(squared);
+}
+
+bool meet(const Passing& passing, float reach, float time, Nearest& out) {
+    const float speed = passing.speed();
+    float now = 0;
+    for (int step = 0;; ++step) {
+        Vec3f at[4];
+        passing.at(now, at);
+        out = passing.nearest(at);
+        const float beyond = out.distance() - reach;
+        if (!(beyond > 0)) return true;
+        if (step == kMostSteps) return now > 0;
+        if (!(beyond < speed * (time - now))) return false;
+        now += beyond / speed;
+    }
+}
+
+bool touch(const Passing& passing, const SurfaceTouch& of, float time, const SurfaceContact* was, const Vec3f& facing,
+           SurfaceContact& contact) {
+    Nearest near = passing.nearest(passing.x);
+    const bool through = was && near.inside && near.apart.dot(was->normal) < 0 && near.distance() < passing.size();
+    if (!through && (!meet(passing, of.both + of.margin, time, near) || !near.inside)) return false;
+    const float distance = near.distance();
+    if (!(distance > 1e-12f)) {
+        if (!was) return false;  // it will be off the next frame, whichever way
+        near.apart = was->normal;
+    }
+    contact.normal = near.apart.normalized();
+    const float known = was ? contact.normal.dot(was->normal) : contact.normal.dot(facing);
+    if (known < 0) contact.normal = -contact.normal;
+    contact.gap = -of.both;
+    for (int i = 0; i < passing.points(); ++i) {
+        contact.weight[i] = near.weight[i];
+        contact.gap += near.weight[i] * contact.normal.dot(passing.x[i]);
+    }
+    contact.friction = of.friction;
+    contact.restitution = of.restitution;
+    contact.collider[0] = of.collider[0];
+    contact.collider[1] = of.collider[1];
+    if (was) {
+        contact.force = was->force;
+        contact.in_block = was->in_block;
+    }
+    return true;
+}
+
+void find_surface_contacts(Team& team, const SurfaceScene& scene) {
+    SurfaceContacts& surfaces = scene.pairs.surfaces;
+    if (scene.softs.ids.count() == 0 && surfaces.contact.empty()) return;
+    refit_surfaces(team, scene.nodes, scene.shapes, scene.time, scene.softs);
+    if (!surfaces.gone.empty()) {
+        std::ranges::sort(surfaces.gone);
+        std::erase_if(surfaces.contact, [&](const SurfaceContact& contact) {
+            return std::ranges::any_of(contact.node,
+                                       [&](uint32_t node) { return std::ranges::binary_search(surfaces.gone, node); });
+        });
+        surfaces.gone.clear();
+        ++surfaces.version;
+    }
+    surfaces.found.clear();
+    SurfaceFinder finder(scene, surfaces.contact, surfaces.found);
+    find_surface_pairs(finder);
+    find_surface_shapes(finder);
+    finder.keep_still();
+    surfaces.order.clear();
+    for (uint32_t i = 0; i < surfaces.found.size(); ++i) surfaces.order.push_back(i);
+    std::ranges::sort(surfaces.order, {}, [&](uint32_t i) { return key_of(surfaces.found[i]); });
+    bool same = surfaces.contact.size() == surfaces.found.size();
+    for (uint32_t i = 0; i < surfaces.found.size() && same; ++i)
+        same = std::ranges::equal(surfaces.contact[i].node, surfaces.found[surfaces.order[i]].node);
+    surfaces.version += same ? 0 : 1;
+    surfaces.contact.clear();
+    for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
+}
+
+}  // namespace taut

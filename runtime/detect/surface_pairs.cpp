@@ -1,0 +1,167 @@
+// Surfaces of soft bodies with themselves and with each other: vertices with faces, edges with edges.
+#include <algorithm>
+#include <cmath>
+
+#include "detect/detect.h"
+#include "detect/surface_finder.h"
+#include "detect/surface_tree.h"
+
+namespace taut {
+namespace {
+
+constexpr float kOfEdge = 0.5f;  // of the shortest edge of two features: what touches itself is no thicker
+
+// Two surfaces, or one with itself, in the frame of the first.
+class SurfacePair {
+public:
+    SurfacePair(SurfaceFinder& finder, uint32_t a, uint32_t b)
+        : finder_(finder),
+          soft_{&finder.scene().softs.record[a], &finder.scene().softs.record[b]},
+          mesh_{&finder.scene().softs.mesh[a], &finder.scene().softs.mesh[b]},
+          index_{a, b},
+          apart_((mesh_[1]->origin - mesh_[0]->origin).cast<float>()),
+          time_(static_cast<float>(finder.scene().time)),
+          of_(finder.touch_of(mesh_[0]->collider, mesh_[1]->collider)) {
+        of_.both = mesh_[0]->radius + mesh_[1]->radius;
+        of_.margin = std::min(mesh_[0]->margin, mesh_[1]->margin);
+    }
+
+    void find() {
+        for_meeting_triangles(*mesh_[0], *mesh_[1], apart_, time_, [&](uint32_t t, uint32_t u) { find(t, u); });
+    }
+
+private:
+    const uint32_t* corners(int side, uint32_t t) const { return &soft_[side]->triangle[3 * size_t{t}]; }
+    bool is_itself() const { return index_[0] == index_[1]; }
+
+    void find(uint32_t t, uint32_t u) {
+        if (is_itself()) {
+            const uint32_t *one = corners(0, t), *other = corners(1, u);
+            for (int i = 0; i < 3; ++i)
+                if (one[i] == other[0] || one[i] == other[1] || one[i] == other[2]) return find_beside(t, u);
+        }
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (mesh_[0]->owns[t] >> (3 + k) & 1) find_vertex(0, corners(0, t)[k], 1, u);
+            if (mesh_[1]->owns[u] >> (3 + k) & 1) find_vertex(1, corners(1, u)[k], 0, t);
+            if (!(mesh_[0]->owns[t] >> k & 1)) continue;
+            for (uint32_t n = 0; n < 3; ++n)
+                if (mesh_[1]->owns[u] >> n & 1) find_edges(mesh_[0]->edge_of[3 * t + k], mesh_[1]->edge_of[3 * u + n]);
+        }
+    }
+
+    // Of two triangles of one surface with a corner in common: what of them has none.
+    void find_beside(uint32_t t, uint32_t u) {
+        const auto has = [&](uint32_t of, uint32_t vertex) {
+            const uint32_t* corner = corners(0, of);
+            return corner[0] == vertex || corner[1] == vertex || corner[2] == vertex;
+        };
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (mesh_[0]->owns[t] >> (3 + k) & 1 && !has(u, corners(0, t)[k])) find_vertex(0, corners(0, t)[k], 1, u);
+            if (mesh_[0]->owns[u] >> (3 + k) & 1 && !has(t, corners(0, u)[k])) find_vertex(0, corners(0, u)[k], 1, t);
+            if (!(mesh_[0]->owns[t] >> k & 1)) continue;
+            const SurfaceEdge& edge = mesh_[0]->edge[mesh_[0]->edge_of[3 * t + k]];
+            for (uint32_t n = 0; n < 3; ++n) {
+                if (!(mesh_[0]->owns[u] >> n & 1)) continue;
+                const SurfaceEdge& other = mesh_[0]->edge[mesh_[0]->edge_of[3 * u + n]];
+                if (edge.vertex[0] != other.vertex[0] && edge.vertex[0] != other.vertex[1] &&
+                    edge.vertex[1] != other.vertex[0] && edge.vertex[1] != other.vertex[1])
+                    find_edges(mesh_[0]->edge_of[3 * t + k], mesh_[0]->edge_of[3 * u + n]);
+            }
+        }
+    }
+
+    void place(int side, uint32_t vertex, int at, Passing& passing, SurfaceContact& contact) const {
+        passing.x[at] = side == 0 ? mesh_[0]->x[vertex] : Vec3f(apart_ + mesh_[1]->x[vertex]);
+        passing.v[at] = mesh_[side]->v[vertex];
+        contact.node[at] = soft_[side]->node[vertex];
+    }
+    // Of a triangle, where it is a solid's.
+    Vec3f outward(int side, uint32_t t) const {
+        if (soft_[side]->kind != SoftKind::solid || is_itself()) return Vec3f::Zero();
+        const uint32_t* corner = corners(side, t);
+        const Vec3f& from = mesh_[side]->x[corner[0]];
+        return (mesh_[side]->x[corner[1]] - from).cross(mesh_[side]->x[corner[2]] - from);
+    }
+
+    void find_vertex(int side, uint32_t vertex, int other, uint32_t t) {
+        SurfaceContact contact;
+        Passing passing{};
+        passing.of = Passing::Of::vertex_face;
+        place(side, vertex, 0, passing, contact);
+        for (int k = 0; k < 3; ++k) place(other, corners(other, t)[k], k + 1, passing, contact);
+        contact.a = feature_of(index_[side], SurfacePart::vertex, vertex);
+        contact.b = feature_of(index_[other], SurfacePart::face, t);
+        add(passing, outward(other, t), side == 1, contact);
+    }
+
+    void find_edges(uint32_t e, uint32_t f) {
+        SurfaceContact contact;
+        Passing passing{};
+        passing.of = Passing::Of::edge_edge;
+        for (int k = 0; k < 2; ++k) {
+            place(0, mesh_[0]->edge[e].vertex[k], k, passing, contact);
+            place(1, mesh_[1]->edge[f].vertex[k], k + 2, passing, contact);
+        }
+        contact.a = feature_of(index_[0], SurfacePart::edge, e);
+        contact.b = feature_of(index_[1], SurfacePart::edge, f);
+        Vec3f facing = Vec3f::Zero();
+        for (int side = 0; side < 2; ++side)
+            for (const uint32_t t : mesh_[side]->edge[side == 0 ? e : f].triangle)
+                if (t != kNone) facing += (side == 0 ? -1.0f : 1.0f) * outward(side, t);
+        add(passing, facing, false, contact);
+    }
+
+    void add(const Passing& passing, const Vec3f& facing, bool turned, SurfaceContact& contact) {
+        if (std::ranges::none_of(contact.node, [&](uint32_t node) { return finder_.scene().nodes.solved(node); }))
+            return;
+        SurfaceTouch of = of_;
+        if (is_itself()) of.both = std::min(of.both, kOfEdge * passing.size());
+        if (turned) std::swap(of.collider[0], of.collider[1]);
+        const SurfaceContact* was = finder_.before(contact.a, contact.b);
+        const std::span<const uint32_t> nodes = contact.node;
+        const auto first = static_cast<size_t>(passing.first());
+        if (touch(passing, of, time_, was, facing, contact) && !finder_.tied(nodes.first(first), nodes.subspan(first)))
+            finder_.add(contact);
+    }
+
+    SurfaceFinder& finder_;
+    const Soft* soft_[2];
+    const SurfaceMesh* mesh_[2];
+    uint32_t index_[2];
+    Vec3f apart_;
+    float time_;
+    SurfaceTouch of_;
+};
+
+bool may_touch(const SurfaceScene& scene, uint32_t a, uint32_t b) {
+    const SurfaceMesh &one = scene.softs.mesh[a], &other = scene.softs.mesh[b];
+    if (!one.awake && !other.awake) return false;
+    return filters_agree(scene.colliders.traits[one.collider].filter, scene.colliders.traits[other.collider].filter);
+}
+
+// Along x, about the way of all of a mesh.
+SurfaceSpan span_of(const SurfaceScene& scene, uint32_t soft) {
+    const SurfaceMesh& mesh = scene.softs.mesh[soft];
+    const SurfaceBox box = mesh.node.front().box.swept(static_cast<float>(scene.time) * mesh.drift);
+    return {mesh.origin.x() + static_cast<double>(box.lo.x()), mesh.origin.x() + static_cast<double>(box.hi.x()), soft};
+}
+
+}  // namespace
+
+void find_surface_pairs(SurfaceFinder& finder) {
+    Softs& softs = finder.scene().softs;
+    Array<SurfaceSpan>& spans = finder.scene().pairs.surfaces.span;
+    spans.clear();
+    for (const uint32_t s : softs.listed) {
+        if (softs.record[s].self && softs.mesh[s].awake) SurfacePair(finder, s, s).find();
+        spans.push_back(span_of(finder.scene(), s));
+    }
+    std::ranges::sort(spans, {}, [](const SurfaceSpan& span) { return std::pair(span.lo, span.soft); });
+    for (size_t i = 0; i < spans.size(); ++i)
+        for (size_t k = i + 1; k < spans.size() && spans[k].lo <= spans[i].hi; ++k) {
+            const auto [a, b] = std::minmax(spans[i].soft, spans[k].soft);
+            if (may_touch(finder.scene(), a, b)) SurfacePair(finder, a, b).find();
+        }
+}
+
+}  // namespace taut

@@ -1,0 +1,345 @@
+// Surfaces of soft bodies with shapes, but for their vertices: edges, which are capsules, with a shape by its own
+// kernels, or with the axis of a round one; faces with what stands out of it.
+#include <algorithm>
+#include <cmath>
+
+#include "detect/detect.h"
+#include "detect/surface_finder.h"
+#include "detect/surface_tree.h"
+#include "detect/surfaces.h"
+
+namespace taut {
+namespace {
+
+constexpr float kWithin = 0.98f;     // of an edge, from its middle: what is nearer to an end is the vertex's
+constexpr float kSuffices = 0.125f;  // of the margin: what is nearer by less than this than vertices is theirs too
+
+// Of a collider that nobody's vertex is: in the frame of one surface.
+class SurfaceShape {
+public:
+    SurfaceShape(SurfaceFinder& finder, uint32_t soft, uint32_t collider)
+        : finder_(finder),
+          scene_(finder.scene()),
+          index_(soft),
+          collider_(collider),
+          soft_(scene_.softs.record[soft]),
+          mesh_(scene_.softs.mesh[soft]),
+          of_(scene_.colliders.record[collider]),
+          shape_(scene_.shapes[of_.shape].shape),
+          at_(scene_.pairs.placement[collider]),
+          time_(static_cast<float>(scene_.time)) {
+        at_.position -= mesh_.origin;
+        const NodeMotion& motion = scene_.nodes.motion[of_.node];
+        centre_ = (motion.x - mesh_.origin).cast<float>();
+        velocity_ = motion.v.cast<float>();
+        spin_ = spans() ? Vec3f(Vec3f::Zero()) : Vec3f(motion.w.cast<float>());
+        margin_ = std::min(mesh_.margin, scene_.pairs.travel[collider].margin);
+    }
+
+    void find() {
+        SurfaceBox box = box_of_shape();
+        if (mesh_.node.empty() || !mesh_.node.front().box.meets(box)) return;
+        list_ends();
+        Array<uint32_t>& near = scene_.pairs.surfaces.near;
+        near.clear();
+        for_triangles_in(mesh_, box, [&](uint32_t t) { near.push_back(t); });
+        for (const uint32_t t : near) {
+            for (uint32_t k = 0; k < 3; ++k) {
+                if (mesh_.owns[t] >> k & 1) find_edge(mesh_.edge_of[3 * t + k]);
+                if (of_.grain && mesh_.owns[t] >> (3 + k) & 1) find_vertex(soft_.triangle[3 * t + k]);
+            }
+        }
+        if (!near.empty()) find_faces(box);
+    }
+
+private:
+    bool spans() const { return of_.node_b != kNone; }
+    bool is_round() const {
+        return shape_.kind == collision::ShapeKind::sphere || shape_.kind == collision::ShapeKind::capsule;
+    }
+    Vec3f velocity_at(const Vec3f& point) const { return velocity_ + spin_.cross(point - centre_); }
+
+    // About its way, as seen from what moves as the surface does on average.
+    SurfaceBox box_of_shape() const {
+        const collision::Box tight = collision::bounds(shape_, at_);
+        SurfaceBox box{tight.lo, tight.hi};
+        float grow = margin_;
+        if (spans()) {
+            const NodeMotion& other = scene_.nodes.motion[of_.node_b];
+            const SurfaceBox moved = box.swept(time_ * (other.v.cast<float>() - mesh_.drift));
+            box.add(moved);
+        } else {
+            const float reach = (at_.position.cast<float>() - centre_).norm() + scene_.pairs.stance[collider_].size;
+            grow += std::min(time_ * spin_.norm(), 2.0f) * reach;
+        }
+        return box.swept(time_ * (velocity_ - mesh_.drift)).grown(grow);
+    }
+
+    // Of a round one: its axis, and how fast its ends move.
+    void list_ends() {
+        if (!is_round()) return;
+        const float half = shape_.kind == collision::ShapeKind::capsule ? shape_.size.y() : 0;
+        for (int k = 0; k < 2; ++k) {
+            const uint32_t node = k == 0 ? of_.node : of_.node_b;
+            if (spans()) {
+                end_[k] = (scene_.nodes.motion[node].x - mesh_.origin).cast<float>();
+                speed_[k] = scene_.nodes.motion[node].v.cast<float>();
+            } else {
+                end_[k] = at_.position.cast<float>() + at_.rotation * Vec3f(0, k == 0 ? -half : half, 0);
+                speed_[k] = velocity_at(end_[k]);
+            }
+        }
+    }
+
+    void add(SurfaceContact& contact, uint64_t feature, uint32_t number) {
+        contact.a = feature;
+        contact.b = feature_of_shape(collider_, number);
+        const auto solved = [&](uint32_t node) { return node != kNone && scene_.nodes.solved(node); };
+        if (std::ranges::none_of(contact.node, solved)) return;
+        uint32_t own[4];
+        size_t count = 0;
+        bool tied = false;
+        for (int i = 0; i < 4; ++i)
+            if (contact.node[i] != kNone && scene_.nodes.info[contact.node[i]].soft == index_)
+                own[count++] = contact.node[i];
+        const uint32_t ends[2] = {of_.node, spans() ? of_.node_b : of_.node};
+        tied = finder_.tied(ends, {own, count});
+        if (!tied) finder_.add(contact);
+    }
+
+    SurfaceTouch touch_of(bool shape_is_positive, float radius) const {
+        SurfaceTouch touch = shape_is_positive ? finder_.touch_of(collider_, mesh_.collider)
+                                               : finder_.touch_of(mesh_.collider, collider_);
+        touch.both = mesh_.radius + radius;
+        touch.margin = margin_;
+        return touch;
+    }
+
+    void place_vertex(uint32_t vertex, int i, Passing& passing, SurfaceContact& contact) const {
+        passing.x[i] = mesh_.x[vertex];
+        passing.v[i] = mesh_.v[vertex];
+        contact.node[i] = soft_.node[vertex];
+    }
+
+    // Whether vertices, which have contacts of their own, keep a ball's or axis' features as far off.
+    bool vertices_suffice(std::span<const uint32_t> vertices, float both, const SurfaceContact& contact) const {
+        float least = std::numeric_limits<float>::infinity();
+        for (const uint32_t vertex : vertices) {
+            const Vec3f x[4] = {mesh_.x[vertex], end_[0], end_[1], Vec3f::Zero()};
+            least = std::min(least, nearest_of_edge(x, 1, 2).distance() - both);
+        }
+        return least - contact.gap < kSuffices * margin_;
+    }
+
+    void find_edge(uint32_t e) {
+        if (is_round())
+            find_round_edge(e);
+        else if (shape_.kind != collision::ShapeKind::plane)
+            find_capsule(e);
+    }
+
+    void find_round_edge(uint32_t e) {
+        const SurfaceEdge& edge = mesh_.edge[e];
+        const bool ball = shape_.kind == collision::ShapeKind::sphere;
+        SurfaceContact contact;
+        Passing passing{};
+        passing.of = ball ? Passing::Of::vertex_edge : Passing::Of::edge_edge;
+        const int first = ball ? 1 : 2;
+        for (int k = 0; k < first; ++k) passing.x[k] = end_[k], passing.v[k] = speed_[k];
+        contact.node[0] = of_.node;
+        if (spans()) contact.node[1] = of_.node_b;
+        for (int k = 0; k < 2; ++k) place_vertex(edge.vertex[k], first + k, passing, contact);
+        const uint64_t feature = feature_of(index_, SurfacePart::edge, e);
+        const SurfaceTouch of = touch_of(true, shape_.size.x());
+        if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(),
+                   contact))
+            return;
+        if (vertices_suffice(edge.vertex, of.both, contact)) return;
+        if (!spans()) {
+            Vec3f on_axis = Vec3f::Zero();
+            for (int k = 0; k < first; ++k) on_axis += contact.weight[k] * passing.x[k];
+            contact.lever = on_axis - shape_.size.x() * contact.normal - centre_;
+            if (!ball) {  // both ends are one body's
+                contact.weight[0] += contact.weight[1];
+                contact.weight[1] = contact.weight[2], contact.node[1] = contact.node[2];
+                contact.weight[2] = contact.weight[3], contact.node[2] = contact.node[3];
+                contact.weight[3] = 0, contact.node[3] = kNone;
+            }
+        }
+        add(contact, feature, kAxis);
+    }
+
+    void find_capsule(uint32_t e) {
+        const uint32_t* vertex = mesh_.edge[e].vertex;
+        const Vec3f &from = mesh_.x[vertex[0]], &to = mesh_.x[vertex[1]];
+        const float length = (to - from).norm();
+        if (!(length > 0)) return;
+        const Vec3f along = (1 / length) * (to - from);
+        collision::Shape capsule;
+        capsule.kind = collision::ShapeKind::capsule;
+        capsule.size = {mesh_.radius, 0.5f * length, 0};
+        const Vec3f middle = 0.5f * (from + to);
+        const collision::Placement at{
+            middle.cast<double>(), turn_between(Vec3::UnitY(), along.cast<double>()).toRotationMatrix().cast<float>()};
+        const Vec3f of_shape = velocity_at(middle);
+        float speed = 0;
+        for (int k = 0; k < 2; ++k) speed = std::max(speed, (mesh_.v[vertex[k]] - of_shape).norm());
+        const float reach = margin_ + time_ * speed;
+        const auto take = [&](const collision::Manifold& manifold, uint32_t part) {
+            for (int k = 0; k < manifold.count; ++k)
+                take_point(e, manifold, manifold.points[k], middle, (2 / length) * along,
+                           part + static_cast<uint32_t>(k));
+        };
+        if (!collision::has_parts(shape_)) {
+            collision::PairCache cache;
+            collision::Manifold manifold;
+            collision::collide(capsule, at, shape_, at_, reach, cache, manifold);
+            take(manifold, kCapsule);
+            return;
+        }
+        collision::collide_parts(capsule, at, shape_, at_, reach, scene_.pairs.parts);
+        for (const collision::PartManifold& part : scene_.pairs.parts.found)
+            if (!part.is_face()) take(part.manifold, kCapsule + 2 * part.part);
+    }
+
+    // Of an edge: share: from -1 to 1 along it, times a place from its middle.
+    void take_point(uint32_t e, const collision::Manifold& manifold, const collision::ContactPoint& point,
+                    const Vec3f& middle, const Vec3f& share, uint32_t number) {
+        const float t = share.dot(point.position);
+        if (!(std::abs(t) < kWithin)) return;
+        const uint32_t* vertex = mesh_.edge[e].vertex;
+        SurfaceContact contact;
+        contact.normal = -manifold.normal;  // from the shape to the edge
+        const Vec3f place = middle + point.position;
+        contact.node[0] = of_.node;
+        contact.weight[0] = -1;
+        contact.lever = place - centre_;
+        float closing = contact.normal.dot(velocity_at(place));
+        for (int k = 0; k < 2; ++k) {
+            contact.node[k + 1] = soft_.node[vertex[k]];
+            contact.weight[k + 1] = 0.5f * (k == 0 ? 1 - t : 1 + t);
+            closing -= contact.weight[k + 1] * contact.normal.dot(mesh_.v[vertex[k]]);
+        }
+        contact.gap = point.separation;
+        if (contact.gap - time_ * std::max(closing, 0.0f) > margin_) return;
+        const SurfaceTouch of = touch_of(false, 0);
+        contact.friction = of.friction, contact.restitution = of.restitution;
+        std::ranges::copy(of.collider, contact.collider);
+        const uint64_t feature = feature_of(index_, SurfacePart::edge, e);
+        if (const SurfaceContact* was = finder_.before(feature, feature_of_shape(collider_, number))) {
+            contact.force = was->force;
+            contact.in_block = was->in_block;
+        }
+        add(contact, feature, number);
+    }
+
+    void find_vertex(uint32_t vertex) {
+        SurfaceContact contact;
+        Passing passing{};
+        passing.of = Passing::Of::vertex_vertex;
+        passing.x[0] = end_[0], passing.v[0] = speed_[0];
+        contact.node[0] = of_.node;
+        place_vertex(vertex, 1, passing, contact);
+        const uint64_t feature = feature_of(index_, SurfacePart::vertex, vertex);
+        if (touch(passing, touch_of(true, shape_.size.x()), time_,
+                  finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact))
+            add(contact, feature, kAxis);
+    }
+
+    void find_faces(const SurfaceBox& box) {
+        Array<collision::Corner>& corners = scene_.pairs.surfaces.corner;
+        const Mat3f back = at_.rotation.transpose();
+        const SurfaceBox& root = mesh_.node.front().box;
+        const Vec3f lo = root.lo.cwiseMax(box.lo), hi = root.hi.cwiseMin(box.hi);
+        const Vec3f middle = back * (0.5f * (lo + hi) - at_.position.cast<float>());
+        const Vec3f half = 0.5f * (back.cwiseAbs() * (hi - lo));
+        collision::list_corners(shape_, {middle - half, middle + half}, corners);
+        for (const collision::Corner& corner : corners) {
+            Vec3f at = at_.position.cast<float>() + at_.rotation * corner.at, velocity = velocity_at(at);
+            uint32_t node = of_.node;
+            if (spans()) {  // its own axis lies by its ends as they are now
+                node = corner.number == 0 ? of_.node : of_.node_b;
+                at = end_[corner.number];
+                velocity = speed_[corner.number];
+            }
+            SurfaceBox about = SurfaceBox::none();
+            about.add(at);
+            about = about.swept(time_ * (velocity - mesh_.drift)).grown(corner.radius + margin_);
+            for_triangles_in(mesh_, about, [&](uint32_t t) { find_face(t, corner, at, velocity, node); });
+        }
+    }
+
+    void find_face(uint32_t t, const collision::Corner& corner, const Vec3f& at, const Vec3f& velocity, uint32_t node) {
+        const uint32_t* vertex = &soft_.triangle[3 * size_t{t}];
+        SurfaceContact contact;
+        Passing passing{};
+        passing.of = Passing::Of::vertex_face;
+        passing.x[0] = at, passing.v[0] = velocity;
+        contact.node[0] = node;
+        for (int k = 0; k < 3; ++k) place_vertex(vertex[k], k + 1, passing, contact);
+        const uint64_t feature = feature_of(index_, SurfacePart::face, t);
+        Vec3f facing = Vec3f::Zero();
+        if (soft_.kind == SoftKind::solid) facing = (passing.x[2] - passing.x[1]).cross(passing.x[3] - passing.x[1]);
+        const SurfaceTouch of = touch_of(true, corner.radius);
+        if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, corner.number)), facing,
+                   contact))
+            return;
+        if (is_round() && vertices_suffice({vertex, 3}, of.both, contact)) return;
+        if (!spans()) contact.lever = at - corner.radius * contact.normal - centre_;
+        add(contact, feature, corner.number);
+    }
+
+    static constexpr uint32_t kAxis = 1u << 31;     // in place of a corner's number
+    static constexpr uint32_t kCapsule = 1u << 30;  // likewise: a point of a capsule's manifold
+
+    SurfaceFinder& finder_;
+    const SurfaceScene& scene_;
+    uint32_t index_, collider_;
+    const Soft& soft_;
+    const SurfaceMesh& mesh_;
+    const Collider& of_;
+    const collision::Shape& shape_;
+    collision::Placement at_;  // in the mesh's frame
+    float time_, margin_ = 0;
+    Vec3f centre_, velocity_, spin_;  // of its node
+    Vec3f end_[2] = {Vec3f::Zero(), Vec3f::Zero()}, speed_[2] = {Vec3f::Zero(), Vec3f::Zero()};
+};
+
+// Colliders whose boxes one meets, but for vertices of surfaces.
+class NearShapes final : public collision::Visitor {
+public:
+    NearShapes(const SurfaceScene& scene, const SurfaceMesh& mesh) : scene_(scene), mesh_(mesh) {}
+
+    void visit(uint32_t id, collision::Probe&) override {
+        const Collider& collider = scene_.colliders.record[id];
+        if (collider.sensor || is_surface_vertex(scene_.nodes, scene_.softs, collider.node)) return;
+        if (!mesh_.awake && !moves_now(scene_, id)) return;
+        if (!filters_agree(scene_.colliders.traits[id].filter, scene_.colliders.traits[mesh_.collider].filter)) return;
+        if (scene_.shapes[collider.shape].shape.kind == collision::ShapeKind::plane) return;
+        scene_.pairs.surfaces.colliders.push_back(id);
+    }
+
+private:
+    const SurfaceScene& scene_;
+    const SurfaceMesh& mesh_;
+};
+
+}  // namespace
+
+void find_surface_shapes(SurfaceFinder& finder) {
+    const SurfaceScene& scene = finder.scene();
+    for (const uint32_t s : scene.softs.listed) {
+        const SurfaceMesh& mesh = scene.softs.mesh[s];
+        if (mesh.node.empty()) continue;
+        Array<uint32_t>& colliders = scene.pairs.surfaces.colliders;
+        colliders.clear();
+        const SurfaceBox box = mesh.node.front().box.swept(static_cast<float>(scene.time) * mesh.drift);
+        collision::Probe probe{mesh.origin, Vec3::Zero(), box.lo.cast<double>(), box.hi.cast<double>()};
+        NearShapes near(scene, mesh);
+        scene.broadphase.visit(probe, near);
+        std::ranges::sort(colliders);
+        for (const uint32_t collider : colliders) SurfaceShape(finder, s, collider).find();
+    }
+}
+
+}  // namespace taut

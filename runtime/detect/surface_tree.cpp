@@ -1,0 +1,163 @@
+#include "detect/surface_tree.h"
+
+#include <algorithm>
+
+#include "detect/surface_finder.h"
+#include "models/mesh_edges.h"
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kLeaf = 4;     // triangles, at most
+constexpr uint32_t kGrain = 256;  // triangles or vertices that a thread takes at a time
+
+// Halves by the middle along the axis on which middles of triangles are spread widest.
+class TreeBuilder {
+public:
+    TreeBuilder(SurfaceMesh& mesh, std::span<const Vec3f> middle) : mesh_(mesh), middle_(middle) {}
+
+    void build(uint32_t begin, uint32_t end) {
+        const auto index = static_cast<uint32_t>(mesh_.node.size());
+        mesh_.node.push_back({SurfaceBox::none(), begin, end, 0, false});
+        if (end - begin <= kLeaf) {
+            mesh_.node[index].leaf = true;
+        } else {
+            const uint32_t half = split(begin, end);
+            build(begin, half);
+            build(half, end);
+        }
+        mesh_.node[index].next = static_cast<uint32_t>(mesh_.node.size());
+    }
+
+private:
+    uint32_t split(uint32_t begin, uint32_t end) {
+        SurfaceBox all = SurfaceBox::none();
+        for (uint32_t k = begin; k < end; ++k) all.add(middle_[mesh_.order[k]]);
+        int axis = 0;
+        (all.hi - all.lo).maxCoeff(&axis);
+        const uint32_t half = (begin + end) / 2;
+        const auto at = [&](uint32_t k) { return mesh_.order.begin() + k; };
+        std::nth_element(at(begin), at(half), at(end), [&](uint32_t one, uint32_t other) {
+            const float a = middle_[one][axis], b = middle_[other][axis];
+            return a != b ? a < b : one < other;
+        });
+        return half;
+    }
+
+    SurfaceMesh& mesh_;
+    std::span<const Vec3f> middle_;
+};
+
+void list_edges(const Soft& soft, SurfaceMesh& mesh) {
+    Array<MeshEdge> edges(mesh.edge.get_allocator());
+    find_edges(soft.triangle, edges);
+    mesh.edge.clear();
+    mesh.edge_of.assign(soft.triangle.size(), kNone);
+    mesh.owns.assign(soft.triangles(), 0);
+    for (const MeshEdge& edge : edges) {
+        for (const uint32_t t : edge.triangle) {
+            if (t == kNone) continue;
+            for (uint32_t k = 0; k < 3; ++k) {
+                const uint32_t from = soft.triangle[3 * t + k], to = soft.triangle[3 * t + (k + 1) % 3];
+                if (std::minmax(from, to) != std::minmax(edge.a, edge.b)) continue;
+                mesh.edge_of[3 * t + k] = static_cast<uint32_t>(mesh.edge.size());
+                if (t == edge.triangle[0]) mesh.owns[t] = static_cast<uint8_t>(mesh.owns[t] | 1u << k);
+            }
+        }
+        mesh.edge.push_back({{edge.a, edge.b}, {edge.triangle[0], edge.triangle[1]}});
+    }
+    Array<uint8_t> owned(soft.vertices(), 0, mesh.owns.get_allocator());
+    for (uint32_t i = 0; i < soft.triangle.size(); ++i)
+        if (!std::exchange(owned[soft.triangle[i]], 1))
+            mesh.owns[i / 3] = static_cast<uint8_t>(mesh.owns[i / 3] | 8u << i % 3);
+}
+
+void build_tree(const Soft& soft, SurfaceMesh& mesh) {
+    Array<Vec3f> middle(mesh.x.get_allocator());
+    middle.reserve(soft.triangles());
+    mesh.order.clear();
+    for (uint32_t t = 0; t < soft.triangles(); ++t) {
+        Vec3f sum = Vec3f::Zero();
+        for (uint32_t k = 0; k < 3; ++k) sum += mesh.x[soft.triangle[3 * t + k]];
+        middle.push_back(sum);
+        mesh.order.push_back(t);
+    }
+    mesh.node.clear();
+    mesh.node.reserve(soft.triangles());
+    TreeBuilder(mesh, middle).build(0, soft.triangles());
+    mesh.box.assign(soft.triangles(), SurfaceBox::none());
+}
+
+void place_vertices(Team& team, const Nodes& nodes, const Soft& soft, SurfaceMesh& mesh) {
+    mesh.origin = nodes.motion[soft.node.front()].x;
+    mesh.x.resize(soft.vertices());
+    mesh.v.resize(soft.vertices());
+    team.for_ranges(soft.vertices(), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const NodeMotion& motion = nodes.motion[soft.node[i]];
+            mesh.x[i] = (motion.x - mesh.origin).cast<float>();
+            mesh.v[i] = motion.v.cast<float>();
+        }
+    });
+    mesh.drift.setZero();
+    for (const Vec3f& v : mesh.v) mesh.drift += v;
+    mesh.drift *= 1 / static_cast<float>(soft.vertices());
+}
+
+// Boxes about the ways of triangles, grown so that two that come within their margin meet.
+void refit(Team& team, const Soft& soft, float time, SurfaceMesh& mesh) {
+    const float about = mesh.radius + mesh.margin;
+    team.for_ranges(soft.triangles(), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t t = begin; t < end; ++t) {
+            SurfaceBox box = SurfaceBox::none();
+            for (uint32_t k = 0; k < 3; ++k) {
+                const uint32_t vertex = soft.triangle[3 * t + k];
+                box.add(mesh.x[vertex]);
+                box.add(mesh.x[vertex] + time * (mesh.v[vertex] - mesh.drift));
+            }
+            mesh.box[t] = box.grown(about);
+        }
+    });
+    for (size_t i = mesh.node.size(); i-- > 0;) {
+        SurfaceNode& node = mesh.node[i];
+        node.box = SurfaceBox::none();
+        if (node.leaf) {
+            for (uint32_t k = node.begin; k < node.end; ++k) node.box.add(mesh.box[mesh.order[k]]);
+        } else {
+            node.box.add(mesh.node[i + 1].box);
+            node.box.add(mesh.node[mesh.node[i + 1].next].box);
+        }
+    }
+}
+
+}  // namespace
+
+void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double time, Softs& softs) {
+    softs.listed.clear();
+    while (softs.mesh.size() < softs.record.size()) softs.mesh.emplace_back(*softs.mesh.get_allocator().memory);
+    for (uint32_t s = 0; s < softs.record.size(); ++s) {
+        const Soft& soft = softs.record[s];
+        SurfaceMesh& mesh = softs.mesh[s];
+        if (soft.shape == kNone || soft.triangle.empty()) {
+            if (mesh.version != 0) mesh = SurfaceMesh(*softs.mesh.get_allocator().memory);
+            continue;
+        }
+        mesh.awake = std::ranges::any_of(soft.node, [&](uint32_t node) { return moves_now(nodes, node); });
+        mesh.collider = nodes.info[soft.node[soft.triangle.front()]].collider;
+        if (mesh.collider == kNone) continue;
+        softs.listed.push_back(s);
+        const bool made_anew = mesh.version != soft.mesh_version;
+        if (!mesh.awake && !made_anew) continue;
+        place_vertices(team, nodes, soft, mesh);
+        if (made_anew) {
+            list_edges(soft, mesh);
+            build_tree(soft, mesh);
+            mesh.version = soft.mesh_version;
+        }
+        mesh.radius = collision::ball_radius(shapes[soft.shape].shape);
+        mesh.margin = shapes[soft.shape].margin;
+        refit(team, soft, static_cast<float>(time), mesh);
+    }
+}
+
+}  // namespace taut
