@@ -36,6 +36,7 @@ void GroupSolve::build() {
     if (solver_.lanes) {
         build_lanes(w_.team, system_, group_, w_.pairs, w_.nodes, *settings_.kernels);
         build_grain_lanes(w_.team, system_, group_, w_.pairs.grains);
+        build_surface_lanes(w_.team, system_, group_, w_.pairs.surfaces, *settings_.surface_kernels);
         build_joint_lanes(w_.team, system_, group_, w_.def.time_step);
         build_element_lanes(w_.team, system_, group_, w_.elements);
     }
@@ -60,7 +61,10 @@ void GroupSolve::begin() {
     if (!one_step_)
         begin_scheme(system_, group_, w_.nodes, *scheme_types()[w_.def.scheme],
                      {w_.def.newmark_beta, w_.def.newmark_gamma});
-    if (solver_.lanes && clock_.number() > 0) turn_lanes(w_.team, system_, group_, *settings_.kernels);
+    if (solver_.lanes && clock_.number() > 0) {
+        turn_surface_lanes(w_.team, system_, *settings_.surface_kernels);
+        turn_lanes(w_.team, system_, group_, *settings_.kernels);
+    }
     shift_kinematic(system_, w_.nodes, clock_.begin());
     if (w_.def.report) w_.reports.begin(measured());
     build_block_contacts(system_, group_, w_.partition.blocks, w_.pairs, w_.nodes);
@@ -139,6 +143,7 @@ void GroupSolve::end() {
     if (!solver_.lanes) return;
     store_lanes(w_.team, system_, w_.pairs);
     store_grain_lanes(w_.team, system_, w_.pairs.grains);
+    store_surface_lanes(w_.team, system_, w_.pairs.surfaces);
     store_joint_lanes(w_.team, system_);
     store_element_lanes(w_.team, system_);
     store_element_yields(system_);

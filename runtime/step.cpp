@@ -83,6 +83,7 @@ void solve(World& w, Stopwatch& watch) {
         &joint_kernels(),
         &element_kernels(),
         &grain_kernels(),
+        &surface_kernels(),
         w.def.adaptive_damping != 0,
         w.def.restitution_threshold,
         {static_cast<FrictionModel>(w.def.friction_model), w.def.stepping == TAUT_STEPPING_VELOCITY,

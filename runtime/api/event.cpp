@@ -70,7 +70,19 @@ taut_contact public_contact(const World& world, const Pair& pair, int i) {
             world.collider_handle(pair.collider_b())};
 }
 
-bool touching(const GrainContact& contact) { return contact.separation <= 0 || contact.pushes(); }
+bool is_gone(const Array<uint32_t>& gone, std::span<const uint32_t> nodes) {
+    return !gone.empty() &&
+           std::ranges::any_of(nodes, [&](uint32_t node) { return std::ranges::find(gone, node) != gone.end(); });
+}
+
+// Those of nodes that were removed since the step are not told.
+bool touching(const Grains& grains, const GrainContact& contact) {
+    const uint32_t ends[] = {contact.a, contact.b};
+    return (contact.separation <= 0 || contact.pushes()) && !is_gone(grains.gone, ends);
+}
+bool touching(const SurfaceContacts& surfaces, const SurfaceContact& contact) {
+    return (contact.gap <= 0 || contact.pushes()) && !is_gone(surfaces.gone, contact.node);
+}
 
 // Between grains, whose spheres are about their nodes.
 taut_contact public_contact(const World& world, const GrainContact& contact) {
@@ -90,6 +102,46 @@ taut_contact public_contact(const World& world, const GrainContact& contact) {
             world.collider_handle(b)};
 }
 
+// Of one side: its node that counts most, and where its point is now.
+struct SurfaceSide {
+    uint32_t node = kNone;
+    Vec3 at = Vec3::Zero();
+};
+SurfaceSide side_of(const World& world, const SurfaceContact& contact, float sign) {
+    SurfaceSide side;
+    float most = 0;
+    double sum = 0;
+    for (int i = 0; i < kMaxEnds; ++i) {
+        const uint32_t node = contact.node[i];
+        const float weight = sign * contact.weight[i];
+        if (node == kNone || !(weight > 0)) continue;
+        const NodeMotion& m = world.nodes.motion[node];
+        const Quat turn = m.q * world.nodes.before[node].rotation.conjugate();
+        const Vec3 lever = i == 0 ? Vec3(turn * contact.lever.cast<double>()) : Vec3(Vec3::Zero());
+        side.at += static_cast<double>(weight) * (m.x + lever);
+        sum += static_cast<double>(weight);
+        if (weight > most) side.node = node;
+        most = std::max(most, weight);
+    }
+    if (sum > 0) side.at /= sum;
+    return side;
+}
+
+// The normal is the way in which b leaves a: that of the gap, which grows with the weights above 0.
+taut_contact public_contact(const World& world, const SurfaceContact& contact) {
+    const SurfaceSide a = side_of(world, contact, -1), b = side_of(world, contact, 1);
+    const float substep = told_substep(world);
+    return {world.body_handle(a.node),
+            world.body_handle(b.node),
+            to_pos(0.5 * (a.at + b.at)),
+            {contact.normal.x(), contact.normal.y(), contact.normal.z()},
+            contact.gap,
+            substep * contact.force.normal,
+            substep * std::hypot(contact.force.tangent1, contact.force.tangent2),
+            world.collider_handle(contact.collider[1]),
+            world.collider_handle(contact.collider[0])};
+}
+
 }  // namespace
 
 taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, uint32_t capacity, uint32_t* count) {
@@ -100,7 +152,10 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
         for_pairs(world.pairs, [&](const Pair& pair) {
             if (pair.touching) needed += static_cast<uint32_t>(pair.manifold.count);
         });
-        for (const GrainContact& contact : world.pairs.grains.contact) needed += touching(contact);
+        const Grains& grains = world.pairs.grains;
+        const SurfaceContacts& surfaces = world.pairs.surfaces;
+        for (const GrainContact& contact : grains.contact) needed += touching(grains, contact);
+        for (const SurfaceContact& contact : surfaces.contact) needed += touching(surfaces, contact);
         if (needed > capacity) {
             *count = needed;
             return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
@@ -110,8 +165,10 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
         for_pairs(world.pairs, [&](const Pair& pair) {
             for (int i = 0; pair.touching && i < pair.manifold.count; ++i) *contacts++ = public_contact(world, pair, i);
         });
-        for (const GrainContact& contact : world.pairs.grains.contact)
-            if (touching(contact)) *contacts++ = public_contact(world, contact);
+        for (const GrainContact& contact : grains.contact)
+            if (touching(grains, contact)) *contacts++ = public_contact(world, contact);
+        for (const SurfaceContact& contact : surfaces.contact)
+            if (touching(surfaces, contact)) *contacts++ = public_contact(world, contact);
         return TAUT_OK;
     });
 }

@@ -75,6 +75,7 @@ void drop_bad_impulses(Pairs& pairs, Joints& joints, Elements& elements) {
     }
     for (GrainContact& contact : pairs.grains.contact)
         if (!contact.force.allFinite()) contact.force.setZero();
+    for (SurfaceContact& contact : pairs.surfaces.contact) drop(contact.force);
     for (Joint& joint : joints.record) {
         bool bad = false;
         for (double& force : joint.lambda) {

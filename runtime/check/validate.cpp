@@ -97,6 +97,19 @@ MaybeFlaw contact_lanes_flaw(const System& system, const Group& group) {
     return std::nullopt;
 }
 
+MaybeFlaw surface_lanes_flaw(const System& system, const Group& group) {
+    const SurfaceLanes& lanes = system.surfaces;
+    size_t used = 0;
+    for (size_t i = 0; i < lanes.group.size(); ++i) {
+        const SurfaceGroup& g = lanes.group[i];
+        const uint32_t* const sides[] = {g.node[0], g.node[1], g.node[2], g.node[3]};
+        if (meets_twice(system, sides)) return Flaw{"a lane group of surfaces has a moving node once", i};
+        used += static_cast<size_t>(kLanes - std::count(g.contact, g.contact + kLanes, kNoLanes));
+    }
+    if (used != group.surfaces.size()) return Flaw{"lanes hold each swept contact of surfaces once", used};
+    return std::nullopt;
+}
+
 MaybeFlaw joint_lanes_flaw(const System& system, const Group& group) {
     const JointLanes& lanes = system.joints;
     std::vector<uint8_t>& met = counts(system.rows.block.size());
@@ -139,12 +152,12 @@ MaybeFlaw element_lanes_flaw(const System& system, const Group& group) {
     return std::nullopt;
 }
 
-// Impulses of one point in a lane; comparisons let pass what is not finite.
-const char* point_flaw(const LanePoint& p, int lane, float friction) {
+// Of one point in a lane; comparisons let pass what is not finite.
+const char* impulse_flaw(const float (&impulse)[3][kLanes], int lane, float friction) {
     constexpr float kRounding = 1e-4f, kTiny = 1e-20f;  // of the squares
-    const float normal = p.impulse[0][lane], most = friction * normal;
+    const float normal = impulse[0][lane], most = friction * normal;
     if (normal < 0) return "normal impulses are not negative";
-    const float squared = p.impulse[1][lane] * p.impulse[1][lane] + p.impulse[2][lane] * p.impulse[2][lane];
+    const float squared = impulse[1][lane] * impulse[1][lane] + impulse[2][lane] * impulse[2][lane];
     return squared > (1 + kRounding) * most * most + kTiny ? "friction is within its cone" : nullptr;
 }
 
@@ -153,8 +166,16 @@ MaybeFlaw lane_impulse_flaw(const ContactLanes& lanes) {
         for (int lane = 0; lane < kLanes; ++lane) {
             if (g.pair[lane] == kNoLanes) continue;
             for (uint32_t k = 0; k < g.points; ++k)
-                if (const char* flaw = point_flaw(g.point[k], lane, g.friction[lane])) return Flaw{flaw, g.pair[lane]};
+                if (const char* flaw = impulse_flaw(g.point[k].impulse, lane, g.friction[lane]))
+                    return Flaw{flaw, g.pair[lane]};
         }
+    return std::nullopt;
+}
+
+MaybeFlaw lane_impulse_flaw(const SurfaceLanes& lanes) {
+    for (const SurfaceGroup& g : lanes.group)
+        for (int lane = 0; lane < kLanes; ++lane)
+            if (const char* flaw = impulse_flaw(g.impulse, lane, g.friction[lane])) return Flaw{flaw, g.contact[lane]};
     return std::nullopt;
 }
 
@@ -171,6 +192,8 @@ constexpr Invariant kInvariants[] = {
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_pairs(w.partition, w.pairs, w.nodes); }},
     {Stage::partition,
      [](const World& w, const StageEnd&) { return validate_grains(w.partition, w.pairs.grains, w.nodes); }},
+    {Stage::partition,
+     [](const World& w, const StageEnd&) { return validate_surfaces(w.partition, w.pairs.surfaces, w.nodes); }},
     {Stage::partition, [](const World& w, const StageEnd&) { return validate_joints(w.partition, w.joints, w.nodes); }},
     {Stage::partition,
      [](const World& w, const StageEnd&) { return validate_elements(w.partition, w.elements, w.nodes); }},
@@ -280,6 +303,57 @@ MaybeFlaw validate_grains(const Partition& partition, const Grains& grains, cons
     return std::nullopt;
 }
 
+namespace {
+
+const char* surface_flaw(const SurfaceContact& contact, const Nodes& nodes) {
+    constexpr float kRounding = 1e-4f;
+    float sum = 0;
+    for (int i = 0; i < kMaxEnds; ++i) {
+        const uint32_t node = contact.node[i];
+        if (node == kNone) continue;
+        if (node >= nodes.slots()) return "nodes of contacts of surfaces are in range";
+        if (std::find(contact.node, contact.node + i, node) != contact.node + i)
+            return "nodes of a contact of surfaces differ";
+        sum += contact.weight[i];
+    }
+    if (!(std::abs(sum) <= kRounding)) return "weights of contacts of surfaces sum to 0";
+    if (!(std::abs(contact.normal.squaredNorm() - 1) <= kRounding)) return "normals of contacts of surfaces are unit";
+    if (!std::isfinite(contact.gap) || !contact.lever.allFinite()) return "contacts of surfaces are finite";
+    return finite(contact.force) ? nullptr : "forces of contacts of surfaces are finite";
+}
+
+}  // namespace
+
+MaybeFlaw validate_surfaces(const Partition& partition, const SurfaceContacts& surfaces, const Nodes& nodes) {
+    for (size_t k = 0; k < surfaces.contact.size(); ++k) {
+        const SurfaceContact& contact = surfaces.contact[k];
+        if (const char* flaw = surface_flaw(contact, nodes)) return Flaw{flaw, k};
+        if (k == 0) continue;
+        const SurfaceContact& before = surfaces.contact[k - 1];
+        if (std::pair(contact.a, contact.b) <= std::pair(before.a, before.b))
+            return Flaw{"contacts of surfaces are in the order of their features", k};
+    }
+    std::vector<uint8_t>& listed = counts(surfaces.contact.size());
+    for (uint32_t g = 0; g < partition.group_count; ++g)
+        for (const auto* list : {&partition.groups[g].surfaces, &partition.groups[g].direct_surfaces})
+            for (const uint32_t k : *list) {
+                if (k >= surfaces.contact.size()) return Flaw{"contacts of surfaces of groups are in range", k};
+                ++listed[k];
+            }
+    for (size_t k = 0; k < surfaces.contact.size(); ++k) {
+        const std::span<const uint32_t> ends = surfaces.contact[k].node;
+        if (listed[k] != (mover(nodes, ends) != kNone ? 1 : 0))
+            return Flaw{"contacts of surfaces are in one of lanes, rows and blocks", k};
+        if (!in_one_island(partition, nodes, ends)) return Flaw{"contacts of surfaces are within an island", k};
+    }
+    for (const Block& block : partition.blocks)
+        for (const uint32_t k : block.surfaces)
+            for (const uint32_t node : surfaces.contact[k].node)
+                if (moving(nodes, node) && !std::ranges::binary_search(block.nodes, node))
+                    return Flaw{"a block has the nodes of its contacts of surfaces", k};
+    return std::nullopt;
+}
+
 MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, const Nodes& nodes) {
     std::vector<uint8_t>& listed = counts(joints.record.size());
     for (uint32_t g = 0; g < partition.group_count; ++g)
@@ -362,23 +436,28 @@ MaybeFlaw validate_colours(const Partition& partition, const Pairs& pairs, const
             colour_flaw(group.elements, group.element_colour_begin, nodes,
                         [&](const ElementRef& of) { return elements.set[of.set].nodes_of(of.element); });
         if (of_elements) return of_elements;
-        const MaybeFlaw of_grains =
-            colour_flaw(group.grains, group.grain_colour_begin, nodes, [&](uint32_t k) {
-                const GrainContact& contact = pairs.grains.contact[k];
-                return std::array{contact.a, contact.b};
-            });
+        const MaybeFlaw of_grains = colour_flaw(group.grains, group.grain_colour_begin, nodes, [&](uint32_t k) {
+            const GrainContact& contact = pairs.grains.contact[k];
+            return std::array{contact.a, contact.b};
+        });
         if (of_grains) return of_grains;
+        const MaybeFlaw of_surfaces = colour_flaw(group.surfaces, group.surface_colour_begin, nodes, [&](uint32_t k) {
+            return std::span<const uint32_t>(pairs.surfaces.contact[k].node);
+        });
+        if (of_surfaces) return of_surfaces;
     }
     return std::nullopt;
 }
 
 MaybeFlaw validate_lanes(const System& system, const Group& group) {
     const MaybeFlaw found = either(contact_lanes_flaw(system, group), [&] { return joint_lanes_flaw(system, group); });
-    return either(found, [&] { return element_lanes_flaw(system, group); });
+    const MaybeFlaw of_elements = either(found, [&] { return element_lanes_flaw(system, group); });
+    return either(of_elements, [&] { return surface_lanes_flaw(system, group); });
 }
 
 MaybeFlaw validate_impulses(const System& system) {
     if (const MaybeFlaw found = lane_impulse_flaw(system.contacts)) return found;
+    if (const MaybeFlaw found = lane_impulse_flaw(system.surfaces)) return found;
     for (const RowBlock& block : system.rows.block)
         if (block.type->bound == Bound::cone && system.rows.impulse[block.row] < 0)
             return Flaw{"normal impulses are not negative", block.pair};

@@ -44,6 +44,10 @@ MaybeFlaw validate_pairs(const Partition& partition, const Pairs& pairs, const N
 // Every contact between grains with such a node in exactly one group, its nodes in order, in one island. Index: in
 // Grains::contact.
 MaybeFlaw validate_grains(const Partition& partition, const Grains& grains, const Nodes& nodes);
+// Every contact of surfaces in order, on nodes that differ, with weights whose sum is 0 and a unit normal; with a node
+// that forces move in exactly one of lanes, rows and blocks, its nodes in one island, of a block all in that. Index: in
+// SurfaceContacts::contact.
+MaybeFlaw validate_surfaces(const Partition& partition, const SurfaceContacts& surfaces, const Nodes& nodes);
 // Every joint with such a node solved exactly once, its nodes in one island. Index: joint.
 MaybeFlaw validate_joints(const Partition& partition, const Joints& joints, const Nodes& nodes);
 // Likewise every element. Index: of those of all sets, one after the other.

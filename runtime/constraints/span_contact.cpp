@@ -1,6 +1,8 @@
-// Contact of a segment between two nodes, whose point moves as (1 - t) x_0 + t x_2: with a body, or another segment.
-// C = basis sum w_i p_i + offset [m], p = x + R s, sum w_i = 0;  J_i = w_i basis (I, -hat r_i);
-// K: the force w_i basis^T lambda at each lever.  Rows and bound as of the plain contact (contact.cpp).
+// Contact of a segment between two nodes, whose point moves as (1 - t) x_0 + t x_2: with a body, or another segment; or
+// of a point of a surface that shares the motion of up to three nodes.
+// C = basis sum w_i p_i + offset [m], p = x + R s, sum w_i = 0;  J_i = w_i basis (I, -hat r_i), r = R s, of node 0 +
+// skin; K: the force w_i basis^T lambda at each lever R s, as the skin does not turn.  Rows and bound as of the plain
+// contact (contact.cpp).
 #include "constraints/span_contact.h"
 
 #include <algorithm>
@@ -18,7 +20,7 @@ void evaluate_span_contact(const void* data, const Pose* x, double* error, doubl
     const auto& point = *static_cast<const SpanContactData*>(data);
     Vec3 apart = Vec3::Zero();
     for (int n = 0; n < kNodes; ++n) {
-        const Vec3 r = x[n].R * point.anchor[n];
+        const Vec3 core = x[n].R * point.anchor[n], r = n == 0 ? Vec3(core + point.skin) : core;
         apart += point.weight[n] * ((x[n].x - x[0].x) + r);
         if (!jacobian) continue;
         set_block(jacobian, 3, n, 0, point.weight[n] * point.basis);
@@ -42,6 +44,7 @@ void sample_span_contact(uint64_t seed, void* data, Pose* x) {
     auto& point = *static_cast<SpanContactData*>(data);
     const double t = random.unit(), s = random.unit();
     for (Vec3& anchor : point.anchor) anchor = random.vector();
+    point.skin = random.vector();
     const double weight[kNodes] = {t - 1, 1 - s, -t, s};
     std::copy(weight, weight + kNodes, point.weight);
     point.offset = random.vector();

@@ -158,7 +158,8 @@ private:
         if (!spans()) {
             Vec3f on_axis = Vec3f::Zero();
             for (int k = 0; k < first; ++k) on_axis += contact.weight[k] * passing.x[k];
-            contact.lever = on_axis - shape_.size.x() * contact.normal - centre_;
+            contact.skin = -shape_.size.x() * contact.normal;
+            contact.lever = on_axis + contact.skin - centre_;
             if (!ball) {  // both ends are one body's
                 contact.weight[0] += contact.weight[1];
                 contact.weight[1] = contact.weight[2], contact.node[1] = contact.node[2];
@@ -285,7 +286,10 @@ private:
                    contact))
             return;
         if (is_round() && vertices_suffice({vertex, 3}, of.both, contact)) return;
-        if (!spans()) contact.lever = at - corner.radius * contact.normal - centre_;
+        if (!spans()) {
+            contact.skin = -corner.radius * contact.normal;
+            contact.lever = at + contact.skin - centre_;
+        }
         add(contact, feature, corner.number);
     }
 

@@ -74,6 +74,7 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     try {
         const bool moves = world.nodes.info[record.node].kind != NodeKind::fixed;
         reserve_more(world.pairs.grains.gone, world.colliders.grains.size());
+        reserve_more(world.pairs.surfaces.gone, world.colliders.record.size());
         world.broadphase.add(index, contact_box(world.nodes, world.shapes, record), moves,
                              record.grain || is_surface_vertex(world.nodes, world.softs, record.node));
     } catch (...) {
@@ -93,6 +94,7 @@ void remove_collider(World& world, uint32_t collider) {
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
     const Collider& record = world.colliders.record[collider];
     if (record.grain) world.pairs.grains.gone.push_back(record.node);
+    world.pairs.surfaces.gone.push_back(record.node);
     link_to(world, record.node, collider) = record.next;
     world.broadphase.remove(collider);
     --world.shapes[record.shape].users;

@@ -10,10 +10,6 @@
 namespace taut {
 namespace {
 
-// A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
-// below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
-constexpr uint32_t kMostGrown = 64;
-
 // Contacts of what carries no more than some thirty times its own weight are as well swept, and far cheaper so:
 // ragdolls in a heap. Beyond, a light body between a heavy one and an edge sinks in.
 constexpr double kLoad = 300;             // force of a joint over the mass of its lighter body [m/s^2]
@@ -71,6 +67,19 @@ uint8_t note_load(const Nodes& nodes, const ConstraintType& type, std::span<cons
     return loaded > after ? loaded - 1 : 0;
 }
 
+// The nodes of a contact of a block.
+void add_links(const Nodes& nodes, std::span<const uint32_t> ends, Block& block) {
+    for (size_t b = 0; b < ends.size(); ++b)
+        for (size_t a = 0; a < b; ++a)
+            if (moving(nodes, ends[a]) && moving(nodes, ends[b])) block.links.push_back(pair_key(ends[a], ends[b]));
+}
+
+void keep_once(Array<uint64_t>& links) {
+    std::ranges::sort(links);
+    const auto twice = std::ranges::unique(links);
+    links.erase(twice.begin(), twice.end());
+}
+
 }  // namespace
 
 void note_loads(Joints& joints, Elements& elements, const Nodes& nodes) {
@@ -83,19 +92,20 @@ void note_loads(Joints& joints, Elements& elements, const Nodes& nodes) {
     });
 }
 
-// False if the block would grow too much; the contact is swept then.
-bool Partition::join_contact(uint32_t a, uint32_t b) {
+// False if the block would grow by more than so many; the contact is swept then.
+bool Partition::join_contact(uint32_t a, uint32_t b, uint32_t most) {
     a = find(a), b = find(b);
     if (a == b) return true;
     const Component &ca = component_[a], &cb = component_[b];
     const uint32_t grown = ca.grown + cb.grown + std::min(ca.nodes, cb.nodes);
-    if (grown > kMostGrown) return false;
+    if (grown > most) return false;
     const uint32_t total = ca.nodes + cb.nodes;
     Component both;
     both.nodes = total;
     both.grown = grown;
     both.loaded = ca.loaded || cb.loaded;
     both.hit = ca.hit || cb.hit;
+    both.elastic = ca.elastic || cb.elastic;
     unite(a, b);
     component_[find(a)] = both;
     return true;
@@ -139,10 +149,31 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
         for (const uint32_t node : ends)
             if (moving(nodes, node) && core_[node] == 0) core_[node] = tower ? kHeld : kTaken;
     }
+    take_surfaces(pairs.surfaces);
     take_pressed();
     take_between(nodes, pairs);
     fill_blocks(nodes, joints, elements, pairs);
     recall_blocks(nodes, joints);
+}
+
+// Contacts of surfaces with a node that is solved directly, whatever it bears: each is a row of the block with all its
+// nodes that move. Where elements give way to contacts it grows at will: their matrix is what costs, and is as it was.
+// What is held by ties that are swept stays out, and so does the contact.
+void Partition::take_surfaces(const SurfaceContacts& surfaces) {
+    surface_in_block_.assign(surfaces.contact.size(), 0);
+    for (uint32_t k = 0; k < surfaces.contact.size(); ++k) {
+        const TouchGraph::Tie ends = movers_of(surfaces.contact[k]);
+        const auto held = std::ranges::find_if(ends, [&](uint32_t end) { return end != kNone && core_[end] == kHeld; });
+        const auto may_join = [&](uint32_t end) { return end == kNone || core_[end] != 0 || tied_[end] == 0; };
+        if (held == ends.end() || !std::ranges::all_of(ends, may_join)) continue;
+        const auto is_elastic = [&](uint32_t end) { return end != kNone && component_[find(end)].elastic; };
+        const uint32_t most = std::ranges::any_of(ends, is_elastic) ? kNone : kMostGrown;
+        surface_in_block_[k] = std::ranges::all_of(
+            ends, [&, first = *held](uint32_t end) { return end == kNone || join_contact(first, end, most); });
+        if (!surface_in_block_[k]) continue;
+        for (const uint32_t end : ends)
+            if (end != kNone && core_[end] == 0) core_[end] = kTaken;
+    }
 }
 
 // What ties of each component ask for.
@@ -151,6 +182,7 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
         c.ties += multiplies;
+        c.elastic = c.elastic || !multiplies;
         const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
         c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
@@ -159,8 +191,7 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
     for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element],
-              multiplies(set));
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set));
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
@@ -232,6 +263,7 @@ Block& Partition::block_at(uint32_t node) {
         if (spare_.size() < filled_) spare_.emplace_back(*blocks.get_allocator().memory);
         Block& fresh = spare_[block];
         for (auto* list : {&fresh.nodes, &fresh.joints, &fresh.pairs}) list->clear();
+        fresh.surfaces.clear();
         fresh.elements.clear();
         fresh.elastic.clear();
         fresh.links.clear();
@@ -276,9 +308,14 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         const auto ends = pairs.active[p].nodes();
         Block& block = block_at(mover(nodes, ends));
         block.pairs.push_back(p);
-        for (size_t b = 0; b < ends.size(); ++b)
-            for (size_t a = 0; a < b; ++a)
-                if (moving(nodes, ends[a]) && moving(nodes, ends[b])) block.links.push_back(pair_key(ends[a], ends[b]));
+        add_links(nodes, ends, block);
+    }
+    for (uint32_t k = 0; k < pairs.surfaces.contact.size(); ++k) {
+        if (!surface_in_block_[k]) continue;
+        const std::span<const uint32_t> ends = pairs.surfaces.contact[k].node;
+        Block& block = block_at(mover(nodes, ends));
+        block.surfaces.push_back(k);
+        add_links(nodes, ends, block);
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);
@@ -290,6 +327,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
             most = std::max(most, nodes.mass[node].mass);
             block.identity.push_back(static_cast<uint64_t>(node) << 32 | nodes.ids.generation(node));
         }
+        if (!block.surfaces.empty()) keep_once(block.links);  // the same nodes meet in many contacts
         block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
         block.mass_ratio = most / least;
         block.tower = block.joints.empty() && block.elements.empty() && block.elastic.empty();

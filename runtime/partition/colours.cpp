@@ -31,6 +31,7 @@ void Partition::make_groups() {
         groups[g].nodes.clear();
         groups[g].blocks.clear();
         groups[g].direct_pairs.clear();
+        groups[g].direct_surfaces.clear();
         groups[g].span_pairs.clear();
     }
     for (Island& island : island_) {
@@ -137,6 +138,18 @@ void Partition::colour_grains(const Grains& grains) {
     }
 }
 
+// As if no block took any.
+void Partition::colour_surfaces(const SurfaceContacts& surfaces) {
+    std::fill(used_.begin(), used_.end(), 0);
+    surface_colour_.clear();
+    reserve_more(surface_colour_, surfaces.contact.size());
+    for (const SurfaceContact& contact : surfaces.contact) {
+        const TouchGraph::Tie ends = movers_of(contact);
+        const bool rests = std::ranges::all_of(ends, [](uint32_t node) { return node == kNone; });
+        surface_colour_.push_back(rests ? kUncoloured : take_colour(ends));
+    }
+}
+
 // Puts items_ in the order of their ranks, (colour * kKinds + kind) * kSlices + place, with take(at, rank, item).
 // Returns how many colours there are.
 template <class RankOf, class Take>
@@ -240,26 +253,36 @@ void Partition::list_pairs(uint32_t g, const Pairs& pairs) {
     colours = std::max(colours, used);
 }
 
-// By colour, and of each in the order of place, as they come.
-void Partition::list_grains(uint32_t g, const Grains& grains) {
-    Group& group = groups[g];
-    const auto count = static_cast<uint32_t>(grains.contact.size());
+// Those of which is_own(k), by colour, and of each as they come.
+template <class IsOwn>
+void Partition::list_by_colour(const Array<uint8_t>& colour, IsOwn&& is_own, Array<uint32_t>& out,
+                               Array<uint32_t>& begin) {
     const auto for_own = [&](auto&& act) {
-        for (uint32_t k = 0; k < count; ++k) {
-            const uint32_t ends[] = {graph_.mover(grains.contact[k].a), graph_.mover(grains.contact[k].b)};
-            if (grain_colour_[k] != kUncoloured && is_in(g, ends)) act(k);
-        }
+        for (uint32_t k = 0; k < colour.size(); ++k)
+            if (colour[k] != kUncoloured && is_own(k)) act(k);
     };
-    Array<uint32_t>& begin = group.grain_colour_begin;
     begin.assign(kMaxColours + 1, 0);
-    for_own([&](uint32_t k) { ++begin[grain_colour_[k] + 1u]; });
+    for_own([&](uint32_t k) { ++begin[colour[k] + 1u]; });
     for (uint32_t c = 0; c < kMaxColours; ++c) begin[c + 1] += begin[c];
-    group.grains.clear();
-    reserve_more(group.grains, begin[kMaxColours]);
-    group.grains.resize(begin[kMaxColours]);
+    out.clear();
+    reserve_more(out, begin[kMaxColours]);
+    out.resize(begin[kMaxColours]);
     uint32_t next[kMaxColours];
     std::copy_n(begin.begin(), kMaxColours, next);
-    for_own([&](uint32_t k) { group.grains[next[grain_colour_[k]]++] = k; });
+    for_own([&](uint32_t k) { out[next[colour[k]]++] = k; });
+}
+
+void Partition::list_grains(uint32_t g, const Grains& grains) {
+    const auto is_own = [&](uint32_t k) {
+        const uint32_t ends[] = {graph_.mover(grains.contact[k].a), graph_.mover(grains.contact[k].b)};
+        return is_in(g, ends);
+    };
+    list_by_colour(grain_colour_, is_own, groups[g].grains, groups[g].grain_colour_begin);
+}
+
+void Partition::list_surfaces(uint32_t g, const SurfaceContacts& surfaces) {
+    const auto is_own = [&](uint32_t k) { return !surface_in_block_[k] && is_in(g, movers_of(surfaces.contact[k])); };
+    list_by_colour(surface_colour_, is_own, groups[g].surfaces, groups[g].surface_colour_begin);
 }
 
 void Partition::list_spans(const Pairs& pairs) {
@@ -293,6 +316,8 @@ void Partition::distribute(const Pairs& pairs, bool by_place) {
         Group& group = groups[group_of(blocks[b].nodes[0])];
         group.blocks.push_back(b);
         group.direct_pairs.insert(group.direct_pairs.end(), blocks[b].pairs.begin(), blocks[b].pairs.end());
+        const Array<uint32_t>& of_block = blocks[b].surfaces;
+        group.direct_surfaces.insert(group.direct_surfaces.end(), of_block.begin(), of_block.end());
     }
     if (!graph_.spans.empty()) list_spans(pairs);
     colours = 0;
@@ -302,6 +327,7 @@ void Partition::distribute(const Pairs& pairs, bool by_place) {
         list_fused_elements(g);
         list_pairs(g, pairs);
         list_grains(g, pairs.grains);
+        list_surfaces(g, pairs.surfaces);
     }
 }
 

@@ -29,6 +29,8 @@ Partition::Partition(Memory& memory)
       pair_colour_(memory),
       joint_colour_(memory),
       grain_colour_(memory),
+      surface_colour_(memory),
+      surface_in_block_(memory),
       used_(memory),
       place_(memory),
       items_(memory),
@@ -87,6 +89,8 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
             run(team, kOfGraph, nodes);
             unite_grains(pairs.grains);
             colour_grains(pairs.grains);
+            unite_surfaces(pairs.surfaces);
+            colour_surfaces(pairs.surfaces);
             colour_elements();
             colour_fused(elements);
             number_islands();
@@ -112,7 +116,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     if (rules.direct && (any || !presses_.empty()))
         build_blocks(nodes, joints, elements, pairs, rules);
     else
-        forget_blocks(joints);
+        forget_blocks(joints, pairs);
     find_strains(elements);
     find_grain_strains(pairs.grains);
     choose_substeps(rules);
@@ -191,6 +195,17 @@ void Partition::unite_grains(const Grains& grains) {
     }
 }
 
+// The nodes of a contact that forces move; kNone in place of all others.
+TouchGraph::Tie Partition::movers_of(const SurfaceContact& contact) const {
+    TouchGraph::Tie ends;
+    for (size_t n = 0; n < ends.size(); ++n) ends[n] = graph_.mover(contact.node[n]);
+    return ends;
+}
+
+void Partition::unite_surfaces(const SurfaceContacts& surfaces) {
+    for (const SurfaceContact& contact : surfaces.contact) unite(movers_of(contact));
+}
+
 void Partition::number_islands() {
     if (island_.capacity() > 4 * island_.size()) let_go(island_);  // of a time when fewer touched
     island_.clear();
@@ -233,12 +248,13 @@ void Partition::forget_frame(uint32_t nodes) {
     find_block_of(nodes);
 }
 
-void Partition::forget_blocks(const Joints& joints) {
+void Partition::forget_blocks(const Joints& joints, const Pairs& pairs) {
     blocks.clear();
     block_of_.clear();
     pair_in_block_.assign(graph_.touches.size(), 0);
     joint_in_block_.assign(joints.record.size(), 0);
     element_in_block_.assign(element_.size(), 0);
+    surface_in_block_.assign(pairs.surfaces.contact.size(), 0);
 }
 
 }  // namespace taut

@@ -42,6 +42,7 @@ struct Block {
           elements(m),
           elastic(m),
           pairs(m),
+          surfaces(m),
           links(m),
           identity(m),
           order(m),
@@ -59,6 +60,7 @@ struct Block {
     Array<ElementRef> elements;            // ascending, those with multipliers
     Array<ElementRef> elastic;             // ascending, all others; see solvers/block_elastic.cpp
     Array<uint32_t> pairs;                 // in Pairs::active, of this frame
+    Array<uint32_t> surfaces;              // in SurfaceContacts::contact, of this frame
     Array<uint64_t> links;                 // pairs of its nodes that touch: smaller << 32 | larger
     Array<uint64_t> identity;              // of joints, nodes and links: the graph of the matrix
     Array<uint32_t> order;                 // of elimination, from the first solve on, which knows what gives; or empty
@@ -89,10 +91,10 @@ struct Block {
 };
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [nodes, joints, elements, elastic, pairs, links, identity, order, matrix, places, stride, solution, known,
-           force, elastic_force, gases, gas_response, foresees, relinearised, first_elastic_run, elastic_runs, tower,
-           looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact, contact_count,
-           first_bounded, bounded_count, turn, memory] = of;
+    auto& [nodes, joints, elements, elastic, pairs, surfaces, links, identity, order, matrix, places, stride, solution,
+           known, force, elastic_force, gases, gas_response, foresees, relinearised, first_elastic_run, elastic_runs,
+           tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
+           contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }
@@ -111,6 +113,8 @@ struct Group {
           pair_place(memory),
           grains(memory),
           grain_colour_begin(memory),
+          surfaces(memory),
+          surface_colour_begin(memory),
           joints(memory),
           joint_colour_begin(memory),
           elements(memory),
@@ -119,6 +123,7 @@ struct Group {
           fused_pass(memory),
           blocks(memory),
           direct_pairs(memory),
+          direct_surfaces(memory),
           span_pairs(memory) {}
 
     uint32_t substeps = 0;
@@ -126,17 +131,19 @@ struct Group {
     Array<uint32_t> nodes;  // moved by forces, in the order of PartitionRules
     // Swept constraints by colour; the last colour holds what found no other and is solved one by one, in order of
     // index. The others: pairs with the most points first, then by place.
-    Array<uint32_t> pairs, pair_colour_begin;    // index into Pairs::active
-    Array<uint8_t> pair_place;                   // of each of pairs, below kSlices
-    Array<uint32_t> grains, grain_colour_begin;  // index into Grains::contact; with colours of their own
+    Array<uint32_t> pairs, pair_colour_begin;        // index into Pairs::active
+    Array<uint8_t> pair_place;                       // of each of pairs, below kSlices
+    Array<uint32_t> grains, grain_colour_begin;      // index into Grains::contact; with colours of their own
+    Array<uint32_t> surfaces, surface_colour_begin;  // index into SurfaceContacts::contact; likewise
     Array<uint32_t> joints, joint_colour_begin;
     Array<ElementRef> elements;  // with colours of their own
     Array<uint32_t> element_colour_begin;
     Array<ElementRef> fused;  // swept elements of sets with a fused sweep, by stage, colour and set
     Array<FusedPass> fused_pass;
-    Array<uint32_t> blocks;        // index into Partition::blocks
-    Array<uint32_t> direct_pairs;  // of its blocks, in Pairs::active
-    Array<uint32_t> span_pairs;    // swept ones with a side of two nodes, which lanes do not take
+    Array<uint32_t> blocks;           // index into Partition::blocks
+    Array<uint32_t> direct_pairs;     // of its blocks, in Pairs::active
+    Array<uint32_t> direct_surfaces;  // of its blocks, in SurfaceContacts::contact
+    Array<uint32_t> span_pairs;       // swept ones with a side of two nodes, which lanes do not take
 };
 
 // Once a frame: which joints carry more than contacts on their bodies could stand in sweeps. A block takes its contacts
@@ -225,8 +232,12 @@ private:
         bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
         bool hit = false;                // in this frame
+        bool elastic = false;            // has elements without multipliers
     };
 
+    // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before
+    // stay below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
+    static constexpr uint32_t kMostGrown = 64;
     // Of nodes in blocks: with a joint that is solved directly, or in a tower; or taken in with a contact.
     static constexpr uint8_t kHeld = 1, kTaken = 2;
 
@@ -264,6 +275,10 @@ private:
     void colour_fused(const Elements& elements);
     void unite_grains(const Grains& grains);
     void colour_grains(const Grains& grains);
+    TouchGraph::Tie movers_of(const SurfaceContact& contact) const;
+    void unite_surfaces(const SurfaceContacts& surfaces);
+    void colour_surfaces(const SurfaceContacts& surfaces);
+    void take_surfaces(const SurfaceContacts& surfaces);
     void number_islands();
     void find_loads(const Nodes& nodes);
     void find_columns(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
@@ -286,14 +301,14 @@ private:
     void take_pressed();
     void take_between(const Nodes& nodes, const Pairs& pairs);
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
-    bool join_contact(uint32_t a, uint32_t b);
+    bool join_contact(uint32_t a, uint32_t b, uint32_t most = kMostGrown);
     Block& block_at(uint32_t node);
     bool multiplies(const ElementSet& set) const { return set.form == ElementForm::rows || !folds_; }
     void fill_elements(const Elements& elements);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
     void find_block_of(uint32_t nodes);
-    void forget_blocks(const Joints& joints);
+    void forget_blocks(const Joints& joints, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);
     void find_strains(const Elements& elements);
     void find_grain_strains(const Grains& grains);
@@ -308,6 +323,9 @@ private:
     void list_pairs(uint32_t group, const Pairs& pairs);
     void list_spans(const Pairs& pairs);
     void list_grains(uint32_t group, const Grains& grains);
+    void list_surfaces(uint32_t group, const SurfaceContacts& surfaces);
+    template <class IsOwn>
+    void list_by_colour(const Array<uint8_t>& colour, IsOwn&& is_own, Array<uint32_t>& out, Array<uint32_t>& begin);
     template <class RankOf, class Take>
     uint32_t sort_by_rank(Array<uint32_t>& begin, RankOf&& rank_of, Take&& take);
     uint32_t swept_substeps(size_t island, const PartitionRules& rules) const;
@@ -348,6 +366,8 @@ private:
     uint32_t filled_ = 0;                        // of spare_
     Array<uint8_t> pair_colour_, joint_colour_;  // by index in Pairs::active, by slot
     Array<uint8_t> grain_colour_;                // by index in Grains::contact
+    Array<uint8_t> surface_colour_;              // by index in SurfaceContacts::contact
+    Array<uint8_t> surface_in_block_;            // likewise
     bool all_coloured_ = false;                  // no pair was left out in pair_colour_
     double lightest_ = 0;                        // of the nodes [kg]
     double least_footing_ = 0;                   // of those without joints [m]; see buckling.cpp

@@ -67,7 +67,9 @@ bool TouchGraph::update(Team& team, const Nodes& nodes, const Joints& joints, co
     const bool moves_changed = update_moves(team, nodes), touches_changed = update_touches(team, pairs);
     const bool elements_changed = std::exchange(elements_version_, elements.version) != elements.version;
     const bool grains_changed = std::exchange(grains_version_, pairs.grains.version) != pairs.grains.version;
-    return update_ties(team, joints) || moves_changed || touches_changed || elements_changed || grains_changed;
+    const bool surfaces_changed = std::exchange(surfaces_version_, pairs.surfaces.version) != pairs.surfaces.version;
+    return update_ties(team, joints) || moves_changed || touches_changed || elements_changed || grains_changed ||
+           surfaces_changed;
 }
 
 }  // namespace taut

@@ -48,7 +48,7 @@ private:
     bool update_touches(Team& team, const Pairs& pairs);
     bool update_ties(Team& team, const Joints& joints);
 
-    uint64_t elements_version_ = 0, grains_version_ = 0;
+    uint64_t elements_version_ = 0, grains_version_ = 0, surfaces_version_ = 0;
 };
 
 }  // namespace taut

@@ -19,7 +19,7 @@ taut_pose public_pose(const Vec3& position, const Quat& q) {
 
 // How much there is, and how wrong it is.
 struct Tally {
-    uint32_t points = 0, bodies = 0, joints = 0, elements = 0, grains = 0;  // grains: contacts between them
+    uint32_t points = 0, bodies = 0, joints = 0, elements = 0, others = 0;  // others: contacts that are no pairs
     float penetration = 0, joint_error = 0;
 
     static Tally sum(const Tally& a, const Tally& b) {
@@ -27,7 +27,7 @@ struct Tally {
                 a.bodies + b.bodies,
                 a.joints + b.joints,
                 a.elements + b.elements,
-                a.grains + b.grains,
+                a.others + b.others,
                 std::max(a.penetration, b.penetration),
                 std::max(a.joint_error, b.joint_error)};
     }
@@ -53,9 +53,16 @@ Tally tally(World& world) {
     };
     const auto add_grains = [&](Tally& t, const GrainContact& contact) {
         if (!world.nodes.solved(contact.a) && !world.nodes.solved(contact.b)) return;
-        ++t.grains;
+        ++t.others;
         ++t.points;
         t.penetration = std::max(t.penetration, -contact.separation);
+    };
+    const auto add_surfaces = [&](Tally& t, const SurfaceContact& contact) {
+        const auto is_solved = [&](uint32_t node) { return node != kNone && world.nodes.solved(node); };
+        if (std::ranges::none_of(contact.node, is_solved)) return;
+        ++t.others;
+        ++t.points;
+        t.penetration = std::max(t.penetration, -contact.gap);
     };
     const auto add_node = [](Tally& t, const NodeInfo& info) { t.bodies += moves_by_forces(info.kind); };
     const auto add_joint = [&](Tally& t, const Joint& joint) {
@@ -79,11 +86,12 @@ Tally tally(World& world) {
         }
     };
     const Tally of_pairs = tally(world.team, world.pairs.active, add_pair);
-    const Tally of_grains = tally(world.team, world.pairs.grains.contact, add_grains);
+    const Tally of_others = Tally::sum(tally(world.team, world.pairs.grains.contact, add_grains),
+                                       tally(world.team, world.pairs.surfaces.contact, add_surfaces));
     const Tally of_nodes = tally(world.team, world.nodes.info, add_node);
     const Tally of_ties =
         Tally::sum(tally(world.team, world.joints.record, add_joint), tally(world.team, world.elements.set, add_set));
-    return Tally::sum(Tally::sum(of_pairs, of_grains), Tally::sum(of_nodes, of_ties));
+    return Tally::sum(Tally::sum(of_pairs, of_others), Tally::sum(of_nodes, of_ties));
 }
 
 bool has_moved(const Nodes& nodes, uint32_t node) {
@@ -127,7 +135,7 @@ void publish_profile(World& world) {
     taut_profile& p = world.profile;
     const Tally counts = tally(world);
     p.pairs = static_cast<uint32_t>(world.broadphase.pairs().size());
-    p.touching = static_cast<uint32_t>(world.pairs.active.size()) + counts.grains;
+    p.touching = static_cast<uint32_t>(world.pairs.active.size()) + counts.others;
     p.points = counts.points;
     p.penetration = counts.penetration;
     p.bodies = counts.bodies;

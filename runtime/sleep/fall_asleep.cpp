@@ -65,6 +65,8 @@ void disturb(World& world) {
     };
     for (const ActivePair& active : world.pairs.active)
         if (touches_closely(world.pairs.list[active.pair])) pass_on(active.nodes());
+    for (const SurfaceContact& contact : world.pairs.surfaces.contact)
+        if (touches_closely(contact)) pass_on(contact.node);
     for_each_tie(world.joints, world.elements, pass_on);
 }
 
@@ -116,6 +118,8 @@ void find_islands(World& world) {
     }
     for (const GrainContact& contact : world.pairs.grains.contact)
         if (touches_closely(contact)) unite(world, std::array{contact.a, contact.b});
+    for (const SurfaceContact& contact : world.pairs.surfaces.contact)
+        if (touches_closely(contact)) unite(world, contact.node);
 }
 
 // Into the ring of its island; the root, which is the smallest, comes first.
@@ -171,6 +175,14 @@ void wake_pushed(World& world) {
     for (const GrainContact& contact : world.pairs.grains.contact) {
         if (world.nodes.sleeps(contact.a) == world.nodes.sleeps(contact.b) || !touches_closely(contact)) continue;
         wake(world, world.nodes.sleeps(contact.a) ? contact.a : contact.b);
+    }
+    const auto is_awake = [&](uint32_t node) {
+        return node != kNone && world.nodes.info[node].kind != NodeKind::fixed && world.nodes.rest[node] == Rest::awake;
+    };
+    for (const SurfaceContact& contact : world.pairs.surfaces.contact) {
+        if (std::ranges::none_of(contact.node, is_awake) || !touches_closely(contact)) continue;
+        for (const uint32_t node : contact.node)
+            if (node != kNone && world.nodes.sleeps(node)) wake(world, node);
     }
 }
 

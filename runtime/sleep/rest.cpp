@@ -15,9 +15,12 @@ bool moves(const Nodes& nodes, uint32_t node) {
     return node != kNone && nodes.info[node].kind != NodeKind::fixed && nodes.rest[node] == Rest::awake;
 }
 
+bool some_node(std::span<const uint32_t> all, bool (*is)(const Nodes&, uint32_t), const Nodes& nodes) {
+    return std::ranges::any_of(all, [&](uint32_t node) { return is(nodes, node); });
+}
 bool some_side(const PairEnds& pair, bool (*is)(const Nodes&, uint32_t), const Nodes& nodes) {
-    const auto sides = {pair.a, pair.b, pair.a2, pair.b2};
-    return std::any_of(sides.begin(), sides.end(), [&](uint32_t node) { return is(nodes, node); });
+    const uint32_t sides[] = {pair.a, pair.b, pair.a2, pair.b2};
+    return some_node(sides, is, nodes);
 }
 
 bool sleeps(const Nodes& nodes, uint32_t node) { return node != kNone && nodes.sleeps(node); }
@@ -66,6 +69,18 @@ bool will_touch(const World& world, const GrainContact& contact) {
     return touches_closely(contact) || static_cast<double>(contact.separation) + way <= kClose;
 }
 
+bool will_touch(const World& world, const SurfaceContact& contact) {
+    Vec3 parting = Vec3::Zero();
+    for (int i = 0; i < kMaxEnds; ++i) {
+        if (contact.node[i] == kNone) continue;
+        const NodeMotion& m = world.nodes.motion[contact.node[i]];
+        const Vec3 lever = i == 0 ? Vec3(contact.lever.cast<double>()) : Vec3(Vec3::Zero());
+        parting += static_cast<double>(contact.weight[i]) * (m.v + m.w.cross(lever));
+    }
+    const double way = static_cast<double>(world.def.time_step) * parting.dot(contact.normal.cast<double>());
+    return touches_closely(contact) || static_cast<double>(contact.gap) + way <= kClose;
+}
+
 }  // namespace
 
 bool touches_closely(const Pair& pair) {
@@ -76,6 +91,10 @@ bool touches_closely(const Pair& pair) {
 
 bool touches_closely(const GrainContact& contact) {
     return static_cast<double>(contact.separation) <= kClose || contact.pushes();
+}
+
+bool touches_closely(const SurfaceContact& contact) {
+    return static_cast<double>(contact.gap) <= kClose || contact.pushes();
 }
 
 void recall_pairs(World& world) {
@@ -109,6 +128,12 @@ bool wake_touched(World& world) {
         if (world.nodes.sleeps(contact.a) == world.nodes.sleeps(contact.b) || !will_touch(world, contact)) continue;
         for (const uint32_t node : ends)
             if (world.nodes.sleeps(node)) wake(world, node);
+    }
+    for (const SurfaceContact& contact : world.pairs.surfaces.contact) {
+        if (!some_node(contact.node, moves, world.nodes) || !some_node(contact.node, sleeps, world.nodes)) continue;
+        if (!will_touch(world, contact)) continue;
+        for (const uint32_t node : contact.node)
+            if (sleeps(world.nodes, node)) wake(world, node);
     }
     return world.sleep.recall;
 }

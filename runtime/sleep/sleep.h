@@ -12,6 +12,7 @@ namespace taut {
 // Whether a pair's two bodies wake each other: a point pushes, or its gap is at most 5 mm.
 bool touches_closely(const Pair& pair);
 bool touches_closely(const GrainContact& contact);
+bool touches_closely(const SurfaceContact& contact);
 
 // In the step's order. Pairs of nodes that woke come back into the list ...
 void recall_pairs(World& world);

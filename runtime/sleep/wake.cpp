@@ -37,6 +37,10 @@ void wake_neighbours(World& world, uint32_t node) {
         if (!ends_on(node)(pair) || !touches_closely(pair)) return;
         for (uint32_t side : {pair.a, pair.b, pair.a2, pair.b2}) wake_island(world, side);
     });
+    for (const SurfaceContact& contact : world.pairs.surfaces.contact) {
+        if (std::ranges::find(contact.node, node) == std::end(contact.node) || !touches_closely(contact)) continue;
+        for (const uint32_t side : contact.node) wake_island(world, side);
+    }
     for_each_tie(world.joints, world.elements, [&](std::span<const uint32_t> ends) {
         if (std::ranges::find(ends, node) == ends.end()) return;
         for (const uint32_t end : ends) wake_island(world, end);

@@ -301,6 +301,7 @@ void reserve_derived(World& world, uint32_t nodes, uint32_t colliders) {
     world.system.make_room(nodes);
     world.pairs.make_room(colliders);
     reserve_more(world.pairs.grains.gone, colliders);
+    reserve_more(world.pairs.surfaces.gone, colliders);
     world.broadphase.reserve_tree();
     world.partition.reserve_nodes(nodes);
     reserve_links(world.pairs);

@@ -48,7 +48,8 @@ void move_freely(Substep& s, const Block& block) { copy_velocities(s.system, blo
 
 bool has_sweeps(const Substep& s) {
     return !s.system.contacts.group.empty() || !s.group.joints.empty() || !s.group.elements.empty() ||
-           !s.group.fused.empty() || !s.group.span_pairs.empty() || !s.group.grains.empty();
+           !s.group.fused.empty() || !s.group.span_pairs.empty() || !s.group.grains.empty() ||
+           !s.group.surfaces.empty();
 }
 
 void finish(Substep& s, Block& block, BlockSolve& solve) {

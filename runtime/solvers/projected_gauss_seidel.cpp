@@ -38,6 +38,7 @@ public:
           contact_(*s_.settings.kernels),
           elements_(s_.system.elements.view()),
           grains_(s_.system.grains.group.data()),
+          surfaces_(s_.system.surfaces.view()),
           terms_{static_cast<float>(s_.system.scheme.h), static_cast<float>(1 / s_.system.scheme.act), false},
           soft_(contact_terms(s_.system.scheme.h, s_.system.stretch)) {}
 
@@ -60,6 +61,13 @@ public:
         if (pass == Pass::warm_start) grain.warm_start(grains_, begin, end, nodes_);
         if (is_biased(pass)) grain.sweep_biased(grains_, begin, end, nodes_, shifts, soft_);
         if (pass == Pass::relaxed) grain.sweep_relaxed(grains_, begin, end, nodes_, soft_);
+    }
+    void surfaces(Pass pass, uint32_t begin, uint32_t end) const {
+        const SurfaceKernels& surface = *s_.settings.surface_kernels;
+        const SweepShift* const shifts = pass == Pass::first_biased ? s_.system.shift.data() : nullptr;
+        if (pass == Pass::warm_start) surface.warm_start(surfaces_, begin, end, nodes_);
+        if (is_biased(pass)) surface.sweep_biased(surfaces_, begin, end, nodes_, shifts, soft_);
+        if (pass == Pass::relaxed) surface.sweep_relaxed(surfaces_, begin, end, nodes_, soft_);
     }
     void rows(Pass pass) const {
         const uint32_t first = s_.system.rows.joints, count = s_.system.rows.lasting - first;
@@ -87,6 +95,7 @@ private:
     const ContactKernels& contact_;
     ElementView elements_;
     GrainGroup* grains_;
+    SurfaceView surfaces_;
     ElementTerms terms_;
     SweepTerms soft_;
 };
@@ -102,7 +111,7 @@ public:
 
     explicit Program(Substep& s) : s_(s), kernels_(s) { first_piece_[0] = 0; }
 
-    // Joints, rows, then contacts between grains and others, colour by colour, backward if asked.
+    // Joints, rows, then contacts between grains, of surfaces and others, colour by colour, backward if asked.
     void add_joints(Pass pass, bool backward = false) {
         if (s_.system.joints.group.empty()) return;
         const auto colours = static_cast<uint32_t>(s_.system.joints.colour_begin.size()) - 1;
@@ -121,9 +130,9 @@ public:
     }
     void add_rows_and_contacts(Pass pass, bool backward = false) {
         add_rows(pass);
-        if (!backward) add_grains(pass, false);
+        if (!backward) add_no_pairs(pass, false);
         add_contacts(pass, backward);
-        if (backward) add_grains(pass, true);
+        if (backward) add_no_pairs(pass, true);
     }
     bool empty() const { return pieces_ == 0; }
     // publishes: moves what was swept to the solution after all of it.
@@ -135,8 +144,10 @@ public:
     }
 
 private:
+    struct Piece;
+    using PartOf = void (Program::*)(const Piece& piece, uint32_t number) const;
     struct Piece {
-        void (Program::*part)(const Piece& piece, uint32_t number) const;  // one of the team's size parts
+        PartOf part;  // one of the team's size parts
         Pass pass;
         uint32_t colour;
     };
@@ -152,16 +163,24 @@ private:
     void add_rows(Pass pass) {
         if (s_.system.rows.lasting > s_.system.rows.joints) add_single({&Program::rows_part, pass, 0});
     }
-    void add_grains(Pass pass, bool backward) {
-        const auto passes = static_cast<uint32_t>(s_.system.grains.pass.size());
+    // Contacts that are no pairs.
+    void add_no_pairs(Pass pass, bool backward) {
+        const auto grains = [&] { add_passes(s_.system.grains.pass, &Program::grains_part, pass, backward); };
+        if (!backward) grains();
+        add_passes(s_.system.surfaces.pass, &Program::surfaces_part, pass, backward);
+        if (backward) grains();
+    }
+    template <class Passes>
+    void add_passes(const Passes& list, PartOf part, Pass pass, bool backward) {
+        const auto passes = static_cast<uint32_t>(list.size());
         for (uint32_t k = 0; k < passes; ++k) {
             const uint32_t at = backward ? passes - 1 - k : k;
-            const GrainPass& of = s_.system.grains.pass[at];
+            const auto& of = list[at];
             groups_ += of.end - of.begin;
             if (of.overflow || of.end - of.begin <= 1)
-                add_single({&Program::grains_part, pass, at});
+                add_single({part, pass, at});
             else
-                add_alone({&Program::grains_part, pass, at});
+                add_alone({part, pass, at});
         }
     }
     void add_contacts(Pass pass, bool backward) {
@@ -228,6 +247,11 @@ private:
         const uint32_t count = of.end - of.begin;
         kernels_.grains(piece.pass, of.begin + begin_of(part, count), of.begin + begin_of(part + 1, count));
     }
+    void surfaces_part(const Piece& piece, uint32_t part) const {
+        const SurfacePass& of = s_.system.surfaces.pass[piece.colour];
+        const uint32_t count = of.end - of.begin;
+        kernels_.surfaces(piece.pass, of.begin + begin_of(part, count), of.begin + begin_of(part + 1, count));
+    }
     void rows_part(const Piece& piece, uint32_t part) const {
         if (part == 0) kernels_.rows(piece.pass);
     }
@@ -257,8 +281,8 @@ public:
 
 private:
     static constexpr uint32_t kMostPasses = kRelaxSweeps;
-    // Colours of joints, of elements, of grains, and of contacts twice.
-    static constexpr uint32_t kMost = kMostPasses * (5 * kMaxColours + 1) + 2 * kMaxColours + 1;
+    // Colours of joints, of elements, of grains, of surfaces, and of contacts twice.
+    static constexpr uint32_t kMost = kMostPasses * (6 * kMaxColours + 1) + 2 * kMaxColours + 1;
     static_assert(kMost <= Team::kMaxStages);
 
     Substep& s_;

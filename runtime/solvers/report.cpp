@@ -277,6 +277,7 @@ struct SolveReports::Measure {
                 {out.island, out.substep, direct, is_contact, static_cast<float>(yield), static_cast<float>(margin)});
     }
     double margin_of(uint32_t pair) const {
+        if (pair == kNone) return 0;  // of surfaces
         const Pair& of = m.pairs.list[pair];
         return static_cast<double>(
             std::min(m.pairs.travel[of.collider_a()].margin, m.pairs.travel[of.collider_b()].margin));

@@ -43,7 +43,7 @@ public:
     void run() {
         all_.struck.clear();
         all_.strikes.clear();
-        if (!sys_.contacts.bounces && !any_row_bounces()) return;
+        if (!sys_.contacts.bounces && !sys_.surfaces.bounces && !any_row_bounces()) return;
         note_forces();
         for (int round = 0; round < kMostRounds && find(); ++round) {
             solve();
@@ -81,6 +81,7 @@ private:
         impacts_.clear();
         bodies_.clear();
         if (sys_.contacts.bounces) find_in_lanes();
+        if (sys_.surfaces.bounces) find_in_surfaces();
         for (uint32_t b = sys_.rows.joints; b < sys_.rows.lasting; ++b) find_in(sys_.rows.block[b]);
         sort_from(0);
         for (Impact& impact : impacts_) prepare(impact);
@@ -102,10 +103,12 @@ private:
     void find_supports() {
         all_.joined.assign(4 * sys_.contacts.group.size(), 0);
         all_.joined_rows.assign(sys_.rows.block.size(), 0);
+        all_.joined_surfaces.assign(sys_.surfaces.group.size(), 0);
         for (int level = 0; level < kMostSupports; ++level) {
             press_impacts(impacts_, bodies_);
             const size_t known = impacts_.size();
             find_supports_in_lanes();
+            find_supports_in_surfaces();
             find_supports_in_rows();
             sort_from(known);
             for (size_t i = known; i < impacts_.size(); ++i) prepare(impacts_[i]);
@@ -146,6 +149,20 @@ private:
                 continue;
             add(block);
             if (keep_pressed()) all_.joined_rows[b] = 1;
+        }
+    }
+
+    void find_supports_in_surfaces() {
+        const auto& groups = sys_.surfaces.group;
+        for (size_t i = 0; i < groups.size(); ++i) {
+            uint16_t& joined = all_.joined_surfaces[i];
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const SurfaceGroup& g = groups[i];
+                if (g.contact[lane] == kNoLanes || g.restitution[lane] > 0 || (joined >> lane & 1) != 0) continue;
+                if (std::ranges::none_of(g.node, [&](const auto& seats) { return is_struck(seats[lane]); })) continue;
+                add(sys_.surfaces.group[i], lane);
+                if (keep_pressed()) joined = static_cast<uint16_t>(joined | 1u << lane);
+            }
         }
     }
 
@@ -222,6 +239,57 @@ private:
         }
     }
 
+    void find_in_surfaces() {
+        for (SurfaceGroup& g : sys_.surfaces.group) {
+            if (!g.bounces) continue;
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (!(g.restitution[lane] > 0)) continue;
+                add(g, lane);
+                const Impact& impact = impacts_.back();
+                Fall fall{impact.gap};
+                for (int n = 0; n < impact.sides; ++n)
+                    add_to(fall, impact.side[n].at, impact.side[n].linear[0], impact.side[n].angular[0]);
+                if (!bounces(s_, impact.restitution, fall)) impacts_.pop_back();
+            }
+        }
+    }
+
+    // With the gap of now: the sweeps measure it later.
+    void add(SurfaceGroup& g, int lane) {
+        Impact& impact = impacts_.emplace_back();
+        impact.pair = kNone;
+        impact.point = static_cast<int>(g.contact[lane]);
+        impact.supports = !(g.restitution[lane] > 0);
+        impact.peak = &g.peak[lane];
+        impact.pushed = nullptr;
+        impact.restitution = static_cast<double>(g.restitution[lane]);
+        impact.friction = static_cast<double>(g.friction[lane]);
+        for (int t = 0; t < 2; ++t) impact.drive[t] = static_cast<double>(g.drive[t][lane]);
+        const Vec3 n = column(g.normal, lane), t1 = column(g.tangent, lane), row[3] = {n, t1, n.cross(t1)};
+        const SurfaceTurning* turning = g.turning == kNoLanes ? nullptr : &sys_.surfaces.turning[g.turning];
+        double gap = static_cast<double>(g.gap0[lane]);
+        impact.sides = kSurfaceNodes;
+        for (uint32_t i = 0; i < kSurfaceNodes; ++i) {
+            Impact::Side& side = impact.side[i];
+            side.at = g.node[i][lane];
+            const auto weight = static_cast<double>(g.weight[i][lane]);
+            const bool has_lever = i == 0 && turning;
+            const Vec3 lever = has_lever ? column(turning->lever, lane) : Vec3(Vec3::Zero());
+            for (int r = 0; r < 3; ++r) {
+                side.linear[r] = weight * row[r];
+                side.angular[r] = lever.cross(side.linear[r]);
+            }
+            const SweepShift& shift = sys_.shift[side.at];
+            gap += side.linear[0].dot(wide(shift.dx));
+            if (!has_lever) continue;
+            const Quat turn(static_cast<double>(shift.dq[3]), static_cast<double>(shift.dq[0]),
+                            static_cast<double>(shift.dq[1]), static_cast<double>(shift.dq[2]));
+            const Vec3 core = lever - column(turning->skin, lane);
+            gap += side.linear[0].dot(turn * core - core);
+        }
+        impact.gap = gap;
+    }
+
     void find_in(const RowBlock& block) {
         if (!(block.restitution > 0)) return;
         Fall fall{sys_.rows.error[block.row]};
@@ -235,7 +303,7 @@ private:
     void add(const RowBlock& block) {
         Impact& impact = impacts_.emplace_back();
         impact.pair = block.pair;
-        impact.point = block.point;
+        impact.point = block.pair == kNone ? static_cast<int>(block.surface) : block.point;
         impact.supports = !(block.restitution > 0);
         impact.peak = nullptr;
         impact.pushed = block.pushed;

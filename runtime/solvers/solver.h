@@ -38,6 +38,7 @@ struct SolverSettings {
     const JointKernels* joint_kernels;
     const ElementKernels* element_kernels;
     const GrainKernels* grain_kernels;
+    const SurfaceKernels* surface_kernels;
     bool adaptive_damping = false;     // |K| in the place of K; see adaptive_damping.h
     double restitution_threshold = 0;  // [m/s]
     RowSettings rows{};

@@ -19,6 +19,7 @@ struct SurfaceContact {
     uint32_t node[4] = {kNone, kNone, kNone, kNone};  // the first alone may turn; kNone: no weight
     float weight[4] = {};
     Vec3f lever = Vec3f::Zero();   // of the first, world axes as it was found [m]; 0 of particles
+    Vec3f skin = Vec3f::Zero();    // the part of it that does not turn: where what is round ends; state/levers.h [m]
     Vec3f normal = Vec3f::Zero();  // unit: the way in which C grows
     float gap = 0;                 // C as it was found: the distance of the two surfaces, thickness counted [m]
     float friction = 0, restitution = 0;
@@ -31,10 +32,11 @@ struct SurfaceContact {
 };
 template <class Visitor, Like<SurfaceContact> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [a, b, node, weight, lever, normal, gap, friction, restitution, drive, collider, force, in_block] = of;
+    auto& [a, b, node, weight, lever, skin, normal, gap, friction, restitution, drive, collider, force, in_block] = of;
     TAUT_FIELDS(visitor, a, b);
     for (int i = 0; i < 4; ++i) TAUT_FIELDS(visitor, node[i], weight[i]);
-    TAUT_FIELDS(visitor, lever, normal, gap, friction, restitution, drive, collider[0], collider[1], force, in_block);
+    TAUT_FIELDS(visitor, lever, skin, normal, gap, friction, restitution, drive, collider[0], collider[1], force,
+                in_block);
 }
 
 // Of all of a surface along one axis [m].

@@ -57,6 +57,14 @@ void store_grain_lanes(Team& team, const System& system, Grains& grains);
 // Impulses of substeps of another length.
 void rescale_grain_lanes(System& system, double factor);
 
+// The same of contacts of surfaces, with effective masses.
+void build_surface_lanes(Team& team, System& system, const Group& group, SurfaceContacts& surfaces,
+                         const SurfaceKernels& kernels);
+void store_surface_lanes(Team& team, const System& system, SurfaceContacts& surfaces);
+void rescale_surface_lanes(System& system, double factor);
+// Once a substep, before turn_lanes(): levers and effective masses of those on bodies that turned.
+void turn_surface_lanes(Team& team, System& system, const SurfaceKernels& kernels);
+
 // Where the next substep has another length: forces stay.
 void change_length(Team& team, System& system, const Group& group, Pairs& pairs, double h, double frame);
 

@@ -221,17 +221,22 @@ RowBlock& add_point(System& system, const Pair& pair, const ContactData& data) {
     return block;
 }
 
-RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& data) {
+RowBlock& add_span(System& system, const uint32_t (&nodes)[kMaxEnds], const SpanContactData& data) {
     RowBlock& block = add_block(system, kSpanContact);
     block.data = &data;
-    const uint32_t nodes[kMaxEnds] = {pair.a, pair.b, pair.a2, pair.b2};
     Vec3 apart = Vec3::Zero();
     for (int n = 0; n < kMaxEnds; ++n) {
         block.node[n] = system.at(nodes[n]);
-        apart += data.weight[n] * velocity_at(system, block.node[n], system.pose[block.node[n]].R * data.anchor[n]);
+        const Vec3 core = system.pose[block.node[n]].R * data.anchor[n], lever = n == 0 ? Vec3(core + data.skin) : core;
+        apart += data.weight[n] * velocity_at(system, block.node[n], lever);
     }
     note_approach(apart, data.basis.row(0), block);
     return block;
+}
+
+RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& data) {
+    const uint32_t nodes[kMaxEnds] = {pair.a, pair.b, pair.a2, pair.b2};
+    return add_span(system, nodes, data);
 }
 
 // What moving surfaces drive the tangents of a contact point to.
@@ -280,6 +285,51 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
         }
         if (pair.turns() && pair.manifold.count > 0) add_rolling(system, pair, points);
     }
+}
+
+// Effective anchors and offset of a contact of surfaces, so that C is the gap and zero slip at the present poses. Its
+// plane, weights and lever are those of the frame, the lever turned with its body since.
+SpanContactData span_contact_data(const System& system, const Nodes& nodes, const SurfaceContact& contact) {
+    SpanContactData data;
+    const Vec3f n = contact.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+    data.basis << n.cast<double>().transpose(), t1.cast<double>().transpose(), t2.cast<double>().transpose();
+    Vec3 moved = Vec3::Zero(), apart = Vec3::Zero();  // sum w_i of what p_i moved since it was found, and of p_i
+    for (int i = 0; i < kMaxEnds; ++i) {
+        if (contact.node[i] == kNone) continue;
+        data.weight[i] = static_cast<double>(contact.weight[i]);
+        const uint32_t at = system.at(contact.node[i]);
+        moved += data.weight[i] * (system.pose[at].x - system.found[at].x);
+        apart += data.weight[i] * system.pose[at].x;
+    }
+    if (contact.node[0] != kNone && contact.lever != Vec3f::Zero()) {
+        const Mat3& R = system.pose[system.at(contact.node[0])].R;
+        const Vec3 core = (contact.lever - contact.skin).cast<double>();
+        data.anchor[0] = nodes.before[contact.node[0]].rotation.conjugate() * core;
+        data.skin = contact.skin.cast<double>();
+        moved += data.weight[0] * (R * data.anchor[0] - core);
+        apart += data.weight[0] * (R * data.anchor[0] + data.skin);
+    }
+    const Vec3 gap(static_cast<double>(contact.gap) + data.basis.row(0).dot(moved), 0, 0);
+    data.offset = gap - data.basis * apart;
+    return data;
+}
+
+void add_surface_contact(System& system, const Nodes& nodes, uint32_t index, SurfaceContacts& surfaces) {
+    SurfaceContact& contact = surfaces.contact[index];
+    const SpanContactData& data = system.rows.span_data.emplace_back(span_contact_data(system, nodes, contact));
+    RowBlock& block = add_span(system, contact.node, data);
+    block.friction = static_cast<double>(contact.friction);
+    block.restitution = static_cast<double>(contact.restitution);
+    block.drive[0] = data.basis.row(1).dot(contact.drive.cast<double>());
+    block.drive[1] = data.basis.row(2).dot(contact.drive.cast<double>());
+    block.pair = kNone;
+    block.surface = index;
+    carry(system, block, contact.force);
+}
+
+void add_surface_contacts(System& system, std::span<const uint32_t> list, SurfaceContacts& surfaces,
+                          const Nodes& nodes) {
+    for (const uint32_t index : list) add_surface_contact(system, nodes, index, surfaces);
 }
 
 void poses_of(const System& system, const RowBlock& block, Pose* poses) {
@@ -337,21 +387,24 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     rows.joints = static_cast<uint32_t>(rows.block.size());
     constexpr size_t kPoints = 4;
     const size_t whole = (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size();
+    const size_t surfaces = (contacts_as_rows ? group.surfaces.size() : 0) + group.direct_surfaces.size();
     reserve_room(rows.data, kPoints * whole);
-    reserve_room(rows.span_data, kPoints * (group.span_pairs.size() + group.direct_pairs.size()));
+    reserve_room(rows.span_data, kPoints * (group.span_pairs.size() + group.direct_pairs.size()) + surfaces);
     reserve_room(rows.rolling_data, whole);
     for (const Array<uint32_t>* as_rows : {&group.pairs, &group.span_pairs, &group.direct_pairs})
         if (contacts_as_rows || as_rows != &group.pairs) begin_rows(*as_rows, pairs);
     if (contacts_as_rows) add_contacts(system, group.pairs, pairs, nodes);
     for (const uint32_t p : group.span_pairs) leave_block(pairs.list[pairs.active[p].pair]);
     for (const uint32_t p : group.direct_pairs) pairs.list[pairs.active[p].pair].in_block = true;
+    for (const uint32_t k : group.direct_surfaces) pairs.surfaces.contact[k].in_block = true;
     add_contacts(system, group.span_pairs, pairs, nodes);
+    if (contacts_as_rows) add_surface_contacts(system, group.surfaces, pairs.surfaces, nodes);
     rows.lasting = static_cast<uint32_t>(rows.block.size());
     rows.lasting_spans = static_cast<uint32_t>(rows.span_data.size());
 }
 
 void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes) {
-    if (group.direct_pairs.empty()) return;
+    if (group.direct_pairs.empty() && group.direct_surfaces.empty()) return;
     Rows& rows = system.rows;
     const bool none = rows.block.size() == rows.lasting;
     rows.error.resize(none ? rows.error.size() : rows.block[rows.lasting].row);
@@ -364,6 +417,7 @@ void build_block_contacts(System& system, const Group& group, Array<Block>& bloc
     for (uint32_t b : group.blocks) {
         blocks[b].first_contact = static_cast<uint32_t>(rows.block.size());
         add_contacts(system, blocks[b].pairs, pairs, nodes);
+        add_surface_contacts(system, blocks[b].surfaces, pairs.surfaces, nodes);
         blocks[b].contact_count = static_cast<uint32_t>(rows.block.size()) - blocks[b].first_contact;
     }
 }

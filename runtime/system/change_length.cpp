@@ -7,6 +7,7 @@ void change_length(Team& team, System& system, const Group& group, Pairs& pairs,
     store_joint_lanes(team, system);
     store_lanes(team, system, pairs);
     rescale_grain_lanes(system, h / system.scheme.h);
+    rescale_surface_lanes(system, h / system.scheme.h);
     system.scheme.set_length(h);
     load_contact_rows(system);
     load_lanes(team, system, pairs);

@@ -25,8 +25,8 @@ struct Impact {  // rows: normal, tangent 1, tangent 2
         double rate(int row, const Velocity& u) const { return along(linear[row], angular[row], u); }  // J u
     };
 
-    uint32_t pair;  // index into Pairs::list
-    int point;
+    uint32_t pair;  // index into Pairs::list; of surfaces kNone
+    int point;      // of it; of surfaces the index into SurfaceContacts::contact
     bool supports;  // without restitution
     float* peak;    // of a point in lanes: its largest normal impulse; else null
     bool* pushed;   // of a row: its pair's; else null
@@ -50,7 +50,7 @@ struct Impacts {
         float dx[3];  // of its shift before [m]
     };
     struct Strike {     // an impact
-        uint32_t pair;  // index into Pairs::list
+        uint32_t pair;  // index into Pairs::list; of surfaces kNone
         int point;
         float impulse[3];  // normal, tangent 1, tangent 2 [N s]
     };
@@ -65,7 +65,8 @@ struct Impacts {
           held(memory),
           found(memory),
           joined(memory),
-          joined_rows(memory) {}
+          joined_rows(memory),
+          joined_surfaces(memory) {}
 
     // of the last substep of a group
     Array<SweepFlight> flight;  // by seat; where something may bounce
@@ -75,11 +76,12 @@ struct Impacts {
     // of a round
     Array<Impact> impact;  // cluster by cluster, in the order of pairs and points
     Array<ImpactBody> body;
-    Array<uint32_t> body_of;     // by seat: index into body, or kNone
-    Array<uint8_t> held;         // by seat: 1: joints hold it; empty: not looked for yet
-    Array<uint16_t> found;       // of four points of each lane group: a bit for each lane with an impact
-    Array<uint16_t> joined;      // likewise: that supports one
-    Array<uint8_t> joined_rows;  // by row block: 1: it supports one
+    Array<uint32_t> body_of;          // by seat: index into body, or kNone
+    Array<uint8_t> held;              // by seat: 1: joints hold it; empty: not looked for yet
+    Array<uint16_t> found;            // of four points of each lane group: a bit for each lane with an impact
+    Array<uint16_t> joined;           // likewise: that supports one
+    Array<uint8_t> joined_rows;       // by row block: 1: it supports one
+    Array<uint16_t> joined_surfaces;  // of each of their lane groups a bit for each lane: likewise
 };
 
 }  // namespace taut

@@ -24,6 +24,7 @@
 #include "constraints/joint_lanes.h"
 #include "constraints/rolling.h"
 #include "constraints/span_contact.h"
+#include "constraints/surface_lanes.h"
 #include "state/elements.h"
 #include "state/nodes.h"
 #include "state/pairs.h"
@@ -65,7 +66,8 @@ struct RowBlock {
     bool in_lanes;                   // a swept joint or element: bias, targets and impulses are in System::joints
     bool batched;                    // an element: evaluated by its run
     uint8_t point;                   // of a cone: which point
-    uint32_t pair;                   // of which pair, an index into Pairs::list
+    uint32_t pair;                   // of which pair, an index into Pairs::list; of surfaces kNone
+    uint32_t surface;                // which contact of surfaces, an index into SurfaceContacts::contact
 
     bool angular(int r) const { return (type->angular >> r & 1) != 0; }
     bool elastic(int r) const { return compliance[angular(r)] > 0 || compliance_block; }
@@ -194,6 +196,7 @@ struct System {
           joints(memory),
           elements(memory),
           grains(memory),
+          surfaces(memory),
           contacts(memory) {}
 
     // In what begin_frame() fills, for so many nodes: as they come, not in the step that sees them first.
@@ -245,6 +248,7 @@ struct System {
     JointLanes joints;      // swept ones of the group being solved
     ElementLanes elements;  // likewise, of sets with a fused sweep
     GrainLanes grains;      // of the group being solved
+    SurfaceLanes surfaces;  // likewise
     ContactLanes contacts;  // likewise
 };
 

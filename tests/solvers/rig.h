@@ -100,6 +100,7 @@ public:
         build_rows(w.system, group(), w.partition.blocks, w.joints, w.elements, w.pairs, w.nodes, !solver.lanes);
         if (!solver.lanes) return;
         build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
+        build_surface_lanes(w.team, w.system, group(), w.pairs.surfaces, *settings.surface_kernels);
         build_joint_lanes(w.team, w.system, group(), h);
     }
     // Unconstrained velocities and rows of a substep.
@@ -127,7 +128,9 @@ public:
     }
     void store_contacts() {
         store_contact_rows(w.system);
-        if (solver.lanes) store_lanes(w.team, w.system, w.pairs);
+        if (!solver.lanes) return;
+        store_lanes(w.team, w.system, w.pairs);
+        store_surface_lanes(w.team, w.system, w.pairs.surfaces);
     }
     Group& group() { return w.partition.groups[0]; }
     Substep substep() {
@@ -138,8 +141,15 @@ public:
     double h;
     Vec3 gravity{0, -9.81, 0};
     Solver solver = kBlockLdlt;
-    SolverSettings settings{0, true, 0.25, 9.81 * 9.81, &kContactKernelsSse2, &kJointKernelsSse2, &kElementKernelsSse2,
-                            &kGrainKernelsSse2};
+    SolverSettings settings{0,
+                            true,
+                            0.25,
+                            9.81 * 9.81,
+                            &kContactKernelsSse2,
+                            &kJointKernelsSse2,
+                            &kElementKernelsSse2,
+                            &kGrainKernelsSse2,
+                            &kSurfaceKernelsSse2};
     SolverReport report;
 
 private:

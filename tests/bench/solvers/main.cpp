@@ -155,7 +155,7 @@ private:
     void measure(World& w, uint32_t group, const Contender& contender, uint32_t count) {
         RowSettings rows;
         rows.stabilisation = 1;
-        SolverSettings settings{count,   true,    0,     9.81 * 9.81, nullptr, nullptr,
+        SolverSettings settings{count,   true,    0,     9.81 * 9.81, nullptr, nullptr,           nullptr,
                                 nullptr, nullptr, false, 0,           rows,    contender.settings};
         SolverReport report;
         Substep substep{w.team,   w.system, w.partition.groups[group], w.partition.blocks, w.nodes, settings, report,
