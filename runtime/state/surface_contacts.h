@@ -45,6 +45,18 @@ struct SurfaceSpan {
     uint32_t soft;
 };
 
+// An edge of a surface that goes through a triangle of the same or another.
+struct SurfaceCrossing {
+    uint32_t soft, edge;  // of which
+    uint32_t other, face;
+};
+
+// By which a vertex is to move, as many crossings ask [m].
+struct SurfaceShift {
+    Vec3f sum = Vec3f::Zero();
+    float most = 0;  // of them [m]
+};
+
 struct SurfaceContacts {
     explicit SurfaceContacts(Memory& memory)
         : contact(memory),
@@ -54,19 +66,25 @@ struct SurfaceContacts {
           near(memory),
           colliders(memory),
           corner(memory),
-          span(memory) {}
+          span(memory),
+          crossing(memory),
+          shift(memory) {}
 
-    Array<SurfaceContact> contact;           // ascending by a, then b; find_surface_contacts()
-    Array<uint32_t> gone;                    // nodes removed since: what contacts say of these means nothing
-    uint64_t version = 0;                    // counts changes of who touches whom
-    Array<SurfaceContact> found;             // scratch of find_surface_contacts()
-    Array<uint32_t> order, near, colliders;  // likewise
+    Array<SurfaceContact> contact;  // ascending by a, then b; find_surface_contacts()
+    Array<uint32_t> gone;           // nodes removed since: what contacts say of these means nothing
+    uint64_t version = 0;           // counts changes of who touches whom
+
+    // Scratch of find_surface_contacts().
+    Array<SurfaceContact> found;
+    Array<uint32_t> order, near, colliders;
+    Array<collision::Corner> corner;
     Array<SurfaceSpan> span;
-    Array<collision::Corner> corner;  // likewise
+    Array<SurfaceCrossing> crossing;
+    Array<SurfaceShift> shift;  // by node; of none, or of all
 };
 template <class Visitor, Like<SurfaceContacts> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [contact, gone, version, found, order, near, colliders, corner, span] = of;
+    auto& [contact, gone, version, found, order, near, colliders, corner, span, crossing, shift] = of;
     TAUT_FIELDS(visitor, contact, gone);
     TAUT_ASIDE(visitor, version);
 }
