@@ -16,6 +16,10 @@ Cloth grid_cloth(int rows, int columns, double length, double width, double heig
 // n x n of it, kSheetSide wide, of links that hardly stretch or shear, without bending.
 Cloth sheet(int n, double height);
 
+constexpr double kTrampolineHeight = 1;  // [m]
+// A mat of side x side vertices that hardly stretches, the scene's first cloth, on springs of 5 kN/m in a frame.
+void add_trampoline(Scene& scene, int side, double wide);
+
 // Vertices of a box of nodes[0] x nodes[1] x nodes[2], z fastest.
 inline uint32_t box_vertex(const int (&nodes)[3], int i, int j, int k) {
     return static_cast<uint32_t>((i * nodes[1] + j) * nodes[2] + k);
