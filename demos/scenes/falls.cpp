@@ -76,7 +76,7 @@ Scene soft_pile(int figures, const Options& options) {
         body.rotation = turn({0, 1, 0}, 0.8 * i);
         scene.roles.pile.push_back(scene.add_body(body));
     }
-    scene.camera = {{2.6, 1.9, 3.9}, {0, 0.75, 0}, 40};
+    scene.camera = {{1.8, 1.3, 2.6}, {0, 0.45, 0}, 42};
     scene.stage = {{-3, 0, -3}, {3, top + 1, 3}};
     perturb(scene, options.seed);
     return scene;
@@ -87,12 +87,13 @@ Scene soft_pile(int figures, const Options& options) {
 // Rigid bunnies fall on a sheet held by its corners (Francu 2016, figure 8.1).
 Scene build_bunnies_on_cloth(double, double, const Options& options) {
     constexpr int kSide = 30, kBunnies = 8;
-    constexpr double kHeight = 1.5, kTall = 0.32;
+    constexpr double kHeight = 1.5, kWide = 1.9, kTall = 0.32;
     Scene scene = soft_hall(kHeight);
     add_ground(scene);
-    Cloth cloth = sheet(kSide, kHeight);
-    for (taut_pos& p : cloth.points) p = {1.3 * p.x, p.y, 1.3 * p.z};
+    Cloth cloth = grid_cloth(kSide, kSide, kWide, kWide, kHeight);
+    cloth.def.kind = TAUT_CLOTH_LINKS;
     cloth.def.area_density = 0.4f;
+    sag(cloth, kWide, 0.6);
     cloth.pinned = {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1};
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0x3D7EBF;
@@ -105,9 +106,9 @@ Scene build_bunnies_on_cloth(double, double, const Options& options) {
         const taut_vec3 axis = random.direction();
         const taut_quat by = turn(axis, 0.6 * random.uniform() + 0.2 * i);
         scene.roles.pile.push_back(scene.add_body(
-            bunny.at({out * std::cos(round), kHeight + 0.35 + 0.4 * i, out * std::sin(round)}, by, kLooks[i % 4])));
+            bunny.at({out * std::cos(round), kHeight + 0.1 + 0.4 * i, out * std::sin(round)}, by, kLooks[i % 4])));
     }
-    scene.camera = {{2.2, 2.3, 3.3}, {0, 1.15, 0}, 40};
+    scene.camera = {{1.9, 2.2, 2.8}, {0, 1.15, 0}, 40};
     scene.stage = {{-2, 0, -2}, {2, 5, 2}};
     perturb(scene, options.seed);
     return scene;
@@ -131,7 +132,7 @@ Scene build_dragon_on_stairs(double, double, const Options& options) {
     dragon.def.density = 500;
     dragon.def.solve = TAUT_DEFORMABLE_AUTO;
     dragon.look.paint = 0x4E9B58;
-    dragon.velocities.assign(dragon.points.size(), {0, 0, 1.2f});
+    dragon.velocities.assign(dragon.points.size(), {0, 0, 0.7f});
     scene.add_solid(std::move(dragon));
     const int box = cube_shape(scene, 0.26);
     for (int i = 0; i < 9; ++i) {
@@ -148,18 +149,18 @@ Scene build_dragon_on_stairs(double, double, const Options& options) {
 // A soft cow falls on the ground (Francu 2016, figure 5.8).
 Scene build_cow_falls(double, double, const Options& options) {
     constexpr int kCubes = 300;
-    constexpr double kYoung = 1.5e5;
+    constexpr double kYoung = 4e5;
     Scene scene = soft_hall(1.6);
     add_ground(scene);
     Solid cow = creature(options.mesh, "cow.obj", cow_limbs(), kCubes);
-    stand_up(cow.points, 1.2, 0.8);
+    stand_up(cow.points, 1.2, 0.5);
     cow.def.young_modulus = static_cast<float>(kYoung);
     cow.def.poisson_ratio = 0.45f;
     cow.def.density = 900;
     cow.def.solve = TAUT_DEFORMABLE_AUTO;
     cow.look = {SoftColours::stress, 0.25 * kYoung, 0, ""};
     scene.add_solid(std::move(cow));
-    scene.camera = {{3.4, 1.6, 2.2}, {0, 0.75, 0}, 40};
+    scene.camera = {{2.6, 1.3, 1.7}, {0, 0.6, 0}, 40};
     scene.stage = {{-2.5, 0, -2.5}, {2.5, 2.5, 2.5}};
     perturb(scene, options.seed);
     return scene;
@@ -183,7 +184,7 @@ Scene build_torus_self(double, double, const Options& options) {
                                      {at(0, 0), at(1, 0), at(1, 1), at(0, 0), at(1, 1), at(0, 1)});
         }
     Solid ring = fill_surface(surface, kCubes, "the ring made here");
-    ring.def.young_modulus = 1.5e4f;
+    ring.def.young_modulus = 3e4f;
     ring.def.poisson_ratio = 0.4f;
     ring.def.solve = TAUT_DEFORMABLE_AUTO;
     ring.look.paint = 0xE3B23C;

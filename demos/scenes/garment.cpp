@@ -212,7 +212,6 @@ Scene build_garment_on_body(double, double, const Options& options) {
         cloth.look.colours = SoftColours::plain;
         cloth.look.paint = 0x3D7EBF;
     }
-    scene.forces.reset();
     perturb(scene, options.seed);
     return scene;
 }

@@ -110,12 +110,13 @@ Scene build_grains_on_cloth(double, double, const Options& options) {
     add_ground(scene);
     Cloth cloth = sheet(kSide, kHeight);
     cloth.def.thickness = 0.02f;
+    sag(cloth, kSheetSide, 0.5);
     cloth.pinned = {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1};
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0x3D7EBF;
     scene.add_cloth(std::move(cloth));
     Random random(1);
-    pour(scene, {kRadius, 1000, 10, 10, 500, Look::paint}, {0, kHeight + 0.1, 0}, random);
+    pour(scene, {kRadius, 1000, 10, 10, 500, Look::paint}, {0, kHeight - 0.05, 0}, random);
     scene.camera = {{1.9, 1.9, 2.7}, {0, 1.1, 0}, 42};
     scene.stage = {{-2, 0, -2}, {2, 3, 2}};
     perturb(scene, options.seed);

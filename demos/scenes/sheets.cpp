@@ -68,7 +68,7 @@ Scene build_cloth_on_sphere(double, double, const Options& options) {
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0xB8473A;
     scene.add_cloth(std::move(cloth));
-    scene.camera = {{1.9, 1.9, 2.7}, {0, 0.65, 0}, 40};
+    scene.camera = {{1.5, 1.7, 2.1}, {0, 0.7, 0}, 40};
     perturb(scene, options.seed);
     return scene;
 }
@@ -112,7 +112,7 @@ Scene build_cloth_fold(double, double, const Options& options) {
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0xE3B23C;
     scene.add_cloth(std::move(cloth));
-    scene.camera = {{1.5, 1.1, 2.0}, {0, 0.35, 0}, 40};
+    scene.camera = {{1.1, 0.9, 1.5}, {0, 0.3, 0}, 42};
     scene.stage = {{-1.5, 0, -1.5}, {1.5, 1.6, 1.5}};
     perturb(scene, options.seed);
     return scene;
