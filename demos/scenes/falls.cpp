@@ -187,6 +187,7 @@ Scene build_torus_self(double, double, const Options& options) {
     ring.def.young_modulus = 3e4f;
     ring.def.poisson_ratio = 0.4f;
     ring.def.solve = TAUT_DEFORMABLE_AUTO;
+    ring.def.self_collision = 1;
     ring.look.paint = 0xE3B23C;
     scene.add_solid(std::move(ring));
     scene.camera = {{1.5, 1.0, 2.6}, {0, 0.5, 0}, 38};

@@ -41,6 +41,7 @@ Scene build_drape_sphere(double, double r, const Options& options) {
     fixed_ball(scene, kRadius, {0, kFloorBelow - kRadius, 0}, r, TAUT_BODY_STATIC);
     Cloth cloth = sheet(kSide, kFloorBelow + 0.1);
     cloth.def.material.friction = static_cast<float>(r);
+    cloth.def.self_collision = 1;
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0x3D7EBF;
     scene.add_cloth(std::move(cloth));
@@ -65,6 +66,7 @@ Scene build_cloth_on_sphere(double, double, const Options& options) {
     Cloth cloth = sheet(kSide, kTop + 0.05);
     cloth.def.material.friction = static_cast<float>(kFriction);
     cloth.def.solve = TAUT_DEFORMABLE_SWEPT;
+    cloth.def.self_collision = 1;
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0xB8473A;
     scene.add_cloth(std::move(cloth));
@@ -81,6 +83,7 @@ Scene build_cloth_twist(double, double, const Options& options) {
     Cloth cloth = grid_cloth(kLong, kShort, kLength, kWidth, kHeight);
     cloth.def.kind = TAUT_CLOTH_LINKS;
     cloth.def.area_density = static_cast<float>(kSheetDensity);
+    cloth.def.self_collision = 1;
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0x4E9B58;
     std::vector<uint32_t> near, far;
@@ -109,6 +112,7 @@ Scene build_cloth_fold(double, double, const Options& options) {
         const double up = p.x + kWide / 2, t = up / kWide;
         p = {p.z, 0.05 + up, kLean * t + 0.006 * std::sin(9 * std::numbers::pi * t)};
     }
+    cloth.def.self_collision = 1;
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0xE3B23C;
     scene.add_cloth(std::move(cloth));
@@ -133,6 +137,7 @@ Scene build_flag_in_wind(double, double, const Options& options) {
     flag.def.bending_stiffness = 2e-5f;
     flag.def.air_drag = 1.2f;
     flag.def.air_lift = 1;
+    flag.def.self_collision = 1;
     flag.look.colours = SoftColours::plain;
     flag.look.paint = 0xC9463D;
     for (uint32_t k = 0; k < kTall; ++k) flag.pinned.push_back(k);

@@ -87,6 +87,11 @@ float Passing::size() const {
     return std::sqrt(squared);
 }
 
+bool stay_apart(const Passing& passing, float reach, float time) {
+    const float distance = passing.nearest(passing.x).distance();
+    return distance > reach + time * passing.speed() && distance > passing.size();
+}
+
 bool meet(const Passing& passing, float reach, float time, Nearest& out) {
     const float speed = passing.speed();
     float now = 0;

@@ -137,6 +137,7 @@ private:
         SurfaceTouch of = of_;
         if (is_itself()) of.both = std::min(of.both, kOfEdge * passing.size());
         if (turned) std::swap(of.collider[0], of.collider[1]);
+        if (stay_apart(passing, of.both + of.margin, time_)) return;
         const SurfaceContact* was = finder_.before(contact.a, contact.b);
         const std::span<const uint32_t> nodes = contact.node;
         const auto first = static_cast<size_t>(passing.first());
