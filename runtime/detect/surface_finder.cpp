@@ -88,8 +88,7 @@ float Passing::size() const {
 }
 
 bool stay_apart(const Passing& passing, float reach, float time) {
-    const float distance = passing.nearest(passing.x).distance();
-    return distance > reach + time * passing.speed() && distance > passing.size();
+    return passing.nearest(passing.x).distance() > reach + time * passing.speed();
 }
 
 bool meet(const Passing& passing, float reach, float time, Nearest& out) {
@@ -107,11 +106,18 @@ bool meet(const Passing& passing, float reach, float time, Nearest& out) {
     }
 }
 
+bool is_through(const Passing& passing, const SurfaceContact& was) {
+    const Nearest near = passing.nearest(passing.x);
+    return near.inside && near.apart.dot(was.normal) < 0 && near.distance() < passing.size();
+}
+
 bool touch(const Passing& passing, const SurfaceTouch& of, float time, const SurfaceContact* was, const Vec3f& facing,
            SurfaceContact& contact) {
-    Nearest near = passing.nearest(passing.x);
-    const bool through = was && near.inside && near.apart.dot(was->normal) < 0 && near.distance() < passing.size();
-    if (!through && (!meet(passing, of.both + of.margin, time, near) || !near.inside)) return false;
+    Nearest near;
+    if (was && is_through(passing, *was))
+        near = passing.nearest(passing.x);
+    else if (!meet(passing, of.both + of.margin, time, near) || !near.inside)
+        return false;
     const float distance = near.distance();
     if (!(distance > 1e-12f)) {
         if (!was) return false;  // it will be off the next frame, whichever way
