@@ -73,6 +73,16 @@ void list_edges(const Soft& soft, SurfaceMesh& mesh) {
             mesh.owns[i / 3] = static_cast<uint8_t>(mesh.owns[i / 3] | 8u << i % 3);
 }
 
+void list_rings(const Soft& soft, SurfaceMesh& mesh) {
+    mesh.ring_begin.assign(soft.vertices() + 1, 0);
+    for (const SurfaceEdge& edge : mesh.edge)
+        for (const uint32_t vertex : edge.vertex) ++mesh.ring_begin[vertex];
+    for (uint32_t v = 0; v < soft.vertices(); ++v) mesh.ring_begin[v + 1] += mesh.ring_begin[v];
+    mesh.ring.resize(2 * mesh.edge.size());
+    for (auto e = static_cast<uint32_t>(mesh.edge.size()); e-- > 0;)
+        for (const uint32_t vertex : mesh.edge[e].vertex) mesh.ring[--mesh.ring_begin[vertex]] = e;
+}
+
 void build_tree(const Soft& soft, SurfaceMesh& mesh) {
     Array<Vec3f> middle(mesh.x.get_allocator());
     middle.reserve(soft.triangles());
@@ -164,6 +174,7 @@ void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double
         place_vertices(team, nodes, soft, mesh);
         if (made_anew) {
             list_edges(soft, mesh);
+            list_rings(soft, mesh);
             build_tree(soft, mesh);
             mesh.version = soft.mesh_version;
         }

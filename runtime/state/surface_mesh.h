@@ -60,6 +60,8 @@ struct SurfaceMesh {
         : edge(memory),
           edge_of(memory),
           owns(memory),
+          ring_begin(memory),
+          ring(memory),
           order(memory),
           node(memory),
           x(memory),
@@ -67,12 +69,13 @@ struct SurfaceMesh {
           box(memory),
           face(memory) {}
 
-    uint64_t version = 0;     // of the soft body that all of this was made from; 0: of none
-    Array<SurfaceEdge> edge;  //
-    Array<uint32_t> edge_of;  // [3] of each triangle: from corner k to the next
-    Array<uint8_t> owns;      // of each triangle: bit k its edge k, bit 3 + k its corner k; each has one owner
-    Array<uint32_t> order;    // triangles, leaf by leaf
-    Array<SurfaceNode> node;  // the tree; its root first
+    uint64_t version = 0;              // of the soft body that all of this was made from; 0: of none
+    Array<SurfaceEdge> edge;           //
+    Array<uint32_t> edge_of;           // [3] of each triangle: from corner k to the next
+    Array<uint8_t> owns;               // of each triangle: bit k its edge k, bit 3 + k its corner k; each has one owner
+    Array<uint32_t> ring_begin, ring;  // of each vertex: its edges
+    Array<uint32_t> order;             // triangles, leaf by leaf
+    Array<SurfaceNode> node;           // the tree; its root first
     // Of a frame.
     Vec3 origin = Vec3::Zero();   // [m]
     Array<Vec3f> x, v;            // of each vertex, from there [m], [m/s]
