@@ -200,7 +200,8 @@ void pull_back(SurfaceFinder& finder) {
     uint32_t first = kNone, second = kNone;
     for (const SurfaceContact& was : finder.all_before()) {
         if (is_of_shape(was.b)) continue;
-        const auto [a, b] = std::minmax(soft_of(was.a), soft_of(was.b));
+        const uint32_t one = soft_of(was.a), other = soft_of(was.b);
+        const uint32_t a = std::min(one, other), b = std::max(one, other);
         const bool apart = a == b ? !softs.record[a].self || !softs.mesh[a].awake : !may_touch(finder.scene(), a, b);
         if (softs.mesh[a].version == 0 || softs.mesh[b].version == 0 || apart) continue;
         if (a != first || b != second) pair.emplace(finder, first = a, second = b);
