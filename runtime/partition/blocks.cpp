@@ -11,7 +11,8 @@ namespace taut {
 namespace {
 
 // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before stay
-// below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept.
+// below this: the cost of a direct solve grows with what loops through it. The rest of the contacts is swept. Those of
+// elastic elements loop through nothing, see solvers/contact_space.h.
 constexpr uint32_t kMostGrown = 64;
 
 // Contacts of what carries no more than some thirty times its own weight are as well swept, and far cheaper so:
@@ -88,7 +89,8 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     a = find(a), b = find(b);
     if (a == b) return true;
     const Component &ca = component_[a], &cb = component_[b];
-    const uint32_t grown = ca.grown + cb.grown + std::min(ca.nodes, cb.nodes);
+    const bool elastic = ca.elastic || cb.elastic;
+    const uint32_t grown = ca.grown + cb.grown + (elastic ? 0 : std::min(ca.nodes, cb.nodes));
     if (grown > kMostGrown) return false;
     const uint32_t total = ca.nodes + cb.nodes;
     Component both;
@@ -96,6 +98,7 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     both.grown = grown;
     both.loaded = ca.loaded || cb.loaded;
     both.hit = ca.hit || cb.hit;
+    both.elastic = elastic;
     unite(a, b);
     component_[find(a)] = both;
     return true;
@@ -152,15 +155,15 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
         Component& c = component_[find(end)];
         c.ties += multiplies;
         const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
-        c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
+        c.elastic = c.elastic || (direct && !multiplies);
+        c.loaded = c.loaded || (direct && (loaded || !multiplies)) || c.most >= kLoadedMassRatio * c.least;
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
         c.always = c.always || direct;
     };
     for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element],
-              multiplies(set));
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set));
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
@@ -276,6 +279,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         const auto ends = pairs.active[p].nodes();
         Block& block = block_at(mover(nodes, ends));
         block.pairs.push_back(p);
+        if (!block.elastic.empty()) continue;  // whose matrix sees no contact
         for (size_t b = 0; b < ends.size(); ++b)
             for (size_t a = 0; a < b; ++a)
                 if (moving(nodes, ends[a]) && moving(nodes, ends[b])) block.links.push_back(pair_key(ends[a], ends[b]));
