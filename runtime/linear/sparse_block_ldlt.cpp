@@ -293,8 +293,8 @@ InverseCost SparseBlockLdlt::find_strips(std::span<const uint32_t> pivots) const
         const size_t numbers = 3 * p.pivots * strip_[k].width();
         cost.room += numbers;
         largest = std::max(largest, numbers);
-        cost.products += static_cast<double>(numbers) * (static_cast<double>(p.ld()) +
-                                                         0.5 * static_cast<double>(strip_[k].width()));
+        cost.products +=
+            static_cast<double>(numbers) * (static_cast<double>(p.ld()) + 0.5 * static_cast<double>(strip_[k].width()));
     }
     cost.room += kPanelPadding + largest;
     return cost;
