@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "detect/feature_region.h"
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
 #include "detect/untangle.h"
@@ -107,6 +106,26 @@ bool meet(const Passing& passing, float reach, float time, Nearest& out) {
     }
 }
 
+// When two points on their way are nearest, within a time.
+static float passing_time(const Vec3f& apart, const Vec3f& parting, float time) {
+    const float squared = parting.squaredNorm();
+    return squared > 0 ? std::clamp(-apart.dot(parting) / squared, 0.0f, time) : 0;
+}
+
+// Of two features that do not touch now nor in a time, where they come nearest: so nothing that slides over an edge
+// within what is flat is stopped by it.
+static void pass_by(const Passing& passing, float both, float time, Nearest& near) {
+    Vec3f apart = Vec3f::Zero(), parting = Vec3f::Zero();
+    for (int i = 0; i < passing.points(); ++i) {
+        apart += near.weight[i] * passing.x[i];
+        parting += near.weight[i] * passing.v[i];
+    }
+    Vec3f at[4];
+    passing.at(passing_time(apart, parting, time), at);
+    const Nearest then = passing.nearest(at);
+    if (apart.norm() > both && then.inside && then.distance() >= both) near = then;
+}
+
 bool is_through(const Passing& passing, const SurfaceContact& was) {
     const Nearest near = passing.nearest(passing.x);
     return near.inside && near.apart.dot(was.normal) < 0 && near.distance() < passing.size();
@@ -115,10 +134,12 @@ bool is_through(const Passing& passing, const SurfaceContact& was) {
 bool touch(const Passing& passing, const SurfaceTouch& of, float time, const SurfaceContact* was, const Vec3f& facing,
            SurfaceContact& contact) {
     Nearest near;
-    if (was && is_through(passing, *was))
+    if (was && is_through(passing, *was)) {
         near = passing.nearest(passing.x);
-    else if (!meet(passing, of.both + of.margin, time, near) || !near.inside)
-        return false;
+    } else {
+        if (!meet(passing, of.both + of.margin, time, near) || !near.inside) return false;
+        pass_by(passing, of.both, time, near);
+    }
     const float distance = near.distance();
     if (!(distance > 1e-12f)) {
         if (!was) return false;  // it will be off the next frame, whichever way
@@ -143,8 +164,19 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
     return true;
 }
 
-// Pairs of vertices with what is round, of which something else of their surface is nearest: they have no points.
-static void leave_to_others(const SurfaceScene& scene) {
+// Of what is round, the point of its axis that is nearest to another, in the frame of a mesh.
+static Vec3f point_on_axis(const SurfaceScene& scene, uint32_t collider, const SurfaceMesh& mesh, const Vec3f& to) {
+    const collision::Shape& shape = scene.shapes[scene.colliders.record[collider].shape].shape;
+    const collision::Placement& at = scene.pairs.placement[collider];
+    const Vec3f middle = (at.position - mesh.origin).cast<float>();
+    const float half = shape.kind == collision::ShapeKind::capsule ? shape.size.y() : 0;
+    const Vec3f along = at.rotation.col(1);
+    return middle + std::clamp(along.dot(to - middle), -half, half) * along;
+}
+
+// Pairs of vertices with what is round and passes by: the normal is that of where they come nearest, lest something
+// that slides over a vertex within what is flat is stopped by it. Levers stay.
+static void turn_to_passage(const SurfaceScene& scene) {
     Pairs& pairs = scene.pairs;
     Array<uint32_t>& vertex_of = pairs.surfaces.near;  // by node
     vertex_of.assign(scene.nodes.slots(), kNone);
@@ -152,21 +184,26 @@ static void leave_to_others(const SurfaceScene& scene) {
         const Soft& soft = scene.softs.record[s];
         for (uint32_t v = 0; v < soft.vertices(); ++v) vertex_of[soft.node[v]] = v;
     }
-    const auto is_round = [&](uint32_t collider) {
-        const collision::ShapeKind kind = scene.shapes[scene.colliders.record[collider].shape].shape.kind;
-        return kind == collision::ShapeKind::sphere || kind == collision::ShapeKind::capsule;
-    };
-    for (ActivePair& active : pairs.active) {
+    for (const ActivePair& active : pairs.active) {
         const bool second = vertex_of[active.a] == kNone;
         const uint32_t node = second ? active.b : active.a;
-        if (vertex_of[node] == kNone) continue;
+        if (vertex_of[node] == kNone || active.spans()) continue;
         Pair& pair = pairs.list[active.pair];
-        if (!is_round(second ? pair.collider_a() : pair.collider_b())) continue;
+        const uint32_t collider = second ? pair.collider_a() : pair.collider_b();
+        const collision::ShapeKind kind = scene.shapes[scene.colliders.record[collider].shape].shape.kind;
+        if (kind != collision::ShapeKind::sphere && kind != collision::ShapeKind::capsule) continue;
         const SurfaceMesh& mesh = scene.softs.mesh[scene.nodes.info[node].soft];
-        const Vec3f away = second ? Vec3f(-pair.manifold.normal) : pair.manifold.normal;
-        if (is_in_region_of_vertex(mesh, vertex_of[node], away)) continue;
-        pair.manifold.count = 0;
-        active.points = 0;
+        const Vec3f& x = mesh.x[vertex_of[node]];
+        const Vec3f middle = point_on_axis(scene, collider, mesh, x), apart = middle - x;
+        const NodeMotion& other = scene.nodes.motion[second ? active.a : active.b];
+        const Vec3f arm = (mesh.origin - other.x).cast<float>() + middle;
+        const Vec3f parting = other.v.cast<float>() + other.w.cast<float>().cross(arm) - mesh.v[vertex_of[node]];
+        const float both = mesh.radius + (second ? pair.round_a : pair.round_b);
+        const Vec3f then = apart + passing_time(apart, parting, static_cast<float>(scene.time)) * parting;
+        if (pair.then > 0 || !(apart.norm() > both) || !(then.norm() >= both)) continue;
+        const Vec3f normal = then.normalized();
+        pair.manifold.normal = second ? Vec3f(-normal) : normal;
+        pair.manifold.points[0].separation = normal.dot(apart) - both;
     }
 }
 
@@ -199,7 +236,7 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) 
     surfaces.version += same ? 0 : 1;
     surfaces.contact.clear();
     for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
-    leave_to_others(scene);
+    turn_to_passage(scene);
     untangle(scene, nodes);
 }
 

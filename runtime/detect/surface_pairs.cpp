@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "detect/detect.h"
-#include "detect/feature_region.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
 #include "detect/untangle.h"
@@ -12,8 +11,6 @@
 namespace taut {
 namespace {
 
-// Sine by which the normal of two edges may lean into a face: of two sheets on each other it is that of both.
-constexpr float kEdges = 0.2f;
 constexpr float kFlat = 0.5f;    // cosine between normals: neighbours that are bent by less do not meet
 constexpr float kOfEdge = 0.5f;  // of the shortest edge of two features: what touches itself is no thicker
 
@@ -128,7 +125,7 @@ private:
         for (int k = 0; k < 3; ++k) place(other, corners(other, t)[k], k + 1, passing, contact);
         contact.a = feature_of(index_[side], SurfacePart::vertex, vertex);
         contact.b = feature_of(index_[other], SurfacePart::face, t);
-        add(passing, outward(other, t), side == 1, through, contact, [](const Vec3f&) { return true; });
+        add(passing, outward(other, t), side == 1, through, contact);
     }
 
     void find_edges(uint32_t e, uint32_t f, const SurfaceContact* through = nullptr) {
@@ -145,16 +142,11 @@ private:
         for (int side = 0; side < 2; ++side)
             for (const uint32_t t : mesh_[side]->edge[side == 0 ? e : f].triangle)
                 if (t != kNone) facing += (side == 0 ? -1.0f : 1.0f) * outward(side, t);
-        add(passing, facing, false, through, contact, [&](const Vec3f& normal) {
-            return is_in_region_of_edge(*soft_[0], *mesh_[0], e, -normal, kEdges) &&
-                   is_in_region_of_edge(*soft_[1], *mesh_[1], f, normal, kEdges);
-        });
+        add(passing, facing, false, through, contact);
     }
 
-    // is_apt(normal): whether that is one of the features.
-    template <class IsApt>
     void add(const Passing& passing, const Vec3f& facing, bool turned, const SurfaceContact* through,
-             SurfaceContact& contact, IsApt&& is_apt) {
+             SurfaceContact& contact) {
         if (std::ranges::none_of(contact.node, [&](uint32_t node) { return finder_.scene().nodes.solved(node); }))
             return;
         SurfaceTouch of = of_;
@@ -165,8 +157,7 @@ private:
         if (was && is_through(passing, *was) != (through != nullptr)) return;
         const std::span<const uint32_t> nodes = contact.node;
         const auto first = static_cast<size_t>(passing.first());
-        if (touch(passing, of, time_, was, facing, contact) && is_apt(contact.normal) &&
-            !finder_.tied(nodes.first(first), nodes.subspan(first)))
+        if (touch(passing, of, time_, was, facing, contact) && !finder_.tied(nodes.first(first), nodes.subspan(first)))
             finder_.add(contact);
     }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "detect/detect.h"
-#include "detect/feature_region.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
@@ -12,7 +11,8 @@
 namespace taut {
 namespace {
 
-constexpr float kWithin = 0.98f;  // of an edge, from its middle: what is nearer to an end is the vertex's
+constexpr float kSuffices = 0.125f;  // of the margin: what is nearer by less than this than vertices is theirs too
+constexpr float kWithin = 0.98f;     // of an edge, from its middle: what is nearer to an end is the vertex's
 
 // Of a collider that nobody's vertex is: in the frame of one surface.
 class SurfaceShape {
@@ -121,6 +121,18 @@ private:
         contact.node[i] = soft_.node[vertex];
     }
 
+    // Of a place on its axis, or the middle of a ball.
+    Vec3f on_axis(const Vec3f& from) const {
+        const Vec3f x[4] = {from, end_[0], end_[1], Vec3f::Zero()};
+        return from - nearest_of_edge(x, 1, 2).apart;
+    }
+    // Whether vertices, which have contacts of their own, are about as near to what is round.
+    bool vertices_suffice(std::span<const uint32_t> vertices, float distance) const {
+        return std::ranges::any_of(vertices, [&](uint32_t vertex) {
+            return (on_axis(mesh_.x[vertex]) - mesh_.x[vertex]).norm() - distance < kSuffices * margin_;
+        });
+    }
+
     void find_edge(uint32_t e) {
         if (is_round())
             find_round_edge(e);
@@ -144,12 +156,13 @@ private:
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(),
                    contact))
             return;
-        if (!is_in_region_of_edge(soft_, mesh_, e, contact.normal)) return;
+        const float distance = contact.gap + of.both;
+        if (vertices_suffice(edge.vertex, distance)) return;
+        Vec3f middle = Vec3f::Zero();
+        for (int k = 0; k < first; ++k) middle += contact.weight[k] * passing.x[k];
         if (!spans()) {
-            Vec3f on_axis = Vec3f::Zero();
-            for (int k = 0; k < first; ++k) on_axis += contact.weight[k] * passing.x[k];
             contact.skin = -shape_.size.x() * contact.normal;
-            contact.lever = on_axis + contact.skin - centre_;
+            contact.lever = middle + contact.skin - centre_;
             if (!ball) {  // both ends are one body's
                 contact.weight[0] += contact.weight[1];
                 contact.weight[1] = contact.weight[2], contact.node[1] = contact.node[2];
@@ -233,8 +246,7 @@ private:
         place_vertex(vertex, 1, passing, contact);
         const uint64_t feature = feature_of(index_, SurfacePart::vertex, vertex);
         if (touch(passing, touch_of(true, shape_.size.x()), time_,
-                  finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact) &&
-            is_in_region_of_vertex(mesh_, vertex, contact.normal))
+                  finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact))
             add(contact, feature, kAxis);
     }
 
@@ -276,6 +288,7 @@ private:
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, corner.number)), facing,
                    contact))
             return;
+        if (is_round() && vertices_suffice({vertex, 3}, contact.gap + of.both)) return;
         if (!spans()) {
             contact.skin = -corner.radius * contact.normal;
             contact.lever = at + contact.skin - centre_;
