@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scenes/pose.h"
+
 namespace demo {
 
 namespace {
@@ -207,14 +209,31 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
     instance.gloss = body.look == Look::steel ? 0.9f : 0.22f;
     if (body.kind == TAUT_BODY_PARTICLE) {
         float radius = body.look == Look::steel ? kCableWeightRadius : kPointRadius;
+        if (body.shape >= 0) radius = scene_.shapes[static_cast<size_t>(body.shape)].radius;
         instance.mesh = body.look == Look::steel ? render::kMeshSphere : render::kMeshDot;
         instance.scale = {radius, radius, radius};
         list.instances.push_back(instance);
         return;
     }
-    if (body.shape < 0) return;
-    const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(body.shape)];
-    instance.mesh = meshes_[static_cast<size_t>(body.shape)];
+    if (body.drawn >= 0) {
+        add_shape(list, body.drawn, instance);
+        return;
+    }
+    if (body.shape >= 0) add_shape(list, body.shape, instance);
+    for (const scenes::Part& part : body.parts) {
+        Instance piece = instance;
+        piece.position =
+            instance.position + rotate(instance.rotation, {part.position.x, part.position.y, part.position.z});
+        const taut_quat whole = scenes::times(pose.rotation, part.rotation);
+        piece.rotation = {whole.x, whole.y, whole.z, whole.w};
+        add_shape(list, part.shape, piece);
+    }
+}
+
+void SceneView::add_shape(render::DrawList& list, int index, Instance instance) const {
+    const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(index)];
+    instance.mesh = meshes_[static_cast<size_t>(index)];
+    const Colour colour = instance.colour;
     float r = shape.radius;
     switch (shape.kind) {
         case ShapeKind::plane:

@@ -39,6 +39,7 @@ public:
 
 private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
+    void add_shape(render::DrawList& list, int shape, render::Instance instance) const;
     void add_hinge(render::DrawList& list, size_t index, render::Vec3 at) const;
     struct Paint {
         render::Colour plain;

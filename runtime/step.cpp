@@ -55,7 +55,8 @@ void detect(World& w, Stopwatch& watch) {
     w.profile.broadphase_us = watch.lap();
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
     find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
-    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step});
+    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step},
+                          w.nodes);
     if (wake_touched(w)) {
         recall_pairs(w);
         find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);

@@ -24,6 +24,7 @@ struct Family {
     Scene (*build)(double n, double r, const Options& options);
     double largest_n;
     bool takes_mesh = false;  // it can do without
+    bool large = false;       // a step takes tens of milliseconds: quick tests take few
 };
 
 const std::vector<Family>& families();

@@ -164,28 +164,24 @@ Scene build_tearing_flag(double, double, const Options& options) {
     return scene;
 }
 
-// A mat that hardly stretches on springs of 5 kN/m in a frame, and balls (Tournier et al. 2015, section 5).
-Scene build_trampoline(double, double, const Options& options) {
-    constexpr int kSide = 22;
-    constexpr double kWide = 2, kSheetHeight = 1, kGap = 0.25, kSpring = 5e3, kRadius = 0.22;
+void add_trampoline(Scene& scene, int side, double wide) {
+    constexpr double kGap = 0.25, kSpring = 5e3;
     constexpr float kHard = 1e-10f;  // [m/N]
-    Scene scene = soft_hall(1.6);
-    add_ground(scene);
-    Cloth mat = grid_cloth(kSide, kSide, kWide, kWide, kSheetHeight);
+    Cloth mat = grid_cloth(side, side, wide, wide, kTrampolineHeight);
     mat.def.kind = TAUT_CLOTH_LINKS;
     mat.def.area_density = 0.4f;
     mat.def.stretch_compliance[0] = mat.def.stretch_compliance[1] = kHard;
     mat.look.most = 0.01;
     const std::vector<taut_pos> points = mat.points;
     scene.add_cloth(std::move(mat));
-    for (int i = 0; i < kSide; ++i)
-        for (int k = 0; k < kSide; ++k) {
-            const int across = (i == kSide - 1) - (i == 0), along = (k == kSide - 1) - (k == 0);
+    for (int i = 0; i < side; ++i)
+        for (int k = 0; k < side; ++k) {
+            const int across = (i == side - 1) - (i == 0), along = (k == side - 1) - (k == 0);
             if (across == 0 && along == 0) continue;
             Joint spring;
             spring.kind = TAUT_JOINT_DISTANCE;
             spring.vertex_a.cloth = 0;
-            spring.vertex_a.vertex = static_cast<uint32_t>(i * kSide + k);
+            spring.vertex_a.vertex = static_cast<uint32_t>(i * side + k);
             const taut_pos& at = points[spring.vertex_a.vertex];
             const double reach = std::hypot(across, along);
             spring.anchor_b = {at.x + across * kGap, at.y, at.z + along * kGap};
@@ -194,19 +190,29 @@ Scene build_trampoline(double, double, const Options& options) {
             spring.drawn_radius = 0.008;
             scene.add_joint(spring);
         }
-    const double half = kWide / 2 + kGap, thick = 0.03;
-    for (const double side : {-1.0, 1.0}) {
-        add_static_box(scene, {side * (half + thick), kSheetHeight, 0}, thick, thick, half + 2 * thick, Look::steel);
-        add_static_box(scene, {0, kSheetHeight, side * (half + thick)}, half, thick, thick, Look::steel);
+    const double half = wide / 2 + kGap, thick = 0.03;
+    for (const double end : {-1.0, 1.0}) {
+        add_static_box(scene, {end * (half + thick), kTrampolineHeight, 0}, thick, thick, half + 2 * thick,
+                       Look::steel);
+        add_static_box(scene, {0, kTrampolineHeight, end * (half + thick)}, half, thick, thick, Look::steel);
         for (const double other : {-1.0, 1.0})
-            add_static_box(scene, {side * (half + thick), kSheetHeight / 2, other * (half + thick)}, thick,
-                           kSheetHeight / 2, thick, Look::steel);
+            add_static_box(scene, {end * (half + thick), kTrampolineHeight / 2, other * (half + thick)}, thick,
+                           kTrampolineHeight / 2, thick, Look::steel);
     }
-    const int ball = sphere_shape(scene, kRadius);
-    scene.add_body(crate(ball, {0.05, kSheetHeight + 1.2, 0.1}, 30));
-    scene.add_body(crate(ball, {-0.45, kSheetHeight + 2.2, -0.4}, 8));
-    scene.add_body(crate(ball, {0.4, kSheetHeight + 3.2, -0.3}, 3));
     scene.forces = ForceScale{0, 3};
+}
+
+// Balls on a mat (Tournier et al. 2015, section 5).
+Scene build_trampoline(double, double, const Options& options) {
+    constexpr int kSide = 22;
+    constexpr double kWide = 2, kRadius = 0.22;
+    Scene scene = soft_hall(1.6);
+    add_ground(scene);
+    add_trampoline(scene, kSide, kWide);
+    const int ball = sphere_shape(scene, kRadius);
+    scene.add_body(crate(ball, {0.05, kTrampolineHeight + 1.2, 0.1}, 30));
+    scene.add_body(crate(ball, {-0.45, kTrampolineHeight + 2.2, -0.4}, 8));
+    scene.add_body(crate(ball, {0.4, kTrampolineHeight + 3.2, -0.3}, 3));
     scene.camera = {{2.6, 2.5, 3.6}, {0, 1.15, 0}, 40};
     scene.stage = {{-2, 0, -2}, {2, 3.5, 2}};
     perturb(scene, options.seed);

@@ -111,7 +111,42 @@ void sew(Scene& scene, const Weave& weave, const std::vector<int>& place) {
         }
 }
 
-void add_mannequin(Scene& scene) {
+Motion swaying(int body) {
+    Motion sway;
+    sway.body = body;
+    sway.along = {0.9f, 0, 0.4f};
+    sway.track.keys = {{0, 0, 0}};
+    sway.track.shake = {0.12, 0.8, 2, 7};
+    return sway;
+}
+
+// Turns to and fro about an axis through a point.
+Motion swinging(int body, taut_vec3 about, taut_pos pivot, double angle, double frequency) {
+    Motion swing;
+    swing.body = body;
+    swing.about = about;
+    swing.pivot = pivot;
+    swing.track.keys = {{0, 0, 0}};
+    swing.track.shake = {angle, frequency, 1, 1e3};
+    return swing;
+}
+
+// Legs step, arms rise, and all of it turns and shifts.
+void walk(Scene& scene, int first) {
+    for (const double side : {-1.0, 1.0}) {
+        const auto s = static_cast<float>(side);
+        const int arm = first + (side < 0 ? 5 : 6), leg = first + (side < 0 ? 7 : 8);
+        scene.motions.push_back(swinging(arm, {0.4f * s, 0, s}, {0.17 * side, 1.33, 0}, 0.45, 0.6));
+        scene.motions.push_back(swinging(leg, {s, 0, 0}, {0.08 * side, 0.9, 0}, 0.3, 0.6));
+    }
+    for (int body = first; body < static_cast<int>(scene.bodies.size()); ++body) {
+        scene.motions.push_back(swinging(body, {0, 1, 0}, {0, 0, 0}, 0.7, 0.3));
+        scene.motions.push_back(swaying(body));
+    }
+}
+
+// Returns its first body; all follow in the order below.
+int add_mannequin(Scene& scene) {
     struct Limb {
         taut_pos from, to;
         double radius;
@@ -130,20 +165,12 @@ void add_mannequin(Scene& scene) {
     for (const Limb& limb : kLimbs) {
         const int body = add_capsule(scene, limb.from, limb.to, limb.radius, 0, Look::wood);
         scene.bodies[static_cast<size_t>(body)].kind = TAUT_BODY_KINEMATIC;
-        Motion sway;
-        sway.body = body;
-        sway.along = {0.9f, 0, 0.4f};
-        sway.track.keys = {{0, 0, 0}};
-        sway.track.shake = {0.12, 0.8, 2, 7};
-        scene.motions.push_back(sway);
     }
+    return static_cast<int>(scene.bodies.size() - std::size(kLimbs));
 }
 
-}  // namespace
-
-// n vertices across a panel.
-Scene build_garment(double n, double, const Options& options) {
-    const int columns = std::max(5, static_cast<int>(n));
+// The tunic on its mannequin, which does not move yet; columns: vertices across a panel.
+Scene dressed(int columns, int& mannequin) {
     const Weave weave = {columns * 34 / 25, columns};
     Scene scene = soft_hall(1.6);
     add_ground(scene);
@@ -158,10 +185,33 @@ Scene build_garment(double n, double, const Options& options) {
         scene.add_cloth(std::move(cloth));
     }
     sew(scene, weave, place);
-    add_mannequin(scene);
+    mannequin = add_mannequin(scene);
     scene.camera = {{0.75, 1.5, 2.3}, {-0.3, 0.95, 0}, 38};
     scene.forces = ForceScale{-2, 2};
     scene.stage = {{-1.5, 0, -1.5}, {1.5, 2, 1.5}};
+    return scene;
+}
+
+}  // namespace
+
+// n vertices across a panel.
+Scene build_garment(double n, double, const Options& options) {
+    int first = 0;
+    Scene scene = dressed(std::max(5, static_cast<int>(n)), first);
+    for (int body = first; body < static_cast<int>(scene.bodies.size()); ++body) scene.motions.push_back(swaying(body));
+    perturb(scene, options.seed);
+    return scene;
+}
+
+// The same on a body that steps and turns.
+Scene build_garment_on_body(double, double, const Options& options) {
+    int first = 0;
+    Scene scene = dressed(15, first);
+    walk(scene, first);
+    for (Cloth& cloth : scene.cloths) {
+        cloth.look.colours = SoftColours::plain;
+        cloth.look.paint = 0x3D7EBF;
+    }
     perturb(scene, options.seed);
     return scene;
 }

@@ -2,6 +2,7 @@
 #include "builders.h"
 #include "parts.h"
 #include "pose.h"
+#include "soft_meshes.h"
 
 namespace scenes {
 
@@ -9,12 +10,34 @@ namespace {
 
 constexpr double kGrainRadius = 0.05, kGrainMass = 1;  // [m, kg]
 
-Body grain_at(int shape, taut_pos at, float friction) {
-    Body grain = crate(shape, at, kGrainMass, Look::particle);
+Body grain_at(int shape, taut_pos at, float friction, double mass = kGrainMass, Look look = Look::particle) {
+    Body grain = crate(shape, at, mass, look);
     grain.kind = TAUT_BODY_PARTICLE;
     grain.friction = friction;
     grain.grain = true;
     return grain;
+}
+
+double mass_of_ball(double radius, double density) { return density * 4.18879020478639 * radius * radius * radius; }
+
+// Grains as a block of columns x rows in each layer, a tenth of a radius out of their places, above a point.
+struct Poured {
+    double radius;
+    int count, columns, rows;
+    double density;
+    Look look;
+};
+void pour(Scene& scene, const Poured& of, taut_pos above, Random& random) {
+    const double spacing = 2.25 * of.radius, mass = mass_of_ball(of.radius, of.density);
+    const int ball = sphere_shape(scene, of.radius);
+    for (int i = 0; i < of.count; ++i) {
+        const int column = i % of.columns, row = i / of.columns % of.rows, layer = i / (of.columns * of.rows);
+        const taut_vec3 jitter = random.in_cube(0.1 * of.radius);
+        const taut_pos at = plus(above, (column - 0.5 * (of.columns - 1)) * spacing + static_cast<double>(jitter.x),
+                                 of.radius + layer * spacing + static_cast<double>(jitter.y),
+                                 (row - 0.5 * (of.rows - 1)) * spacing + static_cast<double>(jitter.z));
+        scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, 0.5f, mass, of.look)));
+    }
 }
 
 }  // namespace
@@ -76,6 +99,121 @@ Scene build_grains_box(double n, double, const Options& options) {
     perturb(scene, options.seed);
     scene.camera = {{2.6, 0.7 * tall + 1.5, 3.2}, {0, 0.3 * tall, 0}, 42};
     scene.stage = {{-2, 0, -2}, {2, tall + 1, 2}};
+    return scene;
+}
+
+// A thousand grains fall on a sheet of 20 x 20 held by its corners (Francu 2016, figure 5.10).
+Scene build_grains_on_cloth(double, double, const Options& options) {
+    constexpr int kSide = 20;
+    constexpr double kHeight = 1.3, kRadius = 0.03;
+    Scene scene = soft_hall(kHeight);
+    add_ground(scene);
+    Cloth cloth = sheet(kSide, kHeight);
+    cloth.def.thickness = 0.02f;
+    sag(cloth, kSheetSide, 0.5);
+    cloth.pinned = {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1};
+    cloth.look.colours = SoftColours::plain;
+    cloth.look.paint = 0x3D7EBF;
+    scene.add_cloth(std::move(cloth));
+    Random random(1);
+    pour(scene, {kRadius, 1000, 10, 10, 500, Look::paint}, {0, kHeight - 0.05, 0}, random);
+    scene.camera = {{1.9, 1.9, 2.7}, {0, 1.1, 0}, 42};
+    scene.stage = {{-2, 0, -2}, {2, 3, 2}};
+    perturb(scene, options.seed);
+    return scene;
+}
+
+// Grains on a net of cables tied where they cross: small ones pass, large ones stay.
+Scene build_grains_through_mesh(double, double, const Options& options) {
+    constexpr int kCables = 9, kSegments = 20;  // each way, of each
+    constexpr double kHalf = 0.8, kHeight = 1.2, kSag = 0.12, kMesh = 2 * kHalf / (kCables + 1);
+    Scene scene = soft_hall(kHeight);
+    add_ground(scene);
+    const auto place = [&](double x, double z) {
+        return taut_pos{x, kHeight - kSag * (1 - x * x / (kHalf * kHalf)) * (1 - z * z / (kHalf * kHalf)), z};
+    };
+    for (const bool along : {true, false})
+        for (int i = 0; i < kCables; ++i) {
+            const double side = kMesh * (i + 1) - kHalf;
+            std::vector<taut_pos> path;
+            for (int k = 0; k <= kSegments; ++k) {
+                const double way = 2 * kHalf * k / kSegments - kHalf;
+                path.push_back(along ? place(way, side) : place(side, way));
+            }
+            Cable cable = cable_along(scene, TAUT_CABLE_PARTICLES, std::move(path), kWorld, kWorld, 0.024, 0.3);
+            cable.def.filter.group = -7;
+            scene.add_cable(cable);
+        }
+    const auto knot = [](int i) { return static_cast<uint32_t>(kSegments / (kCables + 1) * (i + 1)); };
+    for (int i = 0; i < kCables; ++i)
+        for (int k = 0; k < kCables; ++k) {
+            Joint tie;
+            tie.vertex_a.cable = i;
+            tie.vertex_a.vertex = knot(k);
+            tie.vertex_b.cable = kCables + k;
+            tie.vertex_b.vertex = knot(i);
+            tie.drawn_radius = 0.018;
+            scene.add_joint(tie);
+        }
+    for (const double side : {-1.0, 1.0}) {
+        add_static_box(scene, {side * (kHalf + 0.03), kHeight, 0}, 0.03, 0.03, kHalf + 0.06, Look::wood);
+        add_static_box(scene, {0, kHeight, side * (kHalf + 0.03)}, kHalf, 0.03, 0.03, Look::wood);
+        for (const double other : {-1.0, 1.0})
+            add_static_box(scene, {side * (kHalf + 0.03), kHeight / 2, other * (kHalf + 0.03)}, 0.03, kHeight / 2, 0.03,
+                           Look::wood);
+    }
+    Random random(1);
+    pour(scene, {0.035, 400, 10, 10, 1500, Look::paint}, {0, kHeight + 0.75, 0}, random);
+    pour(scene, {0.1, 14, 4, 4, 1000, Look::stone}, {0, kHeight + 0.4, 0}, random);
+    scene.forces = ForceScale{0, 3};
+    scene.camera = {{2.0, 2.1, 2.9}, {0, 0.95, 0}, 42};
+    scene.stage = {{-2, 0, -2}, {2, 3, 2}};
+    perturb(scene, options.seed);
+    return scene;
+}
+
+// Twenty thousand grains on a table with a rim, ploughed by blades that are led, a ball that rolls and boxes that fall.
+Scene build_sand_on_table(double, double, const Options& options) {
+    constexpr int kGrains = 20000, kRow = 56;
+    constexpr double kRadius = 0.02, kHalf = 1.3, kTable = 0.7, kRim = 0.2;
+    Scene scene = soft_hall(1.4);
+    add_ground(scene);
+    add_static_box(scene, {0, kTable - 0.05, 0}, kHalf + 0.06, 0.05, kHalf + 0.06, Look::wood);
+    for (const double side : {-1.0, 1.0}) {
+        add_static_box(scene, {side * (kHalf + 0.03), kTable + kRim / 2, 0}, 0.03, kRim / 2, kHalf + 0.06, Look::wood);
+        add_static_box(scene, {0, kTable + kRim / 2, side * (kHalf + 0.03)}, kHalf, kRim / 2, 0.03, Look::wood);
+    }
+    Random random(1);
+    pour(scene, {kRadius, kGrains, kRow, kRow, 1500, Look::paint}, {0, kTable, 0}, random);
+    const taut_pos hub = {0.45, kTable + 0.13, 0.4};
+    for (int i = 0; i < 2; ++i) {  // a cross that turns
+        Body blade = crate(box_shape(scene, i == 0 ? 0.4 : 0.02, 0.1, i == 0 ? 0.02 : 0.4), hub, 0, Look::steel);
+        blade.kind = TAUT_BODY_KINEMATIC;
+        Motion spin;
+        spin.body = scene.add_body(blade);
+        spin.about = {0, 1, 0};
+        spin.pivot = hub;
+        spin.track.keys = {{1, 0, 0}, {2, 0.75, 1.5}};
+        scene.motions.push_back(spin);
+    }
+    Body plough = crate(box_shape(scene, 0.02, 0.11, 0.28), {-1.2, kTable + 0.125, -0.75}, 0, Look::steel);
+    plough.kind = TAUT_BODY_KINEMATIC;
+    Motion there;
+    there.body = scene.add_body(plough);
+    there.along = {1, 0, 0};
+    there.track.keys = {{1, 0, 0}, {4, 2.3, 0}, {5, 2.3, 0}, {8, 0, 0}};
+    scene.motions.push_back(there);
+    Body ball = crate(sphere_shape(scene, 0.14), {-0.9, kTable + 0.55, 0.6}, 30, Look::steel);
+    ball.linear_velocity = {1.5f, 0, -0.4f};
+    scene.add_body(ball);
+    for (int i = 0; i < 3; ++i) {
+        Body box = crate(cube_shape(scene, 0.2), {-0.2 + 0.15 * i, kTable + 0.7 + 0.4 * i, -0.1 - 0.1 * i}, 8);
+        box.rotation = turn({0.6f, 0, 0.8f}, 0.5 + i);
+        scene.add_body(box);
+    }
+    scene.camera = {{1.9, 2.6, 2.9}, {0, 0.65, 0}, 42};
+    scene.stage = {{-2, 0, -2}, {2, 3, 2}};
+    perturb(scene, options.seed);
     return scene;
 }
 

@@ -2,6 +2,7 @@
 #include "builders.h"
 #include "parts.h"
 #include "pose.h"
+#include "soft_meshes.h"
 
 namespace scenes {
 
@@ -129,6 +130,35 @@ Scene build_ragdoll_liana(double, double, const Options& options) {
     perturb(scene, options.seed);
     scene.camera = {{2.8, 4.1, 9.2}, {-0.5, 4.15, 0}, 46};
     scene.stage = {{-5, 0, -5}, {5, 9, 5}};
+    return scene;
+}
+
+// One falls on its back on a trampoline, feet first.
+Scene build_ragdoll_on_trampoline(double, double, const Options& options) {
+    constexpr int kSide = 26;
+    constexpr double kWide = 2.5, kLean = -1.2;  // [m], [rad]
+    Scene scene = soft_hall(1.6);
+    add_ground(scene);
+    add_trampoline(scene, kSide, kWide);
+    const taut_pos hip = {0.1, kTrampolineHeight + 1.5, -0.1};
+    const Doll doll{scene, hip};
+    const size_t first = scene.bodies.size();
+    const auto [pelvis, chest] = doll.trunk();
+    for (double side : {-1.0, 1.0}) {
+        doll.leg(pelvis, side);
+        doll.arm(chest, side, doll.at(0.55 * side, 0.05, 0.1));
+    }
+    const taut_quat lean = turn({1, 0, 0}, kLean);
+    for (size_t i = first; i < scene.bodies.size(); ++i) {
+        Body& body = scene.bodies[i];
+        const taut_pos out = rotated(lean, minus(body.position, hip));
+        body.position = plus(hip, out.x, out.y, out.z);
+        body.rotation = times(lean, body.rotation);
+    }
+    scene.roles.load = chest;
+    scene.camera = {{3.2, 2.6, 4.2}, {0, 1.25, 0}, 40};
+    scene.stage = {{-2, 0, -2}, {2, 4, 2}};
+    perturb(scene, options.seed);
     return scene;
 }
 

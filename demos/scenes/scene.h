@@ -62,6 +62,13 @@ enum class Look : uint8_t {
     cloth
 };
 
+// A shape on a body, beside its own.
+struct Part {
+    int shape = -1;
+    taut_vec3 position{};  // in the body's frame [m]
+    taut_quat rotation{0, 0, 0, 1};
+};
+
 struct Body {
     taut_body_kind kind = TAUT_BODY_DYNAMIC;
     int shape = -1;  // index into Scene::shapes; none for particles
@@ -74,13 +81,17 @@ struct Body {
     float friction = 0.5f;
     int32_t group = 0;  // bodies of the same negative group don't collide
     Look look = Look::crate;
-    bool grain = false;  // of particles: TAUT_COLLIDER_GRAIN
+    bool grain = false;         // of particles: TAUT_COLLIDER_GRAIN
+    std::vector<Part> parts{};  // of a body that has mass and inertia of its own
+    int drawn = -1;             // shape that is drawn in place of its own and of its parts
 };
 
-// A vertex of a cloth or of a solid, which a joint or cable ends at in place of a body.
+// A vertex of a cloth or of a solid, or a point of a cable of particles, which a joint ends at in place of a body; of
+// cables only the first two.
 struct SoftVertex {
-    int cloth = -1, solid = -1;  // index of one of the two; neither: the end is the body
+    int cloth = -1, solid = -1;  // index of one of these; none: the end is the body
     uint32_t vertex = 0;
+    int cable = -1;
 };
 
 struct Joint {
@@ -163,14 +174,19 @@ struct Track {
     Shake shake;
 };
 
-// What moves by plan: a kinematic body, by its track along a direction from its start; the drive of a joint, whose
-// target and speed follow the track; or a cable's end that is reeled: what is paid out [m] follows it.
+// What moves by plan: a kinematic body or pinned vertices of a cloth, by the track along a direction from the start and
+// about a pivot; the drive of a joint, whose target and speed follow the track; or a cable's end that is reeled: what
+// is paid out [m] follows it. A body's motions are made one after another, each of what those before it say.
 struct Motion {
     int body = -1, joint = -1;
     uint32_t axis = 0;  // of the joint; the cable's end
-    taut_vec3 along{};  // of the body, [m] a unit of the track
+    taut_vec3 along{};  // of the body or vertices, [m] a unit of the track
     Track track;
     int cable = -1;
+    int cloth = -1;
+    std::vector<uint32_t> vertices{};
+    taut_vec3 about{};  // of the body or vertices, [rad] a unit of the track
+    taut_pos pivot{};
 };
 
 // A chain or cable, from its held end to its weight.

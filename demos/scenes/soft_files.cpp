@@ -54,6 +54,16 @@ Solid figure(const std::string& path) {
     return fill_surface(figure_surface(), kFigureCubes, "the figure made here");
 }
 
+Solid creature(const std::string& path, const char* in_data, std::span<const FigureLimb> limbs, int cubes) {
+    if (!path.empty()) return solid_from_file(path, cubes);
+    if (const char* folder = std::getenv("TAUT_DATA")) {
+        const std::filesystem::path file = std::filesystem::path(folder) / in_data;
+        if (std::filesystem::exists(file)) return solid_from_file(file.string(), cubes);
+    }
+    constexpr double kFine = 0.03;  // [m]
+    return fill_surface(surface_of_limbs(limbs, lattice_about(limbs, kFine)), cubes, "the figure made here");
+}
+
 // A cloth of a file: laid over a ball where it is flat enough to lie, dropped on the ground beside it anyhow.
 Scene build_cloth_file(double, double, const Options& options) {
     constexpr double kSize = 1.5, kBall = 0.35;  // largest side [m]

@@ -31,6 +31,16 @@ Cloth grid_cloth(int rows, int columns, double length, double width, double heig
     return cloth;
 }
 
+void sag(Cloth& cloth, double length, double half_angle) {
+    const double radius = length / (2 * half_angle);
+    cloth.rest = cloth.points;
+    for (taut_pos& p : cloth.points) {
+        const double angle = p.x / radius;
+        p.x = radius * std::sin(angle);
+        p.y -= radius * (std::cos(angle) - std::cos(half_angle));
+    }
+}
+
 Cloth sheet(int n, double height) {
     Cloth cloth = grid_cloth(n, n, kSheetSide, kSheetSide, height);
     cloth.def.kind = TAUT_CLOTH_LINKS;

@@ -13,8 +13,16 @@ constexpr double kSheetMass = kSheetSide * kSheetSide * kSheetDensity;  // [kg]
 // vertex i columns + k at x by i, z by k, with texture coordinates in metres [m].
 Cloth grid_cloth(int rows, int columns, double length, double width, double height);
 
+// Bends a level cloth so long along x to a hanging arc of a circle of twice that angle, its ends as high as before
+// [m, rad]. The level one is its rest shape: chords of the arc are a little shorter.
+void sag(Cloth& cloth, double length, double half_angle);
+
 // n x n of it, kSheetSide wide, of links that hardly stretch or shear, without bending.
 Cloth sheet(int n, double height);
+
+constexpr double kTrampolineHeight = 1;  // [m]
+// A mat of side x side vertices that hardly stretches, the scene's first cloth, on springs of 5 kN/m in a frame.
+void add_trampoline(Scene& scene, int side, double wide);
 
 // Vertices of a box of nodes[0] x nodes[1] x nodes[2], z fastest.
 inline uint32_t box_vertex(const int (&nodes)[3], int i, int j, int k) {

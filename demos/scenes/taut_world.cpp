@@ -1,5 +1,9 @@
 #include "taut_world.h"
 
+#include <algorithm>
+
+#include "pose.h"
+#include "random.h"
 #include "taut_joint.h"
 #include "track.h"
 
@@ -172,6 +176,7 @@ void TautWorld::build() {
         taut_shape shape = body.shape < 0 ? taut_shape{} : shapes[static_cast<size_t>(body.shape)];
         check(add_body(world, body, shape, bodies.size(), &handle), "adding a body");
         bodies.push_back(handle);
+        add_parts(body, handle);
     }
     for (const Cloth& cloth : scene_.cloths) {
         cloths.push_back(add(cloth, cloths.size()));
@@ -187,6 +192,16 @@ void TautWorld::build() {
         check(taut_solid_get_bodies(solids.back(), solid_vertices.back().data(), count, &count), "reading a solid");
         start(solid_vertices.back(), solid.velocities);
     }
+    const bool knots = std::any_of(scene_.joints.begin(), scene_.joints.end(), [](const Joint& joint) {
+        return joint.vertex_a.cable >= 0 || joint.vertex_b.cable >= 0;
+    });
+    if (knots) add_cables();
+    add_joints();
+    if (!knots) add_cables();
+    broken.reserve(joints.size());
+}
+
+void TautWorld::add_joints() {
     for (const Joint& joint : scene_.joints) {
         taut_joint handle{};
         check(add_joint(world, joint, end(joint.body_a, joint.vertex_a), end(joint.body_b, joint.vertex_b),
@@ -194,11 +209,35 @@ void TautWorld::build() {
               "adding a joint");
         joints.push_back(handle);
     }
+}
+
+void TautWorld::add_cables() {
     for (const Cable& cable : scene_.cables) cables.push_back(add(cable, cables.size()));
-    broken.reserve(joints.size());
+}
+
+void TautWorld::add_parts(const Body& plan, taut_body body) const {
+    for (const Part& part : plan.parts) {
+        taut_collider_def def;
+        taut_collider_def_init(&def);
+        def.shape = shapes[static_cast<size_t>(part.shape)];
+        def.position = part.position;
+        def.rotation = part.rotation;
+        def.material.friction = plan.friction;
+        def.filter.group = plan.group;
+        taut_collider collider{};
+        check(taut_body_add_collider(body, &def, &collider), "adding a collider");
+    }
 }
 
 taut_body TautWorld::end(int index, const SoftVertex& vertex) const {
+    if (vertex.cable >= 0) {
+        const taut_cable cable = cables[static_cast<size_t>(vertex.cable)];
+        uint32_t count = 0;
+        taut_cable_get_bodies(cable, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+        std::vector<taut_body> points(count);
+        check(taut_cable_get_bodies(cable, points.data(), count, &count), "reading a cable");
+        return points.at(vertex.vertex);
+    }
     if (vertex.cloth >= 0) return cloth_vertices[static_cast<size_t>(vertex.cloth)][vertex.vertex];
     if (vertex.solid >= 0) return solid_vertices[static_cast<size_t>(vertex.solid)][vertex.vertex];
     return end(index);
@@ -253,10 +292,14 @@ taut_cable TautWorld::add(Cable plan, uint64_t index) const {
 // Where everything with a plan is to be at the end of the step.
 void TautWorld::follow_plans() {
     const double time = static_cast<double>(steps_ + 1) * static_cast<double>(scene_.world.time_step);
+    std::vector<bool> moved(scene_.bodies.size(), false);
     for (const Motion& motion : scene_.motions) {
         const TrackPoint point = at(motion.track, time);
-        if (motion.body >= 0)
-            move(motion, point.value);
+        if (motion.body >= 0) {
+            if (!moved[static_cast<size_t>(motion.body)]) move(motion.body, time);
+            moved[static_cast<size_t>(motion.body)] = true;
+        } else if (motion.cloth >= 0)
+            move_vertices(motion, point.value);
         else if (motion.cable >= 0)
             check(taut_cable_set_reel_speed(cables[static_cast<size_t>(motion.cable)], motion.axis,
                                             static_cast<float>(point.rate), 0),
@@ -274,14 +317,53 @@ void TautWorld::take_away(double time) {
             check(taut_joint_remove(joints[i]), "taking a joint away");
 }
 
-void TautWorld::move(const Motion& motion, double value) const {
-    const Body& start = scene_.bodies[static_cast<size_t>(motion.body)];
+namespace {
+
+taut_quat turn_of(const Motion& motion, double value) {
+    const taut_vec3& w = motion.about;
+    const double size = length({static_cast<double>(w.x), static_cast<double>(w.y), static_cast<double>(w.z)});
+    if (!(size > 0)) return {0, 0, 0, 1};
+    const auto s = static_cast<float>(1 / size);
+    return turn({s * w.x, s * w.y, s * w.z}, size * value);
+}
+
+taut_pos moved_point(const Motion& motion, const taut_quat& by, taut_pos from, double value) {
+    const taut_vec3 &a = motion.along, &w = motion.about;
+    if (w.x != 0 || w.y != 0 || w.z != 0) {
+        const taut_pos out = rotated(by, minus(from, motion.pivot));
+        from = plus(motion.pivot, out.x, out.y, out.z);
+    }
+    return plus(from, value * static_cast<double>(a.x), value * static_cast<double>(a.y),
+                value * static_cast<double>(a.z));
+}
+
+}  // namespace
+
+void TautWorld::move(int body, double time) const {
+    const Body& start = scene_.bodies[static_cast<size_t>(body)];
     taut_pose pose{};
-    pose.position = {start.position.x + value * static_cast<double>(motion.along.x),
-                     start.position.y + value * static_cast<double>(motion.along.y),
-                     start.position.z + value * static_cast<double>(motion.along.z)};
+    pose.position = start.position;
     pose.rotation = start.rotation;
-    check(taut_body_move_kinematic(bodies[static_cast<size_t>(motion.body)], &pose), "moving a body");
+    for (const Motion& motion : scene_.motions) {
+        if (motion.body != body) continue;
+        const double value = at(motion.track, time).value;
+        const taut_quat by = turn_of(motion, value);
+        pose.position = moved_point(motion, by, pose.position, value);
+        const taut_vec3& w = motion.about;
+        if (w.x != 0 || w.y != 0 || w.z != 0) pose.rotation = times(by, pose.rotation);
+    }
+    check(taut_body_move_kinematic(bodies[static_cast<size_t>(body)], &pose), "moving a body");
+}
+
+void TautWorld::move_vertices(const Motion& motion, double value) const {
+    const auto cloth = static_cast<size_t>(motion.cloth);
+    const taut_quat by = turn_of(motion, value);
+    for (const uint32_t vertex : motion.vertices) {
+        taut_pose pose{};
+        pose.position = moved_point(motion, by, scene_.cloths[cloth].points[vertex], value);
+        pose.rotation = {0, 0, 0, 1};
+        check(taut_body_move_kinematic(cloth_vertices[cloth][vertex], &pose), "moving a vertex");
+    }
 }
 
 // A motor that holds a speed alone takes no target, which grows beyond a turn.

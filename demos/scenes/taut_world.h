@@ -57,7 +57,11 @@ private:
     taut_solid add(Solid plan, uint64_t index) const;
     void follow_plans();
     void take_away(double time);
-    void move(const Motion& motion, double value) const;
+    void move(int body, double time) const;
+    void move_vertices(const Motion& motion, double value) const;
+    void add_parts(const Body& plan, taut_body body) const;
+    void add_joints();
+    void add_cables();
     void drive(const Motion& motion, double value, double rate) const;
     taut_body end(int index) const { return index == kWorld ? taut_body{} : bodies[static_cast<size_t>(index)]; }
     taut_body end(int index, const SoftVertex& vertex) const;

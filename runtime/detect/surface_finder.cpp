@@ -5,6 +5,7 @@
 
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
+#include "detect/untangle.h"
 
 namespace taut {
 namespace {
@@ -86,6 +87,11 @@ float Passing::size() const {
     return std::sqrt(squared);
 }
 
+bool stay_apart(const Passing& passing, float reach, float time) {
+    const float distance = passing.nearest(passing.x).distance();
+    return distance > reach + time * passing.speed() && distance > passing.size();
+}
+
 bool meet(const Passing& passing, float reach, float time, Nearest& out) {
     const float speed = passing.speed();
     float now = 0;
@@ -130,7 +136,7 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
     return true;
 }
 
-void find_surface_contacts(Team& team, const SurfaceScene& scene) {
+void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
     if (scene.softs.ids.count() == 0 && surfaces.contact.empty()) return;
     refit_surfaces(team, scene.nodes, scene.shapes, scene.time, scene.softs);
@@ -144,8 +150,10 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
         ++surfaces.version;
     }
     surfaces.found.clear();
+    surfaces.crossing.clear();
     SurfaceFinder finder(scene, surfaces.contact, surfaces.found);
     find_surface_pairs(finder);
+    find_shifts(scene, surfaces.found);
     find_surface_shapes(finder);
     finder.keep_still();
     surfaces.order.clear();
@@ -157,6 +165,7 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     surfaces.version += same ? 0 : 1;
     surfaces.contact.clear();
     for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
+    untangle(scene, nodes);
 }
 
 }  // namespace taut

@@ -76,6 +76,10 @@ struct Passing {
     float size() const;
 };
 
+// Whether they are too far apart to come within a reach in a time, and to have been in touch. Asked first: of those
+// whose boxes meet few are not.
+bool stay_apart(const Passing& passing, float reach, float time);
+
 // When two features first come within a reach, by conservative advancement: the distance falls no faster than they
 // move. Where they are then, in out; false: not in the time.
 bool meet(const Passing& passing, float reach, float time, Nearest& out);

@@ -5,6 +5,7 @@
 #include "detect/detect.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
+#include "detect/untangle.h"
 
 namespace taut {
 namespace {
@@ -40,6 +41,8 @@ private:
             for (int i = 0; i < 3; ++i)
                 if (one[i] == other[0] || one[i] == other[1] || one[i] == other[2]) return find_beside(t, u);
         }
+        find_crossings(0, t, 1, u);
+        find_crossings(1, u, 0, t);
         for (uint32_t k = 0; k < 3; ++k) {
             if (mesh_[0]->owns[t] >> (3 + k) & 1) find_vertex(0, corners(0, t)[k], 1, u);
             if (mesh_[1]->owns[u] >> (3 + k) & 1) find_vertex(1, corners(1, u)[k], 0, t);
@@ -70,8 +73,25 @@ private:
         }
     }
 
+    Vec3f place(int side, uint32_t vertex) const {
+        return side == 0 ? mesh_[0]->x[vertex] : Vec3f(apart_ + mesh_[1]->x[vertex]);
+    }
+
+    // Edges of a triangle, those that are its own, through one of the other side.
+    void find_crossings(int side, uint32_t t, int other, uint32_t u) {
+        const uint32_t* corner = corners(other, u);
+        const Vec3f face[3] = {place(other, corner[0]), place(other, corner[1]), place(other, corner[2])};
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (!(mesh_[side]->owns[t] >> k & 1)) continue;
+            const uint32_t e = mesh_[side]->edge_of[3 * t + k];
+            const uint32_t* vertex = mesh_[side]->edge[e].vertex;
+            if (goes_through(place(side, vertex[0]), place(side, vertex[1]), face))
+                finder_.scene().pairs.surfaces.crossing.push_back({index_[side], e, index_[other], u});
+        }
+    }
+
     void place(int side, uint32_t vertex, int at, Passing& passing, SurfaceContact& contact) const {
-        passing.x[at] = side == 0 ? mesh_[0]->x[vertex] : Vec3f(apart_ + mesh_[1]->x[vertex]);
+        passing.x[at] = place(side, vertex);
         passing.v[at] = mesh_[side]->v[vertex];
         contact.node[at] = soft_[side]->node[vertex];
     }
@@ -117,6 +137,7 @@ private:
         SurfaceTouch of = of_;
         if (is_itself()) of.both = std::min(of.both, kOfEdge * passing.size());
         if (turned) std::swap(of.collider[0], of.collider[1]);
+        if (stay_apart(passing, of.both + of.margin, time_)) return;
         const SurfaceContact* was = finder_.before(contact.a, contact.b);
         const std::span<const uint32_t> nodes = contact.node;
         const auto first = static_cast<size_t>(passing.first());

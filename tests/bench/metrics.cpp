@@ -100,8 +100,11 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   energy_lost_m                       kinetic energy and that of height lost after a second, over m g of all that moves
   energy_max                          largest such energy: 1 + (E - E_start) / (m g L), L the longest side at rest
   deep_mm deep_end_mm                 deepest point inside a rigid shape, ever and at the end: vertices, middles of edges,
-                                      centres of faces; meshes, height fields and scaled hulls are left out
+                                      centres of faces; meshes and height fields are left out
+  pairs pairs_end                     triangles that cross and share no vertex, of a cloth's own and of different ones,
+                                      most of the samples (each tenth step) and at the end
   inverted inverted_end               cells turned inside out, most ever and at the end
+  pairs_own pairs_own_end             crossing triangles of a solid's own boundary
   tip_ratio                           of a beam: mean sink of its end over the last second, in parts of theory's
   rest_speed                          mean speed of vertices over the last second [m/s]
  nets: joint_sep_pct                  largest joint gap of the whole run, % of a mesh

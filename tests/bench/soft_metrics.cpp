@@ -5,14 +5,17 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <set>
 
-#include "overlap.h"
 #include "vector.h"
 
 namespace bench {
 
 namespace {
+
+constexpr uint32_t kEvery = 10;  // steps, that crossings are counted
 
 double six_volumes(Vec a, Vec b, Vec c, Vec d) { return dot(b - a, cross(c - a, d - a)); }
 
@@ -80,12 +83,16 @@ void find_sides(SoftShape& shape) {
 
 SoftShape::SoftShape(const scenes::Cloth& cloth) : mass(cloth.points.size(), 0.0) {
     const std::vector<taut_pos>& rest = cloth.rest.empty() ? cloth.points : cloth.rest;
-    for (size_t t = 0; t < cloth.triangles.size(); t += 3) {
-        const std::array<uint32_t, 3> face = {cloth.triangles[t], cloth.triangles[t + 1], cloth.triangles[t + 2]};
+    for (size_t t = 0; t < cloth.triangles.size(); t += 3)
+        faces.push_back({cloth.triangles[t], cloth.triangles[t + 1], cloth.triangles[t + 2]});
+    for (size_t q = 0; q < cloth.quads.size(); q += 4) {
+        const uint32_t* v = &cloth.quads[q];
+        faces.insert(faces.end(), {{v[0], v[1], v[2]}, {v[0], v[2], v[3]}});
+    }
+    for (const auto& face : faces) {
         const Vec a = of(rest[face[0]]);
         const double area = 0.5 * length(cross(of(rest[face[1]]) - a, of(rest[face[2]]) - a));
         for (const uint32_t v : face) mass[v] += static_cast<double>(cloth.def.area_density) * area / 3;
-        faces.push_back(face);
     }
     find_sides(*this);
     for (const auto& [a, b] : sides)
@@ -120,6 +127,15 @@ SoftShape::SoftShape(const scenes::Solid& solid) : mass(solid.points.size(), 0.0
     }
     tets_a_cell = corners == 4 ? 1 : 8;
     faces = boundary_of(solid);
+    if (corners == TAUT_SOLID_MESHLESS) {  // what its triangles enclose, shared by all its points
+        double volume = 0;
+        for (size_t t = 0; t < solid.triangles.size(); t += 3) {
+            const uint32_t* v = &solid.triangles[t];
+            faces.push_back({v[0], v[1], v[2]});
+            volume += six_volumes({}, of(solid.points[v[0]]), of(solid.points[v[1]]), of(solid.points[v[2]])) / 6;
+        }
+        for (double& m : mass) m = static_cast<double>(solid.def.density) * volume / static_cast<double>(mass.size());
+    }
     find_sides(*this);
     for (const uint32_t v : solid.pinned) mass[v] = 0;
     size = longest_side(solid.points);
@@ -130,9 +146,12 @@ SoftMetrics::SoftMetrics(const scenes::Scene& scene, const Engine& engine, uint3
     const auto second = static_cast<uint32_t>(std::lround(1 / static_cast<double>(scene.world.time_step)));
     one_second_ = second - 1;
     last_second_ = steps > second ? steps - second : 0;
+    last_ = steps - 1;
     for (const scenes::Cloth& cloth : scene.cloths) shapes_.emplace_back(cloth);
     for (const scenes::Solid& solid : scene.solids) shapes_.emplace_back(solid);
     states_.resize(shapes_.size());
+    for (const scenes::Shape& shape : scene.shapes) depths_.emplace_back(shape, scene.shapes);
+    name_points();
     read();
     for (const SoftShape& shape : shapes_) {
         size_ = std::max(size_, shape.size);
@@ -186,31 +205,75 @@ void SoftMetrics::measure_stretch() {
 
 // Of vertices, middles of edges and centres of faces.
 void SoftMetrics::measure_depth(const std::vector<Motion>& bodies) {
-    scenes::Shape point;
-    point.kind = scenes::ShapeKind::sphere;
     deep_end_ = 0;
-    for (size_t b = 0; b < scene_.bodies.size(); ++b) {
-        if (scene_.bodies[b].shape < 0) continue;
-        const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(scene_.bodies[b].shape)];
-        if (shape.kind == scenes::ShapeKind::mesh || shape.kind == scenes::ShapeKind::height_field ||
-            shape.kind == scenes::ShapeKind::scaled_hull)
-            continue;
-        const Placed body = {&shape, bodies[b].position, bodies[b].rotation};
-        const double near = bounding_radius(shape);
-        const auto look_at = [&](Vec p) {
-            if (length(p - of(body.position)) > near) return;
-            deep_end_ = std::max(deep_end_, overlap_depth(body, {&point, {p.x, p.y, p.z}, {0, 0, 0, 1}}));
-        };
-        for (size_t i = 0; i < shapes_.size(); ++i) {
-            const std::vector<taut_pos>& x = states_[i].points;
-            for (const auto& [a, c] : shapes_[i].sides) look_at((of(x[a]) + of(x[c])) * 0.5);
-            for (const auto& f : shapes_[i].faces) {
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+        const std::vector<taut_pos>& x = states_[i].points;
+        const auto& faces = shapes_[i].faces;
+        std::vector<FaceTree::Box> boxes;
+        for (const auto& f : faces) boxes.push_back(FaceTree::box_about(x[f[0]], x[f[1]], x[f[2]]));
+        const FaceTree tree(std::move(boxes));
+        for (size_t b = 0; b < scene_.bodies.size(); ++b) {
+            if (scene_.bodies[b].shape < 0) continue;
+            const PointDepth& depth = depths_[static_cast<size_t>(scene_.bodies[b].shape)];
+            const Vec at = of(bodies[b].position);
+            const double r = depth.reach();
+            const auto look_at = [&](Vec p) {
+                deep_end_ = std::max(deep_end_, depth.at(rotate_back(bodies[b].rotation, p - at)));
+            };
+            tree.each_near({{at.x - r, at.y - r, at.z - r}, {at.x + r, at.y + r, at.z + r}}, [&](uint32_t face) {
+                const auto& f = faces[face];
                 look_at((of(x[f[0]]) + of(x[f[1]]) + of(x[f[2]])) * (1.0 / 3));
-                for (const uint32_t v : f) look_at(of(x[v]));
-            }
+                for (size_t k = 0; k < 3; ++k) {
+                    look_at(of(x[f[k]]));
+                    look_at((of(x[f[k]]) + of(x[f[(k + 1) % 3]])) * 0.5);
+                }
+            });
         }
     }
     deep_ = std::max(deep_, deep_end_);
+}
+
+// The same number for vertices that a ball joint holds together, another for each other one.
+void SoftMetrics::name_points() {
+    std::vector<uint32_t> first;
+    uint32_t count = 0;
+    for (const SoftShape& shape : shapes_) {
+        first.push_back(count);
+        count += static_cast<uint32_t>(shape.mass.size());
+    }
+    std::vector<uint32_t> name(count);
+    std::iota(name.begin(), name.end(), 0u);
+    const auto root = [&](uint32_t v) {
+        while (name[v] != v) v = name[v];
+        return v;
+    };
+    const auto place = [&](const scenes::SoftVertex& end) -> std::optional<uint32_t> {
+        if (end.cloth >= 0) return first[static_cast<size_t>(end.cloth)] + end.vertex;
+        if (end.solid >= 0) return first[scene_.cloths.size() + static_cast<size_t>(end.solid)] + end.vertex;
+        return std::nullopt;
+    };
+    for (const scenes::Joint& joint : scene_.joints) {
+        const auto a = place(joint.vertex_a), b = place(joint.vertex_b);
+        if (joint.kind == TAUT_JOINT_BALL && a && b) name[std::max(root(*a), root(*b))] = std::min(root(*a), root(*b));
+    }
+    for (size_t i = 0; i < shapes_.size(); ++i)
+        for (uint32_t v = 0; v < shapes_[i].mass.size(); ++v) {
+            if (v == 0) ids_.emplace_back();
+            ids_.back().push_back(root(first[i] + v));
+        }
+}
+
+// Of cloths with themselves, and between any two; of solids with themselves apart, as cells that are turned inside out
+// cross as well.
+void SoftMetrics::measure_crossings() {
+    std::vector<Skin> skins;
+    for (size_t i = 0; i < shapes_.size(); ++i) skins.push_back({states_[i].points, shapes_[i].faces, ids_[i]});
+    const Crossings found = count_crossings(skins);
+    pairs_end_ = found.between;
+    pairs_own_end_ = 0;
+    for (size_t i = 0; i < skins.size(); ++i) (i < scene_.cloths.size() ? pairs_end_ : pairs_own_end_) += found.own[i];
+    pairs_ = std::max(pairs_, pairs_end_);
+    pairs_own_ = std::max(pairs_own_, pairs_own_end_);
 }
 
 void SoftMetrics::measure_cells() {
@@ -233,6 +296,7 @@ void SoftMetrics::after_step(uint32_t step, double rigid, const std::vector<Moti
     measure_stretch();
     measure_depth(bodies);
     measure_cells();
+    if (step % kEvery == 0 || step == last_) measure_crossings();
     const double now = energy() + rigid;
     energy_most_ = std::max(energy_most_, now);
     if (step == one_second_) energy_lost_ = (energy_start_ - now) / weight_;
@@ -252,11 +316,11 @@ void SoftMetrics::report(nlohmann::ordered_json& json) const {
     size_t vertices = 0, elements = 0;
     for (const scenes::Cloth& cloth : scene_.cloths) {
         vertices += cloth.points.size();
-        elements += cloth.triangles.size() / 3;
+        elements += cloth.triangles.size() / 3 + cloth.quads.size() / 4;
     }
     for (const scenes::Solid& solid : scene_.solids) {
         vertices += solid.points.size();
-        elements += solid.cells.size() / solid.def.corners;
+        if (!solid.cells.empty()) elements += solid.cells.size() / solid.def.corners;
     }
     json["vertices"] = vertices;
     json["elements"] = elements;
@@ -270,9 +334,13 @@ void SoftMetrics::report(nlohmann::ordered_json& json) const {
     json["energy_max"] = 1 + (energy_most_ - energy_start_) / (weight_ * size_);
     json["deep_mm"] = 1e3 * deep_;
     json["deep_end_mm"] = 1e3 * deep_end_;
+    json["pairs"] = pairs_;
+    json["pairs_end"] = pairs_end_;
     if (!scene_.solids.empty()) {
         json["inverted"] = inverted_;
         json["inverted_end"] = inverted_end_;
+        json["pairs_own"] = pairs_own_;
+        json["pairs_own_end"] = pairs_own_end_;
     }
     if (!scene_.roles.tip.empty()) json["tip_ratio"] = tip_ratio();
     json["rest_speed"] = rest_count_ > 0 ? rest_sum_ / static_cast<double>(rest_count_) : 0.0;

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "crossings.h"
 #include "engine.h"
+#include "point_depth.h"
 
 namespace bench {
 
@@ -48,18 +50,23 @@ private:
     void measure_stretch();
     void measure_depth(const std::vector<Motion>& bodies);
     void measure_cells();
+    void name_points();
+    void measure_crossings();
 
     const scenes::Scene& scene_;
     const Engine& engine_;
     std::vector<SoftShape> shapes_;  // cloths, then solids
     std::vector<SoftState> states_;
-    uint32_t one_second_, last_second_;  // step that ends it; first step of the last one
+    uint32_t one_second_, last_second_, last_;  // step that ends it; first step of the last one; last step
     bool finite_ = true;
     double peak_ = 0, end_ = 0, mean_ = 0;                     // stretch
     double deep_ = 0, deep_end_ = 0;                           // [m]
     double weight_ = 0, size_ = 0;                             // m g of all that moves [N], [m]
     double energy_start_ = 0, energy_most_ = 0, energy_lost_;  // [J], [J], [m]
     size_t inverted_ = 0, inverted_end_ = 0;                   // cells
+    std::vector<PointDepth> depths_;                           // of the scene's shapes
+    std::vector<std::vector<uint32_t>> ids_;                   // of the vertices of each; those sewn together have one
+    size_t pairs_ = 0, pairs_end_ = 0, pairs_own_ = 0, pairs_own_end_ = 0;  // that cross; own: of solids' own
     double tip_height_ = 0, tip_sum_ = 0, rest_sum_ = 0;
     uint64_t tip_count_ = 0, rest_count_ = 0;
 };
