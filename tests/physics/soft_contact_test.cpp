@@ -52,7 +52,8 @@ TEST_P(SoftMeeting, KeepsMomentumAndGainsNoEnergy) {
     const Totals after = totals(all);
     EXPECT_LE(norm(after.momentum - before.momentum), 1e-4 * norm(before.momentum));
     EXPECT_LE(most, before.kinetic * (1 + 1e-3));
-    EXPECT_GE(norm(totals(above).momentum - moved), 0.1 * norm(moved)) << "they did not meet";
+    const double one = totals(below).mass, other = totals(above).mass, reduced = one * other / (one + other);
+    EXPECT_GE(norm(totals(above).momentum - moved), 0.3 * 2 * reduced) << "they did not meet";
     EXPECT_TRUE(std::ranges::all_of(all, [](taut_body body) { return finite(body); }));
 }
 
@@ -89,8 +90,8 @@ protected:
             world.add_ground(kSlide);
             return;
         }
-        Sheet sheet(14, 8, 2.6, 1.4, -0.01);
-        for (taut_pos& point : sheet.points) point = (Vec(point) - Vec{0.8, 0, 0.7}).pos();
+        Sheet sheet(2, 2, 8, 8, -0.01);
+        for (taut_pos& point : sheet.points) point = (Vec(point) - Vec{1, 0, 6}).pos();
         taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
         def.thickness = 0.02f;
         def.material.friction = static_cast<float>(kSlide);

@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-class Surfaces : public testing::Test, protected Graph {
+class SurfacePartition : public testing::Test, protected Graph {
 protected:
     // Equal weights on either side.
     void surface(std::vector<uint32_t> below, std::vector<uint32_t> above) {
@@ -53,7 +53,7 @@ protected:
     }
 };
 
-TEST_F(Surfaces, TieAllTheirNodesIntoAnIsland) {
+TEST_F(SurfacePartition, TieAllTheirNodesIntoAnIsland) {
     const auto one = particles(3), other = particles(1), apart = particles(1);
     const uint32_t ground = add(NodeKind::fixed);
     surface(one, other);
@@ -66,14 +66,14 @@ TEST_F(Surfaces, TieAllTheirNodesIntoAnIsland) {
     EXPECT_EQ(swept(), 2u);
 }
 
-TEST_F(Surfaces, OfNodesThatRestAreNotSolved) {
+TEST_F(SurfacePartition, OfNodesThatRestAreNotSolved) {
     surface({add(NodeKind::fixed)}, {add(NodeKind::kinematic)});
     build();
     EXPECT_FALSE(flaw());
     EXPECT_EQ(swept(), 0u);
 }
 
-TEST_F(Surfaces, OfAColourShareNoNode) {
+TEST_F(SurfacePartition, OfAColourShareNoNode) {
     std::mt19937 engine(5);
     const auto all = particles(40);
     for (int i = 0; i < 300; ++i) {
@@ -93,7 +93,7 @@ TEST_F(Surfaces, OfAColourShareNoNode) {
     EXPECT_STREQ(found->invariant, "a colour has a moving node once");
 }
 
-TEST_F(Surfaces, OfABlockTakeInWhatHasNoTies) {
+TEST_F(SurfacePartition, OfABlockTakeInWhatHasNoTies) {
     const auto corner = triangle(JointSolve::direct);
     const uint32_t box = add(NodeKind::dynamic), ground = add(NodeKind::fixed);
     surface(corner, {box});
@@ -112,7 +112,7 @@ TEST_F(Surfaces, OfABlockTakeInWhatHasNoTies) {
     for (const uint32_t node : corner) EXPECT_TRUE(std::ranges::count(links, pair_key(node, box)));
 }
 
-TEST_F(Surfaces, BringTwoBlocksTogether) {
+TEST_F(SurfacePartition, BringTwoBlocksTogether) {
     const auto one = triangle(JointSolve::direct), other = triangle(JointSolve::direct);
     surface({one[0], one[1]}, {other[0], other[1]});
     build();
@@ -121,7 +121,7 @@ TEST_F(Surfaces, BringTwoBlocksTogether) {
     EXPECT_EQ(partition.blocks[0].nodes.size(), 6u);
 }
 
-TEST_F(Surfaces, StaySweptWhereTiesOfANodeAre) {
+TEST_F(SurfacePartition, StaySweptWhereTiesOfANodeAre) {
     const auto direct = triangle(JointSolve::direct), swept_ones = triangle(JointSolve::swept);
     surface(direct, {swept_ones[0]});
     build();
@@ -132,7 +132,7 @@ TEST_F(Surfaces, StaySweptWhereTiesOfANodeAre) {
     EXPECT_EQ(swept(), 1u);
 }
 
-TEST_F(Surfaces, AreSweptByASolverWithoutBlocks) {
+TEST_F(SurfacePartition, AreSweptByASolverWithoutBlocks) {
     surface(triangle(JointSolve::direct), {add(NodeKind::dynamic)});
     rules.direct = false;
     build();
@@ -141,7 +141,7 @@ TEST_F(Surfaces, AreSweptByASolverWithoutBlocks) {
     EXPECT_EQ(swept(), 1u);
 }
 
-TEST_F(Surfaces, ArePartitionedAnewWhereTheyChange) {
+TEST_F(SurfacePartition, ArePartitionedAnewWhereTheyChange) {
     const auto all = particles(3);
     surface({all[0]}, {all[1]});
     build();
@@ -157,7 +157,7 @@ TEST_F(Surfaces, ArePartitionedAnewWhereTheyChange) {
     EXPECT_EQ(partition.islands, 2u);
 }
 
-TEST_F(Surfaces, AreSoundOrNamed) {
+TEST_F(SurfacePartition, AreSoundOrNamed) {
     const auto corner = triangle(JointSolve::direct);
     const uint32_t box = add(NodeKind::dynamic);
     surface(corner, {box});
