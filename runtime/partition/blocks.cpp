@@ -105,6 +105,7 @@ bool Partition::join_contact(uint32_t a, uint32_t b, uint32_t most) {
     both.grown = grown;
     both.loaded = ca.loaded || cb.loaded;
     both.hit = ca.hit || cb.hit;
+    both.soft = ca.soft || cb.soft;
     both.elastic = ca.elastic || cb.elastic;
     unite(a, b);
     component_[find(a)] = both;
@@ -156,14 +157,17 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
     recall_blocks(nodes, joints);
 }
 
-// Contacts of surfaces with a node that is solved directly, whatever it bears: each is a row of the block with all its
-// nodes that move. Where elements give way to contacts it grows at will: their matrix is what costs, and is as it was.
-// What is held by ties that are swept stays out, and so does the contact.
+// Contacts of surfaces with what is solved directly, for its elements whatever it bears, for joints as pairs are: each
+// is a row of the block with all its nodes that move. Where elements give way to contacts it grows at will: their
+// matrix is what costs, and is as it was. What is held by ties that are swept stays out, and so does the contact.
 void Partition::take_surfaces(const SurfaceContacts& surfaces) {
     surface_in_block_.assign(surfaces.contact.size(), 0);
     for (uint32_t k = 0; k < surfaces.contact.size(); ++k) {
         const TouchGraph::Tie ends = movers_of(surfaces.contact[k]);
-        const auto held = std::ranges::find_if(ends, [&](uint32_t end) { return end != kNone && core_[end] == kHeld; });
+        const auto takes_in = [&](uint32_t end) {
+            return end != kNone && core_[end] == kHeld && (component_[find(end)].soft || component_[find(end)].loaded);
+        };
+        const auto held = std::ranges::find_if(ends, takes_in);
         const auto may_join = [&](uint32_t end) { return end == kNone || core_[end] != 0 || tied_[end] == 0; };
         if (held == ends.end() || !std::ranges::all_of(ends, may_join)) continue;
         const auto is_elastic = [&](uint32_t end) { return end != kNone && component_[find(end)].elastic; };
@@ -178,20 +182,21 @@ void Partition::take_surfaces(const SurfaceContacts& surfaces) {
 
 // What ties of each component ask for.
 void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements) {
-    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, bool multiplies) {
+    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, bool multiplies, bool soft) {
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
         c.ties += multiplies;
+        c.soft = c.soft || soft;
         c.elastic = c.elastic || !multiplies;
         const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
         c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
         c.always = c.always || direct;
     };
-    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true);
+    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true, false);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set));
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set), true);
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {

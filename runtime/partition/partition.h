@@ -232,7 +232,8 @@ private:
         bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
         bool hit = false;                // in this frame
-        bool elastic = false;            // has elements without multipliers
+        bool soft = false;               // has elements that are solved directly
+        bool elastic = false;            // some of these without multipliers
     };
 
     // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before

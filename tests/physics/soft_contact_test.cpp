@@ -128,6 +128,72 @@ TEST_P(SoftSlope, SlidesByCoulombsLaw) {
     EXPECT_GT(after.x, 0.5);
 }
 
+// ---------------------------------------------------------------- what is told
+
+// A face with its corners held, and a grain on it: one contact, which bears the grain.
+TEST(SoftContacts, TellBodiesPointAndForce) {
+    World world;
+    Sheet sheet(2, 2, 2, 2, 0);
+    taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
+    def.thickness = 0.02f;
+    const taut_cloth cloth = lab::add(world, def);
+    for (uint32_t v = 0; v < 4; ++v) ok(taut_cloth_pin(cloth, v, 1));
+    const taut_body grain = make_grain(world, {.at = {0.4, 0.06, 1.3}}, true);
+    world.step(30);
+    const std::vector<taut_contact> contacts = world.contacts();
+    ASSERT_EQ(contacts.size(), 1u);
+    const taut_contact& told = contacts[0];
+    const bool grain_is_b = told.body_b.bits == grain.bits;
+    const taut_body other = grain_is_b ? told.body_a : told.body_b;
+    EXPECT_TRUE(grain_is_b || told.body_a.bits == grain.bits);
+    EXPECT_TRUE(std::ranges::any_of(bodies_of(cloth), [&](taut_body body) { return body.bits == other.bits; }));
+    EXPECT_NEAR(Vec(told.normal).y, grain_is_b ? 1 : -1, 1e-5);
+    EXPECT_LE(norm(Vec(told.position) - Vec(0.4, 0.01, 1.3)), 1e-3);
+    EXPECT_NEAR(told.separation, 0, 1e-3);
+    const double told_for = static_cast<double>(world.def.time_step) / world.def.substeps;
+    EXPECT_NEAR(static_cast<double>(told.normal_impulse) / told_for, 0.5 * kG, 0.01);
+    EXPECT_GE(world.profile().touching, 1u);
+    ok(taut_body_remove(grain));
+    EXPECT_TRUE(world.contacts().empty());
+    world.step(2);
+    EXPECT_TRUE(world.contacts().empty());
+}
+
+TEST(SoftContacts, OfGrainsThatWereRemovedAreNotTold) {
+    World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+    const taut_body one = make_grain(world, {}, true);
+    make_grain(world, {.at = {0.098, 0, 0}}, true);
+    world.step();
+    EXPECT_EQ(world.contacts().size(), 1u);
+    ok(taut_body_remove(one));
+    EXPECT_TRUE(world.contacts().empty());
+}
+
+// A grain asleep on a cloth that is held wakes as the cloth is let go.
+TEST(SoftContacts, WakeWhatTheyCarry) {
+    World world;
+    Sheet sheet(2, 2, 2, 2, 0);
+    taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
+    def.thickness = 0.02f;
+    const taut_cloth cloth = lab::add(world, def);
+    for (uint32_t v = 0; v < 4; ++v) ok(taut_cloth_pin(cloth, v, 1));
+    const taut_body grain = make_grain(world, {.at = {0.4, 0.06, 1.3}}, true);
+    const auto sleeps = [&] {
+        uint32_t awake = 0;
+        ok(taut_body_is_awake(grain, &awake));
+        return awake == 0;
+    };
+    world.step(120);
+    ASSERT_TRUE(sleeps());
+    const double height = position(grain).y;
+    world.step(60);
+    EXPECT_EQ(position(grain).y, height);
+    for (uint32_t v = 0; v < 4; ++v) ok(taut_cloth_pin(cloth, v, 0));
+    world.step(30);
+    EXPECT_FALSE(sleeps());
+    EXPECT_LT(position(grain).y, height - 0.5);
+}
+
 // ---------------------------------------------------------------- weight
 
 class SoftStack : public testing::TestWithParam<bool> {};
