@@ -44,6 +44,13 @@ void remember_poses(Team& team, Nodes& nodes) {
 // How old contacts, found once a frame, are on average over the substeps that they serve [s].
 double mean_age(const World& w) { return 0.5 * (1 - 1.0 / w.least_substeps()) * static_cast<double>(w.def.time_step); }
 
+// After those of pairs, for vertices leave to edges and faces what these are nearer to.
+void find_touches(World& w, double lead) {
+    find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
+    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step},
+                          w.nodes);
+}
+
 void detect(World& w, Stopwatch& watch) {
     const double lead = mean_age(w);
     recall_pairs(w);
@@ -53,13 +60,11 @@ void detect(World& w, Stopwatch& watch) {
     retire_pairs(w);
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
-    find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
     find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
-    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step},
-                          w.nodes);
+    find_touches(w, lead);
     if (wake_touched(w)) {
         recall_pairs(w);
-        find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
+        find_touches(w, lead);
     }
     const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
     if (refused > 0)

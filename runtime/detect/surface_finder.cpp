@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "detect/feature_region.h"
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
 #include "detect/untangle.h"
@@ -88,8 +89,7 @@ float Passing::size() const {
 }
 
 bool stay_apart(const Passing& passing, float reach, float time) {
-    const float distance = passing.nearest(passing.x).distance();
-    return distance > reach + time * passing.speed() && distance > passing.size();
+    return passing.nearest(passing.x).distance() > reach + time * passing.speed();
 }
 
 bool meet(const Passing& passing, float reach, float time, Nearest& out) {
@@ -107,11 +107,18 @@ bool meet(const Passing& passing, float reach, float time, Nearest& out) {
     }
 }
 
+bool is_through(const Passing& passing, const SurfaceContact& was) {
+    const Nearest near = passing.nearest(passing.x);
+    return near.inside && near.apart.dot(was.normal) < 0 && near.distance() < passing.size();
+}
+
 bool touch(const Passing& passing, const SurfaceTouch& of, float time, const SurfaceContact* was, const Vec3f& facing,
            SurfaceContact& contact) {
-    Nearest near = passing.nearest(passing.x);
-    const bool through = was && near.inside && near.apart.dot(was->normal) < 0 && near.distance() < passing.size();
-    if (!through && (!meet(passing, of.both + of.margin, time, near) || !near.inside)) return false;
+    Nearest near;
+    if (was && is_through(passing, *was))
+        near = passing.nearest(passing.x);
+    else if (!meet(passing, of.both + of.margin, time, near) || !near.inside)
+        return false;
     const float distance = near.distance();
     if (!(distance > 1e-12f)) {
         if (!was) return false;  // it will be off the next frame, whichever way
@@ -134,6 +141,33 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
         contact.in_block = was->in_block;
     }
     return true;
+}
+
+// Pairs of vertices with what is round, of which something else of their surface is nearest: they have no points.
+static void leave_to_others(const SurfaceScene& scene) {
+    Pairs& pairs = scene.pairs;
+    Array<uint32_t>& vertex_of = pairs.surfaces.near;  // by node
+    vertex_of.assign(scene.nodes.slots(), kNone);
+    for (const uint32_t s : scene.softs.listed) {
+        const Soft& soft = scene.softs.record[s];
+        for (uint32_t v = 0; v < soft.vertices(); ++v) vertex_of[soft.node[v]] = v;
+    }
+    const auto is_round = [&](uint32_t collider) {
+        const collision::ShapeKind kind = scene.shapes[scene.colliders.record[collider].shape].shape.kind;
+        return kind == collision::ShapeKind::sphere || kind == collision::ShapeKind::capsule;
+    };
+    for (ActivePair& active : pairs.active) {
+        const bool second = vertex_of[active.a] == kNone;
+        const uint32_t node = second ? active.b : active.a;
+        if (vertex_of[node] == kNone) continue;
+        Pair& pair = pairs.list[active.pair];
+        if (!is_round(second ? pair.collider_a() : pair.collider_b())) continue;
+        const SurfaceMesh& mesh = scene.softs.mesh[scene.nodes.info[node].soft];
+        const Vec3f away = second ? Vec3f(-pair.manifold.normal) : pair.manifold.normal;
+        if (is_in_region_of_vertex(mesh, vertex_of[node], away)) continue;
+        pair.manifold.count = 0;
+        active.points = 0;
+    }
 }
 
 void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) {
@@ -165,6 +199,7 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) 
     surfaces.version += same ? 0 : 1;
     surfaces.contact.clear();
     for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
+    leave_to_others(scene);
     untangle(scene, nodes);
 }
 

@@ -14,6 +14,9 @@ enum class SurfacePart : uint64_t { vertex, edge, face };
 constexpr uint64_t feature_of(uint32_t soft, SurfacePart part, uint32_t index) {
     return uint64_t{soft} << 32 | static_cast<uint64_t>(part) << 30 | index;
 }
+constexpr uint32_t index_of(uint64_t feature) { return static_cast<uint32_t>(feature) & ((1u << 30) - 1); }
+constexpr SurfacePart part_of(uint64_t feature) { return static_cast<SurfacePart>(feature >> 30 & 3); }
+constexpr bool is_of_shape(uint64_t feature) { return feature >> 63 != 0; }
 constexpr uint64_t feature_of_shape(uint32_t collider, uint32_t number) {
     return uint64_t{1} << 63 | uint64_t{collider} << 32 | number;
 }
@@ -45,6 +48,7 @@ public:
     // Whether a joint or attachment forbids a contact between two sides.
     bool tied(std::span<const uint32_t> a, std::span<const uint32_t> b) const;
     void add(const SurfaceContact& contact) { found_.push_back(contact); }
+    std::span<const SurfaceContact> all_before() const { return before_; }
     // Those in touch before of which no side has moved since: they stay.
     void keep_still();
 
@@ -76,13 +80,15 @@ struct Passing {
     float size() const;
 };
 
-// Whether they are too far apart to come within a reach in a time, and to have been in touch. Asked first: of those
-// whose boxes meet few are not.
+// Whether they are too far apart to come within a reach in a time.
 bool stay_apart(const Passing& passing, float reach, float time);
 
 // When two features first come within a reach, by conservative advancement: the distance falls no faster than they
 // move. Where they are then, in out; false: not in the time.
 bool meet(const Passing& passing, float reach, float time, Nearest& out);
+
+// Whether they are on the wrong side by what they were before, and not too far for that.
+bool is_through(const Passing& passing, const SurfaceContact& was);
 
 // Meets and gives weights, normal and gap. was: their contact before, whose side counts, or null. facing: outward of
 // the second feature where that is a solid's, else 0. False: they do not touch within both features.

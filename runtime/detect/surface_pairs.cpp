@@ -1,8 +1,10 @@
 // Surfaces of soft bodies with themselves and with each other: vertices with faces, edges with edges.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "detect/detect.h"
+#include "detect/feature_region.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
 #include "detect/untangle.h"
@@ -10,6 +12,9 @@
 namespace taut {
 namespace {
 
+// Sine by which the normal of two edges may lean into a face: of two sheets on each other it is that of both.
+constexpr float kEdges = 0.2f;
+constexpr float kFlat = 0.5f;    // cosine between normals: neighbours that are bent by less do not meet
 constexpr float kOfEdge = 0.5f;  // of the shortest edge of two features: what touches itself is no thicker
 
 // Two surfaces, or one with itself, in the frame of the first.
@@ -28,7 +33,18 @@ public:
     }
 
     void find() {
-        for_meeting_triangles(*mesh_[0], *mesh_[1], apart_, time_, [&](uint32_t t, uint32_t u) { find(t, u); });
+        for_meeting_triangles(*mesh_[0], *mesh_[1], apart_, of_.both + of_.margin, time_,
+                              [&](uint32_t t, uint32_t u) { find(t, u); });
+    }
+
+    // One in touch before, where it is on the wrong side now; others are found.
+    void pull_back(const SurfaceContact& was) {
+        const int side = static_cast<uint32_t>(was.a >> 32) == index_[0] ? 0 : 1;
+        const uint32_t one = index_of(was.a), other = index_of(was.b);
+        if (part_of(was.a) == SurfacePart::vertex)
+            find_vertex(side, one, is_itself() ? 0 : 1 - side, other, &was);
+        else
+            find_edges(one, other, &was);
     }
 
 private:
@@ -52,8 +68,9 @@ private:
         }
     }
 
-    // Of two triangles of one surface with a corner in common: what of them has none.
+    // Of two triangles of one surface with a corner in common: what of them has none, where they are not about flat.
     void find_beside(uint32_t t, uint32_t u) {
+        if (mesh_[0]->face[t].normal.dot(mesh_[0]->face[u].normal) > kFlat) return;
         const auto has = [&](uint32_t of, uint32_t vertex) {
             const uint32_t* corner = corners(0, of);
             return corner[0] == vertex || corner[1] == vertex || corner[2] == vertex;
@@ -103,7 +120,7 @@ private:
         return (mesh_[side]->x[corner[1]] - from).cross(mesh_[side]->x[corner[2]] - from);
     }
 
-    void find_vertex(int side, uint32_t vertex, int other, uint32_t t) {
+    void find_vertex(int side, uint32_t vertex, int other, uint32_t t, const SurfaceContact* through = nullptr) {
         SurfaceContact contact;
         Passing passing{};
         passing.of = Passing::Of::vertex_face;
@@ -111,10 +128,10 @@ private:
         for (int k = 0; k < 3; ++k) place(other, corners(other, t)[k], k + 1, passing, contact);
         contact.a = feature_of(index_[side], SurfacePart::vertex, vertex);
         contact.b = feature_of(index_[other], SurfacePart::face, t);
-        add(passing, outward(other, t), side == 1, contact);
+        add(passing, outward(other, t), side == 1, through, contact, [](const Vec3f&) { return true; });
     }
 
-    void find_edges(uint32_t e, uint32_t f) {
+    void find_edges(uint32_t e, uint32_t f, const SurfaceContact* through = nullptr) {
         SurfaceContact contact;
         Passing passing{};
         passing.of = Passing::Of::edge_edge;
@@ -128,20 +145,28 @@ private:
         for (int side = 0; side < 2; ++side)
             for (const uint32_t t : mesh_[side]->edge[side == 0 ? e : f].triangle)
                 if (t != kNone) facing += (side == 0 ? -1.0f : 1.0f) * outward(side, t);
-        add(passing, facing, false, contact);
+        add(passing, facing, false, through, contact, [&](const Vec3f& normal) {
+            return is_in_region_of_edge(*soft_[0], *mesh_[0], e, -normal, kEdges) &&
+                   is_in_region_of_edge(*soft_[1], *mesh_[1], f, normal, kEdges);
+        });
     }
 
-    void add(const Passing& passing, const Vec3f& facing, bool turned, SurfaceContact& contact) {
+    // is_apt(normal): whether that is one of the features.
+    template <class IsApt>
+    void add(const Passing& passing, const Vec3f& facing, bool turned, const SurfaceContact* through,
+             SurfaceContact& contact, IsApt&& is_apt) {
         if (std::ranges::none_of(contact.node, [&](uint32_t node) { return finder_.scene().nodes.solved(node); }))
             return;
         SurfaceTouch of = of_;
         if (is_itself()) of.both = std::min(of.both, kOfEdge * passing.size());
         if (turned) std::swap(of.collider[0], of.collider[1]);
-        if (stay_apart(passing, of.both + of.margin, time_)) return;
-        const SurfaceContact* was = finder_.before(contact.a, contact.b);
+        if (!through && stay_apart(passing, of.both + of.margin, time_)) return;
+        const SurfaceContact* was = through ? through : finder_.before(contact.a, contact.b);
+        if (was && is_through(passing, *was) != (through != nullptr)) return;
         const std::span<const uint32_t> nodes = contact.node;
         const auto first = static_cast<size_t>(passing.first());
-        if (touch(passing, of, time_, was, facing, contact) && !finder_.tied(nodes.first(first), nodes.subspan(first)))
+        if (touch(passing, of, time_, was, facing, contact) && is_apt(contact.normal) &&
+            !finder_.tied(nodes.first(first), nodes.subspan(first)))
             finder_.add(contact);
     }
 
@@ -167,9 +192,27 @@ SurfaceSpan span_of(const SurfaceScene& scene, uint32_t soft) {
     return {mesh.origin.x() + static_cast<double>(box.lo.x()), mesh.origin.x() + static_cast<double>(box.hi.x()), soft};
 }
 
+// Those in touch before that went through each other.
+void pull_back(SurfaceFinder& finder) {
+    const Softs& softs = finder.scene().softs;
+    const auto soft_of = [](uint64_t feature) { return static_cast<uint32_t>(feature >> 32); };
+    std::optional<SurfacePair> pair;
+    uint32_t first = kNone, second = kNone;
+    for (const SurfaceContact& was : finder.all_before()) {
+        if (is_of_shape(was.b)) continue;
+        const uint32_t one = soft_of(was.a), other = soft_of(was.b);
+        const uint32_t a = std::min(one, other), b = std::max(one, other);
+        const bool apart = a == b ? !softs.record[a].self || !softs.mesh[a].awake : !may_touch(finder.scene(), a, b);
+        if (softs.mesh[a].version == 0 || softs.mesh[b].version == 0 || apart) continue;
+        if (a != first || b != second) pair.emplace(finder, first = a, second = b);
+        pair->pull_back(was);
+    }
+}
+
 }  // namespace
 
 void find_surface_pairs(SurfaceFinder& finder) {
+    pull_back(finder);
     Softs& softs = finder.scene().softs;
     Array<SurfaceSpan>& spans = finder.scene().pairs.surfaces.span;
     spans.clear();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "detect/detect.h"
+#include "detect/feature_region.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
@@ -11,8 +12,7 @@
 namespace taut {
 namespace {
 
-constexpr float kWithin = 0.98f;     // of an edge, from its middle: what is nearer to an end is the vertex's
-constexpr float kSuffices = 0.125f;  // of the margin: what is nearer by less than this than vertices is theirs too
+constexpr float kWithin = 0.98f;  // of an edge, from its middle: what is nearer to an end is the vertex's
 
 // Of a collider that nobody's vertex is: in the frame of one surface.
 class SurfaceShape {
@@ -121,16 +121,6 @@ private:
         contact.node[i] = soft_.node[vertex];
     }
 
-    // Whether vertices, which have contacts of their own, keep a ball's or axis' features as far off.
-    bool vertices_suffice(std::span<const uint32_t> vertices, float both, const SurfaceContact& contact) const {
-        float least = std::numeric_limits<float>::infinity();
-        for (const uint32_t vertex : vertices) {
-            const Vec3f x[4] = {mesh_.x[vertex], end_[0], end_[1], Vec3f::Zero()};
-            least = std::min(least, nearest_of_edge(x, 1, 2).distance() - both);
-        }
-        return least - contact.gap < kSuffices * margin_;
-    }
-
     void find_edge(uint32_t e) {
         if (is_round())
             find_round_edge(e);
@@ -154,7 +144,7 @@ private:
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(),
                    contact))
             return;
-        if (vertices_suffice(edge.vertex, of.both, contact)) return;
+        if (!is_in_region_of_edge(soft_, mesh_, e, contact.normal)) return;
         if (!spans()) {
             Vec3f on_axis = Vec3f::Zero();
             for (int k = 0; k < first; ++k) on_axis += contact.weight[k] * passing.x[k];
@@ -243,7 +233,8 @@ private:
         place_vertex(vertex, 1, passing, contact);
         const uint64_t feature = feature_of(index_, SurfacePart::vertex, vertex);
         if (touch(passing, touch_of(true, shape_.size.x()), time_,
-                  finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact))
+                  finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact) &&
+            is_in_region_of_vertex(mesh_, vertex, contact.normal))
             add(contact, feature, kAxis);
     }
 
@@ -285,7 +276,6 @@ private:
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, corner.number)), facing,
                    contact))
             return;
-        if (is_round() && vertices_suffice({vertex, 3}, of.both, contact)) return;
         if (!spans()) {
             contact.skin = -corner.radius * contact.normal;
             contact.lever = at + contact.skin - centre_;

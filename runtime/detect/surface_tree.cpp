@@ -1,6 +1,7 @@
 #include "detect/surface_tree.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "detect/surface_finder.h"
 #include "models/mesh_edges.h"
@@ -72,6 +73,16 @@ void list_edges(const Soft& soft, SurfaceMesh& mesh) {
             mesh.owns[i / 3] = static_cast<uint8_t>(mesh.owns[i / 3] | 8u << i % 3);
 }
 
+void list_rings(const Soft& soft, SurfaceMesh& mesh) {
+    mesh.ring_begin.assign(soft.vertices() + 1, 0);
+    for (const SurfaceEdge& edge : mesh.edge)
+        for (const uint32_t vertex : edge.vertex) ++mesh.ring_begin[vertex];
+    for (uint32_t v = 0; v < soft.vertices(); ++v) mesh.ring_begin[v + 1] += mesh.ring_begin[v];
+    mesh.ring.resize(2 * mesh.edge.size());
+    for (auto e = static_cast<uint32_t>(mesh.edge.size()); e-- > 0;)
+        for (const uint32_t vertex : mesh.edge[e].vertex) mesh.ring[--mesh.ring_begin[vertex]] = e;
+}
+
 void build_tree(const Soft& soft, SurfaceMesh& mesh) {
     Array<Vec3f> middle(mesh.x.get_allocator());
     middle.reserve(soft.triangles());
@@ -86,6 +97,7 @@ void build_tree(const Soft& soft, SurfaceMesh& mesh) {
     mesh.node.reserve(soft.triangles());
     TreeBuilder(mesh, middle).build(0, soft.triangles());
     mesh.box.assign(soft.triangles(), SurfaceBox::none());
+    mesh.face.resize(soft.triangles());
 }
 
 void place_vertices(Team& team, const Nodes& nodes, const Soft& soft, SurfaceMesh& mesh) {
@@ -109,12 +121,23 @@ void refit(Team& team, const Soft& soft, float time, SurfaceMesh& mesh) {
     const float about = mesh.radius + mesh.margin;
     team.for_ranges(soft.triangles(), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t t = begin; t < end; ++t) {
+            SurfaceFace& face = mesh.face[t];
+            face.box = SurfaceBox::none();
+            face.v = Vec3f::Zero();
             SurfaceBox box = SurfaceBox::none();
-            for (uint32_t k = 0; k < 3; ++k) {
-                const uint32_t vertex = soft.triangle[3 * t + k];
-                box.add(mesh.x[vertex]);
-                box.add(mesh.x[vertex] + time * (mesh.v[vertex] - mesh.drift));
+            const uint32_t* corner = &soft.triangle[3 * size_t{t}];
+            for (int k = 0; k < 3; ++k) {
+                face.box.add(mesh.x[corner[k]]);
+                box.add(mesh.x[corner[k]] + time * (mesh.v[corner[k]] - mesh.drift));
+                face.v += (1.0f / 3) * mesh.v[corner[k]];
             }
+            const Vec3f& from = mesh.x[corner[0]];
+            face.normal = (mesh.x[corner[1]] - from).cross(mesh.x[corner[2]] - from);
+            face.normal *= 1 / std::max(face.normal.norm(), 1e-30f);
+            float squared = 0;
+            for (int k = 0; k < 3; ++k) squared = std::max(squared, (mesh.v[corner[k]] - face.v).squaredNorm());
+            face.spread = std::sqrt(squared);
+            box.add(face.box);
             mesh.box[t] = box.grown(about);
         }
     });
@@ -151,6 +174,7 @@ void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double
         place_vertices(team, nodes, soft, mesh);
         if (made_anew) {
             list_edges(soft, mesh);
+            list_rings(soft, mesh);
             build_tree(soft, mesh);
             mesh.version = soft.mesh_version;
         }

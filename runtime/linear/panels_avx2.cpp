@@ -1,8 +1,8 @@
 // Panels, avx2 build.
-#include "linear/panels.inl"
+#include "linear/panel_inverse.inl"
 
 namespace taut {
 
-const PanelKernels kPanelKernelsAvx2 = {"avx2", factor, solve};
+const PanelKernels kPanelKernelsAvx2 = {"avx2", factor, solve, inverse, add_rows};
 
 }  // namespace taut

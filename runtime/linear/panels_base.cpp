@@ -1,8 +1,8 @@
 // Panels, build for any processor.
-#include "linear/panels.inl"
+#include "linear/panel_inverse.inl"
 
 namespace taut {
 
-const PanelKernels kPanelKernelsBase = {"base", factor, solve};
+const PanelKernels kPanelKernelsBase = {"base", factor, solve, inverse, add_rows};
 
 }  // namespace taut

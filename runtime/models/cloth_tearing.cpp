@@ -59,10 +59,21 @@ public:
         find_mesh();
         find_stretched();
         for (const Stretched& each : stretched_) tear_at(each);
-        soft_.mesh_version = ++world_.softs.version;
+        if (!stretched_.empty()) renumber();
     }
 
 private:
+    // Edges have other numbers from now on, by which contacts know each other again.
+    void renumber() {
+        soft_.mesh_version = ++world_.softs.version;
+        std::erase_if(world_.pairs.surfaces.contact, [&](const SurfaceContact& contact) {
+            return std::ranges::any_of(contact.node, [&](uint32_t node) {
+                return node != kNone && world_.nodes.info[node].soft == index_;
+            });
+        });
+        ++world_.pairs.surfaces.version;
+    }
+
     struct Stretched {
         double strain;
         uint32_t edge;

@@ -92,21 +92,22 @@ void note_loads(Joints& joints, Elements& elements, const Nodes& nodes) {
     });
 }
 
-// False if the block would grow by more than so many; the contact is swept then.
-bool Partition::join_contact(uint32_t a, uint32_t b, uint32_t most) {
+// False if the block would grow too much; the contact is swept then.
+bool Partition::join_contact(uint32_t a, uint32_t b) {
     a = find(a), b = find(b);
     if (a == b) return true;
     const Component &ca = component_[a], &cb = component_[b];
-    const uint32_t grown = ca.grown + cb.grown + std::min(ca.nodes, cb.nodes);
-    if (grown > most) return false;
+    const bool elastic = ca.elastic || cb.elastic;
+    const uint32_t grown = ca.grown + cb.grown + (elastic ? 0 : std::min(ca.nodes, cb.nodes));
+    if (grown > kMostGrown) return false;
     const uint32_t total = ca.nodes + cb.nodes;
     Component both;
     both.nodes = total;
     both.grown = grown;
     both.loaded = ca.loaded || cb.loaded;
     both.hit = ca.hit || cb.hit;
-    both.soft = ca.soft || cb.soft;
-    both.elastic = ca.elastic || cb.elastic;
+    both.elastic = elastic;
+    both.crowded = ca.crowded || cb.crowded;
     unite(a, b);
     component_[find(a)] = both;
     return true;
@@ -135,6 +136,7 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
     }
     choose_direct(nodes, joints, elements);
     find_hit(nodes, pairs, rules);
+    find_crowded(pairs);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const auto ends = pairs.active[p].nodes();
         const uint32_t first = mover(nodes, ends);
@@ -157,23 +159,42 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
     recall_blocks(nodes, joints);
 }
 
-// Contacts of surfaces with what is solved directly, for its elements whatever it bears, for joints as pairs are: each
-// is a row of the block with all its nodes that move. Where elements give way to contacts it grows at will: their
-// matrix is what costs, and is as it was. What is held by ties that are swept stays out, and so does the contact.
+// The dense matrix of contacts of elastic elements, solvers/contact_space.h, grows with the square of their number:
+// beyond this many points they are swept.
+void Partition::find_crowded(const Pairs& pairs) {
+    constexpr uint32_t kMostPoints = 512;
+    const auto count = [&](std::span<const uint32_t> ends, uint32_t points) {
+        for (const uint32_t end : ends) {
+            if (end == kNone || !graph_.moves[end]) continue;
+            Component& component = component_[find(end)];
+            if (!component.elastic) continue;
+            component.points += points;
+            if (component.points <= kMostPoints) return;
+            component.crowded = true;
+            component.loaded = false;
+            return;
+        }
+    };
+    for (const ActivePair& pair : pairs.active) count(pair.nodes(), pair.points);
+    for (const SurfaceContact& contact : pairs.surfaces.contact) count(contact.node, 1);
+}
+
+// Contacts of surfaces with what takes in its contacts, as elements without multipliers always do: each is a row of the
+// block with all its nodes that move. What is held by ties that are swept stays out, and so does the contact.
 void Partition::take_surfaces(const SurfaceContacts& surfaces) {
     surface_in_block_.assign(surfaces.contact.size(), 0);
     for (uint32_t k = 0; k < surfaces.contact.size(); ++k) {
         const TouchGraph::Tie ends = movers_of(surfaces.contact[k]);
         const auto takes_in = [&](uint32_t end) {
-            return end != kNone && core_[end] == kHeld && (component_[find(end)].soft || component_[find(end)].loaded);
+            return end != kNone && core_[end] == kHeld && component_[find(end)].loaded;
         };
         const auto held = std::ranges::find_if(ends, takes_in);
         const auto may_join = [&](uint32_t end) { return end == kNone || core_[end] != 0 || tied_[end] == 0; };
         if (held == ends.end() || !std::ranges::all_of(ends, may_join)) continue;
-        const auto is_elastic = [&](uint32_t end) { return end != kNone && component_[find(end)].elastic; };
-        const uint32_t most = std::ranges::any_of(ends, is_elastic) ? kNone : kMostGrown;
+        const auto is_crowded = [&](uint32_t end) { return end != kNone && component_[find(end)].crowded; };
+        if (std::ranges::any_of(ends, is_crowded)) continue;
         surface_in_block_[k] = std::ranges::all_of(
-            ends, [&, first = *held](uint32_t end) { return end == kNone || join_contact(first, end, most); });
+            ends, [&, first = *held](uint32_t end) { return end == kNone || join_contact(first, end); });
         if (!surface_in_block_[k]) continue;
         for (const uint32_t end : ends)
             if (end != kNone && core_[end] == 0) core_[end] = kTaken;
@@ -182,21 +203,20 @@ void Partition::take_surfaces(const SurfaceContacts& surfaces) {
 
 // What ties of each component ask for.
 void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements) {
-    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, bool multiplies, bool soft) {
+    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, bool multiplies) {
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
         c.ties += multiplies;
-        c.soft = c.soft || soft;
-        c.elastic = c.elastic || !multiplies;
         const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
-        c.loaded = c.loaded || (direct && loaded) || c.most >= kLoadedMassRatio * c.least;
+        c.elastic = c.elastic || (direct && !multiplies);
+        c.loaded = c.loaded || (direct && (loaded || !multiplies)) || c.most >= kLoadedMassRatio * c.least;
         c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
         c.always = c.always || direct;
     };
-    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true, false);
+    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set), true);
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set));
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
@@ -313,14 +333,14 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         const auto ends = pairs.active[p].nodes();
         Block& block = block_at(mover(nodes, ends));
         block.pairs.push_back(p);
-        add_links(nodes, ends, block);
+        if (block.elastic.empty()) add_links(nodes, ends, block);
     }
     for (uint32_t k = 0; k < pairs.surfaces.contact.size(); ++k) {
         if (!surface_in_block_[k]) continue;
         const std::span<const uint32_t> ends = pairs.surfaces.contact[k].node;
         Block& block = block_at(mover(nodes, ends));
         block.surfaces.push_back(k);
-        add_links(nodes, ends, block);
+        if (block.elastic.empty()) add_links(nodes, ends, block);
     }
     for (uint32_t i = 0; i < nodes.slots(); ++i)
         if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);

@@ -31,8 +31,7 @@ void Incidence::find_ends(uint32_t slots, std::span<const uint32_t> element_begi
 }
 
 // Greedy: of each node the least colour that none of its neighbours has.
-void Incidence::find_colours(uint32_t slots, std::span<const uint32_t> element_begin,
-                             std::span<const uint32_t> nodes) {
+void Incidence::find_colours(uint32_t slots, std::span<const uint32_t> element_begin, std::span<const uint32_t> nodes) {
     colour_.assign(slots, kNone);
     Array<uint32_t> taken(colour_.get_allocator());  // by colour: the node, and one, that it was last taken for
     for (uint32_t node = 0; node < slots; ++node) {

@@ -34,6 +34,20 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, excess_energy, solved, guard_left, since_trip, escalated, whips_left, hit_left);
 }
 
+// Scratch of solvers/contact_space.h. Dense matrices are row-major, of whole fours.
+struct ContactSpaceMemory {
+    explicit ContactSpaceMemory(Memory& m)
+        : matrix(m), response(m), room(m), rate(m), row(m), place_of_row(m), pivot(m), slot(m) {}
+
+    Array<double> matrix;          // J A^-1 J^T of the rows in it, each with its sign
+    Array<double> response, room;  // A^-1 between the nodes that they touch; what finding it takes
+    Array<double> rate;            // s J v + c mu - goal of rows [m/s]
+    Array<uint32_t> row;           // those in it, in the block's bounded rows, ascending
+    Array<uint32_t> place_of_row;  // in `row`, of each bounded row; kNone: not in it
+    Array<uint32_t> pivot, slot;   // of the touched nodes; of each node its first one, or kNone
+    bool built = false;            // the matrix is of this factor and these rows
+};
+
 // What a direct solve takes together, with what it remembers over frames.
 struct Block {
     explicit Block(Memory& m)
@@ -53,7 +67,8 @@ struct Block {
           force(m),
           elastic_force(m),
           gases(m),
-          gas_response(m) {}
+          gas_response(m),
+          space(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
@@ -71,6 +86,7 @@ struct Block {
     Array<double> elastic_force;           // likewise
     Array<uint32_t> gases;                 // that it has nodes of, in System::gases, of this substep
     Array<double> gas_response;            // scratch of its solve; see solvers/block_gas.cpp
+    ContactSpaceMemory space;              // likewise
     bool foresees = false;                 // folded elements are evaluated where their nodes are going
     bool relinearised = false;             // all are, where the line search came to; see solvers/block_search.cpp
     uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
@@ -92,8 +108,8 @@ struct Block {
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [nodes, joints, elements, elastic, pairs, surfaces, links, identity, order, matrix, places, stride, solution,
-           known, force, elastic_force, gases, gas_response, foresees, relinearised, first_elastic_run, elastic_runs,
-           tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
+           known, force, elastic_force, gases, gas_response, space, foresees, relinearised, first_elastic_run,
+           elastic_runs, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
            contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
@@ -232,8 +248,9 @@ private:
         bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
         bool hit = false;                // in this frame
-        bool soft = false;               // has elements that are solved directly
-        bool elastic = false;            // some of these without multipliers
+        uint32_t points = 0;             // of contacts with something elastic
+        bool crowded = false;            // too many: they are swept
+        bool elastic = false;            // has elements without multipliers: its matrix sees no contact
     };
 
     // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before
@@ -302,7 +319,8 @@ private:
     void take_pressed();
     void take_between(const Nodes& nodes, const Pairs& pairs);
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
-    bool join_contact(uint32_t a, uint32_t b, uint32_t most = kMostGrown);
+    bool join_contact(uint32_t a, uint32_t b);
+    void find_crowded(const Pairs& pairs);
     Block& block_at(uint32_t node);
     bool multiplies(const ElementSet& set) const { return set.form == ElementForm::rows || !folds_; }
     void fill_elements(const Elements& elements);

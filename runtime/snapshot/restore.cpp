@@ -316,6 +316,7 @@ void derive(World& world) {
     link_records(world.pairs);
     world.partition.forget_frame(world.nodes.slots());
     world.nodes.load.clear();
+    for (SurfaceMesh& mesh : world.softs.mesh) mesh.version = 0;  // of other triangles, maybe
     world.frozen.clear();
     forget_events(world);
 }

@@ -290,7 +290,7 @@ void ActiveSet::store() {
         if (r.kind == Kind::box) r.mu = std::clamp(r.mu, -r.limit, r.limit);
         if (r.kind == Kind::push) r.mu = std::max(0.0, r.mu);
         if (r.width == 0) continue;
-        if (r.on)
+        if (r.on && b_.elastic_runs == 0)
             follow_slip(r);
         else
             *r.slip = -1;

@@ -88,7 +88,7 @@ void gather(Substep& s) {
         solve.analyse();
         solve.foresee();
         solve.find_gases();
-        solve.set.gather();
+        solve.gather_rows();
     }
 }
 

@@ -102,10 +102,12 @@ void BlockSolve::right_hand_side() {
             x[r] = part * known(nodes_ + j)[r] * error_of(block, r) + (meets_known ? known_rate(block, r) : 0.0);
         }
     }
+    const bool apart = has_space();
     for (const BoundedRow& bounded : set.rows()) {
-        if (!bounded.on) continue;
-        const double held = (bounded.goal - bounded.known) / bounded.c;
-        const double f = bounded.sign * (bounded.at_limit != 0 ? bounded.at_limit * bounded.limit : held);
+        if (apart ? bounded.mu == 0 : !bounded.on) continue;
+        const double held =
+            bounded.at_limit != 0 ? bounded.at_limit * bounded.limit : (bounded.goal - bounded.known) / bounded.c;
+        const double f = bounded.sign * (apart ? bounded.mu : held);
         const double* j = bounded.jacobian;
         for (int n = 0; n < bounded.nodes; ++n, j += bounded.stride) {
             if (bounded.place[n] == kNone) continue;
@@ -121,7 +123,24 @@ void BlockSolve::solve_linear() {
     yield_to_gas(b_.solution.data(), b_.gases.size());
 }
 
+void BlockSolve::gather_rows() {
+    set.gather();
+    if (has_space()) space.make_room();
+}
+
+// With the impulses that the laws of all bounded rows ask for.
+void BlockSolve::solve_laws() {
+    constexpr uint32_t kMostRounds = 8;  // some rows come in only as others push
+    for (uint32_t round = 0;; ++round) {
+        solve_linear();
+        take_solution();
+        if (round == kMostRounds || !space.improve()) break;
+    }
+    space.note_state();
+}
+
 void BlockSolve::solve_known() {
+    if (has_space()) return solve_laws();
     solve_linear();
     for (size_t i = 0; i < unknowns(); ++i) b_.solution[i] += iterate()[i];
     take_solution();
@@ -188,10 +207,15 @@ bool BlockSolve::solve_round() {
     if (!b_.matrix.factor()) return false;
     find_gas_responses();
     set.aim_biased();
+    relaxed_ = false;
+    if (has_space()) {
+        space.forget();
+        solve_laws();
+        return true;
+    }
     solve_linear();
     take_solution();
     set.take_impulses();
-    relaxed_ = false;
     return true;
 }
 
@@ -218,6 +242,11 @@ bool BlockSolve::factor_rounds() {
     std::fill_n(iterate(), unknowns(), 0.0);
     if (set.empty()) return solve_round();
     set.begin_rounds();
+    if (has_space()) {
+        if (!solve_round()) return false;
+        limit_push();
+        return true;
+    }
     b_.matrix.keep();
     for (uint32_t round = 1;; ++round) {
         if (round > 1) b_.matrix.restore();
@@ -251,7 +280,7 @@ bool BlockSolve::solve_first() {
         ++s_.report.resolves;
         if (guarded)
             assemble(false);
-        else if (!set.empty())
+        else if (!set.empty() && !has_space())
             b_.matrix.restore();
         add_new_stiffness();
         renewed_ = true;
