@@ -94,7 +94,7 @@ void remove_collider(World& world, uint32_t collider) {
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
     const Collider& record = world.colliders.record[collider];
     if (record.grain) world.pairs.grains.gone.push_back(record.node);
-    world.pairs.surfaces.gone.push_back(record.node);
+    if (!world.pairs.surfaces.contact.empty()) world.pairs.surfaces.gone.push_back(record.node);
     link_to(world, record.node, collider) = record.next;
     world.broadphase.remove(collider);
     --world.shapes[record.shape].users;

@@ -179,14 +179,16 @@ void Partition::find_crowded(const Pairs& pairs) {
     for (const SurfaceContact& contact : pairs.surfaces.contact) count(contact.node, 1);
 }
 
-// Contacts of surfaces with a node that is solved directly, whatever it bears: each is a row of the block with all its
-// nodes that move. Where elements give way to contacts it grows at will: their matrix is what costs, and is as it was.
-// What is held by ties that are swept stays out, and so does the contact.
+// Contacts of surfaces with what takes in its contacts, as elements without multipliers always do: each is a row of the
+// block with all its nodes that move. What is held by ties that are swept stays out, and so does the contact.
 void Partition::take_surfaces(const SurfaceContacts& surfaces) {
     surface_in_block_.assign(surfaces.contact.size(), 0);
     for (uint32_t k = 0; k < surfaces.contact.size(); ++k) {
         const TouchGraph::Tie ends = movers_of(surfaces.contact[k]);
-        const auto held = std::ranges::find_if(ends, [&](uint32_t end) { return end != kNone && core_[end] == kHeld; });
+        const auto takes_in = [&](uint32_t end) {
+            return end != kNone && core_[end] == kHeld && component_[find(end)].loaded;
+        };
+        const auto held = std::ranges::find_if(ends, takes_in);
         const auto may_join = [&](uint32_t end) { return end == kNone || core_[end] != 0 || tied_[end] == 0; };
         if (held == ends.end() || !std::ranges::all_of(ends, may_join)) continue;
         const auto is_crowded = [&](uint32_t end) { return end != kNone && component_[find(end)].crowded; };

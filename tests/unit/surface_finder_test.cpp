@@ -66,7 +66,9 @@ TEST(Nearest, PointOfAFaceIsTheLeastOfAllItsPoints) {
         EXPECT_LE(near.distance(), sampled + 1e-5f);
         EXPECT_GE(near.distance(), sampled - 0.06f);
         const Vec3f normal = (x[2] - x[1]).cross(x[3] - x[1]).normalized();
-        if (near.inside) EXPECT_NEAR(std::abs(normal.dot(x[0] - x[1])), near.distance(), 1e-4f);
+        if (near.inside) {
+            EXPECT_NEAR(std::abs(normal.dot(x[0] - x[1])), near.distance(), 1e-4f);
+        }
     }
 }
 
