@@ -194,7 +194,7 @@ Scene build_sand_on_table(double, double, const Options& options) {
         scene.motions.push_back(down);
         return body;
     };
-    const taut_pos hub = {0.5, kTable + 0.13 + kAbove, 0.5};
+    const taut_pos hub = {0.5, kTable + 0.16 + kAbove, 0.5};
     for (int i = 0; i < 2; ++i) {  // a cross that turns
         Body blade = crate(box_shape(scene, i == 0 ? 0.4 : 0.02, 0.1, i == 0 ? 0.02 : 0.4), hub, 0, Look::steel);
         blade.kind = TAUT_BODY_KINEMATIC;
@@ -205,7 +205,7 @@ Scene build_sand_on_table(double, double, const Options& options) {
         spin.track.keys = {{1, 0, 0}, {2, 0.75, 1.5}};
         scene.motions.push_back(spin);
     }
-    Body plough = crate(box_shape(scene, 0.02, 0.11, 0.28), {-1.4, kTable + 0.125 + kAbove, -0.9}, 0, Look::steel);
+    Body plough = crate(box_shape(scene, 0.02, 0.11, 0.28), {-1.4, kTable + 0.165 + kAbove, -0.9}, 0, Look::steel);
     plough.kind = TAUT_BODY_KINEMATIC;
     Motion there;
     there.body = lower(scene.add_body(plough));
