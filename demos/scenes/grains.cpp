@@ -174,8 +174,8 @@ Scene build_grains_through_mesh(double, double, const Options& options) {
 
 // Twenty thousand grains on a table with a rim, ploughed by blades that are led, a ball that rolls and boxes that fall.
 Scene build_sand_on_table(double, double, const Options& options) {
-    constexpr int kGrains = 20000, kRow = 56;
-    constexpr double kRadius = 0.02, kHalf = 1.3, kTable = 0.7, kRim = 0.2;
+    constexpr int kGrains = 20000, kRow = 70;
+    constexpr double kRadius = 0.02, kHalf = 1.6, kTable = 0.7, kRim = 0.24, kAbove = 0.35;
     Scene scene = soft_hall(1.4);
     add_ground(scene);
     add_static_box(scene, {0, kTable - 0.05, 0}, kHalf + 0.06, 0.05, kHalf + 0.06, Look::wood);
@@ -185,23 +185,32 @@ Scene build_sand_on_table(double, double, const Options& options) {
     }
     Random random(1);
     pour(scene, {kRadius, kGrains, kRow, kRow, 1500, Look::paint}, {0, kTable, 0}, random);
-    const taut_pos hub = {0.45, kTable + 0.13, 0.4};
+    // Blades come down into the sand before they move along.
+    const auto lower = [&](int body) {
+        Motion down;
+        down.body = body;
+        down.along = {0, -1, 0};
+        down.track.keys = {{0.2, 0, 0}, {1, kAbove, 0}, {1e3, kAbove, 0}};
+        scene.motions.push_back(down);
+        return body;
+    };
+    const taut_pos hub = {0.5, kTable + 0.16 + kAbove, 0.5};
     for (int i = 0; i < 2; ++i) {  // a cross that turns
         Body blade = crate(box_shape(scene, i == 0 ? 0.4 : 0.02, 0.1, i == 0 ? 0.02 : 0.4), hub, 0, Look::steel);
         blade.kind = TAUT_BODY_KINEMATIC;
         Motion spin;
-        spin.body = scene.add_body(blade);
+        spin.body = lower(scene.add_body(blade));
         spin.about = {0, 1, 0};
         spin.pivot = hub;
         spin.track.keys = {{1, 0, 0}, {2, 0.75, 1.5}};
         scene.motions.push_back(spin);
     }
-    Body plough = crate(box_shape(scene, 0.02, 0.11, 0.28), {-1.2, kTable + 0.125, -0.75}, 0, Look::steel);
+    Body plough = crate(box_shape(scene, 0.02, 0.11, 0.28), {-1.4, kTable + 0.165 + kAbove, -0.9}, 0, Look::steel);
     plough.kind = TAUT_BODY_KINEMATIC;
     Motion there;
-    there.body = scene.add_body(plough);
+    there.body = lower(scene.add_body(plough));
     there.along = {1, 0, 0};
-    there.track.keys = {{1, 0, 0}, {4, 2.3, 0}, {5, 2.3, 0}, {8, 0, 0}};
+    there.track.keys = {{1, 0, 0}, {4, 2.7, 0}, {5, 2.7, 0}, {8, 0, 0}};
     scene.motions.push_back(there);
     Body ball = crate(sphere_shape(scene, 0.14), {-0.9, kTable + 0.55, 0.6}, 30, Look::steel);
     ball.linear_velocity = {1.5f, 0, -0.4f};
@@ -211,8 +220,8 @@ Scene build_sand_on_table(double, double, const Options& options) {
         box.rotation = turn({0.6f, 0, 0.8f}, 0.5 + i);
         scene.add_body(box);
     }
-    scene.camera = {{1.9, 2.6, 2.9}, {0, 0.65, 0}, 42};
-    scene.stage = {{-2, 0, -2}, {2, 3, 2}};
+    scene.camera = {{2.2, 2.8, 3.3}, {0, 0.6, 0}, 42};
+    scene.stage = {{-2.2, 0, -2.2}, {2.2, 3, 2.2}};
     perturb(scene, options.seed);
     return scene;
 }

@@ -249,7 +249,11 @@ void perturb(Scene& scene, uint64_t seed, ChainStart start) {
         body.angular_velocity = random.in_cube(1e-2);  // [rad/s]
     }
     const auto shake = [&](auto& soft) {
-        for (size_t i = 0; i < soft.points.size(); ++i) soft.velocities.push_back(random.in_cube(1e-2));  // [m/s]
+        soft.velocities.resize(soft.points.size());
+        for (taut_vec3& v : soft.velocities) {
+            const taut_vec3 more = random.in_cube(1e-2);  // [m/s]
+            v = {v.x + more.x, v.y + more.y, v.z + more.z};
+        }
         for (const uint32_t vertex : soft.pinned) soft.velocities[vertex] = {0, 0, 0};
     };
     for (Cloth& cloth : scene.cloths) shake(cloth);

@@ -61,7 +61,13 @@ void add_wheel(Scene& scene, int chassis, taut_pos axle, double speed) {
     motor.drive.max_force = 150;
     hinge.axes = {motor};
     const int joint = scene.add_joint(hinge);
-    scene.motions.push_back({-1, joint, 0, {}, {{{0.5, 0, 0}, {2, -0.75 * speed, -speed}}, {}}});
+    // Off, even, and to a stand.
+    scene.motions.push_back(
+        {-1,
+         joint,
+         0,
+         {},
+         {{{0.5, 0, 0}, {2, -0.75 * speed, -speed}, {5, -3.75 * speed, -speed}, {6, -4.25 * speed, 0}}, {}}});
     Cloth cloth = tyre(axle);
     const int index = static_cast<int>(scene.cloths.size());
     for (int i = 0; i < kTyreRound; ++i)
@@ -80,7 +86,7 @@ void add_wheel(Scene& scene, int chassis, taut_pos axle, double speed) {
 }  // namespace
 
 Scene build_soft_car(double, double, const Options& options) {
-    constexpr double kAxle = kTyreRing + kTyreTube + 0.005, kStart = -2.2, kSpeed = 5;  // [m], [m], [rad/s]
+    constexpr double kAxle = kTyreRing + kTyreTube + 0.005, kStart = -2.2, kSpeed = 3.2;  // [m], [m], [rad/s]
     Scene scene = soft_hall(1.4);
     add_ground(scene);
     Body hull = crate(box_shape(scene, 0.85, 0.12, 0.36), {kStart, kAxle + 0.18, 0}, 120, Look::paint);
@@ -95,7 +101,7 @@ Scene build_soft_car(double, double, const Options& options) {
         add_static_box(scene, {-0.9 + 0.75 * i, 0.035, i % 2 == 0 ? 0.5 : -0.5}, 0.09, 0.035, 0.35, Look::stone);
     scene.roles.load = chassis;
     scene.forces = ForceScale{0, 4};
-    scene.camera = {{1.6, 1.9, 4.6}, {-0.2, 0.35, 0}, 40};
+    scene.camera = {{1.2, 2.1, 5.0}, {0, 0.3, 0}, 42};
     scene.stage = {{-4, 0, -2.5}, {4, 1.5, 2.5}};
     perturb(scene, options.seed);
     return scene;

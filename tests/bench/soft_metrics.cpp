@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "scenes/pose.h"
 #include "vector.h"
 
 namespace bench {
@@ -212,13 +213,10 @@ void SoftMetrics::measure_depth(const std::vector<Motion>& bodies) {
         std::vector<FaceTree::Box> boxes;
         for (const auto& f : faces) boxes.push_back(FaceTree::box_about(x[f[0]], x[f[1]], x[f[2]]));
         const FaceTree tree(std::move(boxes));
-        for (size_t b = 0; b < scene_.bodies.size(); ++b) {
-            if (scene_.bodies[b].shape < 0) continue;
-            const PointDepth& depth = depths_[static_cast<size_t>(scene_.bodies[b].shape)];
-            const Vec at = of(bodies[b].position);
+        const auto look_within = [&](const PointDepth& depth, Vec at, taut_quat rotation) {
             const double r = depth.reach();
             const auto look_at = [&](Vec p) {
-                deep_end_ = std::max(deep_end_, depth.at(rotate_back(bodies[b].rotation, p - at)));
+                deep_end_ = std::max(deep_end_, depth.at(rotate_back(rotation, p - at)));
             };
             tree.each_near({{at.x - r, at.y - r, at.z - r}, {at.x + r, at.y + r, at.z + r}}, [&](uint32_t face) {
                 const auto& f = faces[face];
@@ -228,6 +226,15 @@ void SoftMetrics::measure_depth(const std::vector<Motion>& bodies) {
                     look_at((of(x[f[k]]) + of(x[f[(k + 1) % 3]])) * 0.5);
                 }
             });
+        };
+        for (size_t b = 0; b < scene_.bodies.size(); ++b) {
+            const Motion& body = bodies[b];
+            if (scene_.bodies[b].shape >= 0)
+                look_within(depths_[static_cast<size_t>(scene_.bodies[b].shape)], of(body.position), body.rotation);
+            for (const scenes::Part& part : scene_.bodies[b].parts)
+                look_within(depths_[static_cast<size_t>(part.shape)],
+                            of(body.position) + rotate(body.rotation, of(part.position)),
+                            scenes::times(body.rotation, part.rotation));
         }
     }
     deep_ = std::max(deep_, deep_end_);

@@ -31,4 +31,21 @@ TEST_P(LargeScenes, StayFiniteForTwoSeconds) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, LargeScenes, testing::ValuesIn(large_scenes()),
                          [](const auto& tested) -> std::string { return tested.param.example; });
 
+TEST(GrainsThroughMesh, SmallOnesPassAndLargeOnesStay) {
+    constexpr float kLarge = 0.08f;    // [m]
+    constexpr double kBelowNet = 0.9;  // [m]
+    RunningScene run("grains_through_mesh");
+    for (uint32_t frame = 0; frame < 300; ++frame) run.step();
+    int passed = 0;
+    for (const int i : run.scene.roles.pile) {
+        const auto body = static_cast<size_t>(i);
+        const bool large = run.scene.shapes[static_cast<size_t>(run.scene.bodies[body].shape)].radius > kLarge;
+        const bool below = run.body(body).position.y < kBelowNet;
+        EXPECT_FALSE(large && below) << "grain " << i;
+        passed += below;
+    }
+    EXPECT_GT(passed, 100);
+    EXPECT_LT(run.joint_error(), 1e-3);
+}
+
 }  // namespace

@@ -8,6 +8,8 @@
 #include "bench/overlap.h"
 #include "bench/point_depth.h"
 
+namespace measures {
+
 namespace {
 
 using bench::Skin;
@@ -227,3 +229,5 @@ TEST(PointDepth, OfPlanesAndScaledHulls) {
 }
 
 }  // namespace
+
+}  // namespace measures
