@@ -47,8 +47,7 @@ double mean_age(const World& w) { return 0.5 * (1 - 1.0 / w.least_substeps()) * 
 // After those of pairs, for vertices leave to edges and faces what these are nearer to.
 void find_touches(World& w, double lead) {
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
-    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step},
-                          w.nodes);
+    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step});
 }
 
 void detect(World& w, Stopwatch& watch) {

@@ -25,8 +25,7 @@ struct SurfaceScene {
     double time;  // ahead [s]
 };
 
-// Into Pairs::surfaces, with the forces of those that touched before. After update_pairs() of the frame. Vertices of
-// what is tangled are moved; untangle.h.
-void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes);
+// Into Pairs::surfaces, with the forces of those that touched before. After update_pairs() of the frame.
+void find_surface_contacts(Team& team, const SurfaceScene& scene);
 
 }  // namespace taut

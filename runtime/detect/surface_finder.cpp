@@ -207,7 +207,7 @@ static void turn_to_passage(const SurfaceScene& scene) {
     }
 }
 
-void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) {
+void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
     if (scene.softs.ids.count() == 0 && surfaces.contact.empty()) return;
     refit_surfaces(team, scene.nodes, scene.shapes, scene.time, scene.softs);
@@ -224,7 +224,7 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) 
     surfaces.crossing.clear();
     SurfaceFinder finder(scene, surfaces.contact, surfaces.found);
     find_surface_pairs(finder);
-    find_shifts(scene, surfaces.found);
+    untangle(scene, surfaces.found);
     find_surface_shapes(finder);
     finder.keep_still();
     surfaces.order.clear();
@@ -237,7 +237,6 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene, Nodes& nodes) 
     surfaces.contact.clear();
     for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
     turn_to_passage(scene);
-    untangle(scene, nodes);
 }
 
 }  // namespace taut

@@ -8,7 +8,7 @@
 
 namespace taut {
 
-enum class SurfacePart : uint64_t { vertex, edge, face };
+enum class SurfacePart : uint64_t { vertex, edge, face, cut };
 
 // Names of features in SurfaceContact.
 constexpr uint64_t feature_of(uint32_t soft, SurfacePart part, uint32_t index) {

@@ -190,7 +190,7 @@ void pull_back(SurfaceFinder& finder) {
     std::optional<SurfacePair> pair;
     uint32_t first = kNone, second = kNone;
     for (const SurfaceContact& was : finder.all_before()) {
-        if (is_of_shape(was.b)) continue;
+        if (is_of_shape(was.b) || part_of(was.a) == SurfacePart::cut) continue;
         const uint32_t one = soft_of(was.a), other = soft_of(was.b);
         const uint32_t a = std::min(one, other), b = std::max(one, other);
         const bool apart = a == b ? !softs.record[a].self || !softs.mesh[a].awake : !may_touch(finder.scene(), a, b);

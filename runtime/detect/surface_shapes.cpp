@@ -34,6 +34,7 @@ public:
         velocity_ = motion.v.cast<float>();
         spin_ = spans() ? Vec3f(Vec3f::Zero()) : Vec3f(motion.w.cast<float>());
         margin_ = std::min(mesh_.margin, scene_.pairs.travel[collider].margin);
+        way_ = time_ * (velocity_ - mesh_.drift);
     }
 
     void find() {
@@ -72,7 +73,7 @@ private:
             const float reach = (at_.position.cast<float>() - centre_).norm() + scene_.pairs.stance[collider_].size;
             grow += std::min(time_ * spin_.norm(), 2.0f) * reach;
         }
-        return box.swept(time_ * (velocity_ - mesh_.drift)).grown(grow);
+        return box.swept(way_).grown(grow);
     }
 
     // Of a round one: its axis, and how fast its ends move.
@@ -254,7 +255,9 @@ private:
         Array<collision::Corner>& corners = scene_.pairs.surfaces.corner;
         const Mat3f back = at_.rotation.transpose();
         const SurfaceBox& root = mesh_.node.front().box;
-        const Vec3f lo = root.lo.cwiseMax(box.lo), hi = root.hi.cwiseMin(box.hi);
+        // Where its corners are that get to the surface.
+        const SurfaceBox met = SurfaceBox{root.lo.cwiseMax(box.lo), root.hi.cwiseMin(box.hi)}.swept(-way_);
+        const Vec3f &lo = met.lo, &hi = met.hi;
         const Vec3f middle = back * (0.5f * (lo + hi) - at_.position.cast<float>());
         const Vec3f half = 0.5f * (back.cwiseAbs() * (hi - lo));
         collision::list_corners(shape_, {middle - half, middle + half}, corners);
@@ -309,6 +312,7 @@ private:
     collision::Placement at_;  // in the mesh's frame
     float time_, margin_ = 0;
     Vec3f centre_, velocity_, spin_;  // of its node
+    Vec3f way_;                       // of it, as seen from what moves as the surface does on average
     Vec3f end_[2] = {Vec3f::Zero(), Vec3f::Zero()}, speed_[2] = {Vec3f::Zero(), Vec3f::Zero()};
 };
 

@@ -15,11 +15,11 @@ namespace taut {
 // what comes in a time [s]. What sleeps or stands costs a look at its vertices.
 void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double time, Softs& softs);
 
-// act(leaf) for those whose boxes meet one, in the mesh's frame.
+// act(leaf) for those whose boxes meet one, in the mesh's frame, from a node of the tree on.
 template <class Act>
-void for_leaves_in(const SurfaceMesh& mesh, const SurfaceBox& box, Act&& act) {
+void for_leaves_in(const SurfaceMesh& mesh, const SurfaceBox& box, Act&& act, uint32_t from = 0) {
     const auto count = static_cast<uint32_t>(mesh.node.size());
-    for (uint32_t i = 0; i < count;) {
+    for (uint32_t i = from; i < count;) {
         const SurfaceNode& node = mesh.node[i];
         const bool meets = node.box.meets(box);
         if (meets && node.leaf) act(node);
@@ -47,11 +47,15 @@ void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec
         for (uint32_t i = one.begin; i < one.end; ++i) {
             const uint32_t t = a.order[i];
             const SurfaceBox box = a.face[t].box.moved(-apart);
-            for (uint32_t k = other.begin; k < other.end; ++k) {
+            for (uint32_t k = &one == &other ? i + 1 : other.begin; k < other.end; ++k) {
                 const uint32_t u = b.order[k];
-                if (same && t >= u) continue;
                 const float speed = (a.face[t].v - b.face[u].v).norm() + a.face[t].spread + b.face[u].spread;
-                if (box.is_near(b.face[u].box, reach + time * speed)) act(t, u);
+                if (!box.is_near(b.face[u].box, reach + time * speed)) continue;
+                // Of itself in the order of the host, which no tree changes.
+                if (same && u < t)
+                    act(u, t);
+                else
+                    act(t, u);
             }
         }
     };
@@ -59,7 +63,9 @@ void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec
         const SurfaceNode& node = a.node[i];
         const SurfaceBox box = node.box.moved(-apart).swept(way);
         const bool meets = same || box.meets(b.node.front().box);
-        if (meets && node.leaf) for_leaves_in(b, box, [&](const SurfaceNode& leaf) { meet(node, leaf); });
+        if (meets && node.leaf)
+            for_leaves_in(
+                b, box, [&](const SurfaceNode& leaf) { meet(node, leaf); }, same ? i : 0);
         i = meets && !node.leaf ? i + 1 : node.next;
     }
 }

@@ -6,7 +6,7 @@
 namespace taut {
 namespace {
 
-constexpr float kRate = 15;  // edges that a vertex goes in a second
+constexpr float kPart = 0.25f;  // of its length by which an edge counts as on the wrong side of what it cuts
 
 // Of one crossing, in the frame of the face's mesh.
 class Crossing {
@@ -58,9 +58,25 @@ private:
     Vec3f apart_;
 };
 
-void ask(SurfaceShift& shift, const Vec3f& way) {
-    shift.sum += way;
-    shift.most = std::max(shift.most, way.norm());
+// An end of an edge is to go along a way, and a face that it cuts against it: as a contact without friction, which
+// pushes no faster than others that overlap.
+SurfaceContact push_apart(const SurfaceScene& scene, const SurfaceCrossing& of, uint32_t end, const Vec3f& way,
+                          float depth) {
+    const Soft &soft = scene.softs.record[of.soft], &other = scene.softs.record[of.other];
+    SurfaceContact contact;
+    contact.a = feature_of(of.soft, SurfacePart::cut, 2 * of.edge + end);
+    contact.b = feature_of(of.other, SurfacePart::face, of.face);
+    contact.node[0] = soft.node[scene.softs.mesh[of.soft].edge[of.edge].vertex[end]];
+    contact.weight[0] = 1;
+    for (size_t k = 0; k < 3; ++k) {
+        contact.node[k + 1] = other.node[other.triangle[3 * size_t{of.face} + k]];
+        contact.weight[k + 1] = -1.0f / 3;
+    }
+    contact.normal = way;
+    contact.gap = -depth;
+    contact.collider[0] = scene.softs.mesh[of.soft].collider;
+    contact.collider[1] = scene.softs.mesh[of.other].collider;
+    return contact;
 }
 
 }  // namespace
@@ -74,36 +90,29 @@ bool goes_through(const Vec3f& p, const Vec3f& q, const Vec3f (&face)[3]) {
     return s >= 0 && t >= 0 && s + t <= whole;
 }
 
-void find_shifts(const SurfaceScene& scene, Array<SurfaceContact>& found) {
+void untangle(const SurfaceScene& scene, Array<SurfaceContact>& found) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
-    surfaces.shift.clear();
     if (surfaces.crossing.empty()) return;
-    surfaces.shift.resize(scene.nodes.slots());
-    const float part = std::min(1.0f, kRate * static_cast<float>(scene.time));
+    Array<uint32_t>& tangled = surfaces.near;  // by node
+    tangled.assign(scene.nodes.slots(), 0);
     for (const SurfaceCrossing& of : surfaces.crossing) {
-        const Crossing crossing(scene.softs, of);
-        const Vec3f way = part * crossing.length() * crossing.way();
         const Soft &soft = scene.softs.record[of.soft], &other = scene.softs.record[of.other];
-        for (const uint32_t vertex : scene.softs.mesh[of.soft].edge[of.edge].vertex)
-            ask(surfaces.shift[soft.node[vertex]], way);
-        for (int k = 0; k < 3; ++k)
-            ask(surfaces.shift[other.node[other.triangle[3 * size_t{of.face} + static_cast<size_t>(k)]]],
-                (-2.0f / 3) * way);
+        for (const uint32_t vertex : scene.softs.mesh[of.soft].edge[of.edge].vertex) tangled[soft.node[vertex]] = 1;
+        for (size_t k = 0; k < 3; ++k) tangled[other.node[other.triangle[3 * size_t{of.face} + k]]] = 1;
     }
     constexpr int kTangled = 3;  // nodes
     std::erase_if(found, [&](const SurfaceContact& contact) {
-        const auto shifts = [&](uint32_t node) { return node != kNone && surfaces.shift[node].most > 0; };
-        return std::ranges::count_if(contact.node, shifts) >= kTangled;
+        return std::ranges::count_if(contact.node, [&](uint32_t n) { return n != kNone && tangled[n]; }) >= kTangled;
     });
-}
-
-void untangle(const SurfaceScene& scene, Nodes& nodes) {
-    const Array<SurfaceShift>& shifts = scene.pairs.surfaces.shift;
-    for (uint32_t node = 0; node < shifts.size(); ++node) {
-        const SurfaceShift& shift = shifts[node];
-        const float length = shift.sum.norm();
-        if (!(length > 0) || !nodes.solved(node)) continue;
-        nodes.motion[node].x += (std::min(1.0f, shift.most / length) * shift.sum).cast<double>();
+    for (const SurfaceCrossing& of : surfaces.crossing) {
+        const Crossing crossing(scene.softs, of);
+        const Vec3f way = crossing.way();
+        if (way == Vec3f::Zero()) continue;
+        for (uint32_t end = 0; end < 2; ++end) {
+            const SurfaceContact contact = push_apart(scene, of, end, way, kPart * crossing.length());
+            if (std::ranges::any_of(contact.node, [&](uint32_t node) { return scene.nodes.solved(node); }))
+                found.push_back(contact);
+        }
     }
 }
 

@@ -10,11 +10,8 @@ namespace taut {
 // Where the segment from p to q goes through a triangle.
 bool goes_through(const Vec3f& p, const Vec3f& q, const Vec3f (&face)[3]);
 
-// From the crossings in SurfaceContacts: takes away contacts of what is tangled, which hold it as it is, and moves
-// vertices, in SurfaceContacts::shift, along the ways in which their edges shorten the cut. A quarter of an edge at a
-// frame of 1/60 s at most, which is no velocity.
-void find_shifts(const SurfaceScene& scene, Array<SurfaceContact>& found);
-// Of those that forces move.
-void untangle(const SurfaceScene& scene, Nodes& nodes);
+// From the crossings in SurfaceContacts: takes away contacts of what is tangled, which hold it as it is, and adds such
+// that push edges along the ways in which they shorten the cut.
+void untangle(const SurfaceScene& scene, Array<SurfaceContact>& found);
 
 }  // namespace taut
