@@ -14,6 +14,7 @@
 // last substep makes long, and of those that pulled in it the ones that without forces would be long. By the latter
 // alone, what hangs on others just short of their ends would be drawn to these.
 #include <algorithm>
+#include <cmath>
 
 #include "solvers/block_solve.h"
 
@@ -427,6 +428,43 @@ void BlockSolve::elastic_damping(double& linear, double& square) const {
             }
         }
     });
+}
+
+// By how much folded elements are not as long as was foreseen of them, at most: the distance by which nodes would have
+// to move for that, over that between the element's nodes.
+double BlockSolve::linearisation_error() const {
+    double most = 0;
+    for_elastic([&](const auto& batch) {
+        if (batch.set.form != ElementForm::folded) return;
+        const auto nodes = static_cast<uint32_t>(batch.nodes()), rows = static_cast<uint32_t>(batch.rows());
+        const auto freedoms = static_cast<uint32_t>(batch.type().freedoms);
+        uint32_t in_order[kBatch * kMaxNodes];
+        Pose moved[kBatch * kMaxNodes];
+        for (uint32_t k = 0; k < batch.at.count * nodes; ++k) {
+            const uint32_t seat = batch.at.node[k];
+            in_order[k] = k;
+            moved[k] = {sys_.pose[seat].x + sys_.scheme.h * sys_.exact[seat].v, sys_.pose[seat].R};
+        }
+        ElementBatch at = batch.at;
+        double error[kBatch * kMaxRows], jacobian[kBatch * kMaxRows * kMostFreedoms], after[kBatch * kMaxRows];
+        batch.type().evaluate(at, error, jacobian, batch.type().freedoms);
+        at.node = in_order;
+        at.x = moved;
+        batch.type().evaluate(at, after, nullptr, 0);
+        for (uint32_t i = 0; i < batch.at.count; ++i) {
+            const double extent = (moved[i * nodes + 1].x - moved[i * nodes].x).squaredNorm();
+            for (uint32_t r = 0; r < rows; ++r) {
+                double miss = after[i * rows + r] - error[i * rows + r], size = 0;
+                for (uint32_t n = 0; n < nodes; ++n) {
+                    const Vec3 j = Vec3::Map(jacobian + ((i * nodes + n) * rows + r) * freedoms);
+                    miss -= j.dot(moved[i * nodes + n].x - batch.at.x[batch.seats(i)[n]].x);
+                    size += 0.5 * j.squaredNorm();
+                }
+                if (size > 0 && extent > 0) most = std::max(most, miss * miss / (size * extent));
+            }
+        }
+    });
+    return std::sqrt(most);
 }
 
 // To a part of the way.

@@ -287,7 +287,7 @@ bool BlockSolve::solve_first() {
         if (!factor_rounds()) return false;
         take_forces();
     }
-    if (!search(stiffened)) return false;
+    if (!search(stiffened) || !linearise_again(stiffened)) return false;
     if (stiffened) limit_gain();
     return true;
 }

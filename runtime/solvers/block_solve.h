@@ -93,6 +93,7 @@ private:
     void along_way(uint32_t seat, double part, Vec3& u, Vec3& way) const;
     double elastic_energy(double part, double* slope) const;
     void elastic_damping(double& linear, double& square) const;
+    double linearisation_error() const;
     void relinearise(double part);
 
     // block_search.cpp
@@ -105,6 +106,7 @@ private:
     void begin_search(bool with_old);
     void go_part(double part);
     bool search(bool with_old);
+    bool linearise_again(bool with_old);
 
     // block_gas.cpp
     template <class Act>

@@ -7,7 +7,7 @@ namespace taut {
 namespace {
 
 constexpr double kMiss = 1e-5;  // [m/s]: a micron in a tenth of a second
-constexpr uint32_t kMostSweeps = 200;
+constexpr uint32_t kMostLawSweeps = 200;
 
 using Kind = BoundedRow::Kind;
 
@@ -215,7 +215,7 @@ bool ContactSpace::improve() {
     for (uint32_t i = 0; i < of_.row.size(); ++i) of_.rate[i] = row(i).rate + row(i).c * row(i).mu - row(i).goal;
     std::fill(of_.rate.begin() + static_cast<ptrdiff_t>(of_.row.size()),
               of_.rate.begin() + static_cast<ptrdiff_t>(ld()), 0.0);
-    for (uint32_t sweeps = 0; sweeps < kMostSweeps; ++sweeps) {
+    for (uint32_t sweeps = 0; sweeps < kMostLawSweeps; ++sweeps) {
         ++s_.report.rounds;
         const double miss = sweep();
         if (miss <= kMiss) return sweeps > 0;
