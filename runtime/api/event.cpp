@@ -102,13 +102,14 @@ taut_contact public_contact(const World& world, const GrainContact& contact) {
             world.collider_handle(b)};
 }
 
-// Of one side: its node that counts most, and where its point is now.
+// Of one side: its node that counts most, and where its point is now, on its surface.
 struct SurfaceSide {
     uint32_t node = kNone;
     Vec3 at = Vec3::Zero();
 };
 SurfaceSide side_of(const World& world, const SurfaceContact& contact, float sign) {
     SurfaceSide side;
+    bool on_surface = false;  // where a lever ends; vertices are within, half the thickness away
     float most = 0;
     double sum = 0;
     for (int i = 0; i < kMaxEnds; ++i) {
@@ -118,12 +119,17 @@ SurfaceSide side_of(const World& world, const SurfaceContact& contact, float sig
         const NodeMotion& m = world.nodes.motion[node];
         const Quat turn = m.q * world.nodes.before[node].rotation.conjugate();
         const Vec3 lever = i == 0 ? Vec3(turn * contact.lever.cast<double>()) : Vec3(Vec3::Zero());
+        on_surface = on_surface || lever != Vec3::Zero();
         side.at += static_cast<double>(weight) * (m.x + lever);
         sum += static_cast<double>(weight);
         if (weight > most) side.node = node;
         most = std::max(most, weight);
     }
     if (sum > 0) side.at /= sum;
+    const uint32_t collider = contact.collider[sign > 0 ? 0 : 1];
+    if (on_surface || !world.colliders.ids.live(collider)) return side;
+    const double radius = collision::ball_radius(world.shapes[world.colliders.record[collider].shape].shape);
+    side.at -= static_cast<double>(sign) * radius * contact.normal.cast<double>();
     return side;
 }
 

@@ -171,7 +171,7 @@ TEST(SoftContacts, OfGrainsThatWereRemovedAreNotTold) {
 
 // A grain asleep on a cloth that is held wakes as the cloth is let go.
 TEST(SoftContacts, WakeWhatTheyCarry) {
-    World world;
+    World world([](taut_world_def& def) { def.sleeping = 1; });
     Sheet sheet(2, 2, 2, 2, 0);
     taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
     def.thickness = 0.02f;
