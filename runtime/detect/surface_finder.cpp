@@ -131,6 +131,16 @@ bool is_through(const Passing& passing, const SurfaceContact& was) {
     return near.inside && near.apart.dot(was.normal) < 0 && near.distance() < passing.size();
 }
 
+void carry_force(const SurfaceContact& was, SurfaceContact& contact) {
+    contact.in_block = was.in_block;
+    contact.force = was.force;
+    if (same_tangents(was.normal, contact.normal)) return;
+    const Vec3f one = tangent_of(was.normal), other = was.normal.cross(one), to = tangent_of(contact.normal);
+    const Vec3f along = was.force.tangent1 * one + was.force.tangent2 * other;
+    contact.force.tangent1 = along.dot(to);
+    contact.force.tangent2 = along.dot(contact.normal.cross(to));
+}
+
 bool touch(const Passing& passing, const SurfaceTouch& of, float time, const SurfaceContact* was, const Vec3f& facing,
            SurfaceContact& contact) {
     Nearest near;
@@ -147,7 +157,11 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
     }
     contact.normal = near.apart.normalized();
     const float known = was ? contact.normal.dot(was->normal) : contact.normal.dot(facing);
-    if (known < 0) contact.normal = -contact.normal;
+    if (known < 0) {
+        // What comes to a solid's side from within has come in elsewhere, and is stopped there.
+        if (!was && passing.nearest(passing.x).distance() > of.both + of.margin) return false;
+        contact.normal = -contact.normal;
+    }
     contact.gap = -of.both;
     for (int i = 0; i < passing.points(); ++i) {
         contact.weight[i] = near.weight[i];
@@ -158,8 +172,7 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
     contact.collider[0] = of.collider[0];
     contact.collider[1] = of.collider[1];
     if (was) {
-        contact.force = was->force;
-        contact.in_block = was->in_block;
+        carry_force(*was, contact);
     }
     return true;
 }

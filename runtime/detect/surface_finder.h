@@ -90,6 +90,9 @@ bool meet(const Passing& passing, float reach, float time, Nearest& out);
 // Whether they are on the wrong side by what they were before, and not too far for that.
 bool is_through(const Passing& passing, const SurfaceContact& was);
 
+// What a contact takes over of the one before, whose normal may be another.
+void carry_force(const SurfaceContact& was, SurfaceContact& contact);
+
 // Meets and gives weights, normal and gap. was: their contact before, whose side counts, or null. facing: outward of
 // the second feature where that is a solid's, else 0. False: they do not touch within both features.
 bool touch(const Passing& passing, const SurfaceTouch& of, float time, const SurfaceContact* was, const Vec3f& facing,

@@ -232,8 +232,7 @@ private:
         std::ranges::copy(of.collider, contact.collider);
         const uint64_t feature = feature_of(index_, SurfacePart::edge, e);
         if (const SurfaceContact* was = finder_.before(feature, feature_of_shape(collider_, number))) {
-            contact.force = was->force;
-            contact.in_block = was->in_block;
+            carry_force(*was, contact);
         }
         add(contact, feature, number);
     }
@@ -272,11 +271,21 @@ private:
             SurfaceBox about = SurfaceBox::none();
             about.add(at);
             about = about.swept(time_ * (velocity - mesh_.drift)).grown(corner.radius + margin_);
-            for_triangles_in(mesh_, about, [&](uint32_t t) { find_face(t, corner, at, velocity, node); });
+            Within within;
+            for_triangles_in(mesh_, about, [&](uint32_t t) { find_face(t, corner, at, velocity, node, within); });
+            if (within.any) add(within.contact, within.feature, corner.number);
         }
     }
 
-    void find_face(uint32_t t, const collision::Corner& corner, const Vec3f& at, const Vec3f& velocity, uint32_t node) {
+    // Of a corner within a solid, the contact with the face that it leaves by the shortest way.
+    struct Within {
+        bool any = false;
+        SurfaceContact contact;
+        uint64_t feature = 0;
+    };
+
+    void find_face(uint32_t t, const collision::Corner& corner, const Vec3f& at, const Vec3f& velocity, uint32_t node,
+                   Within& within) {
         const uint32_t* vertex = &soft_.triangle[3 * size_t{t}];
         SurfaceContact contact;
         Passing passing{};
@@ -295,6 +304,10 @@ private:
         if (!spans()) {
             contact.skin = -corner.radius * contact.normal;
             contact.lever = at + contact.skin - centre_;
+        }
+        if (soft_.kind == SoftKind::solid && contact.gap + of.both < 0) {
+            if (!within.any || contact.gap > within.contact.gap) within = {true, contact, feature};
+            return;
         }
         add(contact, feature, corner.number);
     }
