@@ -19,13 +19,13 @@ bool is_still(const SurfaceScene& scene, uint64_t feature) {
     return index & kShape ? !moves_now(scene, index & ~kShape) : !scene.softs.mesh[index].awake;
 }
 
-auto key_of(const SurfaceContact& contact) { return std::pair(contact.a, contact.b); }
+auto features_of(const SurfaceContact& contact) { return std::pair(contact.a, contact.b); }
 
 }  // namespace
 
 const SurfaceContact* SurfaceFinder::before(uint64_t a, uint64_t b) const {
-    const auto at = std::ranges::lower_bound(before_, std::pair(a, b), {}, key_of);
-    return at != before_.end() && key_of(*at) == std::pair(a, b) ? &*at : nullptr;
+    const auto at = std::ranges::lower_bound(before_, std::pair(a, b), {}, features_of);
+    return at != before_.end() && features_of(*at) == std::pair(a, b) ? &*at : nullptr;
 }
 
 void SurfaceFinder::keep_still() {
@@ -242,7 +242,7 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     finder.keep_still();
     surfaces.order.clear();
     for (uint32_t i = 0; i < surfaces.found.size(); ++i) surfaces.order.push_back(i);
-    std::ranges::sort(surfaces.order, {}, [&](uint32_t i) { return key_of(surfaces.found[i]); });
+    std::ranges::sort(surfaces.order, {}, [&](uint32_t i) { return features_of(surfaces.found[i]); });
     bool same = surfaces.contact.size() == surfaces.found.size();
     for (uint32_t i = 0; i < surfaces.found.size() && same; ++i)
         same = std::ranges::equal(surfaces.contact[i].node, surfaces.found[surfaces.order[i]].node);

@@ -54,8 +54,10 @@ private:
             for (int i = 0; i < 3; ++i)
                 if (one[i] == other[0] || one[i] == other[1] || one[i] == other[2]) return find_beside(t, u);
         }
-        find_crossings(0, t, 1, u);
-        find_crossings(1, u, 0, t);
+        if (!is_itself() || soft_[0]->kind == SoftKind::cloth) {  // cells of a solid resist what crosses it
+            find_crossings(0, t, 1, u);
+            find_crossings(1, u, 0, t);
+        }
         for (uint32_t k = 0; k < 3; ++k) {
             if (mesh_[0]->owns[t] >> (3 + k) & 1) find_vertex(0, corners(0, t)[k], 1, u);
             if (mesh_[1]->owns[u] >> (3 + k) & 1) find_vertex(1, corners(1, u)[k], 0, t);

@@ -9,8 +9,8 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kLeaf = 4;     // triangles, at most
-constexpr uint32_t kGrain = 256;  // triangles or vertices that a thread takes at a time
+constexpr uint32_t kLeaf = 4;           // triangles, at most
+constexpr uint32_t kVertexGrain = 256;  // triangles or vertices that a thread takes at a time
 
 // Halves by the middle along the axis on which middles of triangles are spread widest.
 class TreeBuilder {
@@ -104,7 +104,7 @@ void place_vertices(Team& team, const Nodes& nodes, const Soft& soft, SurfaceMes
     mesh.origin = nodes.motion[soft.node.front()].x;
     mesh.x.resize(soft.vertices());
     mesh.v.resize(soft.vertices());
-    team.for_ranges(soft.vertices(), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(soft.vertices(), kVertexGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             const NodeMotion& motion = nodes.motion[soft.node[i]];
             mesh.x[i] = (motion.x - mesh.origin).cast<float>();
@@ -119,7 +119,7 @@ void place_vertices(Team& team, const Nodes& nodes, const Soft& soft, SurfaceMes
 // Boxes about the ways of triangles, grown so that two that come within their margin meet.
 void refit(Team& team, const Soft& soft, float time, SurfaceMesh& mesh) {
     const float about = mesh.radius + mesh.margin;
-    team.for_ranges(soft.triangles(), kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(soft.triangles(), kVertexGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t t = begin; t < end; ++t) {
             SurfaceFace& face = mesh.face[t];
             face.box = SurfaceBox::none();
