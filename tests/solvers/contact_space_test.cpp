@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-constexpr int kSide = 5;
+constexpr int kNetSide = 5;
 constexpr double kApart = 0.1, kNodeMass = 0.01, kStiffness = 2e3;  // [m, kg, N/m]
 
 // A net of links at rest in the plane y = 0, held at its corners, and a body that falls on some of its nodes, which
@@ -28,19 +28,20 @@ protected:
         body = rig.body(uniform(0.02, 20), Vec3(0.02, 0.03, 0.04), Vec3(0.2, 0.1, 0.2), Quat::Identity(),
                         Vec3(uniform(-0.2, 0.2), uniform(-0.5, -0.2), uniform(-0.2, 0.2)),
                         Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
-        for (int i = 0; i < kSide; ++i)
-            for (int k = 0; k < kSide; ++k) {
+        for (int i = 0; i < kNetSide; ++i)
+            for (int k = 0; k < kNetSide; ++k) {
                 const Vec3 x(kApart * i, 0, kApart * k);
-                const bool held = (i == 0 || i == kSide - 1) && (k == 0 || k == kSide - 1);
+                const bool held = (i == 0 || i == kNetSide - 1) && (k == 0 || k == kNetSide - 1);
                 node.push_back(held ? rig.fixed(x) : rig.particle(kNodeMass, x));
                 place.push_back(held ? -1 : unknowns);
                 if (!held) unknowns += 3;
             }
-        for (int i = 0; i < kSide; ++i)
-            for (int k = 0; k < kSide; ++k) {
-                if (i + 1 < kSide) link.emplace_back(i * kSide + k, (i + 1) * kSide + k);
-                if (k + 1 < kSide) link.emplace_back(i * kSide + k, i * kSide + k + 1);
-                if (i + 1 < kSide && k + 1 < kSide) link.emplace_back(i * kSide + k, (i + 1) * kSide + k + 1);
+        for (int i = 0; i < kNetSide; ++i)
+            for (int k = 0; k < kNetSide; ++k) {
+                if (i + 1 < kNetSide) link.emplace_back(i * kNetSide + k, (i + 1) * kNetSide + k);
+                if (k + 1 < kNetSide) link.emplace_back(i * kNetSide + k, i * kNetSide + k + 1);
+                if (i + 1 < kNetSide && k + 1 < kNetSide)
+                    link.emplace_back(i * kNetSide + k, (i + 1) * kNetSide + k + 1);
             }
         ElementSet& set = rig.w.elements.set[rig.w.elements.add(kLinkElement)];
         set.form = ElementForm::folded;
@@ -52,7 +53,7 @@ protected:
             rig.w.elements.insert(set, e, ends, 1);
             *set.data_of(e) = (at(b) - at(a)).norm();
         }
-        for (int i = 0; i < kSide * kSide; ++i) {
+        for (int i = 0; i < kNetSide * kNetSide; ++i) {
             if (place[static_cast<size_t>(i)] < 0 || uniform(0, 1) < 0.3) continue;
             const Vec3 normal = Vec3(uniform(-0.3, 0.3), -1, uniform(-0.3, 0.3)).normalized();
             rig.contact(body, node[static_cast<size_t>(i)], normal.cast<float>(), {{at(i), uniform(0, 1e-3)}});
@@ -60,7 +61,7 @@ protected:
         rig.begin(kBlockLdlt);
         rig.predict();
     }
-    Vec3 at(int i) const { return Vec3(kApart * (i / kSide), 0, kApart * (i % kSide)); }
+    Vec3 at(int i) const { return Vec3(kApart * (i / kNetSide), 0, kApart * (i % kNetSide)); }
 
     // M + h^2 J^T D J of the links; the body's six freedoms come last.
     Eigen::MatrixXd matrix() const {
