@@ -44,7 +44,6 @@ void sample_span_contact(uint64_t seed, void* data, Pose* x) {
     auto& point = *static_cast<SpanContactData*>(data);
     const double t = random.unit(), s = random.unit();
     for (Vec3& anchor : point.anchor) anchor = random.vector();
-    point.skin = random.vector();
     const double weight[kNodes] = {t - 1, 1 - s, -t, s};
     std::copy(weight, weight + kNodes, point.weight);
     point.offset = random.vector();
