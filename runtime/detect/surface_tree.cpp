@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "detect/surface_finder.h"
-#include "models/mesh_edges.h"
+#include "state/mesh_edges.h"
 
 namespace taut {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <span>
 
-#include "models/mesh_edges.h"
 #include "models/softs.h"
+#include "state/mesh_edges.h"
 
 namespace taut {
 

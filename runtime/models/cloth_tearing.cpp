@@ -7,10 +7,10 @@
 #include "base/log.h"
 #include "models/air.h"
 #include "models/bodies.h"
-#include "models/mesh_edges.h"
 #include "models/soft_reading.h"
 #include "models/tethers.h"
 #include "sleep/wake.h"
+#include "state/mesh_edges.h"
 #include "threads/gather.h"
 
 namespace taut {
@@ -67,9 +67,8 @@ private:
     void renumber() {
         soft_.mesh_version = ++world_.softs.version;
         std::erase_if(world_.pairs.surfaces.contact, [&](const SurfaceContact& contact) {
-            return std::ranges::any_of(contact.node, [&](uint32_t node) {
-                return node != kNone && world_.nodes.info[node].soft == index_;
-            });
+            return std::ranges::any_of(
+                contact.node, [&](uint32_t node) { return node != kNone && world_.nodes.info[node].soft == index_; });
         });
         ++world_.pairs.surfaces.version;
     }

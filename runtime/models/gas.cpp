@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "models/air.h"
-#include "models/mesh_edges.h"
 #include "models/soft_reading.h"
+#include "state/mesh_edges.h"
 
 namespace taut {
 namespace {

@@ -162,7 +162,7 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
 // The dense matrix of contacts of elastic elements, solvers/contact_space.h, grows with the square of their number:
 // beyond this many points they are swept.
 void Partition::find_crowded(const Pairs& pairs) {
-    constexpr uint32_t kMostPoints = 512;
+    constexpr uint32_t kMostPoints = 192;
     const auto count = [&](std::span<const uint32_t> ends, uint32_t points) {
         for (const uint32_t end : ends) {
             if (end == kNone || !graph_.moves[end]) continue;

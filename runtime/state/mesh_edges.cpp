@@ -1,4 +1,4 @@
-#include "models/mesh_edges.h"
+#include "state/mesh_edges.h"
 
 #include <algorithm>
 #include <tuple>
