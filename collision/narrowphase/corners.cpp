@@ -9,7 +9,7 @@
 namespace taut::collision {
 namespace {
 
-constexpr uint32_t kRim = 16;  // corners of a circle: the chord between two is 2 % of its radius within it
+constexpr uint32_t kRimCorners = 16;  // corners of a circle: the chord between two is 2 % of its radius within it
 
 class CornerList {
 public:
@@ -21,8 +21,8 @@ public:
         if (within) out_.push_back({at, radius, number});
     }
     void add_rim(float radius, float height, uint32_t first) {
-        for (uint32_t k = 0; k < kRim; ++k) {
-            const double angle = 2 * std::numbers::pi * k / kRim;
+        for (uint32_t k = 0; k < kRimCorners; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kRimCorners;
             add({radius * static_cast<float>(std::cos(angle)), height, radius * static_cast<float>(std::sin(angle))}, 0,
                 first + k);
         }
@@ -84,11 +84,11 @@ void list_corners(const Shape& shape, const Box& near, Array<Corner>& out) {
             break;
         case ShapeKind::cylinder:
             list.add_rim(size.x(), -size.y(), 0);
-            list.add_rim(size.x(), size.y(), kRim);
+            list.add_rim(size.x(), size.y(), kRimCorners);
             break;
         case ShapeKind::cone:
             list.add_rim(size.x(), -size.y(), 0);
-            list.add({0, size.y(), 0}, 0, kRim);
+            list.add({0, size.y(), 0}, 0, kRimCorners);
             break;
         case ShapeKind::surface:
             list_surface_corners(shape, near, out);
