@@ -51,12 +51,6 @@ struct SurfaceCrossing {
     uint32_t other, face;
 };
 
-// By which a vertex is to move, as many crossings ask [m].
-struct SurfaceShift {
-    Vec3f sum = Vec3f::Zero();
-    float most = 0;  // of them [m]
-};
-
 struct SurfaceContacts {
     explicit SurfaceContacts(Memory& memory)
         : contact(memory),
@@ -67,8 +61,7 @@ struct SurfaceContacts {
           colliders(memory),
           corner(memory),
           span(memory),
-          crossing(memory),
-          shift(memory) {}
+          crossing(memory) {}
 
     Array<SurfaceContact> contact;  // ascending by a, then b; find_surface_contacts()
     Array<uint32_t> gone;           // nodes removed since: what contacts say of these means nothing
@@ -80,11 +73,10 @@ struct SurfaceContacts {
     Array<collision::Corner> corner;
     Array<SurfaceSpan> span;
     Array<SurfaceCrossing> crossing;
-    Array<SurfaceShift> shift;  // by node; of none, or of all
 };
 template <class Visitor, Like<SurfaceContacts> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [contact, gone, version, found, order, near, colliders, corner, span, crossing, shift] = of;
+    auto& [contact, gone, version, found, order, near, colliders, corner, span, crossing] = of;
     TAUT_FIELDS(visitor, contact, gone);
     TAUT_ASIDE(visitor, version);
 }
