@@ -41,29 +41,10 @@ struct PanelMatrix {
 
 constexpr size_t kPanelPadding = 3;  // whole vectors are read and written past the end of a column
 
-// Columns of L^-1 at chosen pivots, those among and under a panel's own: chosen ones follow each other there, as pivots
-// are numbered from leaf to root.
-struct PanelStrip {
-    uint32_t begin, end;  // of the chosen ones
-    size_t value;         // of its first row in PanelStrips::value; a row has `width` numbers
-    size_t width() const { return (3 * static_cast<size_t>(end - begin) + kPanelPadding) / 4 * 4; }
-};
-
-struct PanelStrips {
-    const PanelStrip* strip;   // of each panel
-    const uint32_t* panel_of;  // of each pivot
-    double* value;             // zeros and the identity at the chosen ones
-    double* scratch;           // as large as the largest panel's
-};
-
 struct PanelKernels {
     const char* name;
     bool (*factor)(const PanelMatrix& m);            // false: a pivot is not of its sign, or not finite
     void (*solve)(const PanelMatrix& m, double* x);  // x: four numbers a pivot, the last without meaning
-    // Upper triangle of A^-1 between the chosen ones onto out, row-major; rows and ld are of whole fours.
-    void (*inverse)(const PanelMatrix& m, const PanelStrips& strips, double* out, size_t ld);
-    // x += sum of a[i] times row i of m, of `rows` rows; x and rows are of whole fours.
-    void (*add_rows)(double* x, size_t size, const double* const* row, const double* a, size_t rows);
 };
 
 extern const PanelKernels kPanelKernelsBase, kPanelKernelsAvx2;

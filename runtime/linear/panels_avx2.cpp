@@ -1,8 +1,8 @@
 // Panels, avx2 build.
-#include "linear/panel_inverse.inl"
+#include "linear/panels.inl"
 
 namespace taut {
 
-const PanelKernels kPanelKernelsAvx2 = {"avx2", factor, solve, inverse, add_rows};
+const PanelKernels kPanelKernelsAvx2 = {"avx2", factor, solve};
 
 }  // namespace taut

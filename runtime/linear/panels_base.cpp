@@ -1,8 +1,8 @@
 // Panels, build for any processor.
-#include "linear/panel_inverse.inl"
+#include "linear/panels.inl"
 
 namespace taut {
 
-const PanelKernels kPanelKernelsBase = {"base", factor, solve, inverse, add_rows};
+const PanelKernels kPanelKernelsBase = {"base", factor, solve};
 
 }  // namespace taut

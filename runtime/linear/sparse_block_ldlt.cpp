@@ -20,8 +20,6 @@ SparseBlockLdlt::SparseBlockLdlt(Memory& memory)
       pivot_(memory),
       panel_of_(memory),
       panel_(memory),
-      leaf_(memory),
-      strip_(memory),
       update_(memory),
       run_(memory),
       row_(memory),
@@ -145,14 +143,8 @@ void SparseBlockLdlt::find_columns() {
 // A column's rows are among its parent and the parent's rows: as many are the same ones.
 void SparseBlockLdlt::find_panels() {
     const uint32_t n = unknowns();
-    Array<uint32_t> under(order_.get_allocator());  // first of the tree under each, which follow each other
-    under.resize(n);
-    for (uint32_t k = 0; k < n; ++k) under[k] = k;
-    for (uint32_t k = 0; k < n; ++k)
-        if (parent_[k] != kNoParent) under[parent_[k]] = std::min(under[parent_[k]], under[k]);
     panel_.clear();
     panel_of_.clear();
-    leaf_.clear();
     row_.clear();
     size_t values = 0, largest = 0;
     for (uint32_t k = 0, first = 0; k < n; ++k) {
@@ -166,7 +158,6 @@ void SparseBlockLdlt::find_panels() {
         panel.rows = static_cast<uint32_t>(row_.size()) - panel.row_begin;
         panel_of_.resize(pivot_[k + 1], static_cast<uint32_t>(panel_.size()));
         panel_.push_back(panel);
-        leaf_.push_back(pivot_[under[k]]);
         const size_t size = 3 * panel.pivots * panel.ld();
         values += size;
         largest = std::max(largest, size);
@@ -174,7 +165,6 @@ void SparseBlockLdlt::find_panels() {
     }
     value_.assign(values + kPanelPadding, 0);
     scratch_.assign(largest + kPanelPadding, 0);
-    strip_.assign(panel_.size(), {});
     inverse_.resize(9 * pivot_.back());
     work_.assign(4 * pivot_.back(), 0);
     sign_.clear();
@@ -253,6 +243,13 @@ void SparseBlockLdlt::add(BlockPlace at, const BlockPiece& piece) {
     piece.columns == 3 ? sum(3) : piece.columns == 6 ? sum(6) : sum(static_cast<size_t>(piece.columns));
 }
 
+void SparseBlockLdlt::read(uint32_t i, double* out) const {
+    const BlockPlace at = place(i, i);
+    const auto size = static_cast<size_t>(unknown_[i].size);
+    for (size_t r = 0; r < size; ++r)
+        for (size_t c = 0; c < size; ++c) out[r * size + c] = number_[at.begin + c * at.height + r];
+}
+
 // Entries to where they are eliminated, zeros to where L fills in.
 void SparseBlockLdlt::load() {
     std::fill(value_.begin(), value_.end(), 0.0);
@@ -277,49 +274,6 @@ PanelMatrix SparseBlockLdlt::matrix() const {
             row_.data(),    sign_.data(),
             value_.data(),  inverse_.data(),
             scratch_.data()};
-}
-
-// Room: columns, then what the largest panel takes beside them.
-InverseCost SparseBlockLdlt::find_strips(std::span<const uint32_t> pivots) const {
-    InverseCost cost;
-    size_t largest = 0;
-    for (size_t k = 0; k < panel_.size(); ++k) {
-        const Panel& p = panel_[k];
-        const auto place = [&](uint32_t pivot) {
-            return static_cast<uint32_t>(std::lower_bound(pivots.begin(), pivots.end(), pivot) - pivots.begin());
-        };
-        strip_[k] = {place(leaf_[k]), place(p.first + p.pivots), cost.room};
-        if (strip_[k].begin == strip_[k].end) continue;
-        const size_t numbers = 3 * p.pivots * strip_[k].width();
-        cost.room += numbers;
-        largest = std::max(largest, numbers);
-        cost.products +=
-            static_cast<double>(numbers) * (static_cast<double>(p.ld()) + 0.5 * static_cast<double>(strip_[k].width()));
-    }
-    cost.room += kPanelPadding + largest;
-    return cost;
-}
-
-InverseCost SparseBlockLdlt::cost_of_inverse(std::span<const uint32_t> pivots) const { return find_strips(pivots); }
-
-void SparseBlockLdlt::inverse(std::span<const uint32_t> pivots, double* room, double* out,
-                              const PanelKernels& kernels) const {
-    const InverseCost cost = find_strips(pivots);
-    std::fill_n(room, cost.room, 0.0);
-    size_t columns = 0;
-    for (size_t k = 0; k < panel_.size(); ++k)
-        columns += strip_[k].begin == strip_[k].end ? 0 : 3 * panel_[k].pivots * strip_[k].width();
-    for (size_t i = 0; i < pivots.size(); ++i) {
-        const uint32_t at = panel_of_[pivots[i]];
-        const size_t width = strip_[at].width();
-        double* one = room + strip_[at].value + 3 * (pivots[i] - panel_[at].first) * width + 3 * (i - strip_[at].begin);
-        for (size_t c = 0; c < 3; ++c) one[c * (width + 1)] = 1;
-    }
-    const size_t side = side_of(pivots.size());
-    std::fill_n(out, side * side, 0.0);
-    kernels.inverse(matrix(), {strip_.data(), panel_of_.data(), room, room + columns + kPanelPadding}, out, side);
-    for (size_t r = 0; r < 3 * pivots.size(); ++r)
-        for (size_t c = 0; c < r; ++c) out[r * side + c] = out[c * side + r];
 }
 
 void SparseBlockLdlt::solve(double* x, const PanelKernels& kernels) const {

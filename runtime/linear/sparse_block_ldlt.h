@@ -28,12 +28,6 @@ struct BlockPiece {
     double weight = 1;
 };
 
-// What entries of the inverse take: numbers of room, and multiplications.
-struct InverseCost {
-    size_t room = 0;
-    double products = 0;
-};
-
 class SparseBlockLdlt {
 public:
     explicit SparseBlockLdlt(Memory& memory);
@@ -57,22 +51,14 @@ public:
     // --- numeric: entries stay as they are while the matrix is factored
     void clear() { std::fill(number_.begin(), number_.end(), 0.0); }
     void add(BlockPlace at, const BlockPiece& piece);  // give each pair of unknowns once
+    // size x size numbers of an unknown's own block, row-major.
+    void read(uint32_t i, double* out) const;
     void keep() { std::copy(number_.begin(), number_.end(), kept_.begin()); }
     void restore() { std::copy(kept_.begin(), kept_.end(), number_.begin()); }  // the entries last kept
     // False if a pivot is not of the sign that its kind demands or not finite.
     bool factor(const PanelKernels& kernels = panel_kernels());
     // x: 6 doubles an unknown (a block of 3 uses the first three), right-hand side in, solution out.
     void solve(double* x, const PanelKernels& kernels = panel_kernels()) const;
-
-    // --- entries of the inverse of what was factored, between chosen pivots: ascending, each once
-    uint32_t pivot(uint32_t i) const { return pivot_[position_[i]]; }  // first of an unknown's triples
-    InverseCost cost_of_inverse(std::span<const uint32_t> pivots) const;
-    // A^-1 between them, row-major, 3 numbers a pivot and side_of() - 3 n of no meaning; room: InverseCost::room.
-    void inverse(std::span<const uint32_t> pivots, double* room, double* out,
-                 const PanelKernels& kernels = panel_kernels()) const;
-    static size_t side_of(size_t pivots) { return (3 * pivots + 7) / 4 * 4; }
-    // Multiplications of a solve.
-    double solve_products() const { return 2 * static_cast<double>(value_.size()); }
 
     uint32_t unknowns() const { return static_cast<uint32_t>(unknown_.size()); }
     uint32_t blocks() const { return blocks_; }  // below the diagonal, fill included
@@ -94,7 +80,6 @@ private:
     void find_entries();
     void load();
     PanelMatrix matrix() const;
-    InverseCost find_strips(std::span<const uint32_t> pivots) const;
 
     bool analysed_ = false;
     uint32_t blocks_ = 0;
@@ -105,8 +90,6 @@ private:
     Array<uint32_t> column_begin_, column_, pivot_;  // blocks of L and first pivot, by position
     Array<uint32_t> panel_of_;                       // of each pivot
     Array<Panel> panel_;
-    Array<uint32_t> leaf_;  // of each panel the first pivot of the tree under it
-    mutable Array<PanelStrip> strip_;
     Array<PanelUpdate> update_;
     Array<PanelRun> run_;
     Array<uint32_t> row_;

@@ -107,7 +107,6 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     both.loaded = ca.loaded || cb.loaded;
     both.hit = ca.hit || cb.hit;
     both.elastic = elastic;
-    both.crowded = ca.crowded || cb.crowded;
     unite(a, b);
     component_[find(a)] = both;
     return true;
@@ -136,7 +135,6 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
     }
     choose_direct(nodes, joints, elements);
     find_hit(nodes, pairs, rules);
-    find_crowded(pairs);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const auto ends = pairs.active[p].nodes();
         const uint32_t first = mover(nodes, ends);
@@ -159,26 +157,6 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
     recall_blocks(nodes, joints);
 }
 
-// The dense matrix of contacts of elastic elements, solvers/contact_space.h, grows with the square of their number:
-// beyond this many points they are swept.
-void Partition::find_crowded(const Pairs& pairs) {
-    constexpr uint32_t kMostPoints = 192;
-    const auto count = [&](std::span<const uint32_t> ends, uint32_t points) {
-        for (const uint32_t end : ends) {
-            if (end == kNone || !graph_.moves[end]) continue;
-            Component& component = component_[find(end)];
-            if (!component.elastic) continue;
-            component.points += points;
-            if (component.points <= kMostPoints) return;
-            component.crowded = true;
-            component.loaded = false;
-            return;
-        }
-    };
-    for (const ActivePair& pair : pairs.active) count(pair.nodes(), pair.points);
-    for (const SurfaceContact& contact : pairs.surfaces.contact) count(contact.node, 1);
-}
-
 // Contacts of surfaces with what takes in its contacts, as elements without multipliers always do: each is a row of the
 // block with all its nodes that move. What is held by ties that are swept stays out, and so does the contact.
 void Partition::take_surfaces(const SurfaceContacts& surfaces) {
@@ -191,8 +169,6 @@ void Partition::take_surfaces(const SurfaceContacts& surfaces) {
         const auto held = std::ranges::find_if(ends, takes_in);
         const auto may_join = [&](uint32_t end) { return end == kNone || core_[end] != 0 || tied_[end] == 0; };
         if (held == ends.end() || !std::ranges::all_of(ends, may_join)) continue;
-        const auto is_crowded = [&](uint32_t end) { return end != kNone && component_[find(end)].crowded; };
-        if (std::ranges::any_of(ends, is_crowded)) continue;
         surface_in_block_[k] = std::ranges::all_of(
             ends, [&, first = *held](uint32_t end) { return end == kNone || join_contact(first, end); });
         if (!surface_in_block_[k]) continue;
@@ -378,6 +354,7 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
             std::swap(old.order, block.order);
             std::swap(old.matrix, block.matrix);
             std::swap(old.places, block.places);
+            std::swap(old.coupled, block.coupled);
             block.stride = old.stride;
             std::swap(old.solution, block.solution);
             std::swap(old.known, block.known);

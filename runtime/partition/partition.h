@@ -34,18 +34,37 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, excess_energy, solved, guard_left, since_trip, escalated, whips_left, hit_left);
 }
 
-// Scratch of solvers/contact_space.h. Dense matrices are row-major, of whole fours.
-struct ContactSpaceMemory {
-    explicit ContactSpaceMemory(Memory& m)
-        : matrix(m), response(m), room(m), rate(m), row(m), place_of_row(m), pivot(m), slot(m) {}
+// What a row says of three freedoms of a node: its velocity or its angular velocity.
+struct RowTouch {
+    uint32_t at;  // in ContactSplitMemory::velocity
+    Vec3 j, g;    // s J, R^-1 J^T s
+};
 
-    Array<double> matrix;          // J A^-1 J^T of the rows in it, each with its sign
-    Array<double> response, room;  // A^-1 between the nodes that they touch; what finding it takes
-    Array<double> rate;            // s J v + c mu - goal of rows [m/s]
-    Array<uint32_t> row;           // those in it, in the block's bounded rows, ascending
-    Array<uint32_t> place_of_row;  // in `row`, of each bounded row; kNone: not in it
-    Array<uint32_t> pivot, slot;   // of the touched nodes; of each node its first one, or kNone
-    bool built = false;            // the matrix is of this factor and these rows
+// Scratch of solvers/contact_split.h, of the nodes that bounded rows touch.
+struct ContactSplitMemory {
+    explicit ContactSplitMemory(Memory& m)
+        : slot(m),
+          node(m),
+          load(m),
+          metric(m),
+          inverse(m),
+          velocity(m),
+          stiffness(m),
+          touch(m),
+          begin(m),
+          row(m),
+          listed(m) {}
+
+    Array<uint32_t> slot, node;     // of each node of the block its place among them, or kNone; and back
+    Array<double> load;             // what they bear by contacts, themselves included [kg]
+    Array<double> metric, inverse;  // R and R^-1, 36 numbers each
+    Array<double> velocity;         // z
+    Array<double> stiffness;        // J R^-1 J^T + c of rows
+    Array<RowTouch> touch;          // of rows, those of row i from begin[i] to begin[i + 1]
+    Array<uint32_t> begin;
+    Array<uint32_t> row;    // those that sweeps take, in the block's bounded rows, ascending
+    Array<uint8_t> listed;  // of each row: whether it is among them
+    bool built = false;     // touches and stiffnesses are of the present factor
 };
 
 // What a direct solve takes together, with what it remembers over frames.
@@ -68,7 +87,8 @@ struct Block {
           elastic_force(m),
           gases(m),
           gas_response(m),
-          space(m) {}
+          split(m),
+          coupled(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
@@ -86,7 +106,8 @@ struct Block {
     Array<double> elastic_force;           // likewise
     Array<uint32_t> gases;                 // that it has nodes of, in System::gases, of this substep
     Array<double> gas_response;            // scratch of its solve; see solvers/block_gas.cpp
-    ContactSpaceMemory space;              // likewise
+    ContactSplitMemory split;              // likewise
+    Array<uint8_t> coupled;                // of its nodes: by elements or ties to others; with `places`
     bool foresees = false;                 // folded elements are evaluated where their nodes are going
     bool relinearised = false;             // all are, where the line search came to; see solvers/block_search.cpp
     uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
@@ -108,7 +129,7 @@ struct Block {
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [nodes, joints, elements, elastic, pairs, surfaces, links, identity, order, matrix, places, stride, solution,
-           known, force, elastic_force, gases, gas_response, space, foresees, relinearised, first_elastic_run,
+           known, force, elastic_force, gases, gas_response, split, coupled, foresees, relinearised, first_elastic_run,
            elastic_runs, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
            contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
@@ -248,8 +269,6 @@ private:
         bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
         bool hit = false;                // in this frame
-        uint32_t points = 0;             // of contacts with something elastic
-        bool crowded = false;            // too many: they are swept
         bool elastic = false;            // has elements without multipliers: its matrix sees no contact
     };
 
@@ -320,7 +339,6 @@ private:
     void take_between(const Nodes& nodes, const Pairs& pairs);
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
     bool join_contact(uint32_t a, uint32_t b);
-    void find_crowded(const Pairs& pairs);
     Block& block_at(uint32_t node);
     bool multiplies(const ElementSet& set) const { return set.form == ElementForm::rows || !folds_; }
     void fill_elements(const Elements& elements);

@@ -232,7 +232,10 @@ void BlockSolve::find_elastic_places() {
     uint32_t end = static_cast<uint32_t>(b_.places.size());
     for_elastic([&](const auto& batch) { end = batch.place_of(batch.at.count, 0, 0); });
     b_.places.resize(end);
-    for_couplings([&](uint32_t a, uint32_t b, uint32_t place) { b_.places[place] = b_.matrix.place(a, b); });
+    for_couplings([&](uint32_t a, uint32_t b, uint32_t place) {
+        b_.places[place] = b_.matrix.place(a, b);
+        b_.coupled[a] = b_.coupled[b] = 1;
+    });
 }
 
 // Where nodes of elastic elements would be at the end of the substep, but for pressure within surfaces: that is held by

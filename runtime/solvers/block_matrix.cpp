@@ -197,6 +197,10 @@ void BlockSolve::find_places() {
             }
         }
     }
+    b_.coupled.assign(nodes_, 0);
+    for (uint32_t j = 0; j < ties(); ++j)
+        for (int n = 0; n < row(j).type->nodes; ++n)
+            if (local(row(j).node[n]) != kNone) b_.coupled[local(row(j).node[n])] = 1;
     find_elastic_places();
 }
 
@@ -324,6 +328,7 @@ void BlockSolve::assemble(bool with_old) {
             if (row(j).locked(r)) known(nodes_ + j)[r] = sys_.scheme.row_rate(relaxation_of(row(j), r));
     }
     assemble_elastic();
+    if (splits()) split.add_metric();
 }
 
 void BlockSolve::add_new_stiffness() {

@@ -148,7 +148,7 @@ void BlockSolve::begin_search(bool with_old) {
 // At the velocities and elastic forces of the solution; as often as something hits folded elements so hard that they
 // are elsewhere than foreseen. What moves freely is foreseen well.
 bool BlockSolve::linearise_again(bool with_old) {
-    if (!has_space() || !b_.gases.empty()) return true;
+    if (!splits() || !b_.gases.empty()) return true;
     for (uint32_t again = 0; again < kMostAgain && linearisation_error() > kMissed; ++again) {
         ++s_.report.resolves;
         take_elastic_forces();

@@ -102,7 +102,8 @@ void BlockSolve::right_hand_side() {
             x[r] = part * known(nodes_ + j)[r] * error_of(block, r) + (meets_known ? known_rate(block, r) : 0.0);
         }
     }
-    const bool apart = has_space();
+    const bool apart = splits();
+    if (apart) split.add_known(b_.solution.data());
     for (const BoundedRow& bounded : set.rows()) {
         if (apart ? bounded.mu == 0 : !bounded.on) continue;
         const double held =
@@ -125,22 +126,24 @@ void BlockSolve::solve_linear() {
 
 void BlockSolve::gather_rows() {
     set.gather();
-    if (has_space()) space.make_room();
+    if (!splits()) return;
+    bound_impulses(set.rows());
+    split.make_room();
 }
 
 // With the impulses that the laws of all bounded rows ask for.
 void BlockSolve::solve_laws() {
-    constexpr uint32_t kMostRounds = 8;  // some rows come in only as others push
+    constexpr uint32_t kMostSteps = 10;
     for (uint32_t round = 0;; ++round) {
         solve_linear();
         take_solution();
-        if (round == kMostRounds || !space.improve()) break;
+        if (round == kMostSteps || !split.improve()) break;
     }
-    space.note_state();
+    note_state(set.rows());
 }
 
 void BlockSolve::solve_known() {
-    if (has_space()) return solve_laws();
+    if (splits()) return solve_laws();
     solve_linear();
     for (size_t i = 0; i < unknowns(); ++i) b_.solution[i] += iterate()[i];
     take_solution();
@@ -208,8 +211,8 @@ bool BlockSolve::solve_round() {
     find_gas_responses();
     set.aim_biased();
     relaxed_ = false;
-    if (has_space()) {
-        space.forget();
+    if (splits()) {
+        split.forget();
         solve_laws();
         return true;
     }
@@ -242,7 +245,7 @@ bool BlockSolve::factor_rounds() {
     std::fill_n(iterate(), unknowns(), 0.0);
     if (set.empty()) return solve_round();
     set.begin_rounds();
-    if (has_space()) {
+    if (splits()) {
         if (!solve_round()) return false;
         limit_push();
         return true;
@@ -280,7 +283,7 @@ bool BlockSolve::solve_first() {
         ++s_.report.resolves;
         if (guarded)
             assemble(false);
-        else if (!set.empty() && !has_space())
+        else if (!set.empty() && !splits())
             b_.matrix.restore();
         add_new_stiffness();
         renewed_ = true;

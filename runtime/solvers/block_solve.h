@@ -1,7 +1,7 @@
 // The matrix of one block: its nodes and the multipliers of the locked rows of its ties, which are joints and elements.
 // Elastic elements (block_elastic.cpp) are folded into the nodes, and so are bounded rows (active_set.h) of blocks
-// without them: J^T J / c stands for -J^T mu, mu = (target - J v) / c. Where there are elements, bounded rows have a
-// matrix of their own (contact_space.h).
+// without them: J^T J / c stands for -J^T mu, mu = (target - J v) / c. Where there are elements, bounded rows are
+// solved on a copy of the nodes that they touch (contact_split.h).
 //
 //   [ M + h^2 K + B^T B / c   -J^T ] [v+]   [ M v* + contact impulses + h^2 K s + B^T goal / c ]
 //   [ -J                       -c  ] [mu] = [ -target                                          ]
@@ -9,7 +9,7 @@
 #pragma once
 
 #include "solvers/active_set.h"
-#include "solvers/contact_space.h"
+#include "solvers/contact_split.h"
 #include "solvers/energy_guard.h"
 
 namespace taut {
@@ -23,7 +23,7 @@ inline void copy_velocities(const System& system, const Block& block, const Arra
 class BlockSolve {
 public:
     BlockSolve(Substep& s, Block& b)
-        : set(s, b), space(s, b, set), s_(s), sys_(s.system), b_(b), nodes_(static_cast<uint32_t>(b.nodes.size())) {}
+        : set(s, b), split(s, b, set), s_(s), sys_(s.system), b_(b), nodes_(static_cast<uint32_t>(b.nodes.size())) {}
 
     void analyse();
     // Where elastic elements are evaluated; one block after the other.
@@ -45,7 +45,7 @@ public:
     bool settle();
 
     ActiveSet set;
-    ContactSpace space;  // of blocks with elastic elements, instead of rounds over the active set
+    ContactSplit split;  // of blocks with elastic elements, instead of rounds over the active set
 
     // One block after the other.
     void gather_rows();
@@ -120,7 +120,7 @@ private:
     double lever_turn(const RowBlock& block) const;
     void slow_velocities(const RowBlock& block, double* slow) const;
     void filter_lines();
-    bool has_space() const { return b_.elastic_runs > 0 && !set.empty(); }
+    bool splits() const { return b_.elastic_runs > 0 && !set.empty(); }
     void solve_laws();
     bool solve_round();
     void advance(bool first);
