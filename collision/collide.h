@@ -369,6 +369,8 @@ struct Gap {
 // a is not a plane.
 bool overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
 Gap find_gap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b);
+// Whether a comes within a radius [m] of a triangle, of corners as seen from the origin of a, along world axes.
+bool near_triangle(const Shape& a, const Placement& at_a, const Vec3 (&corner)[3], double radius);
 // a is a point.
 bool contains(const Shape& b, const Placement& at_b, const Vec3& point);
 Gap find_gap(const Vec3& point, const Shape& b, const Placement& at_b);

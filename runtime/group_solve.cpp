@@ -132,6 +132,7 @@ void GroupSolve::relax(Substep& substep) {
     store_contact_rows(system_);
     if (w_.def.report) w_.reports.end(measured());
     gather_impulses(system_, w_.impacts, w_.pairs, w_.watch);
+    gather_surface_impulses(w_.team, system_, w_.impacts, w_.pairs.surfaces);
     tell(Stage::relax);
     w_.profile.commit_us += watch_.lap();
 }

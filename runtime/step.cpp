@@ -65,7 +65,8 @@ void detect(World& w, Stopwatch& watch) {
         recall_pairs(w);
         find_touches(w, lead);
     }
-    const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs);
+    const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs) +
+                             filter_surfaces(w.nodes, w.colliders, w.shapes, w.pre_solve, w.pairs);
     if (refused > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
     open_internal_faces({w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead});
@@ -137,6 +138,7 @@ void step(World& w) {
     w.last_step = w.def.time_step;
     detect(w, watch);
     watch_contacts(w.nodes, w.pairs, w.watch);
+    watch_surfaces(w.team, w.nodes, w.colliders, w.pairs);
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.elements, w.nodes);
     const taut_vec3 g = w.def.gravity;
@@ -151,7 +153,7 @@ void step(World& w) {
     hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, w.pairs, w.broadphase, w.nodes);
     flow_solids(w);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
-    sense(w.team, w.nodes, w.colliders, w.shapes, w.broadphase, w.id, w.window.steps, w.sensors);
+    sense(w.team, w.nodes, w.colliders, w.shapes, w.softs, w.broadphase, w.id, w.window.steps, w.sensors);
     w.nodes.load.clear();
     publish_contacts(w);
     publish_motion(w, w.frozen);

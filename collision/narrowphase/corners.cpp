@@ -1,5 +1,6 @@
 // What stands out of a shape: points at which it may touch what is flat before any of its edges does.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -57,43 +58,60 @@ void list_surface_corners(const Shape& shape, const Box& near, Array<Corner>& ou
     out.erase(std::unique(out.begin(), out.end(), same), out.end());
 }
 
+// ---------------------------------------------------------------- one function a kind
+
+void list_no_corners(const Shape&, const Box&, Array<Corner>&) {}
+
+void list_box_corners(const Shape& shape, const Box& near, Array<Corner>& out) {
+    CornerList list(near, out);
+    const auto corners = box_corners(shape.size);
+    for (uint32_t i = 0; i < corners.size(); ++i) list.add(corners[i], 0, i);
+}
+
+void list_sphere_corner(const Shape& shape, const Box& near, Array<Corner>& out) {
+    CornerList(near, out).add(Vec3f::Zero(), shape.size.x(), 0);
+}
+
+// radius: of the upper end.
+void list_ends(const Shape& shape, float radius, const Box& near, Array<Corner>& out) {
+    CornerList list(near, out);
+    list.add({0, -shape.size.y(), 0}, shape.size.x(), 0);
+    list.add({0, shape.size.y(), 0}, radius, 1);
+}
+void list_capsule_ends(const Shape& shape, const Box& near, Array<Corner>& out) {
+    list_ends(shape, shape.size.x(), near, out);
+}
+void list_tapered_ends(const Shape& shape, const Box& near, Array<Corner>& out) {
+    list_ends(shape, shape.size.z(), near, out);
+}
+
+void list_hull_corners(const Shape& shape, const Box& near, Array<Corner>& out) {
+    CornerList list(near, out);
+    for (uint32_t i = 0; i < shape.hull->vertices.size(); ++i) list.add(shape.hull->vertices[i], 0, i);
+}
+
+void list_cylinder_rims(const Shape& shape, const Box& near, Array<Corner>& out) {
+    CornerList list(near, out);
+    list.add_rim(shape.size.x(), -shape.size.y(), 0);
+    list.add_rim(shape.size.x(), shape.size.y(), kRimCorners);
+}
+
+void list_cone_rim(const Shape& shape, const Box& near, Array<Corner>& out) {
+    CornerList list(near, out);
+    list.add_rim(shape.size.x(), -shape.size.y(), 0);
+    list.add({0, shape.size.y(), 0}, 0, kRimCorners);
+}
+
+// In the order of ShapeKind.
+constexpr std::array<void (*)(const Shape&, const Box&, Array<Corner>&), kShapeKinds> kCornersOf = {
+    list_no_corners,    list_box_corners, list_sphere_corner, list_capsule_ends,   list_hull_corners,
+    list_cylinder_rims, list_cone_rim,    list_tapered_ends,  list_surface_corners};
+
 }  // namespace
 
 void list_corners(const Shape& shape, const Box& near, Array<Corner>& out) {
     out.clear();
-    CornerList list(near, out);
-    const Vec3f& size = shape.size;
-    switch (shape.kind) {
-        case ShapeKind::plane:
-            break;
-        case ShapeKind::box: {
-            const auto corners = box_corners(size);
-            for (uint32_t i = 0; i < corners.size(); ++i) list.add(corners[i], 0, i);
-            break;
-        }
-        case ShapeKind::hull:
-            for (uint32_t i = 0; i < shape.hull->vertices.size(); ++i) list.add(shape.hull->vertices[i], 0, i);
-            break;
-        case ShapeKind::sphere:
-            list.add(Vec3f::Zero(), size.x(), 0);
-            break;
-        case ShapeKind::capsule:
-        case ShapeKind::tapered_capsule:
-            list.add({0, -size.y(), 0}, size.x(), 0);
-            list.add({0, size.y(), 0}, shape.kind == ShapeKind::capsule ? size.x() : size.z(), 1);
-            break;
-        case ShapeKind::cylinder:
-            list.add_rim(size.x(), -size.y(), 0);
-            list.add_rim(size.x(), size.y(), kRimCorners);
-            break;
-        case ShapeKind::cone:
-            list.add_rim(size.x(), -size.y(), 0);
-            list.add({0, size.y(), 0}, 0, kRimCorners);
-            break;
-        case ShapeKind::surface:
-            list_surface_corners(shape, near, out);
-            break;
-    }
+    kCornersOf[size_t(shape.kind)](shape, near, out);
 }
 
 }  // namespace taut::collision

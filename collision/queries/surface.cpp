@@ -115,13 +115,27 @@ double crossing(const std::array<Vec3, 3>& corner, const Vec3& o, const Vec3& d,
 
 // ---------------------------------------------------------------- triangles as shapes
 
-// A triangle as a hull without faces about its middle, whose inner radius is that of the shape it is held against. One
-// a thread, so that a query takes memory once in a thread's life.
+// A triangle as a hull without faces about its middle, whose inner radius is that of the shape it is held against. Two
+// a thread, so that a query takes memory once in a thread's life: of what is asked about, and of what asks.
 class TriangleShape {
 public:
     TriangleShape(const Triangles& triangles, const Placement& at, uint32_t number, float inner) {
         thread_local Hull hull;
         const std::array<Vec3, 3> corner = triangles.corners(number);
+        const Vec3 middle = lay_out(corner, inner, hull);
+        at_ = {at.position + triangles.to_world(middle), at.rotation};
+    }
+    // Corners from an origin, along world axes.
+    TriangleShape(const std::array<Vec3, 3>& corner, const Vec3& origin, float inner) {
+        thread_local Hull hull;
+        const Vec3 middle = lay_out(corner, inner, hull);
+        at_ = {origin + middle, Mat3f::Identity()};
+    }
+    const Shape& shape() const { return shape_; }
+    const Placement& at() const { return at_; }
+
+private:
+    Vec3 lay_out(const std::array<Vec3, 3>& corner, float inner, Hull& hull) {
         const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3;
         hull.vertices.resize(3);
         for (size_t i = 0; i < 3; ++i) hull.vertices[i] = (corner[i] - middle).cast<float>();
@@ -129,17 +143,20 @@ public:
         hull.lay_out();
         shape_.kind = ShapeKind::hull;
         shape_.hull = std::shared_ptr<const Hull>(std::shared_ptr<const Hull>(), &hull);  // not owned
-        at_ = {at.position + triangles.to_world(middle), at.rotation};
+        return middle;
     }
-    const Shape& shape() const { return shape_; }
-    const Placement& at() const { return at_; }
 
-private:
     Shape shape_;
     Placement at_;
 };
 
-// The box of a shape in the surface's frame.
+// Whether the cores of two convex shapes are no further apart than their radii and so much more.
+bool are_near(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b, double by) {
+    const Couple couple(a, at_a, b, at_b);
+    const Distance cores = couple.distance(Vec3::Zero(), couple.hint());
+    return !cores.apart || cores.separation <= couple.radii() + by;
+}
+
 Room room_of(const Triangles& triangles, const Shape& a, const Placement& at_a, const Placement& at_b) {
     const Box box = bounds(a, {Vec3::Zero(), at_b.rotation.transpose() * at_a.rotation});
     const Vec3 place = triangles.place(at_a.position);
@@ -218,6 +235,29 @@ bool surface_overlap(const Shape& a, const Placement& at_a, const Shape& b, cons
         if (found) return;
         const TriangleShape triangle(triangles, at_b, number, inner_radius(a));
         found = convex_overlap(a, at_a, triangle.shape(), triangle.at());
+    });
+    return found;
+}
+
+bool near_triangle(const Shape& a, const Placement& at_a, const Vec3 (&corner)[3], double radius) {
+    const std::array<Vec3, 3> corners = {corner[0], corner[1], corner[2]};
+    if (a.kind == ShapeKind::plane) {
+        const Vec3 normal = (at_a.rotation.cast<double>() * a.size.cast<double>()).normalized();
+        return std::min({normal.dot(corners[0]), normal.dot(corners[1]), normal.dot(corners[2])}) <= radius;
+    }
+    if (is_convex(a)) {
+        const TriangleShape triangle(corners, at_a.position, inner_radius(a));
+        return are_near(a, at_a, triangle.shape(), triangle.at(), radius);
+    }
+    const double size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
+    const auto inner = static_cast<float>(std::max(radius, 1e-3 * size));  // a scale alone: nothing is inset
+    const TriangleShape triangle(corners, at_a.position, inner);
+    const Triangles triangles(a, at_a);
+    bool found = false;
+    triangles.find(room_of(triangles, triangle.shape(), triangle.at(), at_a).grown(radius), [&](uint32_t number) {
+        if (found) return;
+        const TriangleShape own(triangles, at_a, number, inner);
+        found = are_near(triangle.shape(), triangle.at(), own.shape(), own.at(), radius);
     });
     return found;
 }

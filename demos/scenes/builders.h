@@ -51,6 +51,7 @@ Scene build_garment(double n, double r, const Options& options);
 Scene build_bow(double n, double r, const Options& options);
 Scene build_quads(double n, double r, const Options& options);
 Scene build_plastic_bar(double n, double r, const Options& options);
+Scene build_plastic_bar_n(double n, double r, const Options& options);
 Scene build_meshless(double n, double r, const Options& options);
 Scene build_tearing_flag(double n, double r, const Options& options);
 Scene build_knee(double n, double r, const Options& options);

@@ -1,4 +1,5 @@
 // What is put together from other parts than triangles and tetrahedra: quadrilaterals, points without a mesh, metal.
+#include <algorithm>
 #include <cmath>
 
 #include "builders.h"
@@ -98,10 +99,13 @@ Scene build_quads(double, double, const Options& options) {
     return scene;
 }
 
+Scene build_plastic_bar(double, double r, const Options& options) { return build_plastic_bar_n(25, r, options); }
+
 // Bars that are bent down and let go: one that yields and hardens keeps a part of the bend, the other comes back.
-Scene build_plastic_bar(double, double, const Options& options) {
+// Of n vertices along.
+Scene build_plastic_bar_n(double n, double, const Options& options) {
     constexpr double kBar[3] = {1.2, 0.08, 0.08}, kBent = 0.45;
-    constexpr int kNodes[3] = {25, 3, 3};
+    const int kNodes[3] = {std::max(3, static_cast<int>(n)), 3, 3};
     Scene scene = soft_hall(1.2);
     for (const bool yields : {true, false}) {
         const double z = yields ? 0.15 : -0.2;

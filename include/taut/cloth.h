@@ -117,8 +117,8 @@ typedef struct taut_cloth_def {
                                       Default 0.2 */
     taut_material material;
     uint32_t self_collision; /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
-    taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
-    uint64_t user_data; /**< of the cloth and of each of its vertices */
+    taut_filter filter;      /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
+    uint64_t user_data;      /**< of the cloth and of each of its vertices */
 } taut_cloth_def;
 
 TAUT_API void taut_cloth_def_init(taut_cloth_def* def);
@@ -143,6 +143,15 @@ TAUT_API int32_t taut_cloth_is_valid(taut_cloth cloth);
 TAUT_API taut_result taut_cloth_get_user_data(taut_cloth cloth, uint64_t* out);
 /** How the world's default solver takes its elements: TAUT_DEFORMABLE_DIRECT or TAUT_DEFORMABLE_SWEPT. */
 TAUT_API taut_result taut_cloth_get_solve(taut_cloth cloth, taut_deformable_solve* out);
+/**
+ * Which contact events it gives beside those that the world or the other side asks for:
+ * taut_collider_set_contact_events of all its vertices. How it is told, see deformable.h.
+ * @param contact_events sum of TAUT_CONTACT_EVENTS_ bits.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_cloth_set_contact_events(taut_cloth cloth, uint32_t contact_events);
+/** Whether the world's pre-solve function is asked about its contacts: 1 or 0, of all vertices. @return as above. */
+TAUT_API taut_result taut_cloth_set_pre_solve(taut_cloth cloth, int32_t pre_solve);
 /** The cloth that a body is a vertex of; null for any other body. */
 TAUT_API taut_result taut_body_get_cloth(taut_body body, taut_cloth* out);
 

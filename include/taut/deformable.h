@@ -10,6 +10,15 @@
  * the side it came from; of two that begin as they overlap, a solid's outside counts, of cloth the side on which most
  * of it is.
  *
+ * Events tell of a deformable as of one body, whatever parts of it touch: one begin, persist, end and hit for it and
+ * another collider or deformable, with the points of all its vertices, edges and triangles that touch, and one visit of
+ * a sensor that meets any of them or lies within a solid. They name it by its first vertex, as body and collider;
+ * taut_body_get_cloth and taut_body_get_solid say whose that is. That it touches itself is told by
+ * taut_world_get_contacts alone, where each point names the vertex that bears most of it. What one collider of its
+ * vertices asks for, the contacts of that vertex give; those of edges and triangles go by one vertex for all, so that
+ * taut_cloth_set_contact_events and its like, which ask for all, are the usual way. The pre-solve function is asked
+ * about each point of a surface by itself, after those of vertices.
+ *
  * Damping by Rayleigh's rule pulls with -(mass_damping M + stiffness_damping K) v. M are the masses, against the world:
  * at the velocity v as a substep begins, over 1 + h mass_damping. K is what the elements' forces change by over the
  * way, taken as a substep begins and its negative part left out, so that it only takes energy (Gast and Schroeder 2014,

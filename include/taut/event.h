@@ -26,7 +26,8 @@ extern "C" {
 #define TAUT_EVENT_STEPS 60
 
 /**
- * Two colliders began or stopped touching in a step, or touch as they did before it. Who overlapped as the step
+ * Two colliders began or stopped touching in a step, or touch as they did before it; a cloth or solid as one, by the
+ * first of its vertices that has a collider, see deformable.h. Who overlapped as the step
  * began touches in it, and who was pushed within it, be it off again by its end.
  */
 typedef struct taut_contact_event {

@@ -5,8 +5,9 @@
  * through each other by rules of the game.
  *
  * It is asked about the contacts of colliders with TAUT_COLLIDER_PRE_SOLVE, once a step each, on the thread that steps,
- * in the order of contact events; about a mesh or height field once for each of its parts that is near. Its answers
- * hold for the step, also where contacts are found anew within it. Steps are reproducible only if the answers are.
+ * in the order of contact events; about a mesh or height field once for each of its parts that is near, about a cloth
+ * or solid once for each vertex, and then for each point of an edge or triangle, that is near. Its answers hold for the
+ * step, also where contacts are found anew within it. Steps are reproducible only if the answers are.
  */
 #ifndef TAUT_PRE_SOLVE_H
 #define TAUT_PRE_SOLVE_H

@@ -4,10 +4,11 @@
  *
  * A collider is a sensor by TAUT_COLLIDER_SENSOR in its def or by taut_collider_set_sensor; its body may be of any
  * kind. After each step it detects the colliders of other bodies that overlap or touch it where they are then: shape
- * against shape as in query.h, without the margins of contacts. It detects what its filter would let it collide with,
- * on dynamic and kinematic bodies and particles, and on static ones with TAUT_COLLIDER_SENSES_STATIC. Joints do not
- * matter. It detects no other sensor, and a plane, mesh or height field as sensor detects none of those three. What
- * passes through within one step is missed.
+ * against shape as in query.h, without the margins of contacts. A cloth or solid is one visitor, by its vertices and
+ * triangles, half of its thickness about them, and what is within a solid; see deformable.h. It detects what its filter
+ * would let it collide with, on dynamic and kinematic bodies and particles, and on static ones with
+ * TAUT_COLLIDER_SENSES_STATIC. Joints do not matter. It detects no other sensor, and a plane, mesh or height field as
+ * sensor detects none of those three. What passes through within one step is missed.
  *
  * A sensor has no share in a mass taken from colliders, is solved with nobody and connects nobody. Queries pass it by
  * unless their filter has TAUT_QUERY_SENSOR.

@@ -104,7 +104,7 @@ typedef struct taut_solid_def {
     float gravity_scale;          /**< [-1000, 1000]. Default 1 */
     taut_deformable_solve solve;  /**< default TAUT_DEFORMABLE_DIRECT */
     taut_material surface;        /**< friction and restitution */
-    uint32_t self_collision; /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
+    uint32_t self_collision;      /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
     taut_filter filter; /**< mask 0: no contacts; group may not be positive, 0: the solid has a negative one */
     uint64_t user_data; /**< of the solid and of each of its vertices */
 } taut_solid_def;
@@ -131,6 +131,10 @@ TAUT_API int32_t taut_solid_is_valid(taut_solid solid);
 TAUT_API taut_result taut_solid_get_user_data(taut_solid solid, uint64_t* out);
 /** As taut_cloth_get_solve. */
 TAUT_API taut_result taut_solid_get_solve(taut_solid solid, taut_deformable_solve* out);
+/** As taut_cloth_set_contact_events. */
+TAUT_API taut_result taut_solid_set_contact_events(taut_solid solid, uint32_t contact_events);
+/** As taut_cloth_set_pre_solve. */
+TAUT_API taut_result taut_solid_set_pre_solve(taut_solid solid, int32_t pre_solve);
 /** The solid that a body is a vertex of; null for any other body. */
 TAUT_API taut_result taut_body_get_solid(taut_body body, taut_solid* out);
 

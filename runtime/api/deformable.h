@@ -9,6 +9,7 @@
 #include "models/air.h"
 #include "models/soft_cost.h"
 #include "models/soft_reading.h"
+#include "sleep/wake.h"
 
 namespace taut {
 
@@ -150,6 +151,20 @@ taut_result pin_soft(Check& check, Handle handle, uint32_t vertex, uint32_t pinn
         const Soft& soft = world.softs.record[index];
         if (!check.count("vertex", vertex, 0, soft.vertices() - 1)) return check.result();
         pin_vertex(world, soft, vertex, pinned != 0);
+        return TAUT_OK;
+    });
+}
+
+// Bits of all its colliders; which: those that bits may be of.
+template <class Handle>
+taut_result ask_of_soft(Check& check, Handle handle, uint32_t which, uint32_t bits) {
+    if (!check) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        for (const uint32_t node : world.softs.record[index].node) {
+            for_colliders(world.nodes, world.colliders, node,
+                          [&](uint32_t c) { ask_for(world.colliders.change(c), which, bits); });
+            if (which & kAsksPreSolve) wake_about(world, node);
+        }
         return TAUT_OK;
     });
 }

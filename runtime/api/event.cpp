@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "api/access.h"
+#include "detect/surface_point.h"
 
 using namespace taut;
 
@@ -81,7 +82,7 @@ bool touching(const Grains& grains, const GrainContact& contact) {
     return (contact.separation <= 0 || contact.pushes()) && !is_gone(grains.gone, ends);
 }
 bool touching(const SurfaceContacts& surfaces, const SurfaceContact& contact) {
-    return (contact.gap <= 0 || contact.pushes()) && !is_gone(surfaces.gone, contact.node);
+    return contact.touches() && !is_gone(surfaces.gone, contact.node);
 }
 
 // Between grains, whose spheres are about their nodes.
@@ -102,40 +103,10 @@ taut_contact public_contact(const World& world, const GrainContact& contact) {
             world.collider_handle(b)};
 }
 
-// Of one side: its node that counts most, and where its point is now, on its surface.
-struct SurfaceSide {
-    uint32_t node = kNone;
-    Vec3 at = Vec3::Zero();
-};
-SurfaceSide side_of(const World& world, const SurfaceContact& contact, float sign) {
-    SurfaceSide side;
-    bool on_surface = false;  // where a lever ends; vertices are within, half the thickness away
-    float most = 0;
-    double sum = 0;
-    for (int i = 0; i < kMaxEnds; ++i) {
-        const uint32_t node = contact.node[i];
-        const float weight = sign * contact.weight[i];
-        if (node == kNone || !(weight > 0)) continue;
-        const NodeMotion& m = world.nodes.motion[node];
-        const Quat turn = m.q * world.nodes.before[node].rotation.conjugate();
-        const Vec3 lever = i == 0 ? Vec3(turn * contact.lever.cast<double>()) : Vec3(Vec3::Zero());
-        on_surface = on_surface || lever != Vec3::Zero();
-        side.at += static_cast<double>(weight) * (m.x + lever);
-        sum += static_cast<double>(weight);
-        if (weight > most) side.node = node;
-        most = std::max(most, weight);
-    }
-    if (sum > 0) side.at /= sum;
-    const uint32_t collider = contact.collider[sign > 0 ? 0 : 1];
-    if (on_surface || !world.colliders.ids.live(collider)) return side;
-    const double radius = collision::ball_radius(world.shapes[world.colliders.record[collider].shape].shape);
-    side.at -= static_cast<double>(sign) * radius * contact.normal.cast<double>();
-    return side;
-}
-
 // The normal is the way in which b leaves a: that of the gap, which grows with the weights above 0.
 taut_contact public_contact(const World& world, const SurfaceContact& contact) {
-    const SurfaceSide a = side_of(world, contact, -1), b = side_of(world, contact, 1);
+    const auto side = [&](float sign) { return side_of(world.nodes, world.colliders, world.shapes, contact, sign); };
+    const SurfaceSide a = side(-1), b = side(1);
     const float substep = told_substep(world);
     return {world.body_handle(a.node),
             world.body_handle(b.node),

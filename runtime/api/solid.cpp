@@ -259,6 +259,18 @@ taut_result taut_solid_get_solve(taut_solid handle, taut_deformable_solve* out) 
     return soft_solve(check, handle, out);
 }
 
+taut_result taut_solid_set_contact_events(taut_solid handle, uint32_t contact_events) {
+    Check check(__func__);
+    check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL);
+    return ask_of_soft(check, handle, TAUT_CONTACT_EVENTS_ALL, contact_events);
+}
+
+taut_result taut_solid_set_pre_solve(taut_solid handle, int32_t pre_solve) {
+    Check check(__func__);
+    check.boolean("pre_solve", static_cast<uint32_t>(pre_solve));
+    return ask_of_soft(check, handle, kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
+}
+
 taut_result taut_body_get_solid(taut_body handle, taut_solid* out) {
     Check check(__func__);
     return soft_of_body(check, handle, out, [](const World& world, uint32_t soft) { return world.solid_handle(soft); });

@@ -134,6 +134,9 @@ bool is_through(const Passing& passing, const SurfaceContact& was) {
 void carry_force(const SurfaceContact& was, SurfaceContact& contact) {
     contact.in_block = was.in_block;
     contact.force = was.force;
+    contact.pushed = was.pushed;
+    contact.rubbed = was.rubbed;
+    contact.approach = was.approach;
     if (same_tangents(was.normal, contact.normal)) return;
     const Vec3f one = tangent_of(was.normal), other = was.normal.cross(one), to = tangent_of(contact.normal);
     const Vec3f along = was.force.tangent1 * one + was.force.tangent2 * other;

@@ -1,8 +1,11 @@
-// Begin, persist, end and hit: pair by pair in the order of the list, which is that of the keys.
+// Begin, persist, end and hit: pair by pair in the order of the list, which is that of the keys; between them soft
+// bodies, each as one whatever parts of it touch.
 #include <algorithm>
 
 #include "base/prefetch.h"
+#include "detect/surface_point.h"
 #include "publish/publish.h"
+#include "publish/soft_touches.h"
 #include "threads/gather.h"
 
 namespace taut {
@@ -53,86 +56,115 @@ class Publisher {
 public:
     explicit Publisher(World& world) : world_(world) {}
 
-    // Sums of a body in quarantine may be no numbers.
-    static float finite(float x) { return std::isfinite(x) ? x : 0.0f; }
-
     void tell(const Touch& touch) {
-        const NearPair& pair = touch.pair;
-        const bool before = pair.touched;
-        const PairEnds ends = pair.ends(world_.colliders);
+        NearPair& pair = touch.pair;
         const uint32_t asks = world_.pairs.active[touch.begin].asks;
-        taut_contact_event event{world_.body_handle(ends.a),
-                                 world_.body_handle(ends.b),
-                                 world_.collider_handle(pair.collider_a()),
-                                 world_.collider_handle(pair.collider_b()),
-                                 static_cast<uint32_t>(world_.contact_points.size()),
-                                 0,
-                                 world_.window.steps,
-                                 0};
-        Array<taut_contact_event>* list = nullptr;
-        if (pair.touching != before && (asks & TAUT_CONTACT_EVENTS_BEGIN_END))
-            list = pair.touching ? &world_.contact_begin : &world_.contact_end;
-        else if (pair.touching && before && (asks & TAUT_CONTACT_EVENTS_PERSIST))
-            list = &world_.contact_persist;
-        if (list) {
-            if (pair.touching && (asks & TAUT_CONTACT_EVENTS_POINTS)) add_points(touch);
-            event.point_count = static_cast<uint32_t>(world_.contact_points.size()) - event.first_point;
-            list->push_back(event);
-        }
-        const bool hit_before = touch.pair.hit;
-        touch.pair.hit = false;
-        if (pair.touching && !hit_before && (asks & TAUT_CONTACT_EVENTS_HIT)) tell_hit(touch, event);
+        taut_contact_event event = event_of(world_, pair.collider_a(), pair.collider_b());
+        event.step = world_.window.steps;
+        pair.hit = tell(event, asks, pair.touched, pair.touching, pair.hit,
+                        [&](auto&& act) { for_points(touch, false, act); });
+    }
+
+    // All parts of one; before: null where it did not touch in the last step.
+    SoftTouch tell(std::span<const TouchPart> parts, const SoftTouch* before) {
+        SoftTouch touch = begin_touch(world_, parts);
+        taut_contact_event event = touch.event;
+        event.step = world_.window.steps;
+        touch.hit = tell(event, touch.asks, before != nullptr, true, before && before->hit, [&](auto&& act) {
+            for (const TouchPart& part : parts) for_points(part, act);
+        });
+        return touch;
     }
 
 private:
-    // act(pair, watched, point) for the points of the parts that touch.
+    // Sums of a body in quarantine may be no numbers.
+    static float finite(float x) { return std::isfinite(x) ? x : 0.0f; }
+
+    // for_all(act(taut_contact_point)): its points. Whether it hit.
+    template <class ForAll>
+    bool tell(taut_contact_event& event, uint32_t asks, bool before, bool now, bool hit_before, ForAll&& for_all) {
+        Array<taut_contact_event>* list = nullptr;
+        if (now != before && (asks & TAUT_CONTACT_EVENTS_BEGIN_END))
+            list = now ? &world_.contact_begin : &world_.contact_end;
+        else if (now && before && (asks & TAUT_CONTACT_EVENTS_PERSIST))
+            list = &world_.contact_persist;
+        Array<taut_contact_point>& points = world_.contact_points;
+        event.first_point = static_cast<uint32_t>(points.size());
+        if (list) {
+            if (now && (asks & TAUT_CONTACT_EVENTS_POINTS))
+                for_all([&](const taut_contact_point& point) { points.push_back(point); });
+            event.point_count = static_cast<uint32_t>(points.size()) - event.first_point;
+            list->push_back(event);
+        }
+        return now && !hit_before && (asks & TAUT_CONTACT_EVENTS_HIT) && tell_hit(event, for_all);
+    }
+
+    template <class ForAll>
+    bool tell_hit(const taut_contact_event& event, ForAll&& for_all) {
+        taut_hit_event hit{event.body_a, event.body_b, event.collider_a, event.collider_b, {}, {}, 0, 0, event.step};
+        hit.approach_speed = world_.def.hit_speed;
+        bool any = false;
+        for_all([&](const taut_contact_point& point) {
+            hit.normal_impulse += point.normal_impulse;
+            if (!(point.normal_impulse > 0 && point.approach_speed > hit.approach_speed)) return;
+            hit.position = point.position;
+            hit.normal = point.normal;
+            hit.approach_speed = point.approach_speed;
+            any = true;
+        });
+        if (any) world_.hits.push_back(hit);
+        return any;
+    }
+
+    // act(point) for those of the parts that touch. turned: the event has a and b the other way round.
     template <class Act>
-    void for_points(const Touch& touch, Act&& act) {
+    void for_points(const Touch& touch, bool turned, Act&& act) {
         for (size_t i = touch.begin; i < touch.end; ++i) {
             const uint32_t index = world_.pairs.active[i].pair;
             const Pair& part = world_.pairs.list[index];
             const WatchedPair* watched = find_watched(world_.watch, index);
             if (!part.touching || !watched) continue;
-            for (int k = 0; k < part.manifold.count; ++k) act(part, *watched, k);
+            for (int k = 0; k < part.manifold.count; ++k) act(point_of(part, *watched, k, turned));
         }
     }
-
-    taut_pos place_of(const Pair& pair, int k) const {
-        const Vec3 at = world_.nodes.origin(pair.a) + pair.manifold.points[k].position.cast<double>();
-        return {at.x(), at.y(), at.z()};
+    template <class Act>
+    void for_points(const TouchPart& part, Act&& act) {
+        if (part.surface) return act(point_of(world_.pairs.surfaces.contact[part.index], part));
+        const Touch touch = Touch::from(world_.pairs, part.index);
+        for_points(touch, told(world_, touch.pair.collider_a()) > told(world_, touch.pair.collider_b()), act);
     }
 
-    static float approach_of(const Pair& pair, const WatchedPair& watched, int k) {
-        return watched.before.approach(pair.manifold.points[k].position, pair.manifold.normal);
+    static taut_vec3 way(const Vec3f& normal, bool turned) {
+        const Vec3f n = turned ? Vec3f(-normal) : normal;
+        return {n.x(), n.y(), n.z()};
     }
 
-    void add_points(const Touch& touch) {
-        for_points(touch, [&](const Pair& pair, const WatchedPair& watched, int k) {
-            const Vec3f& n = pair.manifold.normal;
-            world_.contact_points.push_back({place_of(pair, k),
-                                             {n.x(), n.y(), n.z()},
-                                             pair.manifold.points[k].separation,
-                                             finite(watched.normal[k]),
-                                             finite(watched.friction[k].norm()),
-                                             approach_of(pair, watched, k),
-                                             0});
-        });
+    taut_contact_point point_of(const Pair& pair, const WatchedPair& watched, int k, bool turned) const {
+        const collision::ContactPoint& point = pair.manifold.points[k];
+        const Vec3 at = world_.nodes.origin(pair.a) + point.position.cast<double>();
+        return {{at.x(), at.y(), at.z()},
+                way(pair.manifold.normal, turned),
+                point.separation,
+                finite(watched.normal[k]),
+                finite(watched.friction[k].norm()),
+                watched.before.approach(point.position, pair.manifold.normal),
+                0};
     }
 
-    void tell_hit(const Touch& touch, const taut_contact_event& event) {
-        taut_hit_event hit{event.body_a, event.body_b, event.collider_a, event.collider_b, {}, {}, 0, 0, event.step};
-        hit.approach_speed = world_.def.hit_speed;
-        for_points(touch, [&](const Pair& pair, const WatchedPair& watched, int k) {
-            hit.normal_impulse += finite(watched.normal[k]);
-            const float approach = approach_of(pair, watched, k);
-            if (!(watched.normal[k] > 0 && approach > hit.approach_speed)) return;
-            const Vec3f& n = pair.manifold.normal;
-            hit.position = place_of(pair, k);
-            hit.normal = {n.x(), n.y(), n.z()};
-            hit.approach_speed = approach;
-            touch.pair.hit = true;
-        });
-        if (touch.pair.hit) world_.hits.push_back(hit);
+    taut_contact_point point_of(const SurfaceContact& contact, const TouchPart&) const {
+        const auto side = [&](float sign) {
+            return side_of(world_.nodes, world_.colliders, world_.shapes, contact, sign).at;
+        };
+        const Vec3 at = 0.5 * (side(-1) + side(1));
+        // Its normal goes from the side with weights < 0, collider 1, to the other.
+        const bool turned = told(world_, contact.collider[1]) > told(world_, contact.collider[0]);
+        return {{at.x(), at.y(), at.z()},
+                way(contact.normal, turned),
+                contact.gap,
+                finite(contact.pushed),
+                finite(contact.rubbed.norm()),
+                contact.approach,
+                0};
     }
 
     World& world_;
@@ -164,16 +196,28 @@ void publish_contacts(World& world) {
     const size_t ends_before = world.contact_end.size();
     take_ended(world);
     Pairs& pairs = world.pairs;
+    const bool softs = world.softs.ids.count() > 0 || !pairs.surfaces.touch.empty();
     const auto has_news = [&](uint32_t i) {
         constexpr uint32_t kSoon = 4;
         if (i + kSoon < pairs.active.size())
             prefetch(pairs.list[pairs.active[i + kSoon].pair], sizeof(Pair) - Pair::kSought);
-        return Touch::begins(pairs, i) && update_touching(pairs, Touch::from(pairs, i));
+        if (!Touch::begins(pairs, i)) return false;
+        const Touch touch = Touch::from(pairs, i);
+        const bool news = update_touching(pairs, touch);
+        return softs && is_of_soft(world, touch.pair) ? touch.pair.touching : news;
     };
     gather(world.team, static_cast<uint32_t>(pairs.active.size()), pairs.picked, has_news,
            [&](uint32_t i) { return pairs.homes(pairs.active[i].near); });
     Publisher publisher(world);
-    for (const uint32_t i : world.pairs.picked) publisher.tell(Touch::from(pairs, i));
+    pairs.surfaces.part.clear();
+    if (softs) list_soft_parts(world);
+    SoftTouches touches(world);
+    for (const uint32_t i : pairs.picked) {
+        const Touch touch = Touch::from(pairs, i);
+        touches.before(touch.pair.key, publisher);
+        publisher.tell(touch);
+    }
+    touches.rest(publisher);
     sort_by_slots(world.contact_end, ends_before);
 }
 

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include "detect/surface_point.h"
+
 namespace taut {
 namespace {
+
+constexpr uint32_t kWatchGrain = 64;  // contacts that a thread takes at a time
 
 // The new point that takes over an old one: of the same feature, else the nearest.
 int successor(const WatchedPair& watched, int old, const collision::Manifold& now) {
@@ -102,6 +106,56 @@ void gather_impulses(const System& system, const Impacts& impacts, const Pairs& 
         watched->normal[strike.point] += strike.impulse[0];
         watched->friction[strike.point] += strike.impulse[1] * t1 + strike.impulse[2] * t2;
     }
+}
+
+namespace {
+
+// Of a substep [N s]: normal, tangent 1, tangent 2.
+void add_impulse(SurfaceContact& contact, float normal, float tangent1, float tangent2) {
+    if (!(normal > 0)) return;
+    const Vec3f t1 = tangent_of(contact.normal), t2 = contact.normal.cross(t1);
+    contact.pushed += normal;
+    contact.rubbed += tangent1 * t1 + tangent2 * t2;
+}
+
+}  // namespace
+
+void watch_surfaces(Team& team, const Nodes& nodes, const Colliders& colliders, Pairs& pairs) {
+    Array<SurfaceContact>& contacts = pairs.surfaces.contact;
+    const auto asks = [&](uint32_t collider) {
+        return colliders.ids.live(collider) ? colliders.record[collider].asks : uint8_t{0};
+    };
+    team.for_ranges(static_cast<uint32_t>(contacts.size()), kWatchGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            SurfaceContact& contact = contacts[i];
+            contact.pushed = 0;
+            contact.rubbed = Vec3f::Zero();
+            const uint32_t asked = pairs.asks | asks(contact.collider[0]) | asks(contact.collider[1]);
+            contact.approach = asked & kAsksWatch ? closing_speed(nodes, contact) : 0;
+        }
+    });
+}
+
+void gather_surface_impulses(Team& team, const System& system, const Impacts& impacts, SurfaceContacts& surfaces) {
+    if (surfaces.contact.empty()) return;
+    const auto& lanes = system.surfaces.group;
+    team.for_ranges(static_cast<uint32_t>(lanes.size()), kWatchGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t g = begin; g < end; ++g)
+            for (uint32_t lane = 0; lane < kLanes; ++lane)
+                if (lanes[g].contact[lane] != kNoLanes)
+                    add_impulse(surfaces.contact[lanes[g].contact[lane]], lanes[g].impulse[0][lane],
+                                lanes[g].impulse[1][lane], lanes[g].impulse[2][lane]);
+    });
+    const auto h = static_cast<float>(system.scheme.h);
+    for (const RowBlock& block : system.rows.block) {
+        if (!block.contact || block.pair != kNone) continue;
+        const ContactForce& force = *block.contact;
+        add_impulse(surfaces.contact[block.surface], h * force.normal, h * force.tangent1, h * force.tangent2);
+    }
+    for (const Impacts::Strike& strike : impacts.strikes)
+        if (strike.pair == kNone)
+            add_impulse(surfaces.contact[static_cast<uint32_t>(strike.point)], strike.impulse[0], strike.impulse[1],
+                        strike.impulse[2]);
 }
 
 }  // namespace taut

@@ -38,6 +38,10 @@ void watch_contacts(const Nodes& nodes, const Pairs& pairs, ContactWatch& watch)
 void watch_group(const Group& group, const System& system, const Pairs& pairs, ContactWatch& watch);
 // After each substep: adds the impulses of the group's pairs.
 void gather_impulses(const System& system, const Impacts& impacts, const Pairs& pairs, ContactWatch& watch);
+// The same for contacts of surfaces, all of which keep their sums themselves. Once a step:
+void watch_surfaces(Team& team, const Nodes& nodes, const Colliders& colliders, Pairs& pairs);
+// After each substep of a group.
+void gather_surface_impulses(Team& team, const System& system, const Impacts& impacts, SurfaceContacts& surfaces);
 // The watched pair of an index into Pairs::list, or null.
 WatchedPair* find_watched(ContactWatch& watch, uint32_t pair);
 

@@ -149,6 +149,18 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_ROWS(visitor, ids, record);
 }
 
+// The collider that events name for all of a soft body: that of its first vertex with one; kNone: it touches nothing.
+inline uint32_t collider_of(const Nodes& nodes, const Soft& soft) {
+    for (const uint32_t node : soft.node)
+        if (nodes.info[node].collider != kNone) return nodes.info[node].collider;
+    return kNone;
+}
+// A collider, or that of all of the soft body that it is on.
+inline uint32_t told_collider(const Nodes& nodes, const Softs& softs, const Colliders& colliders, uint32_t collider) {
+    const uint32_t soft = nodes.info[colliders.record[collider].node].soft;
+    return soft == kNone ? collider : collider_of(nodes, softs.record[soft]);
+}
+
 // Whether it is a vertex of a soft body with a surface, whose contacts with other such are in SurfaceContacts.
 inline bool is_surface_vertex(const Nodes& nodes, const Softs& softs, uint32_t node) {
     const uint32_t soft = nodes.info[node].soft;

@@ -4,6 +4,8 @@
 // vertices with shapes are pairs as any other, state/pairs.h.
 #pragma once
 
+#include <taut/event.h>
+
 #include "base/math.h"
 #include "base/memory.h"
 #include "collision/collide.h"
@@ -27,16 +29,24 @@ struct SurfaceContact {
     uint32_t collider[2] = {kNone, kNone};  // whose materials and filters it has: of the sides that weights > 0, < 0
     ContactForce force;                     // of the last substep, tangents as tangent_of(normal)
     bool in_block = false;                  // of the last substep
+    // Of the step that is under way or was the last: impulses summed over its substeps, friction's along world axes
+    // [N s], and how fast the two closed before it, where somebody asks [m/s]. publish/contact_watch.h
+    float pushed = 0;
+    Vec3f rubbed = Vec3f::Zero();
+    float approach = 0;
 
     bool pushes() const { return force.normal > 0; }
+    // What hits and is off again within the step did.
+    bool touches() const { return gap <= 0 || pushes() || pushed > 0; }
 };
 template <class Visitor, Like<SurfaceContact> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [a, b, node, weight, lever, skin, normal, gap, friction, restitution, drive, collider, force, in_block] = of;
+    auto& [a, b, node, weight, lever, skin, normal, gap, friction, restitution, drive, collider, force, in_block,
+           pushed, rubbed, approach] = of;  // rubbed, approach: within a step
     TAUT_FIELDS(visitor, a, b);
     for (int i = 0; i < 4; ++i) TAUT_FIELDS(visitor, node[i], weight[i]);
     TAUT_FIELDS(visitor, lever, skin, normal, gap, friction, restitution, drive, collider[0], collider[1], force,
-                in_block);
+                in_block, pushed);
 }
 
 // Of all of a surface along one axis [m].
@@ -51,9 +61,32 @@ struct SurfaceCrossing {
     uint32_t other, face;
 };
 
+// A soft body and a collider that touch, or two soft bodies, by whichever vertices, edges and triangles; soft bodies as
+// the collider of their first vertex that has one. publish/soft_touches.h
+struct SoftTouch {
+    taut_contact_event event;  // handles alone, which stay what they were when a side is gone
+    uint8_t asks = 0;          // bits of contact events, of all parts
+    bool hit = false;          // gave a hit event in the last step
+};
+template <class Visitor, Like<SoftTouch> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [event, asks, hit] = of;
+    TAUT_FIELDS(visitor, event, asks, hit);
+}
+
+// A pair of a vertex or a contact of a surface, that touches.
+struct TouchPart {
+    uint64_t key;  // of the two colliders of the SoftTouch
+    bool surface;  // index: into SurfaceContacts::contact; else into Pairs::active, of the first with its pair
+    uint32_t index;
+};
+
 struct SurfaceContacts {
     explicit SurfaceContacts(Memory& memory)
         : contact(memory),
+          touch(memory),
+          touch_now(memory),
+          part(memory),
           gone(memory),
           found(memory),
           order(memory),
@@ -64,6 +97,9 @@ struct SurfaceContacts {
           crossing(memory) {}
 
     Array<SurfaceContact> contact;  // ascending by a, then b; find_surface_contacts()
+    Array<SoftTouch> touch;         // after the last step; ascending by slots of the two; publish_contacts()
+    Array<SoftTouch> touch_now;     // scratch of that,
+    Array<TouchPart> part;           // likewise
     Array<uint32_t> gone;           // nodes removed since: what contacts say of these means nothing
     uint64_t version = 0;           // counts changes of who touches whom
 
@@ -76,9 +112,9 @@ struct SurfaceContacts {
 };
 template <class Visitor, Like<SurfaceContacts> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [contact, gone, version, found, order, near, colliders, corner, span, crossing] = of;
+    auto& [contact, touch, touch_now, part, gone, version, found, order, near, colliders, corner, span, crossing] = of;
     TAUT_FIELDS(visitor, contact, gone);
-    TAUT_ASIDE(visitor, version);
+    TAUT_ASIDE(visitor, version, touch);  // events change no motion
 }
 
 }  // namespace taut

@@ -362,7 +362,39 @@ TEST_F(Deformable, PartsAreNotRemovedAloneAndGoWithTheWhole) {
     EXPECT_EQ(taut_body_is_valid(bodies[0]), 0);
     EXPECT_EQ(taut_joint_is_valid(held), 0);
     EXPECT_EQ(taut_cloth_pin(cloth, 0, 1), TAUT_STALE_HANDLE);
+    EXPECT_EQ(taut_cloth_set_contact_events(cloth, 0), TAUT_STALE_HANDLE);
+    EXPECT_EQ(taut_cloth_set_pre_solve(cloth, 1), TAUT_STALE_HANDLE);
     expect_empty();
+}
+
+// All vertices ask.
+TEST_F(Deformable, AskForContactEventsAndPreSolveAsAWhole) {
+    const taut_cloth cloth = add(cloth_def());
+    const taut_solid solid = add(solid_def());
+    EXPECT_OK(taut_cloth_set_contact_events(cloth, TAUT_CONTACT_EVENTS_HIT));
+    EXPECT_OK(taut_cloth_set_pre_solve(cloth, 1));
+    EXPECT_OK(taut_solid_set_contact_events(solid, TAUT_CONTACT_EVENTS_PERSIST));
+    const auto asks = [](taut_body body) {
+        taut_collider collider{};
+        uint32_t count = 0;
+        EXPECT_OK(taut_body_get_colliders(body, &collider, 1, &count));
+        taut_collider_def def;
+        taut_collider_def_init(&def);
+        EXPECT_OK(taut_collider_get_def(collider, &def));
+        return std::pair(def.contact_events, def.flags & TAUT_COLLIDER_PRE_SOLVE);
+    };
+    for (const taut_body body : bodies_of(cloth))
+        EXPECT_EQ(asks(body), std::pair(TAUT_CONTACT_EVENTS_HIT, TAUT_COLLIDER_PRE_SOLVE));
+    taut_body corner[4];
+    uint32_t count = 0;
+    EXPECT_OK(taut_solid_get_bodies(solid, corner, 4, &count));
+    for (const taut_body body : corner) EXPECT_EQ(asks(body), std::pair(TAUT_CONTACT_EVENTS_PERSIST, 0u));
+    EXPECT_EQ(taut_cloth_set_contact_events(cloth, TAUT_CONTACT_EVENTS_ALL + 1), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_solid_set_contact_events(solid, 1u << 31), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_cloth_set_pre_solve(cloth, 2), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_solid_set_pre_solve(solid, -1), TAUT_INVALID_ARGUMENT);
+    for (const taut_body body : bodies_of(cloth))
+        EXPECT_EQ(asks(body), std::pair(TAUT_CONTACT_EVENTS_HIT, TAUT_COLLIDER_PRE_SOLVE)) << "changed by a refusal";
 }
 
 // Each number of the defs that air and plastic flow take, at its limits and beyond.
