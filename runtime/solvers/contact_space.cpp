@@ -140,8 +140,8 @@ void ContactSpace::build() {
     double* along = of_.room.data();  // A^-1 J^T of a row
     for (uint32_t j = 0; j < of_.row.size(); ++j) {
         std::fill_n(along, side, 0.0);
-        const double* line[kMaxEnds * kDof];
-        double weight[kMaxEnds * kDof];
+        const double* line[kMaxNodes * kDof];
+        double weight[kMaxNodes * kDof];
         size_t count = 0;
         for_entries(row(j), [&](size_t at, double jacobian) {
             line[count] = &of_.response[at * side];
