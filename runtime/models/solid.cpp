@@ -160,7 +160,9 @@ const char* plan_solid(const SolidMesh& mesh, const Solid& solid, JointSolve sol
         return solid.material == SolidMaterial::orthotropic ? "orthotropic: no stable material"
                                                             : "young_modulus, poisson_ratio: no stable material";
     element.form = ElementForm::energy;
-    element.solve = solve;
+    // Rows that have no fused sweep are swept along J of a substep's beginning: such as balance each other at rest, or
+    // are stiff, gain energy so.
+    element.solve = element.type->sweep ? solve : JointSolve::direct;
     element.tolerance = kSweptYield;
     element.relaxation = solid.damping;
     element.rayleigh = solid.rayleigh;
