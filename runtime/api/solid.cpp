@@ -232,6 +232,7 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, t
             return check.result();
         }
         const AirTraits air{def->air_drag, def->air_lift};
+        if (plan.element[0].solve == JointSolve::direct) solve = TAUT_DEFORMABLE_DIRECT;
         if (!plan.soft.triangle.empty() && !plan_checked_air(check, world, air, solve, plan)) return check.result();
         uint32_t index;
         const taut_result added = add_planned(check, world, plan, index);

@@ -63,14 +63,18 @@ Swing swing_of(const World& world, const ElementSet& set, uint32_t element) {
 
 // What fused sweeps of a set yield from the start. Those that are to be resolved are about as stiff as the material in
 // substeps of 1 / rate, which they take where the world's step has room for so many; what is stiffer counts as rigid.
+// Others shake beyond their tolerance: an element that the shortest substeps do not hold is as soft as these do.
 void begin_yield(const World& world, bool resolved, ElementSet& set) {
+    const uint32_t most_substeps = world.def.fixed_substeps != 0 ? world.least_substeps() : kMostElasticSubsteps;
+    const double shortest = static_cast<double>(world.def.time_step) / most_substeps;
     Swing most;
     for (uint32_t e = 0; e < set.size(); ++e) {
         const Swing each = swing_of(world, set, e);
-        most.yield = std::max(most.yield, each.yield);
-        most.rate = std::max(most.rate, each.rate);
+        const double over = resolved ? 1 : std::max(1.0, each.yield * shortest * shortest / set.tolerance);
+        set.softness[e] *= over;
+        most.yield = std::max(most.yield, each.yield / over);
+        most.rate = std::max(most.rate, each.rate / over);
     }
-    const double shortest = static_cast<double>(world.def.time_step) / kMostElasticSubsteps;
     if (resolved && most.rate * shortest * shortest <= 1) set.least_yield = set.tolerance * most.rate;
     set.yield = std::max(set.least_yield, most.yield);
 }

@@ -65,7 +65,7 @@ private:
     }
 
     int nodes_, first_ = 3;
-    double sum_[kMaxEnds][kMaxEnds][kDof * kDof];
+    double sum_[kMaxNodes][kMaxNodes][kDof * kDof];
 };
 
 }  // namespace
@@ -301,7 +301,7 @@ void BlockSolve::add_bounded() {
     for (size_t i = 0, end; i < rows.size(); i = end) {
         const BoundedRow& first = rows[i];
         const auto beside = [&](const BoundedRow& row) {
-            return std::equal(first.place, first.place + kMaxEnds, row.place);
+            return std::equal(first.place, first.place + kMaxNodes, row.place);
         };
         for (end = i + 1; end < rows.size() && beside(rows[end]);) ++end;
         const auto some = rows.subspan(i, end - i);

@@ -26,7 +26,7 @@ struct BoundedRow {
     uint32_t block = 0;        // in Rows::block
     uint8_t nodes = 0;
     uint8_t begin = 0;                 // 3 where its Jacobian has angular entries alone
-    uint32_t place[kMaxEnds] = {};     // of each node in the block, or UINT32_MAX: its velocity is known
+    uint32_t place[kMaxNodes] = {};    // of each node in the block, or UINT32_MAX: its velocity is known
     const double* jacobian = nullptr;  // of the first node; 6 entries, those of the next node `stride` further
     uint32_t stride = 0;
     double known = 0;           // s J v of the nodes whose velocity is known [m/s]
