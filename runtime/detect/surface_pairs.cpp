@@ -33,7 +33,7 @@ public:
 
     void find() {
         for_meeting_triangles(*mesh_[0], *mesh_[1], apart_, of_.both + of_.margin, time_,
-                              [&](uint32_t t, uint32_t u, float near) { note(t, u, near); });
+                              [&](uint32_t t, uint32_t u, float moved) { note(t, u, moved); });
         test_noted();
     }
 
@@ -59,7 +59,7 @@ private:
     }
 
     // Neighbours that are about flat do not meet.
-    void note(uint32_t t, uint32_t u, float near) {
+    void note(uint32_t t, uint32_t u, float moved) {
         const bool beside = is_itself() && have_common_corner(t, u);
         if (beside && mesh_[0]->face[t].normal.dot(mesh_[0]->face[u].normal) > kFlat) return;
         for (int side = 0; side < 2; ++side) {
@@ -69,7 +69,8 @@ private:
                 for (int i = 0; i < 3; ++i) pairs_.corner[side][k][i][noted_] = x[i];
             }
         }
-        pairs_.reach[noted_] = near;
+        pairs_.reach[noted_] = of_.both + of_.margin + moved;
+        pairs_.moved[noted_] = moved;
         noted_pair_[noted_] = {t, u, beside};
         if (++noted_ == kLanes) test_noted();
     }

@@ -34,7 +34,7 @@ void for_triangles_in(const SurfaceMesh& mesh, const SurfaceBox& box, Act&& act)
     });
 }
 
-// act(triangle of a, triangle of b, how near their features are then now [m]) for those of two meshes that may come
+// act(triangle of a, triangle of b, by which they move past each other [m]) for those of two meshes that may come
 // within a reach in a time [s]: apart: from the origin of a to that of b [m]. Of a mesh with itself each pair once, and
 // no triangle with itself.
 template <class Act>
@@ -45,17 +45,18 @@ void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec
     const auto meet = [&](const SurfaceNode& one, const SurfaceNode& other) {
         for (uint32_t i = one.begin; i < one.end; ++i) {
             const uint32_t t = a.order[i];
-            const SurfaceBox box = a.face[t].box.moved(-apart);
+            const SurfaceBox box = a.face[t].box.moved(-apart), swept = a.box[t].moved(-apart).swept(way);
             for (uint32_t k = &one == &other ? i + 1 : other.begin; k < other.end; ++k) {
                 const uint32_t u = b.order[k];
+                if (!swept.meets(b.box[u])) continue;
                 const float speed = (a.face[t].v - b.face[u].v).norm() + a.face[t].spread + b.face[u].spread;
-                const float near = reach + time * speed;
-                if (!box.is_near(b.face[u].box, near)) continue;
+                const float moved = time * speed;
+                if (!box.is_near(b.face[u].box, reach + moved)) continue;
                 // Of itself in the order of the host, which no tree changes.
                 if (same && u < t)
-                    act(u, t, near);
+                    act(u, t, moved);
                 else
-                    act(t, u, near);
+                    act(t, u, moved);
             }
         }
     };

@@ -1,6 +1,7 @@
 // Pairs of triangles in lanes: which of their features, corners with faces and edges with edges, may come within a
-// reach of each other, and which triangles may cut. What does not is none of those, by distances of lines and points
-// that are exact but for rounding, for which reaches have room.
+// reach of each other where one lies over or under the other, and which triangles may cut. Distances are exact but for
+// rounding, for which reaches have room. What lies beside gets over it only by going there, or where the other turns:
+// by no more than it moves over its height, so that of a reach below half of that it is no more than it moves again.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ struct NearFeatures {
 
 struct TrianglePairs {
     alignas(64) float corner[2][3][3][kLanes];  // of the two, of each three, x y z [m]
-    alignas(64) float reach[kLanes];            // how near features count [m]; below 0: none
+    alignas(64) float reach[kLanes];            // how near features count now [m]; below 0: none
+    alignas(64) float moved[kLanes];            // by which one goes past the other in the time, at most [m]
     uint32_t near[kLanes];                      // out: NearFeatures
 };
 

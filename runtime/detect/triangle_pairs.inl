@@ -45,6 +45,8 @@ private:
         }
         const F reach = F::load(pairs.reach);
         reach_squared_ = F::if_greater(zero, reach, F::all(-1), F::all(kRoom) * reach * reach);
+        const F beside = F::all(2) * F::load(pairs.moved);
+        beside_squared_ = F::all(kRoom) * beside * beside;
     }
 
     static F clamped(const F& x) {
@@ -67,9 +69,9 @@ private:
         const F area = aa * bb - ab * ab, s = bb * pa - ab * pb, t = aa * pb - ab * pa;
         const F per_area = F::if_greater(area, F::all(kThin) * aa * bb, one / area, zero);
         const V apart = from - (s * per_area) * a - (t * per_area) * b;
-        const F beside = least(least(from_edge(p, side, 0), from_edge(p, side, 1)), from_edge(p, side, 2));
-        const F inside = least(least(s, t), area - s - t);
-        return F::if_greater(per_area, zero, F::if_greater(inside, zero, dot(apart, apart), beside), beside);
+        const F rim = least(least(from_edge(p, side, 0), from_edge(p, side, 1)), from_edge(p, side, 2));
+        const F above = dot(apart, apart), inside = least(least(s, t), area - s - t);
+        return F::if_greater(per_area, zero, F::if_greater(inside, zero, above, unless_beside(rim, above)), rim);
     }
     F between_edges(int k, int n) const {
         const V a = along_[0][k], b = along_[1][n], r = x_[0][k] - x_[1][n];
@@ -79,8 +81,15 @@ private:
         F s = F::if_greater(area, F::all(kParallel) * aa * bb, clamped((ab * br - bb * ar) / area), middle);
         const F t = clamped((ab * s + br) * per_squared_[1][n]);
         s = clamped((ab * t - ar) * per_squared_[0][k]);
-        const V apart = r + s * a - t * b;
-        return dot(apart, apart);
+        const V apart = r + s * a - t * b, across = cross(a, b);
+        const F squared = dot(apart, apart), height = dot(r, across), sine = dot(across, across);
+        const F parallel = F::all(kParallel) * aa * bb;
+        return F::if_greater(sine, parallel, unless_beside(squared, height * height / sine), squared);
+    }
+    // The squared distance of what lies beside the other and of their planes or lines; or that of what is out of reach.
+    F unless_beside(const F& squared, const F& above) const {
+        const F room = F::all(kRounding) * squared;
+        return F::if_greater(squared - above - room, beside_squared_, F::all(kFar), squared);
     }
     // Whether the other triangle has corners on both sides of a plane, or near it.
     unsigned straddles(int side) const {
@@ -98,10 +107,10 @@ private:
         return ~F::greater(zero - room, most) & ~F::greater(less, room) & kAllLanes;
     }
 
-    static constexpr float kRounding = 1e-5f, kRoom = 1 + 1e-4f, kThin = 1e-12f, kParallel = 1e-6f;
+    static constexpr float kRounding = 1e-5f, kRoom = 1 + 1e-4f, kThin = 1e-12f, kParallel = 1e-6f, kFar = 1e30f;
 
     V x_[2][3], along_[2][3];
-    F squared_[2][3], per_squared_[2][3], reach_squared_;
+    F squared_[2][3], per_squared_[2][3], reach_squared_, beside_squared_;
 };
 
 }  // namespace taut
