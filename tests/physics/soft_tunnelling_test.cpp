@@ -87,7 +87,7 @@ struct Throw {
 };
 std::vector<Throw> throws() {
     std::vector<Throw> out;
-    for (const double speed : {2.0, 5.0, 20.0})
+    for (const double speed : {2.0, 5.0, 10.0, 20.0})
         for (const double thick : {0.005, 0.02})
             for (const bool swept : {false, true})
                 if (!swept || speed < 20) out.push_back({speed, thick, swept});
