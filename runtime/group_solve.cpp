@@ -28,7 +28,16 @@ GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const
       one_step_(system_.scheme.is_one_step()),
       lends_(one_step_ && world.team.size() > 1 && group_.blocks.empty() && world.nodes.load.empty() && !airy_ &&
              !world.observer && !world.def.report),
-      loan_(world.team, system_, group_, world.nodes) {}
+      loan_(world.team, system_, group_, world.nodes),
+      renewed_(world.memory),
+      surfaces_until_(static_cast<double>(world.def.time_step)) {
+    const auto is_surface = [&](uint32_t node) { return is_surface_vertex(world.nodes, world.softs, node); };
+    if (!solver.lanes || !group_.blocks.empty() || std::ranges::none_of(group_.nodes, is_surface)) return;
+    renewed_.assign(world.nodes.slots(), Renewed::unmoved);
+    for (uint32_t node = 0; node < world.nodes.slots(); ++node)
+        if (moves_by_forces(world.nodes.info[node].kind)) renewed_[node] = Renewed::not_own;
+    for (const uint32_t node : group_.nodes) renewed_[node] = Renewed::own;
+}
 
 void GroupSolve::build() {
     system_.scheme.set_length(clock_.length());
@@ -51,6 +60,7 @@ void GroupSolve::begin() {
         loan_.end();
         loaded_ = quarantine(w_.team, w_.nodes, group_.nodes, w_.frozen, system_.scheme.h);
     }
+    renew_surfaces();
     if (lends_) loan_.begin();
     find_contacts_again(w_.nodes, w_.colliders, w_.shapes, w_.pairs, group_.direct_pairs, clock_.begin(),
                         system_.scheme.h);
@@ -70,6 +80,37 @@ void GroupSolve::begin() {
     build_block_contacts(system_, group_, w_.partition.blocks, w_.pairs, w_.nodes);
     tell(Stage::predict);
     w_.profile.predict_us += watch_.lap();
+}
+
+// Forces and hits go on with the features that have them.
+void GroupSolve::renew_surfaces() {
+    if (renewed_.empty() || clock_.number() == 0) return;
+    const double now = clock_.begin();
+    const auto motion = [&](uint32_t node) -> const NodeMotion& {
+        return system_.lent ? system_.motion[system_.at(node)] : w_.nodes.motion[node];
+    };
+    const double lasted = now - surfaces_found_;
+    const bool over = now + 0.5 * clock_.length() > surfaces_until_;
+    if (!over && !have_strayed(w_.softs, renewed_, lasted, motion)) return;
+    // As what moves as it did may last as long again, and longer.
+    const double left = static_cast<double>(w_.def.time_step) - now, ahead = std::min(2 * lasted, left);
+    loan_.end();
+    SurfaceContacts& surfaces = w_.pairs.surfaces;
+    store_surface_lanes(w_.team, system_, surfaces);
+    Array<SurfaceHit> hits_before(surfaces.contact.size(), SurfaceHit{}, w_.memory);
+    store_surface_hits(system_, hits_before);
+    Array<uint32_t> successor(w_.memory);
+    renew_surface_contacts(w_.team,
+                           {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.broadphase, ahead, now, renewed_},
+                           successor);
+    surfaces_found_ = now;
+    surfaces_until_ = now + ahead;
+    w_.partition.renew_surfaces(index_, surfaces, successor);
+    Array<SurfaceHit> hits(surfaces.contact.size(), SurfaceHit{}, w_.memory);
+    for (uint32_t k = 0; k < successor.size(); ++k)
+        if (successor[k] != kNone) hits[successor[k]] = hits_before[k];
+    build_surface_lanes(w_.team, system_, group_, surfaces, *settings_.surface_kernels);
+    load_surface_hits(system_, surfaces, hits);
 }
 
 void GroupSolve::assemble() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/clock.h"
+#include "detect/surface_contacts.h"
 #include "integrate/integrate.h"
 #include "integrate/substeps.h"
 #include "solvers/solver.h"
@@ -35,6 +36,7 @@ public:
 private:
     void build();                   // rows and lanes for the frame
     void begin();                   // x, v -> x_n, u*; contacts of blocks
+    void renew_surfaces();          // x, v -> contacts of surfaces, where these miss what comes
     void assemble();                // poses -> C, J, K
     Substep next();                 // as solvers see it
     void solve(Substep& substep);   // -> u, impulses
@@ -60,6 +62,9 @@ private:
     const bool one_step_, lends_;  // the scheme has one step; motions are lent to the seats
     MotionLoan loan_;
     bool loaded_ = false, sane_ = false;  // the nodes, as far as is known
+    Array<Renewed> renewed_;              // by node; empty: contacts of surfaces are as the frame began
+    double surfaces_found_ = 0;           // when they were, of the frame [s],
+    double surfaces_until_;               // and for how long
 };
 
 }  // namespace taut

@@ -6,6 +6,8 @@
 // pulled back through each other.
 #pragma once
 
+#include <span>
+
 #include "collision/collide.h"
 #include "state/colliders.h"
 #include "state/pairs.h"
@@ -15,6 +17,8 @@
 
 namespace taut {
 
+enum class Renewed : uint8_t { not_own, own, unmoved };  // moved by forces elsewhere, in the group, by none
+
 struct SurfaceScene {
     const Nodes& nodes;
     const Colliders& colliders;
@@ -22,10 +26,42 @@ struct SurfaceScene {
     Softs& softs;
     Pairs& pairs;
     const collision::Broadphase& broadphase;
-    double time;  // ahead [s]
+    double time;         // ahead [s]
+    double elapsed = 0;  // of the frame [s]; kinematic nodes move at its end
+    // Within a frame, by node: whose contacts are found anew. Empty: all.
+    std::span<const Renewed> renewed = {};
+
+    Vec3 place_of(uint32_t node) const {
+        const NodeMotion& motion = nodes.motion[node];
+        return nodes.info[node].kind == NodeKind::kinematic ? Vec3(motion.x + elapsed * motion.v) : motion.x;
+    }
+    bool may_renew(uint32_t node) const { return renewed.empty() || renewed[node] != Renewed::not_own; }
 };
 
 // Into Pairs::surfaces, with the forces of those that touched before. After update_pairs() of the frame.
 void find_surface_contacts(Team& team, const SurfaceScene& scene);
+
+// Contacts as they were found miss nothing while vertices keep to the ways that they were found for: of two that each
+// are off by half the margin, none is nearer by more than the margin. Whether some vertex is off by more, a time [s]
+// since. motion: of the node of a vertex.
+template <class MotionOf>
+bool have_strayed(const Softs& softs, std::span<const Renewed> renewed, double since, MotionOf&& motion) {
+    for (size_t s = 0; s < softs.mesh.size(); ++s) {
+        const Soft& soft = softs.record[s];
+        const SurfaceMesh& mesh = softs.mesh[s];
+        if (mesh.version == 0 || mesh.collider == kNone || !mesh.awake) continue;
+        const auto time = static_cast<float>(since);
+        const float most = 0.25f * mesh.margin * mesh.margin;
+        for (uint32_t v = 0; v < soft.vertices(); ++v) {
+            if (renewed[soft.node[v]] != Renewed::own) continue;
+            const Vec3f now = (motion(soft.node[v]).x - mesh.origin).template cast<float>();
+            if (!((now - mesh.x[v] - time * mesh.v[v]).squaredNorm() <= most)) return true;
+        }
+    }
+    return false;
+}
+
+// Those of the renewed nodes anew, within a frame; all others stay. successor: of each before its index now, or kNone.
+void renew_surface_contacts(Team& team, const SurfaceScene& scene, Array<uint32_t>& successor);
 
 }  // namespace taut

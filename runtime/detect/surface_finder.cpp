@@ -19,6 +19,11 @@ bool is_still(const SurfaceScene& scene, uint64_t feature) {
     return index & kShape ? !moves_now(scene, index & ~kShape) : !scene.softs.mesh[index].awake;
 }
 
+// Whether a surface is among those whose contacts are found anew.
+bool is_listed(const Softs& softs, uint64_t feature) {
+    return std::ranges::binary_search(softs.listed, static_cast<uint32_t>(feature >> 32));
+}
+
 auto features_of(const SurfaceContact& contact) { return std::pair(contact.a, contact.b); }
 
 }  // namespace
@@ -28,9 +33,17 @@ const SurfaceContact* SurfaceFinder::before(uint64_t a, uint64_t b) const {
     return at != before_.end() && features_of(*at) == std::pair(a, b) ? &*at : nullptr;
 }
 
+bool SurfaceFinder::renews(const SurfaceContact& contact) const {
+    if (scene_.renewed.empty()) return true;
+    const bool listed =
+        is_listed(scene_.softs, contact.a) && (is_of_shape(contact.b) || is_listed(scene_.softs, contact.b));
+    return listed &&
+           std::ranges::all_of(contact.node, [&](uint32_t node) { return node == kNone || scene_.may_renew(node); });
+}
+
 void SurfaceFinder::keep_still() {
     for (const SurfaceContact& contact : before_)
-        if (is_still(scene_, contact.a) && is_still(scene_, contact.b)) found_.push_back(contact);
+        if ((is_still(scene_, contact.a) && is_still(scene_, contact.b)) || !renews(contact)) found_.push_back(contact);
 }
 
 SurfaceTouch SurfaceFinder::touch_of(uint32_t positive, uint32_t negative) const {
@@ -223,19 +236,9 @@ static void turn_to_passage(const SurfaceScene& scene) {
     }
 }
 
-void find_surface_contacts(Team& team, const SurfaceScene& scene) {
+// Into SurfaceContacts::found, and their order by features.
+static void find_and_order(const SurfaceScene& scene) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
-    if (scene.softs.ids.count() == 0 && surfaces.contact.empty()) return;
-    refit_surfaces(team, scene.nodes, scene.shapes, scene.time, scene.softs);
-    if (!surfaces.gone.empty()) {
-        std::ranges::sort(surfaces.gone);
-        std::erase_if(surfaces.contact, [&](const SurfaceContact& contact) {
-            return std::ranges::any_of(contact.node,
-                                       [&](uint32_t node) { return std::ranges::binary_search(surfaces.gone, node); });
-        });
-        surfaces.gone.clear();
-        ++surfaces.version;
-    }
     surfaces.found.clear();
     surfaces.crossing.clear();
     SurfaceFinder finder(scene, surfaces.contact, surfaces.found);
@@ -246,13 +249,48 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     surfaces.order.clear();
     for (uint32_t i = 0; i < surfaces.found.size(); ++i) surfaces.order.push_back(i);
     std::ranges::sort(surfaces.order, {}, [&](uint32_t i) { return features_of(surfaces.found[i]); });
+}
+
+static void take_found(SurfaceContacts& surfaces) {
+    surfaces.contact.clear();
+    for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
+}
+
+void find_surface_contacts(Team& team, const SurfaceScene& scene) {
+    SurfaceContacts& surfaces = scene.pairs.surfaces;
+    if (scene.softs.ids.count() == 0 && surfaces.contact.empty()) return;
+    refit_surfaces(team, scene);
+    if (!surfaces.gone.empty()) {
+        std::ranges::sort(surfaces.gone);
+        std::erase_if(surfaces.contact, [&](const SurfaceContact& contact) {
+            return std::ranges::any_of(contact.node,
+                                       [&](uint32_t node) { return std::ranges::binary_search(surfaces.gone, node); });
+        });
+        surfaces.gone.clear();
+        ++surfaces.version;
+    }
+    find_and_order(scene);
     bool same = surfaces.contact.size() == surfaces.found.size();
     for (uint32_t i = 0; i < surfaces.found.size() && same; ++i)
         same = std::ranges::equal(surfaces.contact[i].node, surfaces.found[surfaces.order[i]].node);
     surfaces.version += same ? 0 : 1;
-    surfaces.contact.clear();
-    for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
+    take_found(surfaces);
     turn_to_passage(scene);
+}
+
+void renew_surface_contacts(Team& team, const SurfaceScene& scene, Array<uint32_t>& successor) {
+    SurfaceContacts& surfaces = scene.pairs.surfaces;
+    refit_surfaces(team, scene);
+    find_and_order(scene);
+    successor.assign(surfaces.contact.size(), kNone);
+    for (uint32_t now = 0, was = 0; now < surfaces.order.size() && was < surfaces.contact.size();) {
+        const auto one = features_of(surfaces.contact[was]), other = features_of(surfaces.found[surfaces.order[now]]);
+        if (one == other) successor[was] = now;
+        was += one <= other;
+        now += other <= one;
+    }
+    ++surfaces.version;
+    take_found(surfaces);
 }
 
 }  // namespace taut

@@ -47,9 +47,16 @@ public:
     SurfaceTouch touch_of(uint32_t positive, uint32_t negative) const;
     // Whether a joint or attachment forbids a contact between two sides.
     bool tied(std::span<const uint32_t> a, std::span<const uint32_t> b) const;
-    void add(const SurfaceContact& contact) { found_.push_back(contact); }
+    // Within a frame those alone whose nodes may all be renewed.
+    void add(const SurfaceContact& contact) {
+        for (const uint32_t node : contact.node)
+            if (node != kNone && !scene_.may_renew(node)) return;
+        found_.push_back(contact);
+    }
     std::span<const SurfaceContact> all_before() const { return before_; }
-    // Those in touch before of which no side has moved since: they stay.
+    // Whether one of before is found anew, or is not there any more.
+    bool renews(const SurfaceContact& contact) const;
+    // Those in touch before of which no side has moved since, or that are not to be renewed: they stay.
     void keep_still();
 
     const SurfaceScene& scene() const { return scene_; }

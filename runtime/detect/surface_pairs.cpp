@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "detect/detect.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
+#include "detect/triangle_pairs.h"
 #include "detect/untangle.h"
 
 namespace taut {
@@ -31,7 +33,8 @@ public:
 
     void find() {
         for_meeting_triangles(*mesh_[0], *mesh_[1], apart_, of_.both + of_.margin, time_,
-                              [&](uint32_t t, uint32_t u) { find(t, u); });
+                              [&](uint32_t t, uint32_t u, float moved) { note(t, u, moved); });
+        test_noted();
     }
 
     // One in touch before, where it is on the wrong side now; others are found.
@@ -48,45 +51,78 @@ private:
     const uint32_t* corners(int side, uint32_t t) const { return &soft_[side]->triangle[3 * size_t{t}]; }
     bool is_itself() const { return index_[0] == index_[1]; }
 
-    void find(uint32_t t, uint32_t u) {
-        if (is_itself()) {
-            const uint32_t *one = corners(0, t), *other = corners(1, u);
-            for (int i = 0; i < 3; ++i)
-                if (one[i] == other[0] || one[i] == other[1] || one[i] == other[2]) return find_beside(t, u);
+    bool have_common_corner(uint32_t t, uint32_t u) const {
+        const uint32_t *one = corners(0, t), *other = corners(1, u);
+        for (int i = 0; i < 3; ++i)
+            if (one[i] == other[0] || one[i] == other[1] || one[i] == other[2]) return true;
+        return false;
+    }
+
+    // Neighbours that are about flat do not meet.
+    void note(uint32_t t, uint32_t u, float moved) {
+        const bool beside = is_itself() && have_common_corner(t, u);
+        if (beside && mesh_[0]->face[t].normal.dot(mesh_[0]->face[u].normal) > kFlat) return;
+        for (int side = 0; side < 2; ++side) {
+            const uint32_t* corner = corners(side, side == 0 ? t : u);
+            for (int k = 0; k < 3; ++k) {
+                const Vec3f x = place(side, corner[k]);
+                for (int i = 0; i < 3; ++i) pairs_.corner[side][k][i][noted_] = x[i];
+            }
         }
-        if (!is_itself() || soft_[0]->kind == SoftKind::cloth) {  // cells of a solid resist what crosses it
+        pairs_.reach[noted_] = of_.both + of_.margin + moved;
+        pairs_.moved[noted_] = moved;
+        noted_pair_[noted_] = {t, u, beside};
+        if (++noted_ == kLanes) test_noted();
+    }
+
+    void test_noted() {
+        if (noted_ == 0) return;
+        for (int i = noted_; i < kLanes; ++i) pairs_.reach[i] = -1;
+        triangle_pair_kernel().test(pairs_);
+        const int count = std::exchange(noted_, 0);
+        for (int i = 0; i < count; ++i)
+            if (pairs_.near[i] != 0) find(noted_pair_[i], pairs_.near[i]);
+    }
+
+    struct Noted {
+        uint32_t t, u;
+        bool beside;  // with a corner in common
+    };
+
+    void find(const Noted& noted, uint32_t near) {
+        const auto [t, u, beside] = noted;
+        const bool crosses = !is_itself() || soft_[0]->kind == SoftKind::cloth;  // cells of a solid resist it
+        if (near & NearFeatures::cut && crosses && !beside) {
             find_crossings(0, t, 1, u);
             find_crossings(1, u, 0, t);
         }
         for (uint32_t k = 0; k < 3; ++k) {
-            if (mesh_[0]->owns[t] >> (3 + k) & 1) find_vertex(0, corners(0, t)[k], 1, u);
-            if (mesh_[1]->owns[u] >> (3 + k) & 1) find_vertex(1, corners(1, u)[k], 0, t);
+            const int corner = static_cast<int>(k);
+            if (mesh_[0]->owns[t] >> (3 + k) & 1 && near & NearFeatures::corner(corner)) {
+                const uint32_t vertex = corners(0, t)[k];
+                if (!beside || !has(u, vertex)) find_vertex(0, vertex, 1, u);
+            }
+            if (mesh_[1]->owns[u] >> (3 + k) & 1 && near & NearFeatures::other_corner(corner)) {
+                const uint32_t vertex = corners(1, u)[k];
+                if (!beside || !has(t, vertex)) find_vertex(1, vertex, 0, t);
+            }
             if (!(mesh_[0]->owns[t] >> k & 1)) continue;
-            for (uint32_t n = 0; n < 3; ++n)
-                if (mesh_[1]->owns[u] >> n & 1) find_edges(mesh_[0]->edge_of[3 * t + k], mesh_[1]->edge_of[3 * u + n]);
-        }
-    }
-
-    // Of two triangles of one surface with a corner in common: what of them has none, where they are not about flat.
-    void find_beside(uint32_t t, uint32_t u) {
-        if (mesh_[0]->face[t].normal.dot(mesh_[0]->face[u].normal) > kFlat) return;
-        const auto has = [&](uint32_t of, uint32_t vertex) {
-            const uint32_t* corner = corners(0, of);
-            return corner[0] == vertex || corner[1] == vertex || corner[2] == vertex;
-        };
-        for (uint32_t k = 0; k < 3; ++k) {
-            if (mesh_[0]->owns[t] >> (3 + k) & 1 && !has(u, corners(0, t)[k])) find_vertex(0, corners(0, t)[k], 1, u);
-            if (mesh_[0]->owns[u] >> (3 + k) & 1 && !has(t, corners(0, u)[k])) find_vertex(0, corners(0, u)[k], 1, t);
-            if (!(mesh_[0]->owns[t] >> k & 1)) continue;
-            const SurfaceEdge& edge = mesh_[0]->edge[mesh_[0]->edge_of[3 * t + k]];
             for (uint32_t n = 0; n < 3; ++n) {
-                if (!(mesh_[0]->owns[u] >> n & 1)) continue;
-                const SurfaceEdge& other = mesh_[0]->edge[mesh_[0]->edge_of[3 * u + n]];
-                if (edge.vertex[0] != other.vertex[0] && edge.vertex[0] != other.vertex[1] &&
-                    edge.vertex[1] != other.vertex[0] && edge.vertex[1] != other.vertex[1])
-                    find_edges(mesh_[0]->edge_of[3 * t + k], mesh_[0]->edge_of[3 * u + n]);
+                if (!(mesh_[1]->owns[u] >> n & 1) || !(near & NearFeatures::edges(corner, static_cast<int>(n))))
+                    continue;
+                const uint32_t e = mesh_[0]->edge_of[3 * t + k], f = mesh_[1]->edge_of[3 * u + n];
+                if (!beside || !have_common_end(e, f)) find_edges(e, f);
             }
         }
+    }
+    // Of one surface with itself.
+    bool has(uint32_t t, uint32_t vertex) const {
+        const uint32_t* corner = corners(0, t);
+        return corner[0] == vertex || corner[1] == vertex || corner[2] == vertex;
+    }
+    bool have_common_end(uint32_t e, uint32_t f) const {
+        const auto &one = mesh_[0]->edge[e].vertex, &other = mesh_[0]->edge[f].vertex;
+        return one[0] == other[0] || one[0] == other[1] || one[1] == other[0] || one[1] == other[1];
     }
 
     Vec3f place(int side, uint32_t vertex) const {
@@ -170,6 +206,9 @@ private:
     Vec3f apart_;
     float time_;
     SurfaceTouch of_;
+    TrianglePairs pairs_{};
+    Noted noted_pair_[kLanes];
+    int noted_ = 0;  // of pairs_, that are to be tested
 };
 
 bool may_touch(const SurfaceScene& scene, uint32_t a, uint32_t b) {
@@ -192,7 +231,7 @@ void pull_back(SurfaceFinder& finder) {
     std::optional<SurfacePair> pair;
     uint32_t first = kNone, second = kNone;
     for (const SurfaceContact& was : finder.all_before()) {
-        if (is_of_shape(was.b) || part_of(was.a) == SurfacePart::cut) continue;
+        if (is_of_shape(was.b) || part_of(was.a) == SurfacePart::cut || !finder.renews(was)) continue;
         const uint32_t one = soft_of(was.a), other = soft_of(was.b);
         const uint32_t a = std::min(one, other), b = std::max(one, other);
         const bool apart = a == b ? !softs.record[a].self || !softs.mesh[a].awake : !may_touch(finder.scene(), a, b);

@@ -2,6 +2,7 @@
 // kernels, or with the axis of a round one; faces with what stands out of it.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "detect/detect.h"
 #include "detect/surface_finder.h"
@@ -26,11 +27,12 @@ public:
           mesh_(scene_.softs.mesh[soft]),
           of_(scene_.colliders.record[collider]),
           shape_(scene_.shapes[of_.shape].shape),
-          at_(scene_.pairs.placement[collider]),
+          at_(scene_.renewed.empty() ? scene_.pairs.placement[collider]
+                                     : placement_of(scene_.nodes, of_, scene_.elapsed)),
           time_(static_cast<float>(scene_.time)) {
         at_.position -= mesh_.origin;
         const NodeMotion& motion = scene_.nodes.motion[of_.node];
-        centre_ = (motion.x - mesh_.origin).cast<float>();
+        centre_ = (scene_.place_of(of_.node) - mesh_.origin).cast<float>();
         velocity_ = motion.v.cast<float>();
         spin_ = spans() ? Vec3f(Vec3f::Zero()) : Vec3f(motion.w.cast<float>());
         margin_ = std::min(mesh_.margin, scene_.pairs.travel[collider].margin);
@@ -47,7 +49,8 @@ public:
         for (const uint32_t t : near) {
             for (uint32_t k = 0; k < 3; ++k) {
                 if (mesh_.owns[t] >> k & 1) find_edge(mesh_.edge_of[3 * t + k]);
-                if (of_.grain && mesh_.owns[t] >> (3 + k) & 1) find_vertex(soft_.triangle[3 * t + k]);
+                if (mesh_.owns[t] >> (3 + k) & 1 && lacks_pair(soft_.triangle[3 * t + k]))
+                    find_vertex(soft_.triangle[3 * t + k]);
             }
         }
         if (!near.empty()) find_faces(box);
@@ -57,6 +60,22 @@ private:
     bool spans() const { return of_.node_b != kNone; }
     bool is_round() const {
         return shape_.kind == collision::ShapeKind::sphere || shape_.kind == collision::ShapeKind::capsule;
+    }
+    // Whether a vertex has no pair with it: grains have none, and within a frame none begins.
+    bool lacks_pair(uint32_t vertex) const {
+        if (of_.grain || scene_.renewed.empty()) return of_.grain;
+        const uint32_t own = scene_.nodes.info[soft_.node[vertex]].collider;
+        const uint64_t key = pair_key(own, collider_);
+        NearPairs& near = scene_.pairs.near;
+        size_t begin = 0, end = near.size();
+        while (begin < end) {
+            const size_t middle = (begin + end) / 2;
+            if (near[middle].key < key)
+                begin = middle + 1;
+            else
+                end = middle;
+        }
+        return begin == near.size() || near[begin].key != key || near[begin].pair == kNone;
     }
     Vec3f velocity_at(const Vec3f& point) const { return velocity_ + spin_.cross(point - centre_); }
 
@@ -83,7 +102,7 @@ private:
         for (int k = 0; k < 2; ++k) {
             const uint32_t node = k == 0 ? of_.node : of_.node_b;
             if (spans()) {
-                end_[k] = (scene_.nodes.motion[node].x - mesh_.origin).cast<float>();
+                end_[k] = (scene_.place_of(node) - mesh_.origin).cast<float>();
                 speed_[k] = scene_.nodes.motion[node].v.cast<float>();
             } else {
                 end_[k] = at_.position.cast<float>() + at_.rotation * Vec3f(0, k == 0 ? -half : half, 0);
@@ -227,17 +246,19 @@ private:
         }
         contact.gap = point.separation;
         if (contact.gap - time_ * std::max(closing, 0.0f) > margin_) return;
-        const SurfaceTouch of = touch_of(false, 0);
-        contact.friction = of.friction, contact.restitution = of.restitution;
-        std::ranges::copy(of.collider, contact.collider);
-        const uint64_t feature = feature_of(index_, SurfacePart::edge, e);
-        if (const SurfaceContact* was = finder_.before(feature, feature_of_shape(collider_, number))) {
-            carry_force(*was, contact);
-        }
-        add(contact, feature, number);
+        finish(contact, feature_of(index_, SurfacePart::edge, e), number);
     }
 
     void find_vertex(uint32_t vertex) {
+        if (of_.grain)
+            find_grain(vertex);
+        else if (is_round())
+            find_round_vertex(vertex);
+        else
+            find_ball(vertex);
+    }
+
+    void find_grain(uint32_t vertex) {
         SurfaceContact contact;
         Passing passing{};
         passing.of = Passing::Of::vertex_vertex;
@@ -248,6 +269,78 @@ private:
         if (touch(passing, touch_of(true, shape_.size.x()), time_,
                   finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact))
             add(contact, feature, kAxis);
+    }
+
+    void find_round_vertex(uint32_t vertex) {
+        const bool ball = shape_.kind == collision::ShapeKind::sphere;
+        SurfaceContact contact;
+        Passing passing{};
+        passing.of = ball ? Passing::Of::vertex_vertex : Passing::Of::vertex_edge;
+        place_vertex(vertex, 0, passing, contact);
+        const int points = ball ? 2 : 3;
+        for (int k = 1; k < points; ++k) passing.x[k] = end_[k - 1], passing.v[k] = speed_[k - 1];
+        contact.node[1] = of_.node;
+        if (spans()) contact.node[2] = of_.node_b;
+        const uint64_t feature = feature_of(index_, SurfacePart::vertex, vertex);
+        const SurfaceTouch of = touch_of(false, shape_.size.x());
+        if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(),
+                   contact))
+            return;
+        if (!spans()) {  // what may turn comes first
+            Vec3f middle = Vec3f::Zero();
+            for (int k = 1; k < points; ++k) middle -= contact.weight[k] * passing.x[k];
+            contact.node[1] = std::exchange(contact.node[0], of_.node);
+            contact.weight[0] = -1, contact.weight[1] = 1, contact.weight[2] = 0;
+            contact.skin = shape_.size.x() * contact.normal;
+            contact.lever = middle + contact.skin - centre_;
+        }
+        add(contact, feature, kAxis);
+    }
+
+    // A vertex as a ball.
+    void find_ball(uint32_t vertex) {
+        collision::Shape ball;
+        ball.kind = collision::ShapeKind::sphere;
+        ball.size = {mesh_.radius, 0, 0};
+        const Vec3f& middle = mesh_.x[vertex];
+        const collision::Placement at{middle.cast<double>(), Mat3f::Identity()};
+        const float reach = margin_ + time_ * (mesh_.v[vertex] - velocity_at(middle)).norm();
+        const auto take = [&](const collision::Manifold& manifold, uint32_t part) {
+            for (int k = 0; k < manifold.count; ++k)
+                take_point_of_vertex(vertex, manifold, manifold.points[k], part + static_cast<uint32_t>(k));
+        };
+        if (!collision::has_parts(shape_)) {
+            collision::PairCache cache;
+            collision::Manifold manifold;
+            collision::collide(ball, at, shape_, at_, reach, cache, manifold);
+            take(manifold, kCapsule);
+            return;
+        }
+        collision::collide_parts(ball, at, shape_, at_, reach, scene_.pairs.parts);
+        for (const collision::PartManifold& part : scene_.pairs.parts.found)
+            take(part.manifold, kCapsule + 2 * part.part);
+    }
+
+    void take_point_of_vertex(uint32_t vertex, const collision::Manifold& manifold,
+                              const collision::ContactPoint& point, uint32_t number) {
+        SurfaceContact contact;
+        contact.normal = -manifold.normal;  // from the shape to the vertex
+        const Vec3f place = mesh_.x[vertex] + point.position;
+        contact.node[0] = of_.node, contact.node[1] = soft_.node[vertex];
+        contact.weight[0] = -1, contact.weight[1] = 1;
+        contact.lever = place - centre_;
+        contact.gap = point.separation;
+        const float closing = contact.normal.dot(velocity_at(place) - mesh_.v[vertex]);
+        if (contact.gap - time_ * std::max(closing, 0.0f) > margin_) return;
+        finish(contact, feature_of(index_, SurfacePart::vertex, vertex), number);
+    }
+    void finish(SurfaceContact& contact, uint64_t feature, uint32_t number) {
+        const SurfaceTouch of = touch_of(false, 0);
+        contact.friction = of.friction, contact.restitution = of.restitution;
+        std::ranges::copy(of.collider, contact.collider);
+        if (const SurfaceContact* was = finder_.before(feature, feature_of_shape(collider_, number)))
+            carry_force(*was, contact);
+        add(contact, feature, number);
     }
 
     void find_faces(const SurfaceBox& box) {
@@ -339,7 +432,9 @@ public:
         if (collider.sensor || is_surface_vertex(scene_.nodes, scene_.softs, collider.node)) return;
         if (!mesh_.awake && !moves_now(scene_, id)) return;
         if (!filters_agree(scene_.colliders.traits[id].filter, scene_.colliders.traits[mesh_.collider].filter)) return;
-        if (scene_.shapes[collider.shape].shape.kind == collision::ShapeKind::plane) return;
+        // Vertices alone meet planes, and find those by pairs but within a frame.
+        const bool flat = scene_.shapes[collider.shape].shape.kind == collision::ShapeKind::plane;
+        if (flat && scene_.renewed.empty()) return;
         scene_.pairs.surfaces.colliders.push_back(id);
     }
 

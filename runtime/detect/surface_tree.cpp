@@ -100,15 +100,14 @@ void build_tree(const Soft& soft, SurfaceMesh& mesh) {
     mesh.face.resize(soft.triangles());
 }
 
-void place_vertices(Team& team, const Nodes& nodes, const Soft& soft, SurfaceMesh& mesh) {
-    mesh.origin = nodes.motion[soft.node.front()].x;
+void place_vertices(Team& team, const SurfaceScene& scene, const Soft& soft, SurfaceMesh& mesh) {
+    mesh.origin = scene.place_of(soft.node.front());
     mesh.x.resize(soft.vertices());
     mesh.v.resize(soft.vertices());
     team.for_ranges(soft.vertices(), kVertexGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
-            const NodeMotion& motion = nodes.motion[soft.node[i]];
-            mesh.x[i] = (motion.x - mesh.origin).cast<float>();
-            mesh.v[i] = motion.v.cast<float>();
+            mesh.x[i] = (scene.place_of(soft.node[i]) - mesh.origin).cast<float>();
+            mesh.v[i] = scene.nodes.motion[soft.node[i]].v.cast<float>();
         }
     });
     mesh.drift.setZero();
@@ -155,7 +154,9 @@ void refit(Team& team, const Soft& soft, float time, SurfaceMesh& mesh) {
 
 }  // namespace
 
-void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double time, Softs& softs) {
+void refit_surfaces(Team& team, const SurfaceScene& scene) {
+    const Nodes& nodes = scene.nodes;
+    Softs& softs = scene.softs;
     softs.listed.clear();
     while (softs.mesh.size() < softs.record.size()) softs.mesh.emplace_back(*softs.mesh.get_allocator().memory);
     for (uint32_t s = 0; s < softs.record.size(); ++s) {
@@ -168,19 +169,20 @@ void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double
         mesh.awake = std::ranges::any_of(soft.node, [&](uint32_t node) { return moves_now(nodes, node); });
         mesh.collider = nodes.info[soft.node[soft.triangle.front()]].collider;
         if (mesh.collider == kNone) continue;
+        if (!std::ranges::all_of(soft.node, [&](uint32_t node) { return scene.may_renew(node); })) continue;
         softs.listed.push_back(s);
         const bool made_anew = mesh.version != soft.mesh_version;
         if (!mesh.awake && !made_anew) continue;
-        place_vertices(team, nodes, soft, mesh);
+        place_vertices(team, scene, soft, mesh);
         if (made_anew) {
             list_edges(soft, mesh);
             list_rings(soft, mesh);
             build_tree(soft, mesh);
             mesh.version = soft.mesh_version;
         }
-        mesh.radius = collision::ball_radius(shapes[soft.shape].shape);
-        mesh.margin = shapes[soft.shape].margin;
-        refit(team, soft, static_cast<float>(time), mesh);
+        mesh.radius = collision::ball_radius(scene.shapes[soft.shape].shape);
+        mesh.margin = scene.shapes[soft.shape].margin;
+        refit(team, soft, static_cast<float>(scene.time), mesh);
     }
 }
 

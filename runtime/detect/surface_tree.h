@@ -4,16 +4,14 @@
 
 #include <span>
 
-#include "state/colliders.h"
-#include "state/shapes.h"
-#include "state/softs.h"
-#include "threads/team.h"
+#include "detect/surface_contacts.h"
 
 namespace taut {
 
 // Brings Softs::mesh and listed up to date: positions, velocities and boxes of all that has a surface and touches, for
-// what comes in a time [s]. What sleeps or stands costs a look at its vertices.
-void refit_surfaces(Team& team, const Nodes& nodes, const Shapes& shapes, double time, Softs& softs);
+// what comes in a time. What sleeps or stands costs a look at its vertices. Within a frame those alone of which all
+// vertices may be renewed are listed.
+void refit_surfaces(Team& team, const SurfaceScene& scene);
 
 // act(leaf) for those whose boxes meet one, in the mesh's frame, from a node of the tree on.
 template <class Act>
@@ -36,8 +34,9 @@ void for_triangles_in(const SurfaceMesh& mesh, const SurfaceBox& box, Act&& act)
     });
 }
 
-// act(triangle of a, triangle of b) for those of two meshes that may come within a reach in a time [s]: apart: from the
-// origin of a to that of b [m]. Of a mesh with itself each pair once, and no triangle with itself.
+// act(triangle of a, triangle of b, by which they move past each other [m]) for those of two meshes that may come
+// within a reach in a time [s]: apart: from the origin of a to that of b [m]. Of a mesh with itself each pair once, and
+// no triangle with itself.
 template <class Act>
 void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec3f& apart, float reach, float time,
                            Act&& act) {
@@ -46,16 +45,18 @@ void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec
     const auto meet = [&](const SurfaceNode& one, const SurfaceNode& other) {
         for (uint32_t i = one.begin; i < one.end; ++i) {
             const uint32_t t = a.order[i];
-            const SurfaceBox box = a.face[t].box.moved(-apart);
+            const SurfaceBox box = a.face[t].box.moved(-apart), swept = a.box[t].moved(-apart).swept(way);
             for (uint32_t k = &one == &other ? i + 1 : other.begin; k < other.end; ++k) {
                 const uint32_t u = b.order[k];
+                if (!swept.meets(b.box[u])) continue;
                 const float speed = (a.face[t].v - b.face[u].v).norm() + a.face[t].spread + b.face[u].spread;
-                if (!box.is_near(b.face[u].box, reach + time * speed)) continue;
+                const float moved = time * speed;
+                if (!box.is_near(b.face[u].box, reach + moved)) continue;
                 // Of itself in the order of the host, which no tree changes.
                 if (same && u < t)
-                    act(u, t);
+                    act(u, t, moved);
                 else
-                    act(t, u);
+                    act(t, u, moved);
             }
         }
     };

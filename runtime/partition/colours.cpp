@@ -285,6 +285,27 @@ void Partition::list_surfaces(uint32_t g, const SurfaceContacts& surfaces) {
     list_by_colour(surface_colour_, is_own, groups[g].surfaces, groups[g].surface_colour_begin);
 }
 
+void Partition::renew_surfaces(uint32_t g, const SurfaceContacts& surfaces, std::span<const uint32_t> successor) {
+    const auto follow = [&](Array<uint32_t>& list) {
+        for (uint32_t& k : list) k = successor[k];
+    };
+    for (uint32_t other = 0; other < group_count; ++other) {
+        if (other != g) follow(groups[other].surfaces);
+        follow(groups[other].direct_surfaces);
+    }
+    for (Block& block : blocks) follow(block.surfaces);
+    std::fill(used_.begin(), used_.end(), 0);
+    surface_colour_.clear();
+    reserve_more(surface_colour_, surfaces.contact.size());
+    for (const SurfaceContact& contact : surfaces.contact) {
+        const TouchGraph::Tie ends = movers_of(contact);
+        const auto first = std::ranges::find_if(ends, [](uint32_t node) { return node != kNone; });
+        surface_colour_.push_back(first != ends.end() && group_of(*first) == g ? take_colour(ends) : kUncoloured);
+    }
+    list_by_colour(
+        surface_colour_, [](uint32_t) { return true; }, groups[g].surfaces, groups[g].surface_colour_begin);
+}
+
 void Partition::list_spans(const Pairs& pairs) {
     auto span = graph_.spans.begin();
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {

@@ -220,6 +220,9 @@ public:
 
     // Of a node, in this frame; kNone where forces do not move it.
     uint32_t island_of(uint32_t node) const { return island_of_[node]; }
+    // Within a frame, after the contacts of surfaces of a group without blocks were found anew: successor: of each
+    // before its index now.
+    void renew_surfaces(uint32_t group, const SurfaceContacts& surfaces, std::span<const uint32_t> successor);
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }  // of one that forces move
     // Elements on something that moves, in the order of incidence(); valid after build().
     std::span<const ElementRef> elements() const { return element_; }

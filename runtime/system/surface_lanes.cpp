@@ -184,4 +184,33 @@ void store_surface_lanes(Team& team, const System& system, SurfaceContacts& surf
     });
 }
 
+void store_surface_hits(const System& system, std::span<SurfaceHit> hits) {
+    for (const SurfaceGroup& g : system.surfaces.group)
+        for (int lane = 0; lane < kLanes; ++lane)
+            if (g.contact[lane] != kNoLanes) hits[g.contact[lane]] = {g.peak[lane], g.approach[lane]};
+}
+
+// Gaps go on from where nodes are now, though what moves them is counted from the begin of the frame on.
+void load_surface_hits(System& system, const SurfaceContacts& surfaces, std::span<const SurfaceHit> hits) {
+    for (SurfaceGroup& g : system.surfaces.group) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (g.contact[lane] == kNoLanes) continue;
+            const SurfaceContact& contact = surfaces.contact[g.contact[lane]];
+            if (const SurfaceHit& hit = hits[g.contact[lane]]; hit.peak > 0) {
+                g.peak[lane] = hit.peak;
+                g.approach[lane] = hit.approach;
+            }
+            Vec3f moved = Vec3f::Zero();
+            for (uint32_t n = 0; n < kSurfaceNodes; ++n)
+                moved += g.weight[n][lane] * Vec3f::Map(system.shift[g.node[n][lane]].dx);
+            if (turns(system, contact)) {
+                const float(&dq)[4] = system.shift[g.node[0][lane]].dq;
+                const Vec3f core = contact.lever - contact.skin, q(dq[0], dq[1], dq[2]), across = q.cross(core);
+                moved += g.weight[0][lane] * 2 * (dq[3] * across + q.cross(across));
+            }
+            g.gap0[lane] -= moved.dot(contact.normal);
+        }
+    }
+}
+
 }  // namespace taut

@@ -88,7 +88,7 @@ struct Throw {
 // Of the faster ones the quick tests take each speed and thickness once.
 std::vector<Throw> throws(bool quick) {
     std::vector<Throw> out;
-    for (const double speed : {2.0, 5.0, 20.0})
+    for (const double speed : {2.0, 5.0, 10.0, 20.0})
         for (const double thick : {0.005, 0.02})
             for (const bool swept : {false, true})
                 if ((!swept || speed < 20) && (swept || speed < 5 || (speed > 5 && thick < 0.01)) == quick)
