@@ -20,8 +20,7 @@ using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 // sqrt(m) A^1/2 of a positive definite A.
 RowMat3 mean_of(const RowMat3& a, double mass) {
-    Eigen::SelfAdjointEigenSolver<Mat3> eigen;
-    eigen.computeDirect(a);
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(a);
     const Vec3 root = (mass * eigen.eigenvalues()).cwiseMax(0.0).cwiseSqrt();
     return eigen.eigenvectors() * root.asDiagonal() * eigen.eigenvectors().transpose();
 }
@@ -71,11 +70,12 @@ void ContactSplit::make_room() {
     find_loads();
 }
 
-// Of each body that contacts alone hold, in equal parts on its contacts, and there by the weights of the nodes.
+// Of each body that contacts alone hold, in equal parts on its contacts, and there by the weights of the nodes. Of the
+// bodies themselves how many contacts they have.
 void ContactSplit::find_loads() {
-    for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] = 0;
+    for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] = is_split(i) ? mass_of(of_.node[i]) : 0;
     const auto is_loose = [&](uint32_t place) { return place != kNone && !b_.coupled[place]; };
-    for (const BoundedRow& r : set_.rows())  // how many contacts a body has
+    for (const BoundedRow& r : set_.rows())
         for (int n = 0; r.kind == Kind::push && n < r.nodes; ++n)
             if (is_loose(r.place[n])) of_.load[of_.slot[r.place[n]]] += 1;
     for (const BoundedRow& r : set_.rows()) {
@@ -90,7 +90,6 @@ void ContactSplit::find_loads() {
             if (r.place[n] != kNone && !is_loose(r.place[n]))
                 of_.load[of_.slot[r.place[n]]] += weight(n) / whole * part;
     }
-    for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] += mass_of(of_.node[i]);
 }
 
 void ContactSplit::add_metric() {
