@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/cable_lab.h"
+#include "physics/contact_lab.h"
 #include "physics/deformable_lab.h"
 
 namespace lab {
@@ -15,6 +16,10 @@ struct ThingPlan {
     Vec at{}, velocity{};
     double friction = 0.5;
     bool swept = false;  // elements of cloths and solids, joints of cables have no such choice
+    uint32_t category = 1, mask = ~0u;
+
+    // But for its group, which keeps parts of one apart.
+    void filter(taut_filter& out) const { out.category = category, out.mask = mask; }
 };
 
 // What a kind is called, and how one of it is made; its bodies.
@@ -37,6 +42,7 @@ inline taut_cloth make_cloth(const World& world, const ThingPlan& plan, int vert
     def.material.friction = static_cast<float>(plan.friction);
     def.material.restitution = 0;
     def.solve = solve_of(plan);
+    plan.filter(def.filter);
     const taut_cloth cloth = add(world, def);
     set_velocities(bodies_of(cloth), plan.velocity);
     return cloth;
@@ -51,6 +57,7 @@ inline taut_solid make_solid(const World& world, const ThingPlan& plan, int vert
     def.surface.friction = static_cast<float>(plan.friction);
     def.surface.restitution = 0;
     def.solve = solve_of(plan);
+    plan.filter(def.filter);
     const taut_solid solid = add(world, def);
     set_velocities(bodies_of(solid), plan.velocity);
     return solid;
@@ -66,14 +73,19 @@ inline taut_cable make_cable(const World& world, const ThingPlan& plan, taut_cab
     def.diameter = 0.04f;
     def.mass_per_metre = 2;
     def.material.friction = static_cast<float>(plan.friction);
+    plan.filter(def.filter);
     taut_cable cable{};
     ok(taut_world_add_cable(world.handle, &def, &cable));
     set_velocities(bodies_of(cable), plan.velocity);
     return cable;
 }
 inline taut_body make_rigid(const World& world, const ThingPlan& plan, taut_shape shape) {
-    return world.add(
+    const taut_body body = world.add(
         {.shape = shape, .position = plan.at, .velocity = plan.velocity, .mass = 2, .friction = plan.friction});
+    taut_filter filter{};
+    plan.filter(filter);
+    ok(taut_collider_set_filter(collider_of(body), &filter));
+    return body;
 }
 inline taut_body make_grain(const World& world, const ThingPlan& plan, bool grain) {
     taut_particle_def def;
@@ -84,6 +96,7 @@ inline taut_body make_grain(const World& world, const ThingPlan& plan, bool grai
     def.shape = world.sphere(0.05);
     def.material.friction = static_cast<float>(plan.friction);
     def.collider_flags = grain ? TAUT_COLLIDER_GRAIN : 0;
+    plan.filter(def.filter);
     taut_body out{};
     ok(taut_world_add_particle(world.handle, &def, &out));
     return out;
