@@ -13,7 +13,6 @@
 namespace taut {
 namespace {
 
-constexpr float kFlat = 0.5f;    // cosine between normals: neighbours that are bent by less do not meet
 constexpr float kOfEdge = 0.5f;  // of the shortest edge of two features: what touches itself is no thicker
 
 // Two surfaces, or one with itself, in the frame of the first.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "detect/surface_finder.h"
 #include "state/mesh_edges.h"
@@ -19,7 +20,7 @@ public:
 
     void build(uint32_t begin, uint32_t end) {
         const auto index = static_cast<uint32_t>(mesh_.node.size());
-        mesh_.node.push_back({SurfaceBox::none(), begin, end, 0, false});
+        mesh_.node.push_back({SurfaceBox::none(), begin, end, 0, false, false, SurfaceBox::none()});
         if (end - begin <= kLeaf) {
             mesh_.node[index].leaf = true;
         } else {
@@ -100,6 +101,47 @@ void build_tree(const Soft& soft, SurfaceMesh& mesh) {
     mesh.face.resize(soft.triangles());
 }
 
+// Which nodes' triangles hang together: each edge joins its two in the smallest node that has both, and nodes come
+// after those below them.
+void find_whole(SurfaceMesh& mesh) {
+    Array<uint32_t> place(mesh.order.size(), 0, mesh.order.get_allocator());
+    for (uint32_t k = 0; k < mesh.order.size(); ++k) place[mesh.order[k]] = k;
+    struct Join {
+        uint32_t node, one, other;
+    };
+    Array<Join> joins(mesh.edge.get_allocator());
+    for (const SurfaceEdge& edge : mesh.edge) {
+        if (edge.triangle[0] == kNone || edge.triangle[1] == kNone) continue;
+        const auto [low, high] = std::minmax(place[edge.triangle[0]], place[edge.triangle[1]]);
+        uint32_t at = 0;
+        for (bool below = true; below && !mesh.node[at].leaf;) {
+            below = false;
+            for (const uint32_t child : {at + 1, mesh.node[at + 1].next})
+                if (!below && mesh.node[child].begin <= low && high < mesh.node[child].end) at = child, below = true;
+        }
+        joins.push_back({at, low, high});
+    }
+    std::ranges::sort(joins, {}, [](const Join& join) { return std::tuple(~join.node, join.one, join.other); });
+    Array<uint32_t> parent(mesh.order.size(), 0, mesh.order.get_allocator());
+    for (uint32_t k = 0; k < parent.size(); ++k) parent[k] = k;
+    const auto root = [&](uint32_t k) {
+        while (parent[k] != k) k = parent[k] = parent[parent[k]];
+        return k;
+    };
+    Array<uint32_t> parts(mesh.node.size(), 0, mesh.order.get_allocator());
+    auto join = joins.begin();
+    for (auto i = static_cast<uint32_t>(mesh.node.size()); i-- > 0;) {
+        SurfaceNode& node = mesh.node[i];
+        parts[i] = node.leaf ? node.end - node.begin : parts[i + 1] + parts[mesh.node[i + 1].next];
+        for (; join != joins.end() && join->node == i; ++join) {
+            const uint32_t one = root(join->one), other = root(join->other);
+            parts[i] -= one != other;
+            parent[std::max(one, other)] = std::min(one, other);
+        }
+        node.whole = parts[i] == 1;
+    }
+}
+
 void place_vertices(Team& team, const SurfaceScene& scene, const Soft& soft, SurfaceMesh& mesh) {
     mesh.origin = scene.place_of(soft.node.front());
     mesh.x.resize(soft.vertices());
@@ -123,16 +165,20 @@ void refit(Team& team, const Soft& soft, float time, SurfaceMesh& mesh) {
             SurfaceFace& face = mesh.face[t];
             face.box = SurfaceBox::none();
             face.v = Vec3f::Zero();
+            Vec3f then[3];
             SurfaceBox box = SurfaceBox::none();
             const uint32_t* corner = &soft.triangle[3 * size_t{t}];
             for (int k = 0; k < 3; ++k) {
                 face.box.add(mesh.x[corner[k]]);
-                box.add(mesh.x[corner[k]] + time * (mesh.v[corner[k]] - mesh.drift));
+                then[k] = mesh.x[corner[k]] + time * (mesh.v[corner[k]] - mesh.drift);
+                box.add(then[k]);
                 face.v += (1.0f / 3) * mesh.v[corner[k]];
             }
             const Vec3f& from = mesh.x[corner[0]];
             face.normal = (mesh.x[corner[1]] - from).cross(mesh.x[corner[2]] - from);
             face.normal *= 1 / std::max(face.normal.norm(), 1e-30f);
+            face.later = (then[1] - then[0]).cross(then[2] - then[0]);
+            face.later *= 1 / std::max(face.later.norm(), 1e-30f);
             float squared = 0;
             for (int k = 0; k < 3; ++k) squared = std::max(squared, (mesh.v[corner[k]] - face.v).squaredNorm());
             face.spread = std::sqrt(squared);
@@ -142,12 +188,19 @@ void refit(Team& team, const Soft& soft, float time, SurfaceMesh& mesh) {
     });
     for (size_t i = mesh.node.size(); i-- > 0;) {
         SurfaceNode& node = mesh.node[i];
-        node.box = SurfaceBox::none();
+        node.box = node.normals = SurfaceBox::none();
         if (node.leaf) {
-            for (uint32_t k = node.begin; k < node.end; ++k) node.box.add(mesh.box[mesh.order[k]]);
+            for (uint32_t k = node.begin; k < node.end; ++k) {
+                const uint32_t t = mesh.order[k];
+                node.box.add(mesh.box[t]);
+                node.normals.add(mesh.face[t].normal);
+                node.normals.add(mesh.face[t].later);
+            }
         } else {
-            node.box.add(mesh.node[i + 1].box);
-            node.box.add(mesh.node[mesh.node[i + 1].next].box);
+            for (const SurfaceNode* below : {&mesh.node[i + 1], &mesh.node[mesh.node[i + 1].next]}) {
+                node.box.add(below->box);
+                node.normals.add(below->normals);
+            }
         }
     }
 }
@@ -178,6 +231,7 @@ void refit_surfaces(Team& team, const SurfaceScene& scene) {
             list_edges(soft, mesh);
             list_rings(soft, mesh);
             build_tree(soft, mesh);
+            find_whole(mesh);
             mesh.version = soft.mesh_version;
         }
         mesh.radius = collision::ball_radius(scene.shapes[soft.shape].shape);

@@ -2,7 +2,7 @@
 // frame.
 #pragma once
 
-#include <span>
+#include <algorithm>
 
 #include "detect/surface_contacts.h"
 
@@ -12,6 +12,13 @@ namespace taut {
 // what comes in a time. What sleeps or stands costs a look at its vertices. Within a frame those alone of which all
 // vertices may be renewed are listed.
 void refit_surfaces(Team& team, const SurfaceScene& scene);
+
+constexpr float kFlat = 0.5f;  // cosine between normals: what hangs together and is bent by less does not meet itself
+
+// Whether no triangle of a node meets another of it: unit normals that differ by d have the cosine 1 - d^2 / 2.
+inline bool is_flat(const SurfaceNode& node) {
+    return node.whole && (node.normals.hi - node.normals.lo).squaredNorm() < 2 * (1 - kFlat);
+}
 
 // act(leaf) for those whose boxes meet one, in the mesh's frame, from a node of the tree on.
 template <class Act>
@@ -45,7 +52,9 @@ void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec
     const auto meet = [&](const SurfaceNode& one, const SurfaceNode& other) {
         for (uint32_t i = one.begin; i < one.end; ++i) {
             const uint32_t t = a.order[i];
-            const SurfaceBox box = a.face[t].box.moved(-apart), swept = a.box[t].moved(-apart).swept(way);
+            const SurfaceBox swept = a.box[t].moved(-apart).swept(way);
+            if (!swept.meets(other.box)) continue;
+            const SurfaceBox box = a.face[t].box.moved(-apart);
             for (uint32_t k = &one == &other ? i + 1 : other.begin; k < other.end; ++k) {
                 const uint32_t u = b.order[k];
                 if (!swept.meets(b.box[u])) continue;
@@ -60,13 +69,15 @@ void for_meeting_triangles(const SurfaceMesh& a, const SurfaceMesh& b, const Vec
             }
         }
     };
+    uint32_t flat_end = 0;  // after what is below the flat node that this one is below
     for (uint32_t i = 0; i < static_cast<uint32_t>(a.node.size());) {
         const SurfaceNode& node = a.node[i];
+        if (same && i >= flat_end && is_flat(node)) flat_end = node.next;
         const SurfaceBox box = node.box.moved(-apart).swept(way);
         const bool meets = same || box.meets(b.node.front().box);
         if (meets && node.leaf)
             for_leaves_in(
-                b, box, [&](const SurfaceNode& leaf) { meet(node, leaf); }, same ? i : 0);
+                b, box, [&](const SurfaceNode& leaf) { meet(node, leaf); }, same ? std::max(i, flat_end) : 0);
         i = meets && !node.leaf ? i + 1 : node.next;
     }
 }

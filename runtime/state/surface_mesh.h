@@ -43,6 +43,7 @@ struct SurfaceBox {
 struct SurfaceFace {
     SurfaceBox box;  // about it now
     Vec3f normal;    // unit, or 0
+    Vec3f later;     // likewise, as the time is over
     Vec3f v;         // mean of its corners' velocities [m/s]
     float spread;    // by which one of them differs from that [m/s]
 };
@@ -53,6 +54,8 @@ struct SurfaceNode {
     uint32_t begin, end;  // in SurfaceMesh::order
     uint32_t next;        // after all that is below it
     bool leaf;
+    bool whole = false;                       // its triangles hang together by edges
+    SurfaceBox normals = SurfaceBox::none();  // of its triangles, as they are and as the time is over
 };
 
 struct SurfaceMesh {
