@@ -102,7 +102,7 @@ void GroupSolve::renew_surfaces() {
     Array<uint32_t> successor(w_.memory);
     renew_surface_contacts(w_.team,
                            {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.broadphase, ahead, now, renewed_},
-                           successor);
+                           w_.pre_solve, successor);
     surfaces_found_ = now;
     surfaces_until_ = now + ahead;
     w_.partition.renew_surfaces(index_, surfaces, successor);

@@ -65,8 +65,11 @@ void detect(World& w, Stopwatch& watch) {
         recall_pairs(w);
         find_touches(w, lead);
     }
+    SurfaceContacts& surfaces = w.pairs.surfaces;
+    const size_t found = surfaces.contact.size();
     const uint32_t refused = filter_contacts(w.nodes, w.colliders, w.pre_solve, w.pairs) +
-                             filter_surfaces(w.nodes, w.colliders, w.shapes, w.pre_solve, w.pairs);
+                             filter_surfaces(w.nodes, w.colliders, w.shapes, w.pre_solve, w.pairs, surfaces.contact);
+    if (surfaces.contact.size() < found) ++surfaces.version;
     if (refused > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
     open_internal_faces({w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead});

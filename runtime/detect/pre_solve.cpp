@@ -143,9 +143,8 @@ uint32_t filter_contacts(const Nodes& nodes, const Colliders& colliders, const P
 }
 
 uint32_t filter_surfaces(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
-                         const PreSolve& pre_solve, Pairs& pairs) {
+                         const PreSolve& pre_solve, const Pairs& pairs, Array<SurfaceContact>& contacts) {
     const uint32_t filters = kAsksOneWay | (pre_solve.ask ? kAsksPreSolve : 0);
-    SurfaceContacts& surfaces = pairs.surfaces;
     uint32_t refused = 0;
     const auto is_ignored = [&](SurfaceContact& contact) {
         const auto [one, other] = contact.collider;
@@ -159,7 +158,7 @@ uint32_t filter_surfaces(const Nodes& nodes, const Colliders& colliders, const S
         refused += verdict == Verdict::refused;
         return verdict == Verdict::ignored;
     };
-    if (std::erase_if(surfaces.contact, is_ignored) > 0) ++surfaces.version;
+    std::erase_if(contacts, is_ignored);
     return refused;
 }
 

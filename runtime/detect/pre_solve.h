@@ -19,8 +19,8 @@ struct PreSolve {
 // Takes the contacts that are ignored out of pairs.active, and gives others the surface that the host wants. Returns
 // how many of the host's answers were refused.
 uint32_t filter_contacts(const Nodes& nodes, const Colliders& colliders, const PreSolve& pre_solve, Pairs& pairs);
-// The same for Pairs::surfaces, which get what moving surfaces of their colliders drive as well.
+// The same for contacts of surfaces, which get what moving surfaces of their colliders drive as well.
 uint32_t filter_surfaces(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
-                         const PreSolve& pre_solve, Pairs& pairs);
+                         const PreSolve& pre_solve, const Pairs& pairs, Array<SurfaceContact>& contacts);
 
 }  // namespace taut

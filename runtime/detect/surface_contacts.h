@@ -9,6 +9,7 @@
 #include <span>
 
 #include "collision/collide.h"
+#include "detect/pre_solve.h"
 #include "state/colliders.h"
 #include "state/pairs.h"
 #include "state/shapes.h"
@@ -61,7 +62,9 @@ bool have_strayed(const Softs& softs, std::span<const Renewed> renewed, double s
     return false;
 }
 
-// Those of the renewed nodes anew, within a frame; all others stay. successor: of each before its index now, or kNone.
-void renew_surface_contacts(Team& team, const SurfaceScene& scene, Array<uint32_t>& successor);
+// Those of the renewed nodes anew, within a frame, as the host's filter has them; all others stay. successor: of each
+// before its index now, or kNone.
+void renew_surface_contacts(Team& team, const SurfaceScene& scene, const PreSolve& pre_solve,
+                            Array<uint32_t>& successor);
 
 }  // namespace taut

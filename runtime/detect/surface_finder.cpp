@@ -236,8 +236,8 @@ static void turn_to_passage(const SurfaceScene& scene) {
     }
 }
 
-// Into SurfaceContacts::found, and their order by features.
-static void find_and_order(const SurfaceScene& scene) {
+// Into SurfaceContacts::found.
+static void find(const SurfaceScene& scene) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
     surfaces.found.clear();
     surfaces.crossing.clear();
@@ -246,6 +246,10 @@ static void find_and_order(const SurfaceScene& scene) {
     untangle(scene, surfaces.found);
     find_surface_shapes(finder);
     finder.keep_still();
+}
+
+// Those found, by features.
+static void order_found(SurfaceContacts& surfaces) {
     surfaces.order.clear();
     for (uint32_t i = 0; i < surfaces.found.size(); ++i) surfaces.order.push_back(i);
     std::ranges::sort(surfaces.order, {}, [&](uint32_t i) { return features_of(surfaces.found[i]); });
@@ -269,7 +273,8 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
         surfaces.gone.clear();
         ++surfaces.version;
     }
-    find_and_order(scene);
+    find(scene);
+    order_found(surfaces);
     bool same = surfaces.contact.size() == surfaces.found.size();
     for (uint32_t i = 0; i < surfaces.found.size() && same; ++i)
         same = std::ranges::equal(surfaces.contact[i].node, surfaces.found[surfaces.order[i]].node);
@@ -278,10 +283,13 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     turn_to_passage(scene);
 }
 
-void renew_surface_contacts(Team& team, const SurfaceScene& scene, Array<uint32_t>& successor) {
+void renew_surface_contacts(Team& team, const SurfaceScene& scene, const PreSolve& pre_solve,
+                            Array<uint32_t>& successor) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
     refit_surfaces(team, scene);
-    find_and_order(scene);
+    find(scene);
+    filter_surfaces(scene.nodes, scene.colliders, scene.shapes, pre_solve, scene.pairs, surfaces.found);
+    order_found(surfaces);
     successor.assign(surfaces.contact.size(), kNone);
     for (uint32_t now = 0, was = 0; now < surfaces.order.size() && was < surfaces.contact.size();) {
         const auto one = features_of(surfaces.contact[was]), other = features_of(surfaces.found[surfaces.order[now]]);
