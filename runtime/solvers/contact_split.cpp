@@ -42,6 +42,7 @@ void ContactSplit::make_room() {
     }
     const size_t touched = of_.node.size();
     grow_to(of_.load, touched);
+    grow_to(of_.contacts, touched);
     grow_to(of_.metric, touched * kDof * kDof);
     grow_to(of_.inverse, touched * kDof * kDof);
     grow_to(of_.velocity, touched * kDof);
@@ -70,25 +71,25 @@ void ContactSplit::make_room() {
     find_loads();
 }
 
-// Of each body that contacts alone hold, in equal parts on its contacts, and there by the weights of the nodes. Of the
-// bodies themselves how many contacts they have.
+// Of nodes themselves and of what they touch, whose mass lies in equal parts on its contacts and there by the weights
+// of nodes.
 void ContactSplit::find_loads() {
-    for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] = is_split(i) ? mass_of(of_.node[i]) : 0;
-    const auto is_loose = [&](uint32_t place) { return place != kNone && !b_.coupled[place]; };
-    for (const BoundedRow& r : set_.rows())
-        for (int n = 0; r.kind == Kind::push && n < r.nodes; ++n)
-            if (is_loose(r.place[n])) of_.load[of_.slot[r.place[n]]] += 1;
-    for (const BoundedRow& r : set_.rows()) {
-        if (r.kind != Kind::push) continue;
-        double part = 0, whole = 0;
-        for (int n = 0; n < r.nodes; ++n)
-            if (is_loose(r.place[n])) part += mass_of(r.place[n]) / of_.load[of_.slot[r.place[n]]];
-        const auto weight = [&](int n) { return Vec3::Map(r.jacobian + static_cast<size_t>(n) * r.stride).norm(); };
-        for (int n = 0; n < r.nodes; ++n)
-            if (r.place[n] != kNone && !is_loose(r.place[n])) whole += weight(n);
-        for (int n = 0; n < r.nodes; ++n)
-            if (r.place[n] != kNone && !is_loose(r.place[n]))
-                of_.load[of_.slot[r.place[n]]] += weight(n) / whole * part;
+    const auto rows = set_.rows();
+    std::fill_n(of_.contacts.begin(), of_.node.size(), 0.0);
+    const auto for_sides = [&](const BoundedRow& row, auto&& act) {  // act(slot, weight)
+        for (int n = 0; row.kind == Kind::push && n < row.nodes; ++n)
+            if (row.place[n] != kNone)
+                act(of_.slot[row.place[n]], Vec3::Map(row.jacobian + static_cast<size_t>(n) * row.stride).norm());
+    };
+    for (const BoundedRow& row : rows) for_sides(row, [&](uint32_t slot, double w) { of_.contacts[slot] += w; });
+    for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] = mass_of(of_.node[i]);
+    for (const BoundedRow& row : rows) {
+        const auto part = [&](uint32_t slot, double w) {
+            return of_.contacts[slot] > 0 ? w * mass_of(of_.node[slot]) / of_.contacts[slot] : 0;
+        };
+        double all = 0;
+        for_sides(row, [&](uint32_t slot, double w) { all += part(slot, w); });
+        for_sides(row, [&](uint32_t slot, double w) { of_.load[slot] += w * (all - part(slot, w)); });
     }
 }
 
