@@ -56,8 +56,7 @@ struct ContactSplitMemory {
           listed(m) {}
 
     Array<uint32_t> slot, node;     // of each node of the block its place among them, or kNone; and back
-    Array<double> load;             // what they bear by contacts, themselves included [kg]
-    Array<double> contacts;         // how many they have, by weights
+    Array<double> load;             // of those split what they bear by contacts, themselves included [kg]
     Array<double> metric, inverse;  // R and R^-1, 36 numbers each
     Array<double> velocity;         // z
     Array<double> stiffness;        // J R^-1 J^T + c of rows

@@ -42,7 +42,6 @@ void ContactSplit::make_room() {
     }
     const size_t touched = of_.node.size();
     grow_to(of_.load, touched);
-    grow_to(of_.contacts, touched);
     grow_to(of_.metric, touched * kDof * kDof);
     grow_to(of_.inverse, touched * kDof * kDof);
     grow_to(of_.velocity, touched * kDof);
@@ -72,20 +71,21 @@ void ContactSplit::make_room() {
 }
 
 // Of nodes themselves and of what they touch, whose mass lies in equal parts on its contacts and there by the weights
-// of nodes.
+// of nodes. How many a node has is kept where its R^-1 will be.
 void ContactSplit::find_loads() {
     const auto rows = set_.rows();
-    std::fill_n(of_.contacts.begin(), of_.node.size(), 0.0);
+    const auto contacts = [&](uint32_t slot) -> double& { return *at(of_.inverse, slot); };
+    for (uint32_t i = 0; i < of_.node.size(); ++i) contacts(i) = 0;
     const auto for_sides = [&](const BoundedRow& row, auto&& act) {  // act(slot, weight)
         for (int n = 0; row.kind == Kind::push && n < row.nodes; ++n)
             if (row.place[n] != kNone)
                 act(of_.slot[row.place[n]], Vec3::Map(row.jacobian + static_cast<size_t>(n) * row.stride).norm());
     };
-    for (const BoundedRow& row : rows) for_sides(row, [&](uint32_t slot, double w) { of_.contacts[slot] += w; });
+    for (const BoundedRow& row : rows) for_sides(row, [&](uint32_t slot, double w) { contacts(slot) += w; });
     for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] = mass_of(of_.node[i]);
     for (const BoundedRow& row : rows) {
         const auto part = [&](uint32_t slot, double w) {
-            return of_.contacts[slot] > 0 ? w * mass_of(of_.node[slot]) / of_.contacts[slot] : 0;
+            return contacts(slot) > 0 ? w * mass_of(of_.node[slot]) / contacts(slot) : 0;
         };
         double all = 0;
         for_sides(row, [&](uint32_t slot, double w) { all += part(slot, w); });
