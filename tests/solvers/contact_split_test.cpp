@@ -116,8 +116,8 @@ INSTANTIATE_TEST_SUITE_P(Seeds, FallsOnNet, testing::Range<uint32_t>(1, 13));
 
 TEST_P(FallsOnNet, ContactsObeyTheirLaws) {
     constexpr double kFriction = 0.5;  // of the rig's contacts
-    // Sweeps end as none changes a rate by more than 1e-5 m/s; what they leave is some forty times that.
-    constexpr double kNear = 1e-3;  // [m/s]
+    // Ten steps from no impulse leave up to 3 % of an impact of .5 m/s, thirty 1 %; the next substep goes on from there.
+    constexpr double kNear = 0.02;  // [m/s]
     const Eigen::MatrixXd a = matrix();
     Eigen::MatrixXd j;
     Eigen::VectorXd goal, start = Eigen::VectorXd::Zero(unknowns + 6);
