@@ -283,6 +283,23 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     turn_to_passage(scene);
 }
 
+// What pushed in the frame, and is not there any more, stays in the list to its end for what it gave, out of touch.
+static void keep_pushes(SurfaceContacts& surfaces) {
+    constexpr float kApart = 1;  // [m]
+    const size_t found = surfaces.found.size();
+    size_t now = 0;
+    for (const SurfaceContact& was : surfaces.contact) {
+        const auto name = features_of(was);
+        while (now < found && features_of(surfaces.found[surfaces.order[now]]) < name) ++now;
+        if (now < found && features_of(surfaces.found[surfaces.order[now]]) == name) continue;
+        if (!(was.pushed > 0)) continue;
+        SurfaceContact& kept = surfaces.found.emplace_back(was);
+        kept.force = {};
+        kept.gap = kApart;
+    }
+    if (surfaces.found.size() > found) order_found(surfaces);
+}
+
 void renew_surface_contacts(Team& team, const SurfaceScene& scene, const PreSolve& pre_solve,
                             Array<uint32_t>& successor) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
@@ -290,6 +307,7 @@ void renew_surface_contacts(Team& team, const SurfaceScene& scene, const PreSolv
     find(scene);
     filter_surfaces(scene.nodes, scene.colliders, scene.shapes, pre_solve, scene.pairs, surfaces.found);
     order_found(surfaces);
+    keep_pushes(surfaces);
     successor.assign(surfaces.contact.size(), kNone);
     for (uint32_t now = 0, was = 0; now < surfaces.order.size() && was < surfaces.contact.size();) {
         const auto one = features_of(surfaces.contact[was]), other = features_of(surfaces.found[surfaces.order[now]]);

@@ -354,7 +354,8 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
             std::swap(old.order, block.order);
             std::swap(old.matrix, block.matrix);
             std::swap(old.places, block.places);
-            std::swap(old.coupled, block.coupled);
+            std::swap(old.part, block.part);
+            std::swap(old.hold, block.hold);
             block.stride = old.stride;
             std::swap(old.solution, block.solution);
             std::swap(old.known, block.known);

@@ -34,6 +34,18 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, excess_energy, solved, guard_left, since_trip, escalated, whips_left, hit_left);
 }
 
+// What holds a node of a block beside contacts: nothing, elements and ties to other nodes of it that move freely as a
+// whole, or such that are tied to what the block does not solve for.
+enum class NodeHold : uint8_t { loose, free, anchored };
+
+// What hangs together freely, as a rigid body. Mass [kg], centre [m], inverse inertia about it [1/(kg m^2)].
+struct FreePart {
+    double mass = 0;
+    Vec3 centre = Vec3::Zero();
+    Mat3 inertia = Mat3::Zero(), inverse = Mat3::Zero();
+    Vec3 impulse = Vec3::Zero(), turn = Vec3::Zero();  // that its nodes miss, about the centre [N s, N m s]
+};
+
 // What a row says of three freedoms of a node: its velocity or its angular velocity.
 struct RowTouch {
     uint32_t at;  // in ContactSplitMemory::velocity
@@ -53,7 +65,8 @@ struct ContactSplitMemory {
           touch(m),
           begin(m),
           row(m),
-          listed(m) {}
+          listed(m),
+          free(m) {}
 
     Array<uint32_t> slot, node;     // of each node of the block its place among them, or kNone; and back
     Array<double> load;             // of those split what they bear by contacts, themselves included [kg]
@@ -64,6 +77,7 @@ struct ContactSplitMemory {
     Array<uint32_t> begin;
     Array<uint32_t> row;    // those that sweeps take, in the block's bounded rows, ascending
     Array<uint8_t> listed;  // of each row: whether it is among them
+    Array<FreePart> free;   // see Block::part
     bool built = false;     // touches and stiffnesses are of the present factor
 };
 
@@ -88,7 +102,8 @@ struct Block {
           gases(m),
           gas_response(m),
           split(m),
-          coupled(m) {}
+          part(m),
+          hold(m) {}
 
     Array<uint32_t> nodes;                 // moved by forces, ascending
     Array<uint32_t> joints;                // ascending
@@ -107,9 +122,10 @@ struct Block {
     Array<uint32_t> gases;                 // that it has nodes of, in System::gases, of this substep
     Array<double> gas_response;            // scratch of its solve; see solvers/block_gas.cpp
     ContactSplitMemory split;              // likewise
-    Array<uint8_t> coupled;                // of its nodes: by elements or ties to others; with `places`
-    bool foresees = false;                 // folded elements are evaluated where their nodes are going
-    bool relinearised = false;             // all are, where the line search came to; see solvers/block_search.cpp
+    Array<uint32_t> part;       // of each node that which hangs together freely with it, or kNone; with `places`
+    Array<NodeHold> hold;       // of each node; likewise
+    bool foresees = false;      // folded elements are evaluated where their nodes are going
+    bool relinearised = false;  // all are, where the line search came to; see solvers/block_search.cpp
     uint32_t first_elastic_run = 0, elastic_runs = 0;  // of its elastic elements in System::rows, of this frame
     bool tower = false;                                // no ties: bodies that stand on each other or are pressed
     bool looped = false;                               // more joints than a tree
@@ -129,9 +145,9 @@ struct Block {
 template <class Visitor, Like<Block> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [nodes, joints, elements, elastic, pairs, surfaces, links, identity, order, matrix, places, stride, solution,
-           known, force, elastic_force, gases, gas_response, split, coupled, foresees, relinearised, first_elastic_run,
-           elastic_runs, tower, looped, passing, failed, corrected, mass_ratio, closing, first_row_block, first_contact,
-           contact_count, first_bounded, bounded_count, turn, memory] = of;
+           known, force, elastic_force, gases, gas_response, split, part, hold, foresees, relinearised,
+           first_elastic_run, elastic_runs, tower, looped, passing, failed, corrected, mass_ratio, closing,
+           first_row_block, first_contact, contact_count, first_bounded, bounded_count, turn, memory] = of;
     TAUT_FIELDS(visitor, nodes, order, tower, looped, memory);
     TAUT_ASIDE(visitor, identity);  // all others are made by each frame, or from these by the next solve
 }

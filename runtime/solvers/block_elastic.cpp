@@ -232,10 +232,46 @@ void BlockSolve::find_elastic_places() {
     uint32_t end = static_cast<uint32_t>(b_.places.size());
     for_elastic([&](const auto& batch) { end = batch.place_of(batch.at.count, 0, 0); });
     b_.places.resize(end);
-    for_couplings([&](uint32_t a, uint32_t b, uint32_t place) {
-        b_.places[place] = b_.matrix.place(a, b);
-        b_.coupled[a] = b_.coupled[b] = 1;
+    for_couplings([&](uint32_t a, uint32_t b, uint32_t place) { b_.places[place] = b_.matrix.place(a, b); });
+}
+
+// Which nodes hang together by elements and ties, and whether something that the block does not solve for holds them.
+void BlockSolve::find_parts() {
+    b_.part.resize(nodes_);
+    b_.hold.assign(nodes_, NodeHold::loose);
+    for (uint32_t i = 0; i < nodes_; ++i) b_.part[i] = i;
+    const auto first_of = [&](uint32_t i) {
+        while (b_.part[i] != i) i = b_.part[i] = b_.part[b_.part[i]];
+        return i;
+    };
+    const auto take = [&](const uint32_t* seats, int count) {
+        uint32_t first = kNone;
+        bool is_anchored = false;
+        for (int n = 0; n < count; ++n) {
+            const uint32_t i = local(seats[n]);
+            if (i == kNone) {
+                is_anchored = true;
+                continue;
+            }
+            const uint32_t one = first_of(i), both = first == kNone ? one : std::min(first, one);
+            const NodeHold hold = std::max({NodeHold::free, b_.hold[one], b_.hold[both]});
+            if (first != kNone) b_.part[first] = both;
+            b_.part[one] = both;
+            b_.hold[both] = std::max(hold, first == kNone ? hold : b_.hold[first]);
+            first = both;
+        }
+        if (is_anchored && first != kNone) b_.hold[first] = NodeHold::anchored;
+    };
+    for_elastic([&](const auto& batch) {
+        for (uint32_t i = 0; i < batch.at.count; ++i) take(batch.seats(i), batch.nodes());
     });
+    for (uint32_t j = 0; j < ties(); ++j) take(row(j).node, row(j).type->nodes);
+    for (uint32_t i = 0; i < nodes_; ++i) b_.hold[i] = b_.hold[first_of(i)];
+    uint32_t parts = 0;
+    for (uint32_t i = 0; i < nodes_; ++i) {  // the first of each comes before the others
+        const uint32_t first = b_.part[i];
+        b_.part[i] = b_.hold[i] != NodeHold::free ? kNone : first == i ? parts++ : b_.part[first];
+    }
 }
 
 // Where nodes of elastic elements would be at the end of the substep, but for pressure within surfaces: that is held by

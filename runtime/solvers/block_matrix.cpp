@@ -197,11 +197,8 @@ void BlockSolve::find_places() {
             }
         }
     }
-    b_.coupled.assign(nodes_, 0);
-    for (uint32_t j = 0; j < ties(); ++j)
-        for (int n = 0; n < row(j).type->nodes; ++n)
-            if (local(row(j).node[n]) != kNone) b_.coupled[local(row(j).node[n])] = 1;
     find_elastic_places();
+    find_parts();
 }
 
 void BlockSolve::add_mass(uint32_t i) {

@@ -136,6 +136,7 @@ void BlockSolve::solve_laws() {
     constexpr uint32_t kMostSteps = 10;  // loads of 1 to 5000 times a sheet's mass end within micrometres
     for (uint32_t round = 0;; ++round) {
         solve_linear();
+        split.move_free_parts();
         take_solution();
         if (round == kMostSteps || !split.improve()) break;
     }

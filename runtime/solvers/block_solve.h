@@ -86,6 +86,7 @@ private:
     bool foresees(const ElementSet& of) const;
     void link_elastic(Array<uint64_t>& out) const;
     void find_elastic_places();
+    void find_parts();
     void assemble_elastic();
     void take_elastic_forces();
     double elastic_work() const;

@@ -7,6 +7,7 @@
 //   R        of a node between what A says of it and what it bears: the geometric mean of both. In a direction in
 //            which elements have the mass a and contacts the mass g an error falls to (1 - q^2) / 2 of it,
 //            q = (1 - s) / (1 + s), s = sqrt(a / g)
+// Of what hangs together freely the rigid motions are solved for at once after each x-step (a coarse correction).
 // Bodies that nothing but contacts holds are not split: their part of A is a mass, and z has it as it is.
 #pragma once
 
@@ -26,6 +27,9 @@ public:
     void forget() { of_.built = false; }
     // R z onto the known side.
     void add_known(double* side) const;
+    // After a solve: what hangs together freely by as much as its nodes' impulses R (x - z) make of it as a rigid body,
+    // which steps would bring slowly, as R is far more than the mass of the whole; momentum is kept so at any step.
+    void move_free_parts();
     // After a solve with z and the impulses as they are: those of the next one. False if that would change nothing.
     bool improve();
 
@@ -36,7 +40,7 @@ public:
     void change(uint32_t first, uint32_t count, const double* by);
 
 private:
-    bool is_split(uint32_t slot) const { return b_.coupled[of_.node[slot]] != 0; }
+    bool is_split(uint32_t slot) const { return b_.hold[of_.node[slot]] != NodeHold::loose; }
     int size_of(uint32_t slot) const { return b_.matrix.size(of_.node[slot]); }
     std::span<RowTouch> touches(uint32_t row) const {
         return {of_.touch.data() + of_.begin[row], of_.touch.data() + of_.begin[row + 1]};
@@ -45,6 +49,7 @@ private:
     double mass_of(uint32_t place) const { return s_.nodes.mass[b_.nodes[place]].mass; }
     double miss_of(uint32_t place) const;
     void find_loads();
+    void find_free_parts();
     void list_rows();
     void build();
 
