@@ -38,12 +38,10 @@ void describe(Visitor& visitor, Of& of) {
 // whole, or such that are tied to what the block does not solve for.
 enum class NodeHold : uint8_t { loose, free, anchored };
 
-// What hangs together freely, as a rigid body. Mass [kg], centre [m], inverse inertia about it [1/(kg m^2)].
+// What hangs together freely.
 struct FreePart {
-    double mass = 0;
-    Vec3 centre = Vec3::Zero();
-    Mat3 inertia = Mat3::Zero(), inverse = Mat3::Zero();
-    Vec3 impulse = Vec3::Zero(), turn = Vec3::Zero();  // that its nodes miss, about the centre [N s, N m s]
+    double mass = 0;              // [kg]
+    Vec3 impulse = Vec3::Zero();  // that its nodes miss [N s]
 };
 
 // What a row says of three freedoms of a node: its velocity or its angular velocity.

@@ -10,7 +10,6 @@ constexpr double kOver = 1.6;  // a: Boyd et al. 2011, 3.4.3
 // c of pushes that undo an overlap over their J R^-1 J^T. Where they contradict each other, as on cloth that is pinched
 // within two bodies, sweeps then end at the mean of both; a load rests deeper by c mu h, some micrometres.
 constexpr double kYields = 0.1;
-constexpr double kThin = 1e-9;  // of the largest moment of inertia: rounding
 constexpr double kNear = 1e-6;  // [m]: nodes of the two halves, at the end of a substep
 constexpr double kShare = 0.1;  // of what x and z are apart, that sweeps may leave of rows
 constexpr uint32_t kMostLawSweeps = 20;
@@ -100,58 +99,25 @@ void ContactSplit::find_free_parts() {
     for (const uint32_t part : b_.part)
         if (part != kNone) parts = std::max(parts, part + 1);
     of_.free.assign(parts, FreePart{});
-    const auto for_free = [&](auto&& act) {  // act(part, node, seat)
-        for (uint32_t i = 0; i < b_.nodes.size(); ++i)
-            if (b_.hold[i] == NodeHold::free) act(of_.free[b_.part[i]], i, sys_.at(b_.nodes[i]));
-    };
-    for_free([&](FreePart& part, uint32_t i, uint32_t seat) {
-        part.mass += mass_of(i);
-        part.centre += mass_of(i) * sys_.pose[seat].x;
-    });
-    for (FreePart& part : of_.free)
-        if (part.mass > 0) part.centre /= part.mass;
-    for_free([&](FreePart& part, uint32_t i, uint32_t seat) {
-        const Vec3 r = sys_.pose[seat].x - part.centre;
-        part.inertia += mass_of(i) * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-        if (b_.matrix.size(i) == 6) part.inertia += sys_.inertia[seat];
-    });
-    for (FreePart& part : of_.free) {  // what lies on a line or in a point turns no other way
-        if (!(part.mass > 0)) continue;
-        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(part.inertia);
-        Vec3 inverse = Vec3::Zero();
-        for (int k = 0; k < 3; ++k)
-            if (eigen.eigenvalues()[k] > kThin * eigen.eigenvalues()[2]) inverse[k] = 1 / eigen.eigenvalues()[k];
-        part.inverse = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
-    }
+    for (uint32_t i = 0; i < b_.nodes.size(); ++i)
+        if (b_.part[i] != kNone) of_.free[b_.part[i]].mass += mass_of(i);
 }
 
 void ContactSplit::move_free_parts() {
-    for (FreePart& part : of_.free) part.impulse = part.turn = Vec3::Zero();
-    bool any = false;
+    for (FreePart& part : of_.free) part.impulse = Vec3::Zero();
     for (uint32_t k = 0; k < of_.node.size(); ++k) {
-        const uint32_t i = of_.node[k];
-        if (b_.hold[i] != NodeHold::free) continue;
-        any = true;
+        const uint32_t i = of_.node[k], part = b_.part[i];
+        if (part == kNone) continue;
         const int size = size_of(k);
         const double* r = at(of_.metric, k);
         const double* x = &b_.solution[size_t{i} * kDof];
         const double* z = &of_.velocity[k * kDof];
-        double missing[kDof] = {};
-        for (int a = 0; a < size; ++a)
-            for (int b = 0; b < size; ++b) missing[a] += r[a * size + b] * (x[b] - z[b]);
-        FreePart& part = of_.free[b_.part[i]];
-        const Vec3 arm = sys_.pose[sys_.at(b_.nodes[i])].x - part.centre;
-        part.impulse += Vec3::Map(missing);
-        part.turn += arm.cross(Vec3::Map(missing)) + Vec3::Map(missing + 3);
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < size; ++b) of_.free[part].impulse[a] += r[a * size + b] * (x[b] - z[b]);
     }
-    for (uint32_t i = 0; any && i < b_.nodes.size(); ++i) {
-        if (b_.hold[i] != NodeHold::free) continue;
-        const FreePart& part = of_.free[b_.part[i]];
-        const Vec3 spin = part.inverse * part.turn, arm = sys_.pose[sys_.at(b_.nodes[i])].x - part.centre;
-        double* x = &b_.solution[size_t{i} * kDof];
-        Vec3::Map(x) += part.impulse / part.mass + spin.cross(arm);
-        if (b_.matrix.size(i) == 6) Vec3::Map(x + 3) += spin;
-    }
+    for (uint32_t i = 0; i < b_.nodes.size() && !of_.free.empty(); ++i)
+        if (const uint32_t part = b_.part[i]; part != kNone)
+            Vec3::Map(&b_.solution[size_t{i} * kDof]) += of_.free[part].impulse / of_.free[part].mass;
 }
 
 void ContactSplit::add_metric() {
