@@ -134,12 +134,14 @@ void BlockSolve::gather_rows() {
 // With the impulses that the laws of all bounded rows ask for.
 void BlockSolve::solve_laws() {
     constexpr uint32_t kMostSteps = 10;  // loads of 1 to 5000 times a sheet's mass end within micrometres
-    for (uint32_t round = 0;; ++round) {
+    solve_linear();
+    bool is_far = true;
+    for (uint32_t step = 0; step < kMostSteps && is_far; ++step) {
+        is_far = split.improve();
         solve_linear();
-        split.move_free_parts();
-        take_solution();
-        if (round == kMostSteps || !split.improve()) break;
     }
+    split.move_free_parts();
+    take_solution();
     note_state(set.rows());
 }
 

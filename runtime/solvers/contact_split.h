@@ -7,7 +7,6 @@
 //   R        of a node between what A says of it and what it bears: the geometric mean of both. In a direction in
 //            which elements have the mass a and contacts the mass g an error falls to (1 - q^2) / 2 of it,
 //            q = (1 - s) / (1 + s), s = sqrt(a / g)
-// Of what hangs together freely the translations are solved for at once after each x-step (a coarse correction).
 // Bodies that nothing but contacts holds are not split: their part of A is a mass, and z has it as it is.
 #pragma once
 
@@ -27,11 +26,11 @@ public:
     void forget() { of_.built = false; }
     // R z onto the known side.
     void add_known(double* side) const;
-    // After a solve: what hangs together freely by as much as the impulses R (x - z) that its nodes miss make of it as
-    // a whole, which steps would bring slowly, as R is far more than its mass: momentum is kept at any step. Rotations
-    // alone are no such motions: tension resists them in A.
+    // After the last solve: what hangs together freely by as much as the impulses R (x - z) that its nodes miss make of
+    // it as a whole, so that momentum is kept after any number of steps. Not between them, where it would take the
+    // impulses of the z-step for those of a mass as small as the whole's.
     void move_free_parts();
-    // After a solve with z and the impulses as they are: those of the next one. False if that would change nothing.
+    // After a solve with z and the impulses as they are: those of the next one. False if the next one is the last.
     bool improve();
 
     // See row_laws.h.
