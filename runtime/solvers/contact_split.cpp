@@ -67,30 +67,51 @@ void ContactSplit::make_room() {
         Vec3::Map(&of_.velocity[i * kDof]) = u.v;
         Vec3::Map(&of_.velocity[i * kDof] + 3) = u.w;
     }
-    find_loads();
     find_free_parts();
+    find_loads();
 }
 
-// Of nodes themselves and of what they touch, whose mass lies in equal parts on its contacts and there by the weights
-// of nodes. How many a node has is kept where its R^-1 will be.
+// Of nodes themselves, and by contacts of what hangs together freely on either side: its mass in equal parts on its
+// contacts with others, and there by the weights of the nodes. How many a node has is kept where its R^-1 will be, of a
+// part where its impulse will.
 void ContactSplit::find_loads() {
     const auto rows = set_.rows();
-    const auto contacts = [&](uint32_t slot) -> double& { return *at(of_.inverse, slot); };
-    for (uint32_t i = 0; i < of_.node.size(); ++i) contacts(i) = 0;
+    const auto part_of = [&](uint32_t slot) { return b_.part[of_.node[slot]]; };
     const auto for_sides = [&](const BoundedRow& row, auto&& act) {  // act(slot, weight)
         for (int n = 0; row.kind == Kind::push && n < row.nodes; ++n)
             if (row.place[n] != kNone)
                 act(of_.slot[row.place[n]], Vec3::Map(row.jacobian + static_cast<size_t>(n) * row.stride).norm());
     };
-    for (const BoundedRow& row : rows) for_sides(row, [&](uint32_t slot, double w) { contacts(slot) += w; });
-    for (uint32_t i = 0; i < of_.node.size(); ++i) of_.load[i] = mass_of(of_.node[i]);
+    const auto is_within = [&](const BoundedRow& row) {  // a part
+        const uint32_t first = row.place[0] == kNone ? kNone : b_.part[row.place[0]];
+        for (int n = 1; n < row.nodes; ++n)
+            if (row.place[n] == kNone || b_.part[row.place[n]] != first) return false;
+        return first != kNone;
+    };
+    for (uint32_t i = 0; i < of_.node.size(); ++i) {
+        of_.load[i] = mass_of(of_.node[i]);
+        *at(of_.inverse, i) = 0;
+    }
+    for (FreePart& part : of_.free) part.impulse = Vec3::Zero();
+    for (const BoundedRow& row : rows)
+        for_sides(row, [&](uint32_t slot, double w) {
+            *at(of_.inverse, slot) += w;
+            if (part_of(slot) != kNone && !is_within(row)) of_.free[part_of(slot)].impulse[0] += w;
+        });
     for (const BoundedRow& row : rows) {
-        const auto part = [&](uint32_t slot, double w) {
-            return contacts(slot) > 0 ? w * mass_of(of_.node[slot]) / contacts(slot) : 0;
+        const bool within = is_within(row);
+        const auto own = [&](uint32_t slot, double w) {
+            const double contacts = *at(of_.inverse, slot);
+            return contacts > 0 ? w * mass_of(of_.node[slot]) / contacts : 0;
+        };
+        const auto bears = [&](uint32_t slot, double w) {
+            if (within || part_of(slot) == kNone) return own(slot, w);
+            const FreePart& part = of_.free[part_of(slot)];
+            return part.impulse[0] > 0 ? w * part.mass / part.impulse[0] : 0;
         };
         double all = 0;
-        for_sides(row, [&](uint32_t slot, double w) { all += part(slot, w); });
-        for_sides(row, [&](uint32_t slot, double w) { of_.load[slot] += w * (all - part(slot, w)); });
+        for_sides(row, [&](uint32_t slot, double w) { all += bears(slot, w); });
+        for_sides(row, [&](uint32_t slot, double w) { of_.load[slot] += w * std::max(0.0, all - own(slot, w)); });
     }
 }
 
