@@ -124,21 +124,76 @@ void ContactSplit::find_free_parts() {
         if (b_.part[i] != kNone) of_.free[b_.part[i]].mass += mass_of(i);
 }
 
+// The rows as they act on whole parts: what row_laws.h asks for.
+class ContactSplit::WholeParts {
+public:
+    explicit WholeParts(ContactSplit& of) : of_(of) {}
+    BoundedRow& row(uint32_t i) { return of_.row(i); }
+    double miss(uint32_t i) const {
+        double sum = of_.miss(i);
+        for (const RowTouch& touch : touches(i))
+            if (const uint32_t part = part_of(touch); part != kNone) sum += touch.j.dot(shift_of(part));
+        return sum;
+    }
+    double stiffness(uint32_t i) {
+        const BoundedRow& r = row(i);
+        double sum = r.c;
+        for (const RowTouch& touch : touches(i)) {
+            if (is_loose(touch)) sum += touch.j.dot(touch.g);
+            const uint32_t part = part_of(touch);
+            if (part == kNone) continue;
+            Vec3 whole = Vec3::Zero();
+            for (const RowTouch& other : touches(i))
+                if (part_of(other) == part) whole += other.j;
+            sum += touch.j.dot(whole) / of_.of_.free[part].mass;
+        }
+        return sum > kNothing * of_.stiffness(i) ? sum : 0;  // a part pushes itself nowhere
+    }
+    void change(uint32_t first, uint32_t count, const double* by) {
+        for (uint32_t k = 0; k < count; ++k)
+            for (const RowTouch& touch : touches(first + k)) {
+                if (is_loose(touch)) Vec3::Map(&of_.of_.velocity[touch.at]) += by[k] * touch.g;
+                if (const uint32_t part = part_of(touch); part != kNone) of_.of_.free[part].impulse += by[k] * touch.j;
+            }
+    }
+    Vec3 shift_of(uint32_t part) const { return of_.of_.free[part].impulse / of_.of_.free[part].mass; }
+
+private:
+    static constexpr double kNothing = 1e-9;
+
+    std::span<const RowTouch> touches(uint32_t i) const { return of_.touches(of_.of_.row[i]); }
+    bool is_loose(const RowTouch& touch) const { return !of_.is_split(touch.at / kDof); }
+    uint32_t part_of(const RowTouch& touch) const {
+        return touch.at % kDof == 0 ? of_.b_.part[of_.of_.node[touch.at / kDof]] : kNone;
+    }
+
+    ContactSplit& of_;
+};
+
 void ContactSplit::move_free_parts() {
+    if (of_.free.empty()) return;
     for (FreePart& part : of_.free) part.impulse = Vec3::Zero();
     for (uint32_t k = 0; k < of_.node.size(); ++k) {
         const uint32_t i = of_.node[k], part = b_.part[i];
-        if (part == kNone) continue;
         const int size = size_of(k);
-        const double* r = at(of_.metric, k);
         const double* x = &b_.solution[size_t{i} * kDof];
-        const double* z = &of_.velocity[k * kDof];
-        for (int a = 0; a < 3; ++a)
+        double* z = &of_.velocity[k * kDof];
+        const double* r = at(of_.metric, k);
+        for (int a = 0; part != kNone && a < 3; ++a)
             for (int b = 0; b < size; ++b) of_.free[part].impulse[a] += r[a * size + b] * (x[b] - z[b]);
     }
-    for (uint32_t i = 0; i < b_.nodes.size() && !of_.free.empty(); ++i)
+    for (uint32_t k = 0; k < of_.node.size(); ++k)
+        std::copy_n(&b_.solution[size_t{of_.node[k]} * kDof], size_of(k), &of_.velocity[k * kDof]);
+    list_rows();
+    WholeParts whole(*this);
+    const double near = kNear / sys_.scheme.h;
+    for (uint32_t sweep = 0; sweep < kMostLawSweeps; ++sweep)
+        if (sweep_laws(whole, set_.rows(), static_cast<uint32_t>(of_.row.size())) <= near) break;
+    for (uint32_t k = 0; k < of_.node.size(); ++k)
+        if (!is_split(k)) std::copy_n(&of_.velocity[k * kDof], size_of(k), &b_.solution[size_t{of_.node[k]} * kDof]);
+    for (uint32_t i = 0; i < b_.nodes.size(); ++i)
         if (const uint32_t part = b_.part[i]; part != kNone)
-            Vec3::Map(&b_.solution[size_t{i} * kDof]) += of_.free[part].impulse / of_.free[part].mass;
+            Vec3::Map(&b_.solution[size_t{i} * kDof]) += whole.shift_of(part);
 }
 
 void ContactSplit::add_metric() {

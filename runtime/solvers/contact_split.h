@@ -27,8 +27,7 @@ public:
     // R z onto the known side.
     void add_known(double* side) const;
     // After the last solve: what hangs together freely by as much as the impulses R (x - z) that its nodes miss make of
-    // it as a whole, so that momentum is kept after any number of steps. Not between them, where it would take the
-    // impulses of the z-step for those of a mass as small as the whole's.
+    // it as a whole, and by what contacts answer to that: momentum is kept after any number of steps.
     void move_free_parts();
     // After a solve with z and the impulses as they are: those of the next one. False if the next one is the last.
     bool improve();
@@ -40,6 +39,8 @@ public:
     void change(uint32_t first, uint32_t count, const double* by);
 
 private:
+    class WholeParts;
+
     bool is_split(uint32_t slot) const { return b_.hold[of_.node[slot]] != NodeHold::loose; }
     int size_of(uint32_t slot) const { return b_.matrix.size(of_.node[slot]); }
     std::span<RowTouch> touches(uint32_t row) const {

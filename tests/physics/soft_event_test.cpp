@@ -114,9 +114,9 @@ TEST_P(SoftEvents, TellOneOfEachPairAndAllOfItsPush) {
     const Vec given = totals(above).momentum - first;
     EXPECT_GT(begins, 0);
     EXPECT_GT(hits, 0);
-    // To rounding, but for one step of a cable on a swept solid, of which 4 % of the whole is not told.
-    const bool on_cable = GetParam().swept && std::string(GetParam().other->name) == "cable";
-    EXPECT_LE(norm(told - given), (on_cable ? 0.05 : 2e-3) * norm(given));
+    // Solved directly, but for what the last sweeps changed; of what is swept up to 7 % are not told, where contacts are
+    // found anew within a frame.
+    EXPECT_LE(norm(told - given), (GetParam().swept ? 0.1 : 5e-3) * norm(given));
 }
 
 // Masks that exclude each other keep all that might touch apart, whichever of the two excludes.

@@ -75,7 +75,7 @@ TEST_P(BulletAtCloth, DoesNotPass) {
         ASSERT_TRUE(finite(bullet));
         double lowest = 0;
         for (const Vec& x : points_of(cloth)) lowest = std::min(lowest, x.y);
-        ASSERT_GE(position(bullet).y, lowest - 0.5 * kRadius) << "frame " << i;
+        ASSERT_GE(position(bullet).y, lowest - kRadius) << "frame " << i;
     }
 }
 
