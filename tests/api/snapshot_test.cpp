@@ -203,6 +203,7 @@ TEST(Snapshot, AFailedAllocationChangesNothing) {
         {
             WithCable p(ledger.hooks());
             ASSERT_OK(taut_cable_remove(p.cable));
+            for (int i = 0; i < 4; ++i) p.add_cable();  // where the memory of the one was
             p.step(5);
             const Watch watch(p.world);
             ledger.fail_from = ledger.calls + n;
