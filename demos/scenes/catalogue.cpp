@@ -100,8 +100,8 @@ const std::vector<Family>& families() {
          build_beam, 49},
         {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped beside each other", 240, false, build_solid_drop,
          50},
-        {"armadillo_eR", "armadillo_e1e5", "a figure of R Pa falls on the ground", 240, false, build_armadillo, 0,
-         true, true},
+        {"armadillo_eR", "armadillo_e1e5", "a figure of R Pa falls on the ground", 240, false, build_armadillo, 0, true,
+         true},
         {"cloth_loaded", "cloth_loaded", "balls of 500 vertices' mass hang on a sheet", 360, false, build_cloth_loaded,
          0},
         {"cloth_fem_beside_links", "cloth_fem_beside_links", "a sheet of links beside one of triangles", 300, false,
@@ -155,7 +155,8 @@ const std::vector<Family>& families() {
         {"soft_car", "soft_car", "a car on tyres with gas drives over bumps", 480, false, build_soft_car, 0, false,
          true},
         {"cloth_file", "cloth_file", "a cloth of an OBJ file falls on a ball", 360, true, build_cloth_file, 0},
-        {"solid_file", "solid_file", "a solid of a mesh file falls on a step", 300, true, build_solid_file, 0, false, true},
+        {"solid_file", "solid_file", "a solid of a mesh file falls on a step", 300, true, build_solid_file, 0, false,
+         true},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

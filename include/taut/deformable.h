@@ -45,8 +45,8 @@ extern "C" {
 /** How the world's default solver takes the elements of a deformable; the other solvers take all alike. */
 typedef enum taut_deformable_solve {
     TAUT_DEFORMABLE_DIRECT = 0, /**< all at once: exact for any stiffness and load; time grows as vertices^1.5 */
-    /** element by element, in substeps of its island's own, as many as its stiffness and what it bears ask for, up to 64
-        a step: time grows as vertices; what is stiffer or heavier than these hold gives way. Of solids neo-Hookean
+    /** element by element, in substeps of its island's own, as many as its stiffness and what it bears ask for, up to
+       64 a step: time grows as vertices; what is stiffer or heavier than these hold gives way. Of solids neo-Hookean
         tetrahedra alone, others are solved directly; bending and quadrilaterals as joints are, far slower */
     TAUT_DEFORMABLE_SWEPT = 1,
     /** the one of these that is predicted to hold its stiffness and its own weight at the lower cost: swept where its

@@ -99,7 +99,7 @@ struct SurfaceContacts {
     Array<SurfaceContact> contact;  // ascending by a, then b; find_surface_contacts()
     Array<SoftTouch> touch;         // after the last step; ascending by slots of the two; publish_contacts()
     Array<SoftTouch> touch_now;     // scratch of that,
-    Array<TouchPart> part;           // likewise
+    Array<TouchPart> part;          // likewise
     Array<uint32_t> gone;           // nodes removed since: what contacts say of these means nothing
     uint64_t version = 0;           // counts changes of who touches whom
 

@@ -106,8 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Of, SameBitsOnTeams,
                                          OnTeams{"solids3_e1e5", true}, OnTeams{"knee"}, OnTeams{"grains_box1000"},
                                          OnTeams{"meshless1_e1e5"}, OnTeams{"quads"}, OnTeams{"plastic_bar7"}),
                          testing::PrintToStringParamName());
-INSTANTIATE_TEST_SUITE_P(Soak, SameBitsOnTeams,
-                         testing::Values(OnTeams{"meshless3_e1e5"}, OnTeams{"plastic_bar"}),
+INSTANTIATE_TEST_SUITE_P(Soak, SameBitsOnTeams, testing::Values(OnTeams{"meshless3_e1e5"}, OnTeams{"plastic_bar"}),
                          testing::PrintToStringParamName());
 
 // Islands fall asleep, and a brick that is kicked wakes its own.

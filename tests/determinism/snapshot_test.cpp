@@ -45,8 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Restored,
                                          Case{"solids2_e1e5", 1, true}, Case{"cloth_hang20", 2, false, 100, true},
                                          Case{"solids2_e1e5", 2, true, 100, true}, Case{"knee", 1},
                                          Case{"grains_box300", 2}, Case{"meshless1_e1e5", 1, true},
-                                         Case{"quads", 2, false, 30}, Case{"plastic_bar7", 2},
-                                         Case{"tearing_flag", 1}),
+                                         Case{"quads", 2, false, 30}, Case{"plastic_bar7", 2}, Case{"tearing_flag", 1}),
                          testing::PrintToStringParamName());
 
 // What a host's calls leave to later steps: forces, paths of kinematic bodies, time left over; and sensors, continuous

@@ -116,7 +116,8 @@ INSTANTIATE_TEST_SUITE_P(Seeds, FallsOnNet, testing::Range<uint32_t>(1, 13));
 
 TEST_P(FallsOnNet, ContactsObeyTheirLaws) {
     constexpr double kFriction = 0.5;  // of the rig's contacts
-    // Ten steps from no impulse leave up to 3 % of an impact of .5 m/s, thirty 1 %; the next substep goes on from there.
+    // Ten steps from no impulse leave up to 3 % of an impact of .5 m/s, thirty 1 %; the next substep goes on from
+    // there.
     constexpr double kNear = 0.02;  // [m/s]
     const Eigen::MatrixXd a = matrix();
     Eigen::MatrixXd j;
