@@ -468,11 +468,12 @@ void Broadphase::State::walk(const btDbvt& of, const Asks& asks, Probe& probe, V
     }
 }
 
-void Broadphase::visit(Probe probe, Visitor& visitor) const {
+void Broadphase::visit(Probe probe, Visitor& visitor, bool grains) const {
     const State& s = *state_;
     for (const uint32_t id : s.strays)
-        if (s.boxes.of[id].stray) visitor.visit(id, probe);
+        if (s.boxes.of[id].stray && (grains || !s.boxes.of[id].grain)) visitor.visit(id, probe);
     for (const btDbvt* tree : {&s.tree, &s.grains}) {
+        if (tree == &s.grains && !grains) continue;
         if (probe.along == Vec3::Zero() && probe.reach == 0)
             s.walk(*tree, Overlap(probe), probe, visitor);
         else

@@ -195,8 +195,8 @@ public:
     void clear_strays();
     void note_stray(uint32_t id);
     // Visits each id whose box the probe may meet, roughly the nearest first; in an order that depends on the tree's
-    // history. Any number of threads at once.
-    void visit(Probe probe, Visitor& visitor) const;
+    // history. Any number of threads at once. Without grains: but for those.
+    void visit(Probe probe, Visitor& visitor, bool grains = true) const;
 
 private:
     struct State;

@@ -2,6 +2,7 @@
 // kernels, or with the axis of a round one; faces with what stands out of it.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "detect/detect.h"
@@ -29,6 +30,7 @@ public:
           shape_(scene_.shapes[of_.shape].shape),
           at_(scene_.renewed.empty() ? scene_.pairs.placement[collider]
                                      : placement_of(scene_.nodes, of_, scene_.elapsed)),
+          all_(finder.renews_all(soft, collider)),
           time_(static_cast<float>(scene_.time)) {
         at_.position -= mesh_.origin;
         const NodeMotion& motion = scene_.nodes.motion[of_.node];
@@ -45,7 +47,9 @@ public:
         list_ends();
         Array<uint32_t>& near = scene_.pairs.surfaces.near;
         near.clear();
-        for_triangles_in(mesh_, box, [&](uint32_t t) { near.push_back(t); });
+        for_triangles_in(mesh_, box, [&](uint32_t t) {
+            if (renews(t)) near.push_back(t);
+        });
         for (const uint32_t t : near) {
             for (uint32_t k = 0; k < 3; ++k) {
                 if (mesh_.owns[t] >> k & 1) find_edge(mesh_.edge_of[3 * t + k]);
@@ -58,6 +62,7 @@ public:
 
 private:
     bool spans() const { return of_.node_b != kNone; }
+    bool renews(uint32_t t) const { return all_ || mesh_.renews(t); }
     bool is_round() const {
         return shape_.kind == collision::ShapeKind::sphere || shape_.kind == collision::ShapeKind::capsule;
     }
@@ -153,6 +158,20 @@ private:
         });
     }
 
+    // Likewise of anything between them, by the distance alone, whose square bends by no more than 2 along a line: of
+    // two ends, at least D from it and L apart, what lies between is no nearer than (D^2 - L^2 / 4)^1/2, of three no
+    // nearer than (D^2 - L^2 / 3)^1/2.
+    bool vertices_always_suffice(std::span<const uint32_t> vertices) const {
+        float nearest = std::numeric_limits<float>::infinity(), longest = 0;  // squared
+        for (size_t i = 0; i < vertices.size(); ++i) {
+            const Vec3f& x = mesh_.x[vertices[i]];
+            nearest = std::min(nearest, (on_axis(x) - x).squaredNorm());
+            for (size_t k = 0; k < i; ++k) longest = std::max(longest, (mesh_.x[vertices[k]] - x).squaredNorm());
+        }
+        const float between = nearest - longest / (vertices.size() == 2 ? 4.0f : 3.0f);
+        return std::sqrt(nearest) - std::sqrt(std::max(between, 0.0f)) < kSuffices * margin_;
+    }
+
     void find_edge(uint32_t e) {
         if (is_round())
             find_round_edge(e);
@@ -162,6 +181,7 @@ private:
 
     void find_round_edge(uint32_t e) {
         const SurfaceEdge& edge = mesh_.edge[e];
+        if (vertices_always_suffice(edge.vertex)) return;
         const bool ball = shape_.kind == collision::ShapeKind::sphere;
         SurfaceContact contact;
         Passing passing{};
@@ -365,7 +385,9 @@ private:
             about.add(at);
             about = about.swept(time_ * (velocity - mesh_.drift)).grown(corner.radius + margin_);
             Within within;
-            for_triangles_in(mesh_, about, [&](uint32_t t) { find_face(t, corner, at, velocity, node, within); });
+            for_triangles_in(mesh_, about, [&](uint32_t t) {
+                if (renews(t)) find_face(t, corner, at, velocity, node, within);
+            });
             if (within.any) add(within.contact, within.feature, corner.number);
         }
     }
@@ -380,6 +402,7 @@ private:
     void find_face(uint32_t t, const collision::Corner& corner, const Vec3f& at, const Vec3f& velocity, uint32_t node,
                    Within& within) {
         const uint32_t* vertex = &soft_.triangle[3 * size_t{t}];
+        if (is_round() && vertices_always_suffice({vertex, 3})) return;
         SurfaceContact contact;
         Passing passing{};
         passing.of = Passing::Of::vertex_face;
@@ -416,6 +439,7 @@ private:
     const Collider& of_;
     const collision::Shape& shape_;
     collision::Placement at_;  // in the mesh's frame
+    bool all_;                 // triangles meet it anew
     float time_, margin_ = 0;
     Vec3f centre_, velocity_, spin_;  // of its node
     Vec3f way_;                       // of it, as seen from what moves as the surface does on average
@@ -455,7 +479,7 @@ void find_surface_shapes(SurfaceFinder& finder) {
         const SurfaceBox box = mesh.node.front().box.swept(static_cast<float>(scene.time) * mesh.drift);
         collision::Probe probe{mesh.origin, Vec3::Zero(), box.lo.cast<double>(), box.hi.cast<double>()};
         NearShapes near(scene, mesh);
-        scene.broadphase.visit(probe, near);
+        scene.broadphase.visit(probe, near, !scene.colliders.grains.empty());  // vertices are among those
         std::ranges::sort(colliders);
         for (const uint32_t collider : colliders) SurfaceShape(finder, s, collider).find();
     }
