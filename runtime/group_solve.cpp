@@ -29,8 +29,7 @@ GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const
       lends_(one_step_ && world.team.size() > 1 && group_.blocks.empty() && world.nodes.load.empty() && !airy_ &&
              !world.observer && !world.def.report),
       loan_(world.team, system_, group_, world.nodes),
-      renewed_(world.memory),
-      surfaces_until_(static_cast<double>(world.def.time_step)) {
+      renewed_(world.memory) {
     const auto is_surface = [&](uint32_t node) { return is_surface_vertex(world.nodes, world.softs, node); };
     if (!solver.lanes || !group_.blocks.empty() || std::ranges::none_of(group_.nodes, is_surface)) return;
     renewed_.assign(world.nodes.slots(), Renewed::unmoved);
@@ -89,22 +88,19 @@ void GroupSolve::renew_surfaces() {
     const auto motion = [&](uint32_t node) -> const NodeMotion& {
         return system_.lent ? system_.motion[system_.at(node)] : w_.nodes.motion[node];
     };
-    const double lasted = now - surfaces_found_;
-    const bool over = now + 0.5 * clock_.length() > surfaces_until_;
-    if (!over && !have_strayed(w_.softs, renewed_, lasted, motion)) return;
-    // As what moves as it did may last as long again, and longer.
-    const double left = static_cast<double>(w_.def.time_step) - now, ahead = std::min(2 * lasted, left);
+    const double since = now - surfaces_found_, ahead = static_cast<double>(w_.def.time_step) - now;
+    if (!have_strayed(w_.softs, renewed_, since, clock_.length(), motion)) return;
     loan_.end();
     SurfaceContacts& surfaces = w_.pairs.surfaces;
     store_surface_lanes(w_.team, system_, surfaces);
     Array<SurfaceHit> hits_before(surfaces.contact.size(), SurfaceHit{}, w_.memory);
-    store_surface_hits(system_, hits_before);
+    store_surface_hits(system_, surfaces, hits_before);
     Array<uint32_t> successor(w_.memory);
     renew_surface_contacts(w_.team,
-                           {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.broadphase, ahead, now, renewed_},
+                           {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.broadphase, ahead, now, renewed_,
+                            since, clock_.length()},
                            w_.pre_solve, successor);
     surfaces_found_ = now;
-    surfaces_until_ = now + ahead;
     w_.partition.renew_surfaces(index_, surfaces, successor);
     Array<SurfaceHit> hits(surfaces.contact.size(), SurfaceHit{}, w_.memory);
     for (uint32_t k = 0; k < successor.size(); ++k)

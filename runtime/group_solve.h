@@ -63,8 +63,7 @@ private:
     MotionLoan loan_;
     bool loaded_ = false, sane_ = false;  // the nodes, as far as is known
     Array<Renewed> renewed_;              // by node; empty: contacts of surfaces are as the frame began
-    double surfaces_found_ = 0;           // when they were, of the frame [s],
-    double surfaces_until_;               // and for how long
+    double surfaces_found_ = 0;           // when they were, of the frame [s]
 };
 
 }  // namespace taut

@@ -31,6 +31,7 @@ struct SurfaceScene {
     double elapsed = 0;  // of the frame [s]; kinematic nodes move at its end
     // Within a frame, by node: whose contacts are found anew. Empty: all.
     std::span<const Renewed> renewed = {};
+    double since = 0, step = 0;  // contacts were found last; that comes [s]
 
     Vec3 place_of(uint32_t node) const {
         const NodeMotion& motion = nodes.motion[node];
@@ -42,21 +43,29 @@ struct SurfaceScene {
 // Into Pairs::surfaces, with the forces of those that touched before. After update_pairs() of the frame.
 void find_surface_contacts(Team& team, const SurfaceScene& scene);
 
-// Contacts as they were found miss nothing while vertices keep to the ways that they were found for: of two that each
-// are off by half the margin, none is nearer by more than the margin. Whether some vertex is off by more, a time [s]
-// since. motion: of the node of a vertex.
+// Parts of the margin. Contacts miss nothing while no vertex is off the way that they were found for by more than the
+// first. Then those that are off by more than the second get new ways, on which triangles meet others where these are,
+// not where they should be: 2 kStrays + kRenews = 1.
+constexpr float kStrays = 0.375f, kRenews = 0.25f;
+
+// Whether what is left of a time ends within a step.
+inline bool is_over(float left, double step) { return left < 0.999f * static_cast<float>(step); }
+
+// Whether some vertex is off its way, a time [s] since, or a way ends within a step [s]. motion: of the node of a
+// vertex.
 template <class MotionOf>
-bool have_strayed(const Softs& softs, std::span<const Renewed> renewed, double since, MotionOf&& motion) {
+bool have_strayed(const Softs& softs, std::span<const Renewed> renewed, double since, double step, MotionOf&& motion) {
     for (size_t s = 0; s < softs.mesh.size(); ++s) {
         const Soft& soft = softs.record[s];
         const SurfaceMesh& mesh = softs.mesh[s];
         if (mesh.version == 0 || mesh.collider == kNone || !mesh.awake) continue;
         const auto time = static_cast<float>(since);
-        const float most = 0.25f * mesh.margin * mesh.margin;
+        if (is_over(mesh.left - time, step) && renewed[soft.node.front()] == Renewed::own) return true;
+        const float most = kStrays * kStrays * mesh.margin * mesh.margin;
         for (uint32_t v = 0; v < soft.vertices(); ++v) {
             if (renewed[soft.node[v]] != Renewed::own) continue;
             const Vec3f now = (motion(soft.node[v]).x - mesh.origin).template cast<float>();
-            if (!((now - mesh.x[v] - time * mesh.v[v]).squaredNorm() <= most)) return true;
+            if (!((now - mesh.way[v] - time * mesh.v[v]).squaredNorm() <= most)) return true;
         }
     }
     return false;

@@ -5,12 +5,11 @@
 
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
+#include "detect/triangle_pairs.h"
 #include "detect/untangle.h"
 
 namespace taut {
 namespace {
-
-constexpr int kMostSteps = 8;  // of an advance; what is not there by then counts as there: the contact is one to come
 
 // Of its owner, a soft body or a shape.
 bool is_still(const SurfaceScene& scene, uint64_t feature) {
@@ -25,20 +24,61 @@ bool is_listed(const Softs& softs, uint64_t feature) {
 }
 
 auto features_of(const SurfaceContact& contact) { return std::pair(contact.a, contact.b); }
+auto features_of_name(const SurfaceContactName& name) { return std::pair(name.a, name.b); }
+
+void list_names(const Array<SurfaceContact>& contacts, Array<SurfaceContactName>& names) {
+    names.clear();
+    reserve_more(names, contacts.size());
+    for (uint32_t i = 0; i < contacts.size(); ++i) names.push_back({contacts[i].a, contacts[i].b, i});
+}
 
 }  // namespace
 
+SurfaceFinder::SurfaceFinder(const SurfaceScene& scene)
+    : scene_(scene), before_(scene.pairs.surfaces.contact), found_(scene.pairs.surfaces.found) {
+    list_names(scene.pairs.surfaces.contact, scene.pairs.surfaces.name_before);
+    name_before_ = scene.pairs.surfaces.name_before;
+    found_.clear();
+}
+
 const SurfaceContact* SurfaceFinder::before(uint64_t a, uint64_t b) const {
-    const auto at = std::ranges::lower_bound(before_, std::pair(a, b), {}, features_of);
-    return at != before_.end() && features_of(*at) == std::pair(a, b) ? &*at : nullptr;
+    const auto at = std::ranges::lower_bound(name_before_, std::pair(a, b), {}, features_of_name);
+    return at != name_before_.end() && features_of_name(*at) == std::pair(a, b) ? &before_[at->index] : nullptr;
+}
+
+// Whether a feature of a surface has contacts found anew: by the triangle that owns it.
+static bool renews_feature(const Softs& softs, uint64_t feature) {
+    const SurfaceMesh& mesh = softs.mesh[feature >> 32];
+    const uint32_t index = index_of(feature);
+    switch (part_of(feature)) {
+        case SurfacePart::vertex:
+            return mesh.renews(mesh.owner[index]);
+        case SurfacePart::face:
+            return mesh.renews(index);
+        case SurfacePart::edge:
+            return mesh.renews(mesh.edge[index].triangle[0]);
+        case SurfacePart::cut:
+            return mesh.renews(mesh.edge[index / 2].triangle[0]);
+    }
+    return true;
+}
+
+// What is within a solid leaves it by the nearest of all faces.
+bool SurfaceFinder::renews_all(uint32_t soft, uint32_t collider) const {
+    const Collider& of = scene_.colliders.record[collider];
+    return scene_.renewed.empty() || scene_.nodes.info[of.node].kind != NodeKind::fixed ||
+           scene_.softs.record[soft].kind == SoftKind::solid;
 }
 
 bool SurfaceFinder::renews(const SurfaceContact& contact) const {
     if (scene_.renewed.empty()) return true;
-    const bool listed =
-        is_listed(scene_.softs, contact.a) && (is_of_shape(contact.b) || is_listed(scene_.softs, contact.b));
-    return listed &&
-           std::ranges::all_of(contact.node, [&](uint32_t node) { return node == kNone || scene_.may_renew(node); });
+    const bool of_shape = is_of_shape(contact.b);
+    if (!is_listed(scene_.softs, contact.a) || !(of_shape || is_listed(scene_.softs, contact.b))) return false;
+    if (!std::ranges::all_of(contact.node, [&](uint32_t node) { return node == kNone || scene_.may_renew(node); }))
+        return false;
+    if (renews_feature(scene_.softs, contact.a)) return true;
+    return of_shape ? renews_all(static_cast<uint32_t>(contact.a >> 32), collider_of_shape(contact.b))
+                    : renews_feature(scene_.softs, contact.b);
 }
 
 void SurfaceFinder::keep_still() {
@@ -100,10 +140,6 @@ float Passing::size() const {
     return std::sqrt(squared);
 }
 
-bool stay_apart(const Passing& passing, float reach, float time) {
-    return passing.nearest(passing.x).distance() > reach + time * passing.speed();
-}
-
 bool meet(const Passing& passing, float reach, float time, Nearest& out) {
     const float speed = passing.speed();
     float now = 0;
@@ -113,7 +149,7 @@ bool meet(const Passing& passing, float reach, float time, Nearest& out) {
         out = passing.nearest(at);
         const float beyond = out.distance() - reach;
         if (!(beyond > 0)) return true;
-        if (step == kMostSteps) return now > 0;
+        if (step == kMostAdvances) return now > 0;
         if (!(beyond < speed * (time - now))) return false;
         now += beyond / speed;
     }
@@ -237,27 +273,25 @@ static void turn_to_passage(const SurfaceScene& scene) {
 }
 
 // Into SurfaceContacts::found.
-static void find(const SurfaceScene& scene) {
+static void find(Team& team, const SurfaceScene& scene) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
-    surfaces.found.clear();
     surfaces.crossing.clear();
-    SurfaceFinder finder(scene, surfaces.contact, surfaces.found);
-    find_surface_pairs(finder);
-    untangle(scene, surfaces.found);
+    SurfaceFinder finder(scene);
+    find_surface_pairs(team, finder);
+    untangle(finder, surfaces.found);
     find_surface_shapes(finder);
     finder.keep_still();
 }
 
 // Those found, by features.
 static void order_found(SurfaceContacts& surfaces) {
-    surfaces.order.clear();
-    for (uint32_t i = 0; i < surfaces.found.size(); ++i) surfaces.order.push_back(i);
-    std::ranges::sort(surfaces.order, {}, [&](uint32_t i) { return features_of(surfaces.found[i]); });
+    list_names(surfaces.found, surfaces.order);
+    std::ranges::sort(surfaces.order, {}, features_of_name);
 }
 
 static void take_found(SurfaceContacts& surfaces) {
     surfaces.contact.clear();
-    for (const uint32_t i : surfaces.order) surfaces.contact.push_back(surfaces.found[i]);
+    for (const SurfaceContactName& name : surfaces.order) surfaces.contact.push_back(surfaces.found[name.index]);
 }
 
 void find_surface_contacts(Team& team, const SurfaceScene& scene) {
@@ -273,11 +307,11 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
         surfaces.gone.clear();
         ++surfaces.version;
     }
-    find(scene);
+    find(team, scene);
     order_found(surfaces);
     bool same = surfaces.contact.size() == surfaces.found.size();
     for (uint32_t i = 0; i < surfaces.found.size() && same; ++i)
-        same = std::ranges::equal(surfaces.contact[i].node, surfaces.found[surfaces.order[i]].node);
+        same = std::ranges::equal(surfaces.contact[i].node, surfaces.found[surfaces.order[i].index].node);
     surfaces.version += same ? 0 : 1;
     take_found(surfaces);
     turn_to_passage(scene);
@@ -290,8 +324,8 @@ static void keep_pushes(SurfaceContacts& surfaces) {
     size_t now = 0;
     for (const SurfaceContact& was : surfaces.contact) {
         const auto name = features_of(was);
-        while (now < found && features_of(surfaces.found[surfaces.order[now]]) < name) ++now;
-        if (now < found && features_of(surfaces.found[surfaces.order[now]]) == name) continue;
+        while (now < found && features_of_name(surfaces.order[now]) < name) ++now;
+        if (now < found && features_of_name(surfaces.order[now]) == name) continue;
         if (!(was.pushed > 0)) continue;
         SurfaceContact& kept = surfaces.found.emplace_back(was);
         kept.force = {};
@@ -304,13 +338,13 @@ void renew_surface_contacts(Team& team, const SurfaceScene& scene, const PreSolv
                             Array<uint32_t>& successor) {
     SurfaceContacts& surfaces = scene.pairs.surfaces;
     refit_surfaces(team, scene);
-    find(scene);
+    find(team, scene);
     filter_surfaces(scene.nodes, scene.colliders, scene.shapes, pre_solve, scene.pairs, surfaces.found);
     order_found(surfaces);
     keep_pushes(surfaces);
     successor.assign(surfaces.contact.size(), kNone);
     for (uint32_t now = 0, was = 0; now < surfaces.order.size() && was < surfaces.contact.size();) {
-        const auto one = features_of(surfaces.contact[was]), other = features_of(surfaces.found[surfaces.order[now]]);
+        const auto one = features_of(surfaces.contact[was]), other = features_of_name(surfaces.order[now]);
         if (one == other) successor[was] = now;
         was += one <= other;
         now += other <= one;

@@ -17,6 +17,7 @@ constexpr uint64_t feature_of(uint32_t soft, SurfacePart part, uint32_t index) {
 constexpr uint32_t index_of(uint64_t feature) { return static_cast<uint32_t>(feature) & ((1u << 30) - 1); }
 constexpr SurfacePart part_of(uint64_t feature) { return static_cast<SurfacePart>(feature >> 30 & 3); }
 constexpr bool is_of_shape(uint64_t feature) { return feature >> 63 != 0; }
+constexpr uint32_t collider_of_shape(uint64_t feature) { return static_cast<uint32_t>(feature >> 32) & ~(1u << 31); }
 constexpr uint64_t feature_of_shape(uint32_t collider, uint32_t number) {
     return uint64_t{1} << 63 | uint64_t{collider} << 32 | number;
 }
@@ -38,8 +39,7 @@ struct SurfaceTouch {
 
 class SurfaceFinder {
 public:
-    SurfaceFinder(const SurfaceScene& scene, std::span<const SurfaceContact> before, Array<SurfaceContact>& found)
-        : scene_(scene), before_(before), found_(found) {}
+    explicit SurfaceFinder(const SurfaceScene& scene);
 
     // A contact of two features in touch before; null: they were not.
     const SurfaceContact* before(uint64_t a, uint64_t b) const;
@@ -56,6 +56,8 @@ public:
     std::span<const SurfaceContact> all_before() const { return before_; }
     // Whether one of before is found anew, or is not there any more.
     bool renews(const SurfaceContact& contact) const;
+    // Whether all those of a soft body with a shape are: also of triangles that keep to their ways.
+    bool renews_all(uint32_t soft, uint32_t collider) const;
     // Those in touch before of which no side has moved since, or that are not to be renewed: they stay.
     void keep_still();
 
@@ -64,6 +66,7 @@ public:
 private:
     const SurfaceScene& scene_;
     std::span<const SurfaceContact> before_;
+    std::span<const SurfaceContactName> name_before_;  // of the same
     Array<SurfaceContact>& found_;
 };
 
@@ -87,9 +90,6 @@ struct Passing {
     float size() const;
 };
 
-// Whether they are too far apart to come within a reach in a time.
-bool stay_apart(const Passing& passing, float reach, float time);
-
 // When two features first come within a reach, by conservative advancement: the distance falls no faster than they
 // move. Where they are then, in out; false: not in the time.
 bool meet(const Passing& passing, float reach, float time, Nearest& out);
@@ -106,7 +106,7 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
            SurfaceContact& contact);
 
 // Contacts of a surface with itself and of two with each other; of one with shapes.
-void find_surface_pairs(SurfaceFinder& finder);
+void find_surface_pairs(Team& team, SurfaceFinder& finder);
 void find_surface_shapes(SurfaceFinder& finder);
 
 }  // namespace taut

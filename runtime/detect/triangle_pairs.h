@@ -1,12 +1,14 @@
-// Pairs of triangles in lanes: which of their features, corners with faces and edges with edges, may come within a
-// reach of each other where one lies over or under the other, and which triangles may cut. Distances are exact but for
-// rounding, for which reaches have room. What lies beside gets over it only by going there, or where the other turns:
-// by no more than it moves over its height, so that of a reach below half of that it is no more than it moves again.
+// Pairs of triangles in lanes: which of their boxes meet; which features come near; which of their features, corners
+// with faces and edges with edges, may come within a reach of each other where one lies over or under the other, and
+// which triangles may cut. Distances are exact but for rounding, for which reaches have room. What lies beside gets
+// over it only by going there, or where the other turns: by no more than it moves over its height, so that of a reach
+// below half of that it is no more than it moves again.
 #pragma once
 
 #include <cstdint>
 
 #include "simd/width.h"
+#include "state/surface_leaf.h"
 
 namespace taut {
 
@@ -26,9 +28,35 @@ struct TrianglePairs {
     uint32_t near[kLanes];                      // out: NearFeatures
 };
 
+// A triangle as it goes by those of a leaf of another mesh, in whose frame it is.
+struct PassingTriangle {
+    SurfaceBoxEnds way;  // about its way, as seen from what moves as the other mesh does on average
+    SurfaceBoxEnds box;  // about it now
+    float v[3];          // mean of its corners' velocities [m/s]
+    float spread;        // by which one of them differs from that [m/s]
+    float reach;         // how near the two come to matter [m]
+    float time;          // in which they do [s]
+};
+
+// Pairs of features, of four points in all: a vertex and a face, or two edges.
+struct FeatureLanes {
+    alignas(64) float x[4][3][kLanes], v[4][3][kLanes];  // [m], [m/s]
+    float both, margin;              // the radii of the two together, and how far beyond these they get contacts [m]
+    float of_size;                   // of the shortest of their edges: the radii count as no more together
+    alignas(64) float time[kLanes];  // [s]
+};
+constexpr int kMostAdvances = 8;  // what is not there by then counts as there: the contact is one to come
+
 struct TrianglePairKernel {
     const char* name;
     void (*test)(TrianglePairs& pairs);
+    // Lanes whose boxes meet one.
+    unsigned (*meets)(const SurfaceBoxLanes& lanes, const SurfaceBoxEnds& box);
+    // Lanes whose triangles may come within its reach; moved: by how much one goes past the other, at most [m].
+    unsigned (*passes)(const SurfaceLeaf& leaf, const PassingTriangle& by, float (&moved)[kLanes]);
+    // Lanes whose features come within their reach in the time, as they move now, and do so within both features.
+    unsigned (*meet_faces)(const FeatureLanes& of);
+    unsigned (*meet_edges)(const FeatureLanes& of);
 };
 
 extern const TrianglePairKernel kTrianglePairsScalar, kTrianglePairsSse2, kTrianglePairsAvx2, kTrianglePairsAvx512;

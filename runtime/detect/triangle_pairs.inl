@@ -3,7 +3,7 @@
 #pragma once
 
 #include "constraints/sweep_side.inl"
-#include "detect/triangle_pairs.h"
+#include "detect/feature_meetings.inl"
 
 namespace taut {
 
@@ -25,7 +25,22 @@ public:
             pairs.near[lane] = bits;
         }
     }
-    static constexpr TrianglePairKernel table(const char* name) { return {name, test}; }
+    static unsigned meets(const SurfaceBoxLanes& lanes, const SurfaceBoxEnds& box) {
+        return are_near(lanes, box, F::all(0));
+    }
+    static unsigned passes(const SurfaceLeaf& leaf, const PassingTriangle& by, float (&moved)[kLanes]) {
+        const unsigned met = meets(leaf.way, by.way);
+        if (met == 0) return 0;
+        const V apart{F::load(leaf.v[0]) - F::all(by.v[0]), F::load(leaf.v[1]) - F::all(by.v[1]),
+                      F::load(leaf.v[2]) - F::all(by.v[2])};
+        const F speed = F::sqrt(dot(apart, apart)) + (F::load(leaf.spread) + F::all(by.spread));
+        const F way = least(F::all(by.time), F::load(leaf.left)) * speed;
+        way.store(moved);
+        return met & are_near(leaf.box, by.box, F::all(by.reach) + way);
+    }
+    static constexpr TrianglePairKernel table(const char* name) {
+        return {name, test, meets, passes, FeatureMeetings<F>::of_faces, FeatureMeetings<F>::of_edges};
+    }
 
 private:
     using V = Vec3Lanes<F>;
@@ -47,6 +62,15 @@ private:
         reach_squared_ = F::if_greater(zero, reach, F::all(-1), F::all(kRoom) * reach * reach);
         const F beside = F::all(2) * F::load(pairs.moved);
         beside_squared_ = F::all(kRoom) * beside * beside;
+    }
+
+    // By no more than so far apart along each axis.
+    static unsigned are_near(const SurfaceBoxLanes& lanes, const SurfaceBoxEnds& box, const F& by) {
+        unsigned apart = 0;
+        for (int i = 0; i < 3; ++i)
+            apart |= F::greater(F::load(lanes.lo[i]), F::all(box.hi[i]) + by) |
+                     F::greater(F::all(box.lo[i]), F::load(lanes.hi[i]) + by);
+        return ~apart & kAllLanes;
     }
 
     static F clamped(const F& x) {

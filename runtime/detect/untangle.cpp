@@ -90,9 +90,13 @@ bool goes_through(const Vec3f& p, const Vec3f& q, const Vec3f (&face)[3]) {
     return s >= 0 && t >= 0 && s + t <= whole;
 }
 
-void untangle(const SurfaceScene& scene, Array<SurfaceContact>& found) {
+void untangle(const SurfaceFinder& finder, Array<SurfaceContact>& found) {
+    const SurfaceScene& scene = finder.scene();
     SurfaceContacts& surfaces = scene.pairs.surfaces;
-    if (surfaces.crossing.empty()) return;
+    const auto stays = [&](const SurfaceContact& was) {
+        return part_of(was.a) == SurfacePart::cut && !finder.renews(was);
+    };
+    if (surfaces.crossing.empty() && std::ranges::none_of(finder.all_before(), stays)) return;
     Array<uint32_t>& tangled = surfaces.near;  // by node
     tangled.assign(scene.nodes.slots(), 0);
     for (const SurfaceCrossing& of : surfaces.crossing) {
@@ -100,6 +104,9 @@ void untangle(const SurfaceScene& scene, Array<SurfaceContact>& found) {
         for (const uint32_t vertex : scene.softs.mesh[of.soft].edge[of.edge].vertex) tangled[soft.node[vertex]] = 1;
         for (size_t k = 0; k < 3; ++k) tangled[other.node[other.triangle[3 * size_t{of.face} + k]]] = 1;
     }
+    for (const SurfaceContact& was : finder.all_before())
+        for (const uint32_t node : was.node)
+            if (node != kNone && stays(was)) tangled[node] = 1;
     constexpr int kTangled = 3;  // nodes
     std::erase_if(found, [&](const SurfaceContact& contact) {
         return std::ranges::count_if(contact.node, [&](uint32_t n) { return n != kNone && tangled[n]; }) >= kTangled;

@@ -8,6 +8,7 @@
 
 #include "base/math.h"
 #include "base/memory.h"
+#include "base/shared_list.h"
 #include "collision/collide.h"
 #include "state/contact_force.h"
 #include "state/nodes.h"
@@ -61,6 +62,19 @@ struct SurfaceCrossing {
     uint32_t other, face;
 };
 
+// Two features of surfaces that may come near.
+struct NearFeature {
+    enum class Of : uint8_t { vertex_face, face_vertex, edge_edge } of;  // of the first and the second surface
+    uint32_t one, other;
+    float time;  // in which they do [s]
+};
+
+// By what a contact is known, and where it is in a list.
+struct SurfaceContactName {
+    uint64_t a, b;
+    uint32_t index;
+};
+
 // A soft body and a collider that touch, or two soft bodies, by whichever vertices, edges and triangles; soft bodies as
 // the collider of their first vertex that has one. publish/soft_touches.h
 struct SoftTouch {
@@ -89,6 +103,10 @@ struct SurfaceContacts {
           part(memory),
           gone(memory),
           found(memory),
+          near_feature(memory),
+          touching(memory),
+          cut(memory),
+          name_before(memory),
           order(memory),
           near(memory),
           colliders(memory),
@@ -105,14 +123,20 @@ struct SurfaceContacts {
 
     // Scratch of find_surface_contacts().
     Array<SurfaceContact> found;
-    Array<uint32_t> order, near, colliders;
+    SharedList<NearFeature> near_feature;
+    SharedList<SurfaceContact> touching;
+    SharedList<SurfaceCrossing> cut;
+    Array<SurfaceContactName> name_before;  // of contact
+    Array<SurfaceContactName> order;        // of found
+    Array<uint32_t> near, colliders;
     Array<collision::Corner> corner;
     Array<SurfaceSpan> span;
     Array<SurfaceCrossing> crossing;
 };
 template <class Visitor, Like<SurfaceContacts> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [contact, touch, touch_now, part, gone, version, found, order, near, colliders, corner, span, crossing] = of;
+    auto& [contact, touch, touch_now, part, gone, version, found, near_feature, touching, cut, name_before, order, near,
+           colliders, corner, span, crossing] = of;
     TAUT_FIELDS(visitor, contact, gone);
     TAUT_ASIDE(visitor, version, touch);  // events change no motion
 }

@@ -61,12 +61,12 @@ void rescale_grain_lanes(System& system, double factor);
 void build_surface_lanes(Team& team, System& system, const Group& group, SurfaceContacts& surfaces,
                          const SurfaceKernels& kernels);
 void store_surface_lanes(Team& team, const System& system, SurfaceContacts& surfaces);
-// Within a frame, what lanes know of hits by now, by contact; and back into such that were built anew since, whose gaps
-// are those of now.
+// Within a frame, what lanes know of hits by now, by contact, and gaps as they are now; and hits back into such that
+// were built anew since.
 struct SurfaceHit {
     float peak = 0, approach = 0;  // as of SurfaceGroup
 };
-void store_surface_hits(const System& system, std::span<SurfaceHit> hits);
+void store_surface_hits(const System& system, SurfaceContacts& surfaces, std::span<SurfaceHit> hits);
 void load_surface_hits(System& system, const SurfaceContacts& surfaces, std::span<const SurfaceHit> hits);
 void rescale_surface_lanes(System& system, double factor);
 // Once a substep, before turn_lanes(): levers and effective masses of those on bodies that turned.

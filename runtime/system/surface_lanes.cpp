@@ -184,10 +184,27 @@ void store_surface_lanes(Team& team, const System& system, SurfaceContacts& surf
     });
 }
 
-void store_surface_hits(const System& system, std::span<SurfaceHit> hits) {
+// By which a gap has grown since the begin of the frame.
+static float gap_moved(const System& system, const SurfaceContact& contact, const SurfaceGroup& g, int lane) {
+    Vec3f moved = Vec3f::Zero();
+    for (uint32_t n = 0; n < kSurfaceNodes; ++n)
+        moved += g.weight[n][lane] * Vec3f::Map(system.shift[g.node[n][lane]].dx);
+    if (turns(system, contact)) {
+        const float(&dq)[4] = system.shift[g.node[0][lane]].dq;
+        const Vec3f core = contact.lever - contact.skin, q(dq[0], dq[1], dq[2]), across = q.cross(core);
+        moved += g.weight[0][lane] * 2 * (dq[3] * across + q.cross(across));
+    }
+    return moved.dot(contact.normal);
+}
+
+void store_surface_hits(const System& system, SurfaceContacts& surfaces, std::span<SurfaceHit> hits) {
     for (const SurfaceGroup& g : system.surfaces.group)
-        for (int lane = 0; lane < kLanes; ++lane)
-            if (g.contact[lane] != kNoLanes) hits[g.contact[lane]] = {g.peak[lane], g.approach[lane]};
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (g.contact[lane] == kNoLanes) continue;
+            SurfaceContact& contact = surfaces.contact[g.contact[lane]];
+            hits[g.contact[lane]] = {g.peak[lane], g.approach[lane]};
+            contact.gap = g.gap0[lane] + gap_moved(system, contact, g, lane);
+        }
 }
 
 // Gaps go on from where nodes are now, though what moves them is counted from the begin of the frame on.
@@ -200,15 +217,7 @@ void load_surface_hits(System& system, const SurfaceContacts& surfaces, std::spa
                 g.peak[lane] = hit.peak;
                 g.approach[lane] = hit.approach;
             }
-            Vec3f moved = Vec3f::Zero();
-            for (uint32_t n = 0; n < kSurfaceNodes; ++n)
-                moved += g.weight[n][lane] * Vec3f::Map(system.shift[g.node[n][lane]].dx);
-            if (turns(system, contact)) {
-                const float(&dq)[4] = system.shift[g.node[0][lane]].dq;
-                const Vec3f core = contact.lever - contact.skin, q(dq[0], dq[1], dq[2]), across = q.cross(core);
-                moved += g.weight[0][lane] * 2 * (dq[3] * across + q.cross(across));
-            }
-            g.gap0[lane] -= moved.dot(contact.normal);
+            g.gap0[lane] -= gap_moved(system, contact, g, lane);
         }
     }
 }
