@@ -10,7 +10,7 @@
 namespace taut {
 namespace {
 
-constexpr uint32_t kLeafGrain = 16;  // leaves that a thread takes at a time
+constexpr uint32_t kRefitGrain = 16;  // leaves that a thread takes at a time
 
 // Halves by the middle along the axis on which middles of triangles are spread widest.
 class TreeBuilder {
@@ -257,7 +257,7 @@ void refit_leaf(const SurfaceScene& scene, const Soft& soft, SurfaceMesh& mesh, 
 }
 
 void refit(Team& team, const SurfaceScene& scene, const Soft& soft, SurfaceMesh& mesh) {
-    team.for_ranges(static_cast<uint32_t>(mesh.leaf.size()), kLeafGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(static_cast<uint32_t>(mesh.leaf.size()), kRefitGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) refit_leaf(scene, soft, mesh, mesh.leaf[i]);
     });
     for (size_t i = mesh.node.size(); i-- > 0;) {
