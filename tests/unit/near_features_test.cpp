@@ -13,7 +13,7 @@
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
 #include "detect/untangle.h"
-#include "solvers/rig.h"
+#include "world.h"
 
 namespace taut::test {
 namespace {
@@ -115,7 +115,13 @@ protected:
     }
 
     static constexpr float kReach = 0.012f, kRadii = 0.008f, kTime = 1.0f / 120;
-    World w_{default_def()};
+    static taut_world_def any_world() {
+        taut_world_def def;
+        taut_world_def_init(&def);
+        return def;
+    }
+
+    World w_{any_world()};
     Team alone_{taut_hooks{}, 1}, three_{taut_hooks{}, 3};
 };
 
