@@ -73,6 +73,7 @@ Scene build_grains_through_mesh(double n, double r, const Options& options);
 Scene build_sand_on_table(double n, double r, const Options& options);
 Scene build_sack(double n, double r, const Options& options);
 Scene build_soft_car(double n, double r, const Options& options);
+Scene build_tyre(double n, double r, const Options& options);
 Scene build_cloth_file(double n, double r, const Options& options);
 Scene build_solid_file(double n, double r, const Options& options);
 

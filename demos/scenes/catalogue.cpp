@@ -154,6 +154,8 @@ const std::vector<Family>& families() {
         {"sack", "sack", "rocks in a bag of cloth that a cable lifts", 480, false, build_sack, 0, false, true},
         {"soft_car", "soft_car", "a car on tyres with gas drives over bumps", 480, false, build_soft_car, 0, false,
          true},
+        {"tyre", "tyre", "a tyre with gas rolls over a plank and kerbs under its load", 480, false, build_tyre, 0,
+         false, true},
         {"cloth_file", "cloth_file", "a cloth of an OBJ file falls on a ball", 360, true, build_cloth_file, 0},
         {"solid_file", "solid_file", "a solid of a mesh file falls on a step", 300, true, build_solid_file, 0, false,
          true},

@@ -64,6 +64,7 @@ Scene soft_pile(int figures, const Options& options) {
         solid.def.young_modulus = kind.young;
         solid.def.poisson_ratio = kind.poisson;
         solid.def.density = static_cast<float>(kDensity);
+        solid.def.self_collision = 1;
         solid.def.solve = TAUT_DEFORMABLE_AUTO;
         solid.look.paint = kind.paint;
         if (i < kMaterials) solid.look.label = kind.label;
@@ -93,6 +94,7 @@ Scene build_bunnies_on_cloth(double, double, const Options& options) {
     Cloth cloth = grid_cloth(kSide, kSide, kWide, kWide, kHeight);
     cloth.def.kind = TAUT_CLOTH_LINKS;
     cloth.def.area_density = 0.4f;
+    cloth.def.self_collision = 1;
     sag(cloth, kWide, 0.6);
     cloth.pinned = {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1};
     cloth.look.colours = SoftColours::plain;
@@ -140,7 +142,7 @@ Scene build_dragon_on_stairs(double, double, const Options& options) {
         const taut_pos at = {-0.6 + 0.6 * (i % 3), kRise * (kSteps - step) + 0.13, (step - 0.5 * kSteps) * kRun};
         scene.roles.pile.push_back(scene.add_body(crate(box, at, 6)));
     }
-    scene.camera = {{3.4, 2.3, 3.4}, {0, 0.75, 0.1}, 40};
+    scene.camera = {{3.9, 2.4, 3.9}, {0, 0.6, 0.5}, 42};
     scene.stage = {{-3, 0, -3}, {3, 3, 4}};
     perturb(scene, options.seed);
     return scene;
@@ -158,6 +160,7 @@ Scene build_cow_falls(double, double, const Options& options) {
     cow.def.poisson_ratio = 0.45f;
     cow.def.density = 900;
     cow.def.solve = TAUT_DEFORMABLE_AUTO;
+    cow.def.self_collision = 1;
     cow.look = {SoftColours::stress, 0.25 * kYoung, 0, ""};
     scene.add_solid(std::move(cow));
     scene.camera = {{2.6, 1.3, 1.7}, {0, 0.6, 0}, 40};

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "builders.h"
 #include "parts.h"
@@ -16,6 +18,10 @@ namespace {
 struct Weave {
     int rows, columns;
 };
+
+// Panels touch themselves and the body, not each other, between which it is: at a seam that folds they cross whatever
+// pushes them apart.
+constexpr int32_t kPanels = -23;
 
 constexpr double kHem = 0.72, kLength = 0.72;       // height of the hem, from there to the shoulders [m]
 constexpr double kArmhole = 0.47, kNeck = 0.085;    // sides are sewn up to; half of its opening [m]
@@ -145,23 +151,75 @@ void walk(Scene& scene, int first) {
     }
 }
 
-// Returns its first body; all follow in the order below.
+// A limb of the mannequin.
+struct Limb {
+    taut_pos from, to;
+    double radius;
+};
+constexpr Limb kLimbs[] = {
+    {{0, 0.95, 0}, {0, 1.22, 0}, 0.125},          // trunk
+    {{-0.045, 1.24, 0}, {0.045, 1.24, 0}, 0.11},  // chest
+    {{-0.15, 1.33, 0}, {0.15, 1.33, 0}, 0.055},   // shoulders
+    {{0, 1.4, 0}, {0, 1.5, 0}, 0.05},             // neck
+    {{0, 1.58, 0.01}, {0, 1.65, 0.01}, 0.09},     // head
+    {{-0.17, 1.33, 0}, {-0.36, 1.08, 0}, 0.042},  // arms
+    {{0.17, 1.33, 0}, {0.36, 1.08, 0}, 0.042},
+    {{-0.08, 0.88, 0}, {-0.09, 0.1, 0}, 0.075},  // legs
+    {{0.08, 0.88, 0}, {0.09, 0.1, 0}, 0.075},
+};
+
+// Moved out of a limb to a distance from it.
+taut_pos outside(const Limb& limb, double away, taut_pos p) {
+    const taut_pos along = minus(limb.to, limb.from), there = minus(p, limb.from);
+    const double square = along.x * along.x + along.y * along.y + along.z * along.z;
+    const double t = std::clamp((along.x * there.x + along.y * there.y + along.z * there.z) / square, 0.0, 1.0);
+    const taut_pos axis = plus(limb.from, t * along.x, t * along.y, t * along.z);
+    const double distance = length(minus(p, axis)), wanted = limb.radius + away;
+    return distance >= wanted || distance == 0 ? p : toward(axis, p, wanted);
+}
+
+// The start of both panels, fitted: edges as long as in the pattern, seams closed, outside of the body, each panel on
+// its side of it; by sweeps of projections (Jakobsen 2001). What draped() says is stretched by half over the shoulders,
+// and let go so the tunic would fling itself about.
+void fit(Scene& scene) {
+    constexpr int kRounds = 600;
+    struct Edge {
+        Cloth* cloth;
+        uint32_t a, b;
+        double rest;
+    };
+    std::vector<Edge> edges;
+    std::vector<bool> sewn(scene.cloths[0].points.size(), false);
+    for (const Joint& stitch : scene.joints) sewn[stitch.vertex_a.vertex] = true;
+    for (Cloth& cloth : scene.cloths) {
+        std::set<std::pair<uint32_t, uint32_t>> seen;
+        for (size_t t = 0; t < cloth.triangles.size(); ++t) {
+            const uint32_t v = cloth.triangles[t], next = cloth.triangles[t % 3 == 2 ? t - 2 : t + 1];
+            const auto [a, b] = std::minmax(v, next);
+            if (seen.emplace(a, b).second) edges.push_back({&cloth, a, b, length(minus(cloth.rest[b], cloth.rest[a]))});
+        }
+    }
+    const double away = static_cast<double>(scene.cloths[0].def.thickness);
+    for (int round = 0; round < kRounds; ++round) {
+        for (const Edge& edge : edges) {
+            taut_pos &a = edge.cloth->points[edge.a], &b = edge.cloth->points[edge.b];
+            const taut_pos centre = middle(a, b), half = minus(b, centre);
+            const double scale = edge.rest / (2 * length(half));
+            a = plus(centre, -scale * half.x, -scale * half.y, -scale * half.z);
+            b = plus(centre, scale * half.x, scale * half.y, scale * half.z);
+        }
+        for (size_t v = 0; v < sewn.size(); ++v) {
+            taut_pos &front = scene.cloths[0].points[v], &back = scene.cloths[1].points[v];
+            if (sewn[v]) front = back = middle(front, back);
+            front.z = sewn[v] ? front.z : std::fmax(front.z, away);
+            back.z = sewn[v] ? back.z : std::fmin(back.z, -away);
+            for (const Limb& limb : kLimbs) front = outside(limb, away, front), back = outside(limb, away, back);
+        }
+    }
+}
+
+// Returns its first body; all follow in the order of the limbs.
 int add_mannequin(Scene& scene) {
-    struct Limb {
-        taut_pos from, to;
-        double radius;
-    };
-    constexpr Limb kLimbs[] = {
-        {{0, 0.95, 0}, {0, 1.22, 0}, 0.125},          // trunk
-        {{-0.045, 1.24, 0}, {0.045, 1.24, 0}, 0.11},  // chest
-        {{-0.15, 1.33, 0}, {0.15, 1.33, 0}, 0.055},   // shoulders
-        {{0, 1.4, 0}, {0, 1.5, 0}, 0.05},             // neck
-        {{0, 1.58, 0.01}, {0, 1.65, 0.01}, 0.09},     // head
-        {{-0.17, 1.33, 0}, {-0.36, 1.08, 0}, 0.042},  // arms
-        {{0.17, 1.33, 0}, {0.36, 1.08, 0}, 0.042},
-        {{-0.08, 0.88, 0}, {-0.09, 0.1, 0}, 0.075},  // legs
-        {{0.08, 0.88, 0}, {0.09, 0.1, 0}, 0.075},
-    };
     for (const Limb& limb : kLimbs) {
         const int body = add_capsule(scene, limb.from, limb.to, limb.radius, 0, Look::wood);
         scene.bodies[static_cast<size_t>(body)].kind = TAUT_BODY_KINEMATIC;
@@ -182,9 +240,12 @@ Scene dressed(int columns, int& mannequin) {
             for (size_t t = 0; t < cloth.triangles.size(); t += 3)
                 std::swap(cloth.triangles[t], cloth.triangles[t + 1]);
         cloth.look.most = 0.05;
+        cloth.def.self_collision = 1;
+        cloth.def.filter.group = kPanels;
         scene.add_cloth(std::move(cloth));
     }
     sew(scene, weave, place);
+    fit(scene);
     mannequin = add_mannequin(scene);
     scene.camera = {{0.75, 1.5, 2.3}, {-0.3, 0.95, 0}, 38};
     scene.forces = ForceScale{-2, 2};

@@ -1,4 +1,6 @@
 // Granular matter: particles with a radius and friction, poured into a heap.
+#include <array>
+
 #include "builders.h"
 #include "parts.h"
 #include "pose.h"
@@ -110,6 +112,7 @@ Scene build_grains_on_cloth(double, double, const Options& options) {
     add_ground(scene);
     Cloth cloth = sheet(kSide, kHeight);
     cloth.def.thickness = 0.02f;
+    cloth.def.self_collision = 1;
     sag(cloth, kSheetSide, 0.5);
     cloth.pinned = {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1};
     cloth.look.colours = SoftColours::plain;
@@ -123,25 +126,63 @@ Scene build_grains_on_cloth(double, double, const Options& options) {
     return scene;
 }
 
-// Grains on a net of cables tied where they cross: small ones pass, large ones stay.
+namespace {
+
+constexpr double kNetHalf = 0.8, kNetHeight = 1.2;  // [m]
+constexpr int32_t kNetGroup = -7;
+
+// The bars of a frame about the net, on posts; x at -1 and 1, then z. They are shaken.
+std::array<int, 4> add_net_frame(Scene& scene) {
+    constexpr double kBar = 0.03, kAway = kNetHalf + kBar, kShake = 0.025, kPerSecond = 2.5;  // [m], [m], [m], [Hz]
+    std::array<int, 4> bars{};
+    for (size_t i = 0; i < bars.size(); ++i) {
+        const double side = i % 2 == 0 ? -1 : 1;
+        const bool across = i < 2;
+        const int shape = across ? box_shape(scene, kBar, kBar, kAway + kBar) : box_shape(scene, kNetHalf, kBar, kBar);
+        Body bar = crate(shape, {across ? side * kAway : 0, kNetHeight, across ? 0 : side * kAway}, 0, Look::wood);
+        bar.kind = TAUT_BODY_KINEMATIC;
+        bar.group = kNetGroup;
+        bars[i] = scene.add_body(bar);
+        Motion shake;
+        shake.body = bars[i];
+        shake.along = {0.8f, 0, 0.6f};
+        shake.track.keys = {{0, 0, 0}};
+        shake.track.shake = {kShake, kPerSecond, 1.2, 4};
+        scene.motions.push_back(shake);
+        for (const double other : {-1.0, 1.0})
+            if (across)
+                add_static_box(scene, {side * kAway, (kNetHeight - kBar) / 2, other * kAway}, kBar,
+                               (kNetHeight - kBar) / 2, kBar, Look::wood);
+    }
+    return bars;
+}
+
+}  // namespace
+
+// Grains on a net of cables tied where they cross, in a frame that is shaken: small ones pass, large ones stay. Small
+// ones are less than a third as thick as the openings: those of half arch over them, the more as they do not turn.
 Scene build_grains_through_mesh(double, double, const Options& options) {
     constexpr int kCables = 9, kSegments = 20;  // each way, of each
-    constexpr double kHalf = 0.8, kHeight = 1.2, kSag = 0.12, kMesh = 2 * kHalf / (kCables + 1);
-    Scene scene = soft_hall(kHeight);
+    constexpr double kSag = 0.12, kMesh = 2 * kNetHalf / (kCables + 1);
+    Scene scene = soft_hall(kNetHeight);
     add_ground(scene);
+    const std::array<int, 4> bars = add_net_frame(scene);
     const auto place = [&](double x, double z) {
-        return taut_pos{x, kHeight - kSag * (1 - x * x / (kHalf * kHalf)) * (1 - z * z / (kHalf * kHalf)), z};
+        const double u = x / kNetHalf, v = z / kNetHalf;
+        return taut_pos{x, kNetHeight - kSag * (1 - u * u) * (1 - v * v), z};
     };
     for (const bool along : {true, false})
         for (int i = 0; i < kCables; ++i) {
-            const double side = kMesh * (i + 1) - kHalf;
+            const double side = kMesh * (i + 1) - kNetHalf;
             std::vector<taut_pos> path;
             for (int k = 0; k <= kSegments; ++k) {
-                const double way = 2 * kHalf * k / kSegments - kHalf;
+                const double way = 2 * kNetHalf * k / kSegments - kNetHalf;
                 path.push_back(along ? place(way, side) : place(side, way));
             }
-            Cable cable = cable_along(scene, TAUT_CABLE_PARTICLES, std::move(path), kWorld, kWorld, 0.024, 0.3);
-            cable.def.filter.group = -7;
+            const size_t first = along ? 0 : 2;
+            Cable cable =
+                cable_along(scene, TAUT_CABLE_PARTICLES, std::move(path), bars[first], bars[first + 1], 0.02, 0.3);
+            cable.def.filter.group = kNetGroup;
             scene.add_cable(cable);
         }
     const auto knot = [](int i) { return static_cast<uint32_t>(kSegments / (kCables + 1) * (i + 1)); };
@@ -155,16 +196,9 @@ Scene build_grains_through_mesh(double, double, const Options& options) {
             tie.drawn_radius = 0.018;
             scene.add_joint(tie);
         }
-    for (const double side : {-1.0, 1.0}) {
-        add_static_box(scene, {side * (kHalf + 0.03), kHeight, 0}, 0.03, 0.03, kHalf + 0.06, Look::wood);
-        add_static_box(scene, {0, kHeight, side * (kHalf + 0.03)}, kHalf, 0.03, 0.03, Look::wood);
-        for (const double other : {-1.0, 1.0})
-            add_static_box(scene, {side * (kHalf + 0.03), kHeight / 2, other * (kHalf + 0.03)}, 0.03, kHeight / 2, 0.03,
-                           Look::wood);
-    }
     Random random(1);
-    pour(scene, {0.035, 400, 10, 10, 1500, Look::paint}, {0, kHeight + 0.75, 0}, random);
-    pour(scene, {0.1, 14, 4, 4, 1000, Look::stone}, {0, kHeight + 0.4, 0}, random);
+    pour(scene, {0.02, 800, 20, 20, 1500, Look::paint}, {0, kNetHeight + 0.75, 0}, random);
+    pour(scene, {0.1, 14, 4, 4, 1000, Look::stone}, {0, kNetHeight + 0.4, 0}, random);
     scene.forces = ForceScale{0, 3};
     scene.camera = {{2.0, 2.1, 2.9}, {0, 0.95, 0}, 42};
     scene.stage = {{-2, 0, -2}, {2, 3, 2}};

@@ -66,6 +66,7 @@ Scene build_sack(double, double, const Options& options) {
     cloth.def.kind = TAUT_CLOTH_LINKS;
     cloth.def.area_density = 0.6f;
     cloth.def.thickness = 0.012f;
+    cloth.def.self_collision = 1;
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0xB98A58;
     const std::vector<taut_pos> points = cloth.points;
@@ -91,14 +92,14 @@ Scene build_sack(double, double, const Options& options) {
     constexpr int kRing = 5;
     for (int i = 0; i < 2 * kRing + 1; ++i) {
         const double round = 2 * std::numbers::pi * (i % kRing + 0.5 * (i / kRing)) / kRing;
-        const double out = i < 2 * kRing ? 0.2 : 0, up = i < kRing ? -0.13 : i < 2 * kRing ? 0.09 : 0.28;
+        const double out = i < 2 * kRing ? 0.2 : 0, up = i < kRing ? -0.2 : i < 2 * kRing ? 0.02 : 0.21;
         Body rock = crate(rock_shape(scene, random), plus(centre, out * std::cos(round), up, out * std::sin(round)), 0,
                           Look::stone);
         rock.density = 2500;
         scene.roles.pile.push_back(scene.add_body(rock));
     }
     scene.forces = ForceScale{1, 4};
-    scene.camera = {{2.1, 1.8, 3.4}, {0, 1.25, 0}, 44};
+    scene.camera = {{1.5, 1.9, 2.4}, {0, 1.1, 0}, 48};
     scene.stage = {{-2, 0, -2}, {2, 3.6, 2}};
     perturb(scene, options.seed);
     return scene;

@@ -116,7 +116,7 @@ Scene build_cloth_fold(double, double, const Options& options) {
     cloth.look.colours = SoftColours::plain;
     cloth.look.paint = 0xE3B23C;
     scene.add_cloth(std::move(cloth));
-    scene.camera = {{1.1, 0.9, 1.5}, {0, 0.3, 0}, 42};
+    scene.camera = {{1.2, 1.0, 1.7}, {-0.1, 0.25, 0.15}, 42};
     scene.stage = {{-1.5, 0, -1.5}, {1.5, 1.6, 1.5}};
     perturb(scene, options.seed);
     return scene;
