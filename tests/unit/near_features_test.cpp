@@ -145,10 +145,13 @@ TEST_F(CrumpledSheets, FindTheSameOnMoreThreads) {
 }
 
 TEST_F(CrumpledSheets, MeetNothingOfThemselvesWhereTheyAreFlat) {
-    const uint32_t a = add_sheet(30, Vec3::Zero(), 0, 6);
-    for (const uint32_t node : w_.softs.record[a].node) {
-        w_.nodes.motion[node].v = Vec3(0, -1, 0);
-        w_.nodes.motion[node].x.y() = 0;
+    constexpr uint32_t kSide = 30;
+    const uint32_t a = add_sheet(kSide, Vec3::Zero(), 0, 6);
+    const Soft& soft = w_.softs.record[a];
+    for (uint32_t v = 0; v < soft.vertices(); ++v) {
+        NodeMotion& motion = w_.nodes.motion[soft.node[v]];
+        motion.x = 0.01 * Vec3(v / (kSide + 1), 0, v % (kSide + 1));
+        motion.v = Vec3(0, -1, 0);
     }
     EXPECT_TRUE(find(alone_, a, a).empty());
 }
