@@ -173,6 +173,8 @@ private:
             place(0, mesh_[0]->edge[e].vertex[k], k, passing, contact);
             place(1, mesh_[1]->edge[f].vertex[k], k + 2, passing, contact);
         }
+        for (size_t side = 0; side < 2; ++side)
+            passing.feature[side] = {SurfaceFeature::Of::edge, soft_[side], mesh_[side], side == 0 ? e : f};
         contact.a = feature_of(index_[0], SurfacePart::edge, e);
         contact.b = feature_of(index_[1], SurfacePart::edge, f);
         Vec3f facing = Vec3f::Zero();
