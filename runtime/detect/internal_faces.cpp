@@ -212,10 +212,12 @@ bool any_compound(const Detection& of) {
     return std::any_of(colliders.begin(), colliders.end(), [](const Collider& each) { return each.next != kNone; });
 }
 
-// Calls act(bearing) for the sides of a contact that may bear on several colliders that move as one.
+// Calls act(bearing) for the sides of a contact that may bear on several colliders that move as one. Balls of vertices
+// make up no solid, though held: what is within their surface detect/surface_cone.h knows.
 template <class Act>
 void for_bearings(const Detection& of, bool compounds, uint32_t index, Act&& act) {
     const ActivePair& active = of.pairs.active[index];
+    if (of.nodes.info[active.a].soft != kNone || of.nodes.info[active.b].soft != kNone) return;
     const bool a_moves = moves_by_forces(of.nodes.info[active.a].kind),
                b_moves = moves_by_forces(of.nodes.info[active.b].kind);
     if (b_moves ? compounds && is_compound(of, active.b) : a_moves) act(Bearing(index, true));

@@ -7,6 +7,7 @@
 #include "detect/surfaces.h"
 #include "detect/triangle_pairs.h"
 #include "detect/untangle.h"
+#include "detect/vertex_pairs.h"
 
 namespace taut {
 namespace {
@@ -219,6 +220,13 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
         contact.weight[i] = near.weight[i];
         contact.gap += near.weight[i] * contact.normal.dot(passing.x[i]);
     }
+    // Its distance stays that of the features: what is nearer to something else is held by that.
+    const Vec3f turned = passing.feature[1].in_cone(-passing.feature[0].in_cone(-contact.normal));
+    if (turned != contact.normal) {
+        float clear = -of.both;
+        for (int i = 0; i < passing.points(); ++i) clear += near.weight[i] * turned.dot(passing.x[i]);
+        if (clear > -depth_within(of.both, of.margin)) contact.normal = turned;
+    }
     contact.friction = of.friction;
     contact.restitution = of.restitution;
     contact.collider[0] = of.collider[0];
@@ -243,31 +251,24 @@ static Vec3f point_on_axis(const SurfaceScene& scene, uint32_t collider, const S
 // that slides over a vertex within what is flat is stopped by it. Levers stay.
 static void turn_to_passage(const SurfaceScene& scene) {
     Pairs& pairs = scene.pairs;
-    Array<uint32_t>& vertex_of = pairs.surfaces.near;  // by node
-    vertex_of.assign(scene.nodes.slots(), kNone);
-    for (const uint32_t s : scene.softs.listed) {
-        const Soft& soft = scene.softs.record[s];
-        for (uint32_t v = 0; v < soft.vertices(); ++v) vertex_of[soft.node[v]] = v;
-    }
     for (const ActivePair& active : pairs.active) {
-        const bool second = vertex_of[active.a] == kNone;
-        const uint32_t node = second ? active.b : active.a;
-        if (vertex_of[node] == kNone || active.spans()) continue;
+        const VertexPair of(scene.nodes, scene.softs, active);
+        if (!of.mesh() || active.spans()) continue;
         Pair& pair = pairs.list[active.pair];
-        const uint32_t collider = second ? pair.collider_a() : pair.collider_b();
+        const uint32_t collider = of.is_second() ? pair.collider_a() : pair.collider_b();
         const collision::ShapeKind kind = scene.shapes[scene.colliders.record[collider].shape].shape.kind;
         if (kind != collision::ShapeKind::sphere && kind != collision::ShapeKind::capsule) continue;
-        const SurfaceMesh& mesh = scene.softs.mesh[scene.nodes.info[node].soft];
-        const Vec3f& x = mesh.x[vertex_of[node]];
+        const SurfaceMesh& mesh = *of.mesh();
+        const Vec3f& x = mesh.x[of.vertex()];
         const Vec3f middle = point_on_axis(scene, collider, mesh, x), apart = middle - x;
-        const NodeMotion& other = scene.nodes.motion[second ? active.a : active.b];
+        const NodeMotion& other = scene.nodes.motion[of.is_second() ? active.a : active.b];
         const Vec3f arm = (mesh.origin - other.x).cast<float>() + middle;
-        const Vec3f parting = other.v.cast<float>() + other.w.cast<float>().cross(arm) - mesh.v[vertex_of[node]];
-        const float both = mesh.radius + (second ? pair.round_a : pair.round_b);
+        const Vec3f parting = other.v.cast<float>() + other.w.cast<float>().cross(arm) - mesh.v[of.vertex()];
+        const float both = mesh.radius + (of.is_second() ? pair.round_a : pair.round_b);
         const Vec3f then = apart + passing_time(apart, parting, static_cast<float>(scene.time)) * parting;
         if (pair.then > 0 || !(apart.norm() > both) || !(then.norm() >= both)) continue;
         const Vec3f normal = then.normalized();
-        pair.manifold.normal = second ? Vec3f(-normal) : normal;
+        pair.manifold.normal = of.is_second() ? Vec3f(-normal) : normal;
         pair.manifold.points[0].separation = normal.dot(apart) - both;
     }
 }
@@ -315,6 +316,8 @@ void find_surface_contacts(Team& team, const SurfaceScene& scene) {
     surfaces.version += same ? 0 : 1;
     take_found(surfaces);
     turn_to_passage(scene);
+    for (const ActivePair& active : scene.pairs.active)
+        turn_into_cone(scene.nodes, scene.colliders, scene.shapes, scene.softs, scene.pairs, active);
 }
 
 // What pushed in the frame, and is not there any more, stays in the list to its end for what it gave, out of touch.

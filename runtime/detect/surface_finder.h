@@ -4,6 +4,7 @@
 #include <span>
 
 #include "detect/nearest.h"
+#include "detect/surface_cone.h"
 #include "detect/surface_contacts.h"
 
 namespace taut {
@@ -77,6 +78,8 @@ struct Passing {
     Of of;
     Vec3f x[4];  // [m]; unused ones 0
     Vec3f v[4];  // [m/s]
+    // Vertices and edges of surfaces among the two, beyond whose normals no contact points.
+    SurfaceFeature feature[2];
 
     int first() const { return of == Of::edge_edge ? 2 : 1; }
     int points() const { return of == Of::vertex_vertex ? 2 : of == Of::vertex_edge ? 3 : 4; }

@@ -2,13 +2,13 @@
 // kernels, or with the axis of a round one; faces with what stands out of it.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "detect/detect.h"
 #include "detect/surface_finder.h"
 #include "detect/surface_tree.h"
 #include "detect/surfaces.h"
+#include "detect/vertex_pairs.h"
 
 namespace taut {
 namespace {
@@ -158,18 +158,11 @@ private:
         });
     }
 
-    // Likewise of anything between them, by the distance alone, whose square bends by no more than 2 along a line: of
-    // two ends, at least D from it and L apart, what lies between is no nearer than (D^2 - L^2 / 4)^1/2, of three no
-    // nearer than (D^2 - L^2 / 3)^1/2.
-    bool vertices_always_suffice(std::span<const uint32_t> vertices) const {
-        float nearest = std::numeric_limits<float>::infinity(), longest = 0;  // squared
-        for (size_t i = 0; i < vertices.size(); ++i) {
-            const Vec3f& x = mesh_.x[vertices[i]];
-            nearest = std::min(nearest, (on_axis(x) - x).squaredNorm());
-            for (size_t k = 0; k < i; ++k) longest = std::max(longest, (mesh_.x[vertices[k]] - x).squaredNorm());
-        }
-        const float between = nearest - longest / (vertices.size() == 2 ? 4.0f : 3.0f);
-        return std::sqrt(nearest) - std::sqrt(std::max(between, 0.0f)) < kSuffices * margin_;
+    SurfaceFeature edge_feature(uint32_t e) const { return {SurfaceFeature::Of::edge, &soft_, &mesh_, e}; }
+    SurfaceFeature vertex_feature(uint32_t v) const { return {SurfaceFeature::Of::vertex, &soft_, &mesh_, v}; }
+    // From the shape to a feature, of which x is a point [m].
+    Vec3f normal_to(const SurfaceFeature& feature, const collision::Manifold& manifold, const Vec3f& x) const {
+        return -turn_normal(feature, shape_, at_, x.cast<double>(), manifold.normal, margin_).normal;
     }
 
     void find_edge(uint32_t e) {
@@ -181,7 +174,6 @@ private:
 
     void find_round_edge(uint32_t e) {
         const SurfaceEdge& edge = mesh_.edge[e];
-        if (vertices_always_suffice(edge.vertex)) return;
         const bool ball = shape_.kind == collision::ShapeKind::sphere;
         SurfaceContact contact;
         Passing passing{};
@@ -191,6 +183,7 @@ private:
         contact.node[0] = of_.node;
         if (spans()) contact.node[1] = of_.node_b;
         for (int k = 0; k < 2; ++k) place_vertex(edge.vertex[k], first + k, passing, contact);
+        passing.feature[1] = edge_feature(e);
         const uint64_t feature = feature_of(index_, SurfacePart::edge, e);
         const SurfaceTouch of = touch_of(true, shape_.size.x());
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(),
@@ -253,8 +246,8 @@ private:
         if (!(std::abs(t) < kWithin)) return;
         const uint32_t* vertex = mesh_.edge[e].vertex;
         SurfaceContact contact;
-        contact.normal = -manifold.normal;  // from the shape to the edge
         const Vec3f place = middle + point.position;
+        contact.normal = normal_to(edge_feature(e), manifold, middle);
         contact.node[0] = of_.node;
         contact.weight[0] = -1;
         contact.lever = place - centre_;
@@ -285,6 +278,7 @@ private:
         passing.x[0] = end_[0], passing.v[0] = speed_[0];
         contact.node[0] = of_.node;
         place_vertex(vertex, 1, passing, contact);
+        passing.feature[1] = vertex_feature(vertex);
         const uint64_t feature = feature_of(index_, SurfacePart::vertex, vertex);
         if (touch(passing, touch_of(true, shape_.size.x()), time_,
                   finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(), contact))
@@ -297,6 +291,7 @@ private:
         Passing passing{};
         passing.of = ball ? Passing::Of::vertex_vertex : Passing::Of::vertex_edge;
         place_vertex(vertex, 0, passing, contact);
+        passing.feature[0] = vertex_feature(vertex);
         const int points = ball ? 2 : 3;
         for (int k = 1; k < points; ++k) passing.x[k] = end_[k - 1], passing.v[k] = speed_[k - 1];
         contact.node[1] = of_.node;
@@ -344,8 +339,8 @@ private:
     void take_point_of_vertex(uint32_t vertex, const collision::Manifold& manifold,
                               const collision::ContactPoint& point, uint32_t number) {
         SurfaceContact contact;
-        contact.normal = -manifold.normal;  // from the shape to the vertex
         const Vec3f place = mesh_.x[vertex] + point.position;
+        contact.normal = normal_to(vertex_feature(vertex), manifold, mesh_.x[vertex]);
         contact.node[0] = of_.node, contact.node[1] = soft_.node[vertex];
         contact.weight[0] = -1, contact.weight[1] = 1;
         contact.lever = place - centre_;
@@ -402,7 +397,6 @@ private:
     void find_face(uint32_t t, const collision::Corner& corner, const Vec3f& at, const Vec3f& velocity, uint32_t node,
                    Within& within) {
         const uint32_t* vertex = &soft_.triangle[3 * size_t{t}];
-        if (is_round() && vertices_always_suffice({vertex, 3})) return;
         SurfaceContact contact;
         Passing passing{};
         passing.of = Passing::Of::vertex_face;

@@ -124,7 +124,9 @@ private:
             const Pair& part = world_.pairs.list[index];
             const WatchedPair* watched = find_watched(world_.watch, index);
             if (!part.touching || !watched) continue;
-            for (int k = 0; k < part.manifold.count; ++k) act(point_of(part, *watched, k, turned));
+            // Those that went in the last substep too, for what they gave before.
+            for (int k = 0; k < std::max(part.manifold.count, watched->count); ++k)
+                act(point_of(part, *watched, k, turned));
         }
     }
     template <class Act>
@@ -142,11 +144,14 @@ private:
     taut_contact_point point_of(const Pair& pair, const WatchedPair& watched, int k, bool turned) const {
         const collision::ContactPoint& point = pair.manifold.points[k];
         const Vec3 at = world_.nodes.origin(pair.a) + point.position.cast<double>();
+        // All that was pushed, the way in which the pushes of the substeps together went.
+        const float push = k < watched.count ? watched.push[k].norm() : 0;
+        const Vec3f normal = push > 0 ? Vec3f((1 / push) * watched.push[k]) : pair.manifold.normal;
         return {{at.x(), at.y(), at.z()},
-                way(pair.manifold.normal, turned),
+                way(normal, turned),
                 point.separation,
-                finite(watched.normal[k]),
-                finite(watched.friction[k].norm()),
+                finite(push),
+                finite(k < watched.count ? watched.friction[k].norm() : 0),
                 watched.before.approach(point.position, pair.manifold.normal),
                 0};
     }

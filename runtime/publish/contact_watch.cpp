@@ -28,12 +28,12 @@ void follow_points(const collision::Manifold& now, WatchedPair& watched) {
     for (int k = 0; k < now.count; ++k) {
         watched.feature[k] = now.points[k].feature;
         watched.position[k] = now.points[k].position;
-        watched.normal[k] = 0;
+        watched.push[k].setZero();
         watched.friction[k].setZero();
     }
     for (int i = 0; i < old.count; ++i) {
         const int k = successor(old, i, now);
-        watched.normal[k] += old.normal[i];
+        watched.push[k] += old.push[i];
         watched.friction[k] += old.friction[i];
     }
 }
@@ -95,7 +95,7 @@ void gather_impulses(const System& system, const Impacts& impacts, const Pairs& 
         const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
         for (int k = 0; k < pair.manifold.count; ++k) {
             const Vec3f impulse = impulse_of(watched, system, pair, k);
-            watched.normal[k] += impulse[0];
+            watched.push[k] += impulse[0] * n;
             watched.friction[k] += impulse[1] * t1 + impulse[2] * t2;
         }
     }
@@ -103,7 +103,7 @@ void gather_impulses(const System& system, const Impacts& impacts, const Pairs& 
         WatchedPair* watched = find_watched(watch, strike.pair);
         if (!watched) continue;
         const Vec3f n = pairs.list[strike.pair].manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
-        watched->normal[strike.point] += strike.impulse[0];
+        watched->push[strike.point] += strike.impulse[0] * n;
         watched->friction[strike.point] += strike.impulse[1] * t1 + strike.impulse[2] * t2;
     }
 }

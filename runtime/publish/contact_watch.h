@@ -17,11 +17,11 @@ struct WatchedPair {
     RelativeMotion before;                  // the step
     uint32_t lane_group = kNone, lane = 0;  // where it is swept, in System::contacts; kNone: as rows
 
-    // Points as seen last, with the sums so far [N s]; friction in world axes.
+    // Points as seen last, with the sums so far, in world axes [N s]: pushes along the normals that they had, friction.
     int count = 0;
     uint32_t feature[4];
     Vec3f position[4];
-    float normal[4];
+    Vec3f push[4];
     Vec3f friction[4];
 };
 
