@@ -125,6 +125,19 @@ void solve(World& w, Stopwatch& watch) {
     w.profile.residual = static_cast<float>(report.residual);
 }
 
+// By node: 1 for vertices whose contacts are found anew within the step (GroupSolve::renew_surfaces).
+Array<uint8_t> followed_vertices(World& w) {
+    Array<uint8_t> followed(w.memory);
+    if (w.softs.ids.count() == 0 || !solvers()[w.def.solver]->lanes) return followed;
+    followed.resize(w.nodes.slots(), 0);
+    for (uint32_t i = 0; i < w.partition.group_count; ++i) {
+        const Group& group = w.partition.groups[i];
+        for (const uint32_t node : group.nodes)
+            followed[node] = group.blocks.empty() && is_surface_vertex(w.nodes, w.softs, node) ? 1 : 0;
+    }
+    return followed;
+}
+
 }  // namespace
 
 void step(World& w) {
@@ -153,7 +166,8 @@ void step(World& w) {
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
-    hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, w.pairs, w.broadphase, w.nodes);
+    hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, followed_vertices(w), w.pairs, w.broadphase,
+              w.nodes);
     flow_solids(w);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.softs, w.broadphase, w.id, w.window.steps, w.sensors);

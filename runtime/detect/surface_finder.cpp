@@ -33,6 +33,11 @@ const SurfaceContact* SurfaceFinder::before(uint64_t a, uint64_t b) const {
     return at != before_.end() && features_of(*at) == std::pair(a, b) ? &*at : nullptr;
 }
 
+const SurfaceContact* SurfaceFinder::first_of(uint32_t soft) const {
+    const auto at = std::ranges::lower_bound(before_, uint64_t{soft} << 32, {}, &SurfaceContact::a);
+    return at != before_.end() && static_cast<uint32_t>(at->a >> 32) == soft ? &*at : nullptr;
+}
+
 bool SurfaceFinder::renews(const SurfaceContact& contact) const {
     if (scene_.renewed.empty()) return true;
     const bool listed =
@@ -104,18 +109,18 @@ bool stay_apart(const Passing& passing, float reach, float time) {
     return passing.nearest(passing.x).distance() > reach + time * passing.speed();
 }
 
-bool meet(const Passing& passing, float reach, float time, Nearest& out) {
+bool meet(const Passing& passing, float reach, float time, Nearest& out, float& met) {
     const float speed = passing.speed();
-    float now = 0;
+    met = 0;
     for (int step = 0;; ++step) {
         Vec3f at[4];
-        passing.at(now, at);
+        passing.at(met, at);
         out = passing.nearest(at);
         const float beyond = out.distance() - reach;
         if (!(beyond > 0)) return true;
-        if (step == kMostSteps) return now > 0;
-        if (!(beyond < speed * (time - now))) return false;
-        now += beyond / speed;
+        if (step == kMostSteps) return met > 0;
+        if (!(beyond < speed * (time - met))) return false;
+        met += beyond / speed;
     }
 }
 
@@ -163,7 +168,8 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
     if (was && is_through(passing, *was)) {
         near = passing.nearest(passing.x);
     } else {
-        if (!meet(passing, of.both + of.margin, time, near) || !near.inside) return false;
+        float met = 0;
+        if (!meet(passing, of.both + of.margin, time, near, met) || !near.inside) return false;
         pass_by(passing, of.both, time, near);
     }
     const float distance = near.distance();

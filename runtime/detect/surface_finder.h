@@ -43,6 +43,8 @@ public:
 
     // A contact of two features in touch before; null: they were not.
     const SurfaceContact* before(uint64_t a, uint64_t b) const;
+    // The first contact before of which a soft body's feature is the first; null: there was none.
+    const SurfaceContact* first_of(uint32_t soft) const;
     // What materials make of two colliders' contacts, but for their sizes.
     SurfaceTouch touch_of(uint32_t positive, uint32_t negative) const;
     // Whether a joint or attachment forbids a contact between two sides.
@@ -91,8 +93,8 @@ struct Passing {
 bool stay_apart(const Passing& passing, float reach, float time);
 
 // When two features first come within a reach, by conservative advancement: the distance falls no faster than they
-// move. Where they are then, in out; false: not in the time.
-bool meet(const Passing& passing, float reach, float time, Nearest& out);
+// move. Where they are then, in out, and when, in met [s]; false: not in the time.
+bool meet(const Passing& passing, float reach, float time, Nearest& out, float& met);
 
 // Whether they are on the wrong side by what they were before, and not too far for that.
 bool is_through(const Passing& passing, const SurfaceContact& was);
