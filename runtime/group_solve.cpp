@@ -100,8 +100,8 @@ void GroupSolve::renew_surfaces() {
     store_surface_hits(system_, surfaces, hits_before);
     Array<uint32_t> successor(w_.memory);
     renew_surface_contacts(w_.team,
-                           {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.broadphase, ahead, now, renewed_,
-                            since, clock_.length()},
+                           {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.elements, w_.pairs, w_.broadphase, ahead,
+                            now, renewed_, since, clock_.length()},
                            w_.pre_solve, successor);
     surfaces_found_ = now;
     w_.partition.renew_surfaces(index_, surfaces, successor);

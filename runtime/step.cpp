@@ -47,7 +47,8 @@ double mean_age(const World& w) { return 0.5 * (1 - 1.0 / w.least_substeps()) * 
 // After those of pairs, for vertices leave to edges and faces what these are nearer to.
 void find_touches(World& w, double lead) {
     find_contacts(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead);
-    find_surface_contacts(w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.pairs, w.broadphase, w.def.time_step});
+    find_surface_contacts(
+        w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.elements, w.pairs, w.broadphase, w.def.time_step});
 }
 
 void detect(World& w, Stopwatch& watch) {
@@ -125,6 +126,19 @@ void solve(World& w, Stopwatch& watch) {
     w.profile.residual = static_cast<float>(report.residual);
 }
 
+// By node: 1 for vertices whose contacts are found anew within the step (GroupSolve::renew_surfaces).
+Array<uint8_t> followed_vertices(World& w) {
+    Array<uint8_t> followed(w.memory);
+    if (w.softs.ids.count() == 0 || !solvers()[w.def.solver]->lanes) return followed;
+    followed.resize(w.nodes.slots(), 0);
+    for (uint32_t i = 0; i < w.partition.group_count; ++i) {
+        const Group& group = w.partition.groups[i];
+        for (const uint32_t node : group.nodes)
+            followed[node] = group.blocks.empty() && is_surface_vertex(w.nodes, w.softs, node) ? 1 : 0;
+    }
+    return followed;
+}
+
 }  // namespace
 
 void step(World& w) {
@@ -153,7 +167,8 @@ void step(World& w) {
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
-    hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, w.pairs, w.broadphase, w.nodes);
+    hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, followed_vertices(w), w.pairs, w.broadphase,
+              w.nodes);
     flow_solids(w);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.softs, w.broadphase, w.id, w.window.steps, w.sensors);

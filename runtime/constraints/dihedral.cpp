@@ -164,6 +164,7 @@ void sample_dihedral(uint64_t seed, void* data, Pose* x) {
 
 }  // namespace
 
-constinit const ElementType kDihedralElement = point_element<Dihedral>("dihedral", sample_dihedral);
+constinit const ElementType kDihedralElement =
+    point_element<Dihedral>("dihedral", sample_dihedral, &ElementKernels::dihedral);
 
 }  // namespace taut

@@ -17,7 +17,7 @@ using ElementSweep = void (*)(const ElementView&, uint32_t begin, uint32_t end, 
 // SSE2, AVX2, AVX-512.
 struct ElementKernels {
     const char* name;
-    ElementSweep link, green_tri3, neo_hookean_tet4;
+    ElementSweep link, green_tri3, neo_hookean_tet4, dihedral, quadratic_bend;
 };
 
 extern const ElementKernels kElementKernelsScalar, kElementKernelsSse2, kElementKernelsAvx2, kElementKernelsAvx512;

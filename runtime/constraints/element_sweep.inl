@@ -80,6 +80,73 @@ struct NeoHookeanTet4Lanes {
     static F strain(const LaneScalar*) { return F::all(1); }
 };
 
+// Bend over a common edge whose rest is flat: C = sum_n k_n d_n; see quadratic_bend.cpp. How soft its sweeps leave it
+// is no strain that substeps are taken for, and neither is that of the fold below.
+template <class F>
+struct QuadraticBendLanes {
+    using V = Vec3Lanes<F>;
+    static constexpr uint32_t kNodes = 4, kRows = 3, kNumbers = 4;
+
+    static void evaluate(const LaneScalar* number, const V (&d)[kNodes - 1], F (&c)[kRows], V (&j)[kNodes - 1][kRows]) {
+        const F zero = F::all(0);
+        V sum{zero, zero, zero};
+        for (uint32_t n = 0; n < kNodes - 1; ++n) {
+            const F k = F::load(number[n + 1].value);
+            sum = sum + k * d[n];
+            j[n][0] = {k, zero, zero};
+            j[n][1] = {zero, k, zero};
+            j[n][2] = {zero, zero, k};
+        }
+        c[0] = sum.x, c[1] = sum.y, c[2] = sum.z;
+    }
+    static F strain(const LaneScalar*) { return F::all(0); }
+};
+
+// Angle of (x, y) from x, in (-pi, pi], to 1e-7: of the lesser over the greater by Abramowitz and Stegun, 4.4.49.
+template <class F>
+F angle_of(const F& y, const F& x) {
+    constexpr float kPi = 3.14159265f;
+    constexpr float kSeries[] = {0.0028662257f,  -0.0161657367f, 0.0429096138f,
+                                 -0.0752896400f, 0.1065626393f,  -0.1420889944f,
+                                 0.1999355085f,  -0.3333314528f, 1};
+    const F zero = F::all(0), across = F::max(x, zero - x), up = F::max(y, zero - y);
+    const F less = F::if_greater(up, across, across, up), more = F::max(F::max(across, up), F::all(1e-37f));
+    const F slope = less / more, square = slope * slope;
+    F sum = F::all(kSeries[0]);
+    for (int k = 1; k < 9; ++k) sum = sum * square + F::all(kSeries[k]);
+    F angle = slope * sum;
+    angle = F::if_greater(up, across, F::all(0.5f * kPi) - angle, angle);
+    angle = F::if_greater(zero, x, F::all(kPi) - angle, angle);
+    return F::if_greater(zero, y, zero - angle, angle);
+}
+
+// Angle between two triangles over their common edge: C = theta - rest; see dihedral.cpp.
+template <class F>
+struct DihedralLanes {
+    using V = Vec3Lanes<F>;
+    static constexpr uint32_t kNodes = 4, kRows = 1, kNumbers = 1;
+
+    static void evaluate(const LaneScalar* number, const V (&d)[kNodes - 1], F (&c)[kRows], V (&j)[kNodes - 1][kRows]) {
+        constexpr float kPi = 3.14159265f;
+        const F pi = F::all(kPi), whole = F::all(2 * kPi), tiny = F::all(1e-24f);
+        const V& e = d[0];
+        const F square = F::max(dot(e, e), tiny), length = F::sqrt(square), least = F::all(1e-12f) * square * square;
+        const V normal[2] = {cross(e, d[1]), cross(d[2], e)};
+        const F bend = angle_of(dot(e, cross(normal[1], normal[0])), length * dot(normal[0], normal[1])) -
+                       F::load(number[0].value);
+        c[0] = F::if_greater(bend, pi, bend - whole, F::if_greater(F::all(-kPi), bend, bend + whole, bend));
+        const V none = {F::all(0), F::all(0), F::all(0)};
+        j[0][0] = none;
+        for (uint32_t side = 0; side < 2; ++side) {
+            const V& m = normal[side];
+            const V h = (length / F::max(F::max(dot(m, m), least), F::all(1e-37f))) * m;
+            j[side + 1][0] = h;
+            j[0][0] = j[0][0] - (dot(d[side + 1], e) / square) * h;
+        }
+    }
+    static F strain(const LaneScalar*) { return F::all(0); }
+};
+
 template <class F, class Element>
 struct ElementSweepLanes {
     using V = Vec3Lanes<F>;
@@ -209,8 +276,12 @@ struct ElementSweepLanes {
 
 template <class F>
 constexpr ElementKernels element_sweeps(const char* name) {
-    return {name, ElementSweepLanes<F, LinkLanes<F>>::sweep, ElementSweepLanes<F, GreenTri3Lanes<F>>::sweep,
-            ElementSweepLanes<F, NeoHookeanTet4Lanes<F>>::sweep};
+    return {name,
+            ElementSweepLanes<F, LinkLanes<F>>::sweep,
+            ElementSweepLanes<F, GreenTri3Lanes<F>>::sweep,
+            ElementSweepLanes<F, NeoHookeanTet4Lanes<F>>::sweep,
+            ElementSweepLanes<F, DihedralLanes<F>>::sweep,
+            ElementSweepLanes<F, QuadraticBendLanes<F>>::sweep};
 }
 
 }  // namespace taut

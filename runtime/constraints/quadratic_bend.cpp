@@ -43,6 +43,6 @@ void sample_quadratic_bend(uint64_t seed, void* data, Pose* x) {
 }  // namespace
 
 constinit const ElementType kQuadraticBendElement =
-    point_element<QuadraticBend>("quadratic bend", sample_quadratic_bend);
+    point_element<QuadraticBend>("quadratic bend", sample_quadratic_bend, &ElementKernels::quadratic_bend);
 
 }  // namespace taut

@@ -17,8 +17,8 @@ constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have p
 constexpr uint32_t kColliderGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
-// spans two nodes; may be ignored by the host's function or a one-way direction: what goes through on purpose is not
-// held back.
+// spans two nodes; may be ignored by the host's function or a one-way direction, for what goes through on purpose is
+// not held back, or is followed within the step.
 enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4, kIgnorable = 8 };
 
 // Whether a collider between two nodes was put back by either.
@@ -50,8 +50,9 @@ const Course& find_course(const Nodes& nodes, const Colliders& colliders, const 
 
 // Of all colliders, after the first round of what the last one put back; with their courses, if these are asked for.
 // Whether any went astray.
-Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint8_t round,
-                  bool with_courses, Pairs& pairs) {
+Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+                  std::span<const uint8_t> followed, uint8_t round, bool with_courses, Pairs& pairs) {
+    const auto is_followed = [&](const Collider& collider) { return !followed.empty() && followed[collider.node]; };
     std::atomic<bool> any = false, newly = false;
     pairs.marks.resize(colliders.record.size());
     if (with_courses) pairs.courses.resize(colliders.record.size());
@@ -64,7 +65,7 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
             if (!(mark & kMoved)) continue;
             const bool was_astray = mark & kAstray;
             mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
-            if (collider.asks & (kAsksOneWay | kAsksPreSolve)) mark |= kIgnorable;
+            if (collider.asks & (kAsksOneWay | kAsksPreSolve) || is_followed(collider)) mark |= kIgnorable;
             const Course* const course = with_courses ? &find_course(nodes, colliders, shapes, c, pairs) : nullptr;
             if (!solved(nodes, collider)) continue;
             const Vec3 along = course ? course->along : way_along(nodes, collider, shapes);
@@ -264,14 +265,15 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
 // Who passed is found for all pairs at once, after the first round for those alone of which a side was put back in the
 // last. They are put back one after the other, where those of which a side was put back already are asked again.
 void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints,
-               const Elements& elements, Pairs& pairs, collision::Broadphase& broadphase, Nodes& nodes) {
+               const Elements& elements, std::span<const uint8_t> followed, Pairs& pairs,
+               collision::Broadphase& broadphase, Nodes& nodes) {
     Mechanisms& mechanisms = pairs.mechanisms;
     mechanisms.root.clear();
     mechanisms.any_drives = false;
     bool again = true;
     for (uint8_t round = 1; again && round <= (mechanisms.any_drives ? kMostRounds : kRounds); ++round) {
         const bool asks_some = round > 1 || pairs.any_fast;
-        const Astray astray = find_marks(team, nodes, colliders, shapes, round, asks_some, pairs);
+        const Astray astray = find_marks(team, nodes, colliders, shapes, followed, round, asks_some, pairs);
         if (!asks_some && !astray.any) {
             let_go(pairs.courses);
             let_go(pairs.asked);

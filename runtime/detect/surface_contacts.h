@@ -25,6 +25,7 @@ struct SurfaceScene {
     const Colliders& colliders;
     const Shapes& shapes;
     Softs& softs;
+    const Elements& elements;
     Pairs& pairs;
     const collision::Broadphase& broadphase;
     double time;         // ahead [s]

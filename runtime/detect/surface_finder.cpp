@@ -141,18 +141,18 @@ float Passing::size() const {
     return std::sqrt(squared);
 }
 
-bool meet(const Passing& passing, float reach, float time, Nearest& out) {
+bool meet(const Passing& passing, float reach, float time, Nearest& out, float& met) {
     const float speed = passing.speed();
-    float now = 0;
+    met = 0;
     for (int step = 0;; ++step) {
         Vec3f at[4];
-        passing.at(now, at);
+        passing.at(met, at);
         out = passing.nearest(at);
         const float beyond = out.distance() - reach;
         if (!(beyond > 0)) return true;
-        if (step == kMostAdvances) return now > 0;
-        if (!(beyond < speed * (time - now))) return false;
-        now += beyond / speed;
+        if (step == kMostAdvances) return met > 0;
+        if (!(beyond < speed * (time - met))) return false;
+        met += beyond / speed;
     }
 }
 
@@ -200,7 +200,8 @@ bool touch(const Passing& passing, const SurfaceTouch& of, float time, const Sur
     if (was && is_through(passing, *was)) {
         near = passing.nearest(passing.x);
     } else {
-        if (!meet(passing, of.both + of.margin, time, near) || !near.inside) return false;
+        float met = 0;
+        if (!meet(passing, of.both + of.margin, time, near, met) || !near.inside) return false;
         pass_by(passing, of.both, time, near);
     }
     const float distance = near.distance();

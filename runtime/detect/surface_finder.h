@@ -94,8 +94,8 @@ struct Passing {
 };
 
 // When two features first come within a reach, by conservative advancement: the distance falls no faster than they
-// move. Where they are then, in out; false: not in the time.
-bool meet(const Passing& passing, float reach, float time, Nearest& out);
+// move. Where they are then, in out, and when, in met [s]; false: not in the time.
+bool meet(const Passing& passing, float reach, float time, Nearest& out, float& met);
 
 // Whether they are on the wrong side by what they were before, and not too far for that.
 bool is_through(const Passing& passing, const SurfaceContact& was);

@@ -37,6 +37,7 @@ public:
         centre_ = (scene_.place_of(of_.node) - mesh_.origin).cast<float>();
         velocity_ = motion.v.cast<float>();
         spin_ = spans() ? Vec3f(Vec3f::Zero()) : Vec3f(motion.w.cast<float>());
+        in_block_ = scene_.elements.set[soft_.sets.front().set].solve != JointSolve::swept;
         margin_ = std::min(mesh_.margin, scene_.pairs.travel[collider].margin);
         way_ = time_ * (velocity_ - mesh_.drift);
     }
@@ -146,16 +147,40 @@ private:
         contact.node[i] = soft_.node[vertex];
     }
 
-    // Of a place on its axis, or the middle of a ball.
-    Vec3f on_axis(const Vec3f& from) const {
-        const Vec3f x[4] = {from, end_[0], end_[1], Vec3f::Zero()};
-        return from - nearest_of_edge(x, 1, 2).apart;
-    }
-    // Whether vertices, which have contacts of their own, are about as near to what is round.
-    bool vertices_suffice(std::span<const uint32_t> vertices, float distance) const {
+    // Whether vertices, which have contacts of their own, are about as near to the axis of what is round, or the middle
+    // of a ball, as a feature that they bound: when it comes to touch it, for from afar all are, and still at the end
+    // of the time, where the vertex was held: an edge may turn about one that rests. In a block, whose contacts are
+    // found once a frame and where those that push two ways would do work, those that are needed as it begins do.
+    bool vertices_suffice(std::span<const uint32_t> vertices, const Passing& passing, float both) const {
+        Nearest near;
+        float met = 0;
+        const bool met_ever =
+            !in_block_ && (meet(passing, both, time_, near, met) || meet(passing, both + margin_, time_, near, met));
+        if (!met_ever) met = 0;
         return std::ranges::any_of(vertices, [&](uint32_t vertex) {
-            return (on_axis(mesh_.x[vertex]) - mesh_.x[vertex]).norm() - distance < kSuffices * margin_;
+            const Nearest own = nearest_of_vertex(vertex, met, Vec3f::Zero());
+            if (!suffices(own, passing, met, Vec3f::Zero())) return false;
+            if (in_block_) return true;
+            const Vec3f normal = own.apart.normalized();
+            float closing = -normal.dot(mesh_.v[vertex]);
+            for (int k = 0; k < 2; ++k) closing -= own.weight[k + 1] * normal.dot(speed_[k]);
+            const Vec3f held = -std::max(closing, 0.0f) * normal;
+            return suffices(nearest_of_vertex(vertex, time_, (time_ - met) * held), passing, time_,
+                            (time_ - met) * held);
         });
+    }
+    // From the axis to a vertex after a time, the axis shifted.
+    Nearest nearest_of_vertex(uint32_t vertex, float time, const Vec3f& shift) const {
+        const Vec3f x[4] = {mesh_.x[vertex] + time * mesh_.v[vertex], end_[0] + time * speed_[0] + shift,
+                            end_[1] + time * speed_[1] + shift, Vec3f::Zero()};
+        return nearest_of_edge(x, 1, 2);
+    }
+    // passing: of the shape first.
+    bool suffices(const Nearest& own, const Passing& passing, float time, const Vec3f& shift) const {
+        Vec3f at[4];
+        passing.at(time, at);
+        for (int i = 0; i < passing.first(); ++i) at[i] += shift;
+        return own.distance() - passing.nearest(at).distance() < kSuffices * margin_;
     }
 
     SurfaceFeature edge_feature(uint32_t e) const { return {SurfaceFeature::Of::edge, &soft_, &mesh_, e}; }
@@ -189,8 +214,7 @@ private:
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, kAxis)), Vec3f::Zero(),
                    contact))
             return;
-        const float distance = contact.gap + of.both;
-        if (vertices_suffice(edge.vertex, distance)) return;
+        if (vertices_suffice(edge.vertex, passing, of.both)) return;
         Vec3f middle = Vec3f::Zero();
         for (int k = 0; k < first; ++k) middle += contact.weight[k] * passing.x[k];
         if (!spans()) {
@@ -410,7 +434,7 @@ private:
         if (!touch(passing, of, time_, finder_.before(feature, feature_of_shape(collider_, corner.number)), facing,
                    contact))
             return;
-        if (is_round() && vertices_suffice({vertex, 3}, contact.gap + of.both)) return;
+        if (is_round() && vertices_suffice({vertex, 3}, passing, of.both)) return;
         if (!spans()) {
             contact.skin = -corner.radius * contact.normal;
             contact.lever = at + contact.skin - centre_;
@@ -435,6 +459,7 @@ private:
     collision::Placement at_;  // in the mesh's frame
     bool all_;                 // triangles meet it anew
     float time_, margin_ = 0;
+    bool in_block_;                   // its elements are solved directly
     Vec3f centre_, velocity_, spin_;  // of its node
     Vec3f way_;                       // of it, as seen from what moves as the surface does on average
     Vec3f end_[2] = {Vec3f::Zero(), Vec3f::Zero()}, speed_[2] = {Vec3f::Zero(), Vec3f::Zero()};

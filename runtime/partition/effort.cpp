@@ -90,6 +90,42 @@ void Partition::find_strains(const Elements& elements) {
     }
 }
 
+// How often in a second two features that meet within the frame pass each other by half the shortest edge of either, as
+// far as it is from its middle to its end: weights and normal of their contact tell nothing beyond that. 0: none has an
+// edge, or they do not meet [1/s].
+static double passages_of(const Nodes& nodes, const SurfaceContact& contact, double frame) {
+    double speed = 0, squared = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < i; ++k) {
+            if (contact.node[i] == kNone || contact.node[k] == kNone) continue;
+            const NodeMotion &one = nodes.motion[contact.node[i]], &other = nodes.motion[contact.node[k]];
+            if (contact.weight[i] * contact.weight[k] > 0) {
+                squared = std::min(squared, (one.x - other.x).squaredNorm());
+                continue;
+            }
+            Vec3 apart = one.v - other.v;
+            if (k == 0) apart -= other.w.cross(contact.lever.cast<double>());
+            speed = std::max(speed, std::abs(apart.dot(contact.normal.cast<double>())));
+        }
+    const bool meets = static_cast<double>(contact.gap) < frame * speed;
+    return meets && squared > 0 ? 2 * speed / std::sqrt(squared) : 0;
+}
+
+// Of islands with contacts of surfaces that are swept.
+void Partition::find_passages(const Nodes& nodes, const SurfaceContacts& surfaces, const PartitionRules& rules) {
+    for (size_t i = 0; i < surfaces.contact.size() && lanes_; ++i) {
+        if (surface_in_block_[i]) continue;
+        const double rate = passages_of(nodes, surfaces.contact[i], rules.time_step);
+        if (!(rate * rules.time_step > rules.substeps)) continue;
+        const TouchGraph::Tie movers = movers_of(surfaces.contact[i]);
+        const auto moves = std::ranges::find_if(movers, [](uint32_t node) { return node != kNone; });
+        if (moves == movers.end()) continue;
+        if (strain_.empty()) strain_.resize(island_.size(), 0.0);
+        double& strain = strain_[island_of_[*moves]];
+        strain = std::max(strain, rate * rate);
+    }
+}
+
 // Of islands with contacts between grains.
 void Partition::find_grain_strains(const Grains& grains) {
     grain_strain_.clear();

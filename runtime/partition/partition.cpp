@@ -118,6 +118,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
     else
         forget_blocks(joints, pairs);
     find_strains(elements);
+    find_passages(nodes, pairs.surfaces, rules);
     find_grain_strains(pairs.grains);
     choose_substeps(rules);
     colour_joints();

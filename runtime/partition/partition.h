@@ -365,6 +365,7 @@ private:
     void forget_blocks(const Joints& joints, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);
     void find_strains(const Elements& elements);
+    void find_passages(const Nodes& nodes, const SurfaceContacts& surfaces, const PartitionRules& rules);
     void find_grain_strains(const Grains& grains);
     void make_groups();
     void colour_pairs(const Pairs& pairs);
@@ -431,8 +432,9 @@ private:
     Array<uint32_t> items_;                      // scratch: what is put in order
     Array<uint32_t> rank_;                       // scratch: of an item, its colour, kind and place
     Array<uint32_t> rank_begin_;                 // scratch: where items of a rank go
-    Array<double> strain_;  // of each island, by which fused sweeps would yield in substeps of one second, over what
-                            // they may; or empty
+    // Of each island, by which fused sweeps would yield in substeps of one second, over what they may, or the square of
+    // how often in a second features of surfaces pass their own size; or empty.
+    Array<double> strain_;
     Array<double> grain_strain_;                   // likewise, of contacts between grains
     Array<uint32_t> efforts_;                      // scratch: that occur
     Array<Press> presses_;                         // scratch: what presses others before those

@@ -22,6 +22,16 @@ struct ThingPlan {
     void filter(taut_filter& out) const { out.category = category, out.mask = mask; }
 };
 
+// Whether a segment goes through a triangle: volumes of the tetrahedra of its ends and of its line with the edges.
+inline bool crosses(const Vec& p, const Vec& q, const Vec& a, const Vec& b, const Vec& c) {
+    const auto volume = [](const Vec& o, const Vec& u, const Vec& v, const Vec& w) {
+        return dot(u - o, cross(v - o, w - o));
+    };
+    if (volume(p, a, b, c) * volume(q, a, b, c) >= 0) return false;
+    const double one = volume(p, q, a, b), two = volume(p, q, b, c), three = volume(p, q, c, a);
+    return (one > 0 && two > 0 && three > 0) || (one < 0 && two < 0 && three < 0);
+}
+
 // What a kind is called, and how one of it is made; its bodies.
 struct ThingKind {
     const char* name;

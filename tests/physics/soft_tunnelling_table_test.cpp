@@ -129,5 +129,104 @@ TEST_P(TunnellingTable, NothingGetsThrough) {
     }
 }
 
+// ---------------------------------------------------------------- posts and edges
+
+// What stands along z, its upper end above x = 0, y = 0; what is thrown comes along -y and never has its core within.
+struct Ledge {
+    const char* name;
+    double core;  // of it, from y = 0 [m]
+    void (*make)(const World&);
+};
+constexpr double kLedgeHalf = 0.6;
+
+const std::vector<Ledge>& ledges() {
+    static const std::vector<Ledge> all = {
+        {"post", -0.01,
+         [](const World& w) {
+             w.add({.kind = TAUT_BODY_STATIC,
+                    .shape = w.capsule(0.01, kLedgeHalf),
+                    .position = {0, -0.01, 0},
+                    .rotation = Quat::turn({1, 0, 0}, 0.5 * kPi)});
+         }},
+        {"edge", -0.005,
+         [](const World& w) {
+             w.add({.kind = TAUT_BODY_STATIC,
+                    .shape = w.box({0.2, 0.2, kLedgeHalf}),
+                    .position = {0, -0.2 * std::sqrt(2.0), 0},
+                    .rotation = Quat::turn({0, 0, 1}, 0.25 * kPi)});
+         }},
+        {"blade", -0.005,
+         [](const World& w) {
+             w.add({.kind = TAUT_BODY_STATIC, .shape = w.box({0.005, 0.3, kLedgeHalf}), .position = {0, -0.3, 0}});
+         }},
+    };
+    return all;
+}
+
+struct Wrap {
+    const char* thrown;
+    const Ledge* ledge;
+    double speed;  // [m/s]
+    bool swept;    // of a cloth
+};
+
+std::vector<Wrap> wraps() {
+    struct Held {
+        const char* thrown;
+        bool swept;
+        double up_to[3];  // of each ledge [m/s]
+    };
+    static constexpr Held kHeld[] = {{"cloth", false, {20, 300, 100}},
+                                     {"cloth", true, {100, 300, 300}},
+                                     {"cable", false, {0, 300, 300}},
+                                     {"links", false, {0, 300, 20}}};
+    std::vector<Wrap> out;
+    for (const Held& held : kHeld)
+        for (size_t k = 0; k < ledges().size(); ++k)
+            for (const double speed : {1.0, 3.0, 10.0, 20.0, 30.0, 100.0, 300.0})
+                if (speed <= held.up_to[k]) out.push_back({held.thrown, &ledges()[k], speed, held.swept});
+    return out;
+}
+
+class WrapsAround : public testing::TestWithParam<Wrap> {};
+INSTANTIATE_TEST_SUITE_P(Ledges, WrapsAround, testing::ValuesIn(wraps()), [](const auto& each) {
+    const Wrap& wrap = each.param;
+    return std::string(wrap.thrown) + "_" + wrap.ledge->name + "_" + std::to_string(static_cast<int>(wrap.speed)) +
+           (wrap.swept ? "_swept" : "");
+});
+
+TEST_P(WrapsAround, AndNeverHasItWithin) {
+    const Wrap& wrap = GetParam();
+    const World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+    wrap.ledge->make(world);
+    const ThingPlan plan = {.at = {0.013, 0.5, 0.021}, .velocity = {0, -wrap.speed, 0}, .swept = wrap.swept};
+    const bool is_cloth = std::string(wrap.thrown) == "cloth";
+    const Sheet sheet(9, 9, 0.4, 0.4, 0);
+    const std::vector<taut_body> bodies =
+        is_cloth ? bodies_of(make_cloth(world, plan, 9))
+                 : bodies_of(make_cable(world, plan,
+                                        std::string(wrap.thrown) == "cable" ? TAUT_CABLE_PARTICLES : TAUT_CABLE_LINKS));
+    const Vec one = {0, wrap.ledge->core, -kLedgeHalf}, other = {0, wrap.ledge->core, kLedgeHalf};
+    // Of a cable until its ends have swung as far round as may bring them under it.
+    const int frames = is_cloth ? static_cast<int>(30 / wrap.speed) + 12 : static_cast<int>(45 / wrap.speed) + 1;
+    for (int i = 0; i < frames; ++i) {
+        world.step();
+        std::vector<Vec> x;
+        for (const taut_body body : bodies) x.push_back(position(body));
+        double highest = -1;
+        for (const Vec& each : x) highest = std::max(highest, each.y);
+        ASSERT_GT(highest, wrap.ledge->core) << "has passed, frame " << i;
+        for (size_t t = 0; is_cloth && t < sheet.triangles.size(); t += 3)
+            ASSERT_FALSE(
+                crosses(one, other, x[sheet.triangles[t]], x[sheet.triangles[t + 1]], x[sheet.triangles[t + 2]]))
+                << "frame " << i;
+        for (size_t n = 1; !is_cloth && n < x.size(); ++n) {
+            const double a = x[n - 1].x, b = x[n].x;
+            if (a * b >= 0) continue;
+            ASSERT_GT((x[n - 1].y * b - x[n].y * a) / (b - a), wrap.ledge->core) << "frame " << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace lab

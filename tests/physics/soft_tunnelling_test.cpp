@@ -5,16 +5,6 @@
 namespace lab {
 namespace {
 
-// Whether a segment goes through a triangle: volumes of the tetrahedra of its ends and of its line with the edges.
-bool crosses(const Vec& p, const Vec& q, const Vec& a, const Vec& b, const Vec& c) {
-    const auto volume = [](const Vec& o, const Vec& u, const Vec& v, const Vec& w) {
-        return dot(u - o, cross(v - o, w - o));
-    };
-    if (volume(p, a, b, c) * volume(q, a, b, c) >= 0) return false;
-    const double one = volume(p, q, a, b), two = volume(p, q, b, c), three = volume(p, q, c, a);
-    return (one > 0 && two > 0 && three > 0) || (one < 0 && two < 0 && three < 0);
-}
-
 // Edges of a sheet through triangles of the same that have no vertex in common with them.
 int crossings(const Sheet& sheet, const std::vector<Vec>& x) {
     int count = 0;
@@ -91,8 +81,7 @@ std::vector<Throw> throws(bool quick) {
     for (const double speed : {2.0, 5.0, 10.0, 20.0})
         for (const double thick : {0.005, 0.02})
             for (const bool swept : {false, true})
-                if ((!swept || speed < 20) && (swept || speed < 5 || (speed > 5 && thick < 0.01)) == quick)
-                    out.push_back({speed, thick, swept});
+                if ((swept || speed < 5 || (speed > 5 && thick < 0.01)) == quick) out.push_back({speed, thick, swept});
     return out;
 }
 

@@ -55,7 +55,8 @@ protected:
         return w_.softs.add(std::move(soft));
     }
     void refit(Team& team) {
-        refit_surfaces(team, {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.broadphase, kTime});
+        refit_surfaces(team,
+                       {w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.elements, w_.pairs, w_.broadphase, kTime});
     }
     SurfaceSides sides(uint32_t a, uint32_t b) const {
         const Softs& softs = w_.softs;
@@ -181,7 +182,8 @@ TEST(FeatureLanes, MeetAsFeaturesOneByOne) {
         for (int lane = 0; lane < kLanes; ++lane) {
             const float reach = std::min(lanes.both, lanes.of_size * passing[lane].size()) + lanes.margin;
             Nearest near;
-            const bool meets = meet(passing[lane], reach, kPassingTime, near) && near.inside;
+            float met_after = 0;
+            const bool meets = meet(passing[lane], reach, kPassingTime, near, met_after) && near.inside;
             expected |= static_cast<unsigned>(meets) << lane;
         }
         const auto all = [&](const TrianglePairKernel& kernel) {

@@ -120,7 +120,8 @@ TEST(Passing, NoneThatMeetsIsMissed) {
         for (int i = 0; i < 4; ++i) passing.x[i] = draw.point(0.1f), passing.v[i] = draw.point(10);
         const float reach = 0.005f, time = 1.0f / 60;
         Nearest near;
-        const bool meets = meet(passing, reach, time, near),
+        float when = 0;
+        const bool meets = meet(passing, reach, time, near, when),
                    does = std::isfinite(sampled_meeting(passing, reach, time));
         met += does;
         false_alarms += meets && !does;
