@@ -134,7 +134,7 @@ private:
     void list(const Noted& noted, uint32_t near) {
         const auto [t, u, time, beside] = noted;
         const bool crosses = !sides_.is_one() || sides_.soft[0]->kind == SoftKind::cloth;  // cells of a solid resist it
-        if (near & NearFeatures::cut && crosses && !beside) {
+        if (near & NearFeatures::cut && crosses && !beside && !are_sewn(t, u)) {
             list_cuts(0, t, 1, u);
             list_cuts(1, u, 0, t);
         }
@@ -156,6 +156,17 @@ private:
                 if (!beside || !have_common_end(e, f)) add({NearFeature::Of::edge_edge, e, f, time});
             }
         }
+    }
+
+    // Triangles with corners that a joint holds together are beside each other.
+    bool are_sewn(uint32_t t, uint32_t u) const {
+        const auto node = [&](int side, uint32_t triangle, int k) {
+            return sides_.soft[side]->node[sides_.corners(side, triangle)[k]];
+        };
+        for (int k = 0; k < 3 && !sides_.joined.empty(); ++k)
+            for (int n = 0; n < 3; ++n)
+                if (std::ranges::binary_search(sides_.joined, pair_key(node(0, t, k), node(1, u, n)))) return true;
+        return false;
     }
 
     // Of one kind.

@@ -3,6 +3,8 @@
 // once, so that what is found has no order.
 #pragma once
 
+#include <span>
+
 #include "state/softs.h"
 #include "state/surface_contacts.h"
 #include "threads/team.h"
@@ -14,7 +16,8 @@ struct SurfaceSides {
     const Soft* soft[2];
     const SurfaceMesh* mesh[2];
     uint32_t index[2];
-    Vec3f apart;  // from the first's origin to the second's [m]
+    Vec3f apart;                       // from the first's origin to the second's [m]
+    std::span<const uint64_t> joined;  // pair_key() of nodes that joints hold together, ascending
 
     bool is_one() const { return index[0] == index[1]; }
     const uint32_t* corners(int side, uint32_t t) const { return &soft[side]->triangle[3 * size_t{t}]; }

@@ -22,7 +22,8 @@ public:
           sides_{{&finder.scene().softs.record[a], &finder.scene().softs.record[b]},
                  {&finder.scene().softs.mesh[a], &finder.scene().softs.mesh[b]},
                  {a, b},
-                 Vec3f::Zero()},
+                 Vec3f::Zero(),
+                 finder.scene().pairs.joined},
           time_(static_cast<float>(finder.scene().time)),
           of_(finder.touch_of(sides_.mesh[0]->collider, sides_.mesh[1]->collider)) {
         sides_.apart = (sides_.mesh[1]->origin - sides_.mesh[0]->origin).cast<float>();

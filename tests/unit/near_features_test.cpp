@@ -63,7 +63,8 @@ protected:
         return {{&softs.record[a], &softs.record[b]},
                 {&softs.mesh[a], &softs.mesh[b]},
                 {a, b},
-                (softs.mesh[b].origin - softs.mesh[a].origin).cast<float>()};
+                (softs.mesh[b].origin - softs.mesh[a].origin).cast<float>(),
+                {}};
     }
     Found find(Team& team, uint32_t a, uint32_t b) {
         refit(team);
