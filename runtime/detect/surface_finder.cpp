@@ -185,6 +185,7 @@ void carry_force(const SurfaceContact& was, SurfaceContact& contact) {
     contact.in_block = was.in_block;
     contact.force = was.force;
     contact.pushed = was.pushed;
+    contact.push = was.push;
     contact.rubbed = was.rubbed;
     contact.approach = was.approach;
     if (same_tangents(was.normal, contact.normal)) return;

@@ -163,10 +163,12 @@ private:
         const Vec3 at = 0.5 * (side(-1) + side(1));
         // Its normal goes from the side with weights < 0, collider 1, to the other.
         const bool turned = told(world_, contact.collider[1]) > told(world_, contact.collider[0]);
+        const float push = contact.push.norm();
+        const Vec3f normal = push > 0 ? Vec3f((1 / push) * contact.push) : contact.normal;
         return {{at.x(), at.y(), at.z()},
-                way(contact.normal, turned),
+                way(normal, turned),
                 contact.gap,
-                finite(contact.pushed),
+                finite(push),
                 finite(contact.rubbed.norm()),
                 contact.approach,
                 0};

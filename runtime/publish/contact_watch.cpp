@@ -115,6 +115,7 @@ void add_impulse(SurfaceContact& contact, float normal, float tangent1, float ta
     if (!(normal > 0)) return;
     const Vec3f t1 = tangent_of(contact.normal), t2 = contact.normal.cross(t1);
     contact.pushed += normal;
+    contact.push += normal * contact.normal;
     contact.rubbed += tangent1 * t1 + tangent2 * t2;
 }
 
@@ -129,7 +130,7 @@ void watch_surfaces(Team& team, const Nodes& nodes, const Colliders& colliders, 
         for (uint32_t i = begin; i < end; ++i) {
             SurfaceContact& contact = contacts[i];
             contact.pushed = 0;
-            contact.rubbed = Vec3f::Zero();
+            contact.push = contact.rubbed = Vec3f::Zero();
             const uint32_t asked = pairs.asks | asks(contact.collider[0]) | asks(contact.collider[1]);
             contact.approach = asked & kAsksWatch ? closing_speed(nodes, contact) : 0;
         }

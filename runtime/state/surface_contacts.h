@@ -30,10 +30,11 @@ struct SurfaceContact {
     uint32_t collider[2] = {kNone, kNone};  // whose materials and filters it has: of the sides that weights > 0, < 0
     ContactForce force;                     // of the last substep, tangents as tangent_of(normal)
     bool in_block = false;                  // of the last substep
-    // Of the step that is under way or was the last: impulses summed over its substeps, friction's along world axes
-    // [N s], and how fast the two closed before it, where somebody asks [m/s]. publish/contact_watch.h
+    // Of the step that is under way or was the last: impulses summed over its substeps, in world axes those along the
+    // normals that it had, and friction's [N s], and how fast the two closed before it, where somebody asks [m/s].
+    // publish/contact_watch.h
     float pushed = 0;
-    Vec3f rubbed = Vec3f::Zero();
+    Vec3f push = Vec3f::Zero(), rubbed = Vec3f::Zero();
     float approach = 0;
 
     bool pushes() const { return force.normal > 0; }
@@ -43,7 +44,7 @@ struct SurfaceContact {
 template <class Visitor, Like<SurfaceContact> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [a, b, node, weight, lever, skin, normal, gap, friction, restitution, drive, collider, force, in_block,
-           pushed, rubbed, approach] = of;  // rubbed, approach: within a step
+           pushed, push, rubbed, approach] = of;  // push, rubbed, approach: within a step
     TAUT_FIELDS(visitor, a, b);
     for (int i = 0; i < 4; ++i) TAUT_FIELDS(visitor, node[i], weight[i]);
     TAUT_FIELDS(visitor, lever, skin, normal, gap, friction, restitution, drive, collider[0], collider[1], force,

@@ -114,8 +114,10 @@ TEST_P(SoftEvents, TellOneOfEachPairAndAllOfItsPush) {
     const Vec given = totals(above).momentum - first;
     EXPECT_GT(begins, 0);
     EXPECT_GT(hits, 0);
-    // Of what is swept up to 8 % are not told, where contacts are found anew within a frame.
-    EXPECT_LE(norm(told - given), (GetParam().swept ? 0.1 : 1e-5) * norm(given));
+    // Of a swept solid on a cable 3 % are not told.
+    const bool lost = GetParam().swept && std::string(GetParam().one->name) == "solid" &&
+                      std::string(GetParam().other->name) == "cable";
+    EXPECT_LE(norm(told - given), (lost ? 0.05 : 1e-4) * norm(given));
 }
 
 // Masks that exclude each other keep all that might touch apart, whichever of the two excludes.
