@@ -17,9 +17,9 @@ constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have p
 constexpr uint32_t kColliderGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
-// spans two nodes; may be ignored by the host's function or a one-way direction, for what goes through on purpose is
-// not held back, or is followed within the step.
-enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4, kIgnorable = 8 };
+// spans two nodes; may be ignored by the host's function or a one-way direction: what goes through on purpose is not
+// held back; is followed within the step.
+enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4, kIgnorable = 8, kFollowed = 16 };
 
 // Whether a collider between two nodes was put back by either.
 bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t round) {
@@ -65,7 +65,8 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
             if (!(mark & kMoved)) continue;
             const bool was_astray = mark & kAstray;
             mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
-            if (collider.asks & (kAsksOneWay | kAsksPreSolve) || is_followed(collider)) mark |= kIgnorable;
+            if (collider.asks & (kAsksOneWay | kAsksPreSolve)) mark |= kIgnorable;
+            if (is_followed(collider)) mark |= kFollowed;
             const Course* const course = with_courses ? &find_course(nodes, colliders, shapes, c, pairs) : nullptr;
             if (!solved(nodes, collider)) continue;
             const Vec3 along = course ? course->along : way_along(nodes, collider, shapes);
@@ -179,6 +180,20 @@ void pick_striding(Team& team, Pairs& pairs) {
            [&](uint32_t i) { return strides(pairs, pairs.asked[i]); });
 }
 
+// Whether one of two that passed each other was followed along its way, and is clear of the other: it went round.
+bool went_round(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+                const AskedPair& pair) {
+    if (!((pairs.marks[pair.a] | pairs.marks[pair.b]) & kFollowed)) return false;
+    const Collider &a = colliders.record[pair.a], &b = colliders.record[pair.b];
+    const collision::Shape &one = shapes[a.shape].shape, &other = shapes[b.shape].shape;
+    if (collision::has_parts(one) || collision::has_parts(other)) return false;
+    collision::PairCache cache;
+    collision::Manifold manifold;
+    collision::collide(one, placement_of(nodes, a), other, placement_of(nodes, b), 0, cache, manifold);
+    return std::none_of(manifold.points, manifold.points + manifold.count,
+                        [](const collision::ContactPoint& point) { return point.separation < 0; });
+}
+
 // Each goes back along its way; in the last round it stays where it was, unless it is driven. Whether it may.
 bool go_back(const Couple& pair, const Excess& excess, uint8_t round, Mechanism& of_a, Mechanism& of_b) {
     if (round < kRounds || of_a.is_driven() || of_b.is_driven()) {
@@ -242,7 +257,7 @@ bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints&
                        b_anew = anew(nodes, colliders, shapes, asked.b, round, pairs);
             ask = ask || ((a_anew || b_anew) && may_pass(pairs, asked));
         }
-        if (!ask) continue;
+        if (!ask || went_round(nodes, colliders, shapes, pairs, asked)) continue;
         const Couple pair(colliders, shapes, pairs.courses, asked);
         any = part(pair, excess_of(nodes, pair), colliders, shapes, joints, elements, round, pairs, nodes) || any;
     }
@@ -255,7 +270,8 @@ void find_passed(Team& team, const Nodes& nodes, const Colliders& colliders, con
         for (uint32_t i = begin; i < end; ++i) {
             AskedPair& pair = pairs.asked[pairs.picked[i]];
             pair.passed = moved(pairs, pair) && may_pass(pairs, pair) &&
-                          excess_of(nodes, Couple(colliders, shapes, pairs.courses, pair)).share > 0;
+                          excess_of(nodes, Couple(colliders, shapes, pairs.courses, pair)).share > 0 &&
+                          !went_round(nodes, colliders, shapes, pairs, pair);
         }
     });
 }

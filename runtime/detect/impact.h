@@ -31,8 +31,8 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 // stand in the air for good, and its joints are closed after that; where it still passes something, it stays where it
 // was before the step. Velocities stay: the next frame finds the contact. No pair is looked after that the host or a
 // one-way collider may ignore.
-// followed: by node, 1 for vertices of surfaces whose contacts went along their ways, or empty. These may have gone
-// around what a straight way goes through, and held back alone would leave their edges there.
+// followed: by node, 1 for vertices of surfaces whose contacts went along their ways, or empty. Such that are clear of
+// what a straight way goes through went round it, and held back alone would leave their edges there.
 void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, const Joints& joints,
                const Elements& elements, std::span<const uint8_t> followed, Pairs& pairs,
                collision::Broadphase& broadphase, Nodes& nodes);
