@@ -222,14 +222,12 @@ taut_result taut_cloth_get_solve(taut_cloth handle, taut_deformable_solve* out) 
 
 taut_result taut_cloth_set_contact_events(taut_cloth handle, uint32_t contact_events) {
     Check check(__func__);
-    check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL);
-    return ask_of_soft(check, handle, TAUT_CONTACT_EVENTS_ALL, contact_events);
+    return set_soft_contact_events(check, handle, contact_events);
 }
 
 taut_result taut_cloth_set_pre_solve(taut_cloth handle, int32_t pre_solve) {
     Check check(__func__);
-    check.boolean("pre_solve", static_cast<uint32_t>(pre_solve));
-    return ask_of_soft(check, handle, kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
+    return set_soft_pre_solve(check, handle, pre_solve);
 }
 
 taut_result taut_body_get_cloth(taut_body handle, taut_cloth* out) {

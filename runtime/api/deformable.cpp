@@ -105,4 +105,12 @@ taut_result add_planned(Check& check, World& world, const SoftPlan& plan, uint32
     return room;
 }
 
+void ask_of_soft(World& world, const Soft& soft, uint32_t which, uint32_t bits) {
+    for (const uint32_t node : soft.node) {
+        for_colliders(world.nodes, world.colliders, node,
+                      [&](uint32_t c) { ask_for(world.colliders.change(c), which, bits); });
+        if (which & kAsksPreSolve) wake_about(world, node);
+    }
+}
+
 }  // namespace taut

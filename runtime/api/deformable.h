@@ -156,17 +156,25 @@ taut_result pin_soft(Check& check, Handle handle, uint32_t vertex, uint32_t pinn
 }
 
 // Bits of all its colliders; which: those that bits may be of.
+void ask_of_soft(World& world, const Soft& soft, uint32_t which, uint32_t bits);
+
 template <class Handle>
-taut_result ask_of_soft(Check& check, Handle handle, uint32_t which, uint32_t bits) {
+taut_result set_soft_asks(Check& check, Handle handle, uint32_t which, uint32_t bits) {
     if (!check) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
-        for (const uint32_t node : world.softs.record[index].node) {
-            for_colliders(world.nodes, world.colliders, node,
-                          [&](uint32_t c) { ask_for(world.colliders.change(c), which, bits); });
-            if (which & kAsksPreSolve) wake_about(world, node);
-        }
+        ask_of_soft(world, world.softs.record[index], which, bits);
         return TAUT_OK;
     });
+}
+template <class Handle>
+taut_result set_soft_contact_events(Check& check, Handle handle, uint32_t contact_events) {
+    check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL);
+    return set_soft_asks(check, handle, TAUT_CONTACT_EVENTS_ALL, contact_events);
+}
+template <class Handle>
+taut_result set_soft_pre_solve(Check& check, Handle handle, int32_t pre_solve) {
+    check.boolean("pre_solve", static_cast<uint32_t>(pre_solve));
+    return set_soft_asks(check, handle, kAsksPreSolve, pre_solve ? kAsksPreSolve : 0);
 }
 
 // The soft body that a body is a vertex of: its handle by get(world, soft), null for any other.

@@ -137,4 +137,22 @@ inline const std::vector<ThingKind>& thing_kinds() {
     return all;
 }
 
+// Something soft and what it meets.
+struct Meeting {
+    const ThingKind *one, *other;
+    bool swept;
+
+    std::string name() const { return std::string(one->name) + "_" + other->name + (swept ? "_swept" : ""); }
+};
+
+// Every pair of kinds that meet, soft ones with each other once, direct and swept.
+inline std::vector<Meeting> meetings() {
+    std::vector<Meeting> out;
+    for (const ThingKind& one : thing_kinds())
+        for (const ThingKind& other : thing_kinds())
+            for (const bool swept : {false, true})
+                if (one.soft && (!other.soft || &one <= &other)) out.push_back({&one, &other, swept});
+    return out;
+}
+
 }  // namespace lab

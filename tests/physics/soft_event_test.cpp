@@ -40,20 +40,6 @@ void ask_for_all(taut_world_def& def) { def.contact_events = TAUT_CONTACT_EVENTS
 
 // ---------------------------------------------------------------- two in free space
 
-struct Meeting {
-    const ThingKind *one, *other;
-    bool swept;
-};
-
-std::vector<Meeting> meetings() {
-    std::vector<Meeting> out;
-    for (const ThingKind& one : thing_kinds())
-        for (const ThingKind& other : thing_kinds())
-            for (const bool swept : {false, true})
-                if (one.soft && (!other.soft || &one <= &other)) out.push_back({&one, &other, swept});
-    return out;
-}
-
 class SoftEvents : public testing::TestWithParam<Meeting> {
 protected:
     SoftEvents()
@@ -72,9 +58,8 @@ protected:
     World world;
     std::vector<taut_body> below, above;
 };
-INSTANTIATE_TEST_SUITE_P(Kinds, SoftEvents, testing::ValuesIn(meetings()), [](const auto& each) {
-    return std::string(each.param.one->name) + "_" + each.param.other->name + (each.param.swept ? "_swept" : "");
-});
+INSTANTIATE_TEST_SUITE_P(Kinds, SoftEvents, testing::ValuesIn(meetings()),
+                         [](const auto& each) { return each.param.name(); });
 
 // Without friction, what is told of the normals is all the momentum that one gives the other.
 TEST_P(SoftEvents, TellOneOfEachPairAndAllOfItsPush) {
