@@ -176,7 +176,7 @@ std::vector<Wrap> wraps() {
         bool swept;
         double up_to[3];  // of each ledge [m/s]
     };
-    static constexpr Held kHeld[] = {{"cloth", false, {20, 300, 100}},
+    static constexpr Held kHeld[] = {{"cloth", false, {30, 300, 100}},
                                      {"cloth", true, {100, 300, 300}},
                                      {"cable", false, {0, 300, 300}},
                                      {"links", false, {0, 300, 20}}};
