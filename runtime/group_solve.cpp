@@ -4,7 +4,6 @@
 
 #include "check/quarantine.h"
 #include "detect/detect.h"
-#include "detect/vertex_pairs.h"
 #include "integrate/scheme.h"
 #include "models/air.h"
 #include "publish/publish.h"
@@ -64,8 +63,6 @@ void GroupSolve::begin() {
     if (lends_) loan_.begin();
     find_contacts_again(w_.nodes, w_.colliders, w_.shapes, w_.pairs, group_.direct_pairs, clock_.begin(),
                         system_.scheme.h);
-    for (const uint32_t active : group_.direct_pairs)
-        turn_into_cone(w_.nodes, w_.colliders, w_.shapes, w_.softs, w_.pairs, w_.pairs.active[active]);
     turn_kinematic(system_, w_.nodes, clock_.begin());
     predict(w_.team, system_, group_, w_.nodes, gravity_);
     system_.gases.clear();

@@ -55,7 +55,7 @@ void turn_into_cone(const Nodes& nodes, const Colliders& colliders, const Shapes
                     Pairs& pairs, const ActivePair& active) {
     const VertexPair of(nodes, softs, active);
     Pair& pair = pairs.list[active.pair];
-    if (!of.mesh() || pair.manifold.count == 0) return;
+    if (!of.mesh() || pair.manifold.count == 0 || nodes.solved(of.is_second() ? active.b : active.a)) return;
     const uint32_t collider = of.is_second() ? pair.collider_a() : pair.collider_b();
     const collision::Shape& shape = shapes[colliders.record[collider].shape].shape;
     const Vec3& x = nodes.motion[of.is_second() ? active.b : active.a].x;

@@ -36,7 +36,8 @@ struct Turned {
 Turned turn_normal(const SurfaceFeature& feature, const collision::Shape& shape, const collision::Placement& at,
                    const Vec3& x, const Vec3f& direction, float margin);
 
-// Turns the normal of a pair of a vertex. Its separation stays that of the two.
+// Turns the normal of a pair of a vertex that is held. Its separation stays that of the two. A sheet that moves bends
+// about what it meets, and its triangles are then elsewhere.
 void turn_into_cone(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Softs& softs,
                     Pairs& pairs, const ActivePair& active);
 
