@@ -85,6 +85,14 @@ Vec3f in_cone_of_vertex(const Soft& soft, const SurfaceMesh& mesh, uint32_t vert
 
 }  // namespace
 
+SurfaceFeature held_feature(const Nodes& nodes, const SurfaceFeature& feature) {
+    const auto moves = [&](uint32_t vertex) { return nodes.solved(feature.soft->node[vertex]); };
+    if (feature.of == SurfaceFeature::Of::vertex && moves(feature.index)) return {};
+    if (feature.of == SurfaceFeature::Of::edge && std::ranges::any_of(feature.mesh->edge[feature.index].vertex, moves))
+        return {};
+    return feature;
+}
+
 Vec3f SurfaceFeature::in_cone(const Vec3f& direction) const {
     switch (of) {
         case Of::vertex:

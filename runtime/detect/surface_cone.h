@@ -28,4 +28,8 @@ struct SurfaceFeature {
     Vec3f in_cone(const Vec3f& direction) const;
 };
 
+// The feature where no force moves it; none where one does: a surface that moves bends about what it meets, and its
+// triangles are elsewhere then.
+SurfaceFeature held_feature(const Nodes& nodes, const SurfaceFeature& feature);
+
 }  // namespace taut

@@ -103,7 +103,8 @@ private:
             place(1, sides_.mesh[1]->edge[f].vertex[k], k + 2, passing, contact);
         }
         for (size_t side = 0; side < 2; ++side)
-            passing.feature[side] = {SurfaceFeature::Of::edge, sides_.soft[side], sides_.mesh[side], side == 0 ? e : f};
+            passing.feature[side] = held_feature(finder_.scene().nodes, {SurfaceFeature::Of::edge, sides_.soft[side],
+                                                                         sides_.mesh[side], side == 0 ? e : f});
         contact.a = feature_of(sides_.index[0], SurfacePart::edge, e);
         contact.b = feature_of(sides_.index[1], SurfacePart::edge, f);
         Vec3f facing = Vec3f::Zero();

@@ -183,8 +183,12 @@ private:
         return own.distance() - passing.nearest(at).distance() < kSuffices * margin_;
     }
 
-    SurfaceFeature edge_feature(uint32_t e) const { return {SurfaceFeature::Of::edge, &soft_, &mesh_, e}; }
-    SurfaceFeature vertex_feature(uint32_t v) const { return {SurfaceFeature::Of::vertex, &soft_, &mesh_, v}; }
+    SurfaceFeature edge_feature(uint32_t e) const {
+        return held_feature(scene_.nodes, {SurfaceFeature::Of::edge, &soft_, &mesh_, e});
+    }
+    SurfaceFeature vertex_feature(uint32_t v) const {
+        return held_feature(scene_.nodes, {SurfaceFeature::Of::vertex, &soft_, &mesh_, v});
+    }
     // From the shape to a feature, of which x is a point [m].
     Vec3f normal_to(const SurfaceFeature& feature, const collision::Manifold& manifold, const Vec3f& x) const {
         return -turn_normal(feature, shape_, at_, x.cast<double>(), manifold.normal, margin_).normal;

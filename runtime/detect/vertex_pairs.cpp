@@ -55,13 +55,13 @@ void turn_into_cone(const Nodes& nodes, const Colliders& colliders, const Shapes
                     Pairs& pairs, const ActivePair& active) {
     const VertexPair of(nodes, softs, active);
     Pair& pair = pairs.list[active.pair];
-    if (!of.mesh() || pair.manifold.count == 0 || nodes.solved(of.is_second() ? active.b : active.a)) return;
+    if (!of.mesh() || pair.manifold.count == 0) return;
     const uint32_t collider = of.is_second() ? pair.collider_a() : pair.collider_b();
     const collision::Shape& shape = shapes[colliders.record[collider].shape].shape;
     const Vec3& x = nodes.motion[of.is_second() ? active.b : active.a].x;
     const Vec3f out = of.is_second() ? Vec3f(-pair.manifold.normal) : pair.manifold.normal;
-    const Turned turned =
-        turn_normal(of.feature(), shape, pairs.placement[collider], x, out, pairs.travel[collider].margin);
+    const Turned turned = turn_normal(held_feature(nodes, of.feature()), shape, pairs.placement[collider], x, out,
+                                      pairs.travel[collider].margin);
     if (turned.normal == out) return;
     pair.manifold.normal = of.is_second() ? Vec3f(-turned.normal) : turned.normal;
     // What was found ahead of time came back along the direction from then.
