@@ -258,7 +258,7 @@ TEST(Drape, HangsFromABarByHalfOfWhatIsLeft) {
     const taut_cloth cloth = add(world, def);
     for (int i = 0; i < 140; ++i) {
         world.step();
-        if (i > 60 && i % 20 == 0) set_velocities(bodies_of(cloth), {});
+        if (i % 10 == 0) set_velocities(bodies_of(cloth), {});  // let down: what swings is chaotic
     }
     const std::vector<Vec> x = points_of(cloth);
     const double hangs = kHeight - 0.5 * (kSize - kPi * radius), spacing = kSize / (kSide - 1);
