@@ -104,7 +104,7 @@ struct QuadraticBendLanes {
 
 // Angle of (x, y) from x, in (-pi, pi], to 1e-7: of the lesser over the greater by Abramowitz and Stegun, 4.4.49.
 template <class F>
-F angle_of(const F& y, const F& x) {
+F angle_from(const F& y, const F& x) {
     constexpr float kPi = 3.14159265f;
     constexpr float kSeries[] = {0.0028662257f,  -0.0161657367f, 0.0429096138f,
                                  -0.0752896400f, 0.1065626393f,  -0.1420889944f,
@@ -132,7 +132,7 @@ struct DihedralLanes {
         const V& e = d[0];
         const F square = F::max(dot(e, e), tiny), length = F::sqrt(square), least = F::all(1e-12f) * square * square;
         const V normal[2] = {cross(e, d[1]), cross(d[2], e)};
-        const F bend = angle_of(dot(e, cross(normal[1], normal[0])), length * dot(normal[0], normal[1])) -
+        const F bend = angle_from(dot(e, cross(normal[1], normal[0])), length * dot(normal[0], normal[1])) -
                        F::load(number[0].value);
         c[0] = F::if_greater(bend, pi, bend - whole, F::if_greater(F::all(-kPi), bend, bend + whole, bend));
         const V none = {F::all(0), F::all(0), F::all(0)};
