@@ -5,6 +5,7 @@
 
 #include "constraints/element_lanes.h"
 #include "constraints/sweep_side.inl"
+#include "simd/angle.h"
 
 namespace taut {
 
@@ -102,24 +103,6 @@ struct QuadraticBendLanes {
     static F strain(const LaneScalar*) { return F::all(0); }
 };
 
-// Angle of (x, y) from x, in (-pi, pi], to 1e-7: of the lesser over the greater by Abramowitz and Stegun, 4.4.49.
-template <class F>
-F angle_from(const F& y, const F& x) {
-    constexpr float kPi = 3.14159265f;
-    constexpr float kSeries[] = {0.0028662257f,  -0.0161657367f, 0.0429096138f,
-                                 -0.0752896400f, 0.1065626393f,  -0.1420889944f,
-                                 0.1999355085f,  -0.3333314528f, 1};
-    const F zero = F::all(0), across = F::max(x, zero - x), up = F::max(y, zero - y);
-    const F less = F::if_greater(up, across, across, up), more = F::max(F::max(across, up), F::all(1e-37f));
-    const F slope = less / more, square = slope * slope;
-    F sum = F::all(kSeries[0]);
-    for (int k = 1; k < 9; ++k) sum = sum * square + F::all(kSeries[k]);
-    F angle = slope * sum;
-    angle = F::if_greater(up, across, F::all(0.5f * kPi) - angle, angle);
-    angle = F::if_greater(zero, x, F::all(kPi) - angle, angle);
-    return F::if_greater(zero, y, zero - angle, angle);
-}
-
 // Angle between two triangles over their common edge: C = theta - rest; see dihedral.cpp.
 template <class F>
 struct DihedralLanes {
@@ -132,7 +115,7 @@ struct DihedralLanes {
         const V& e = d[0];
         const F square = F::max(dot(e, e), tiny), length = F::sqrt(square), least = F::all(1e-12f) * square * square;
         const V normal[2] = {cross(e, d[1]), cross(d[2], e)};
-        const F bend = angle_from(dot(e, cross(normal[1], normal[0])), length * dot(normal[0], normal[1])) -
+        const F bend = angle_of(dot(e, cross(normal[1], normal[0])), length * dot(normal[0], normal[1])) -
                        F::load(number[0].value);
         c[0] = F::if_greater(bend, pi, bend - whole, F::if_greater(F::all(-kPi), bend, bend + whole, bend));
         const V none = {F::all(0), F::all(0), F::all(0)};
