@@ -108,7 +108,7 @@ struct Broadphase::State {
     void walk(const btDbvt& of, const Asks& asks, Probe& probe, Visitor& visitor) const;
 
     Boxes boxes;
-    btDbvt tree, grains;        // of all others; of grains, which do not pair with each other
+    btDbvt tree, grains;  // of all others; of grains, which do not pair with each other
     btDbvt& tree_of(uint32_t id) { return in_grains[id] ? grains : tree; }
     Array<btDbvtNode*> leaves;  // by id, or null; their boxes stand in boxes as well: these lie somewhere else
     Array<uint8_t> stays;       // by id: how often its box changed since it got its place in the tree

@@ -206,8 +206,7 @@ TEST_P(SoftCube, LandsAndRests) {
 
 // Swept neo-Hookean cubes rest as those that are solved directly do, at any step, without shaking.
 class SweptCube : public testing::TestWithParam<std::tuple<int, double>> {};
-INSTANTIATE_TEST_SUITE_P(AtHertzAndPascal, SweptCube,
-                         testing::Combine(testing::Values(30), testing::Values(3e4, 1e6)));
+INSTANTIATE_TEST_SUITE_P(AtHertzAndPascal, SweptCube, testing::Combine(testing::Values(30), testing::Values(3e4, 1e6)));
 INSTANTIATE_TEST_SUITE_P(SoakAtHertzAndPascal, SweptCube,
                          testing::Combine(testing::Values(30, 60, 120, 240), testing::Values(3e4, 1e5, 1e6)));
 
