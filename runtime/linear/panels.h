@@ -36,7 +36,7 @@ struct PanelMatrix {
     const double* sign;   // of each pivot
     double* value;        // A, eliminated in place: L = A / D; kPanelPadding numbers more than there are
     double* inverse;      // of D, 9 numbers a pivot
-    double* scratch;      // as large as the largest panel, padded alike
+    double* scratch;      // as large as the largest panel, padded
 };
 
 constexpr size_t kPanelPadding = 3;  // whole vectors are read and written past the end of a column
@@ -44,7 +44,7 @@ constexpr size_t kPanelPadding = 3;  // whole vectors are read and written past 
 struct PanelKernels {
     const char* name;
     bool (*factor)(const PanelMatrix& m);            // false: a pivot is not of its sign, or not finite
-    void (*solve)(const PanelMatrix& m, double* x);  // x: three numbers a pivot
+    void (*solve)(const PanelMatrix& m, double* x);  // x: four numbers a pivot, the last without meaning
 };
 
 extern const PanelKernels kPanelKernelsBase, kPanelKernelsAvx2;

@@ -22,11 +22,6 @@ inline Vector load(const double* p) {
 }
 inline void store(double* p, const Vector& v) { __builtin_memcpy(p, &v, sizeof v); }
 
-template <size_t N>
-struct Number {
-    static constexpr size_t value = N;
-};
-
 // Inverse of the symmetric 3 x 3 matrix in the lower triangle of a, definite of the given sign.
 inline bool invert(const double* a, size_t ld, double sign, double* inverse) {
     auto good = [&](double reciprocal) { return sign * reciprocal > 0 && __builtin_isfinite(reciprocal); };
@@ -116,78 +111,39 @@ inline void times(const double* d, const double* x, double* out) {
     for (size_t r = 0; r < 3; ++r) out[r] = d[r] * x[0] + d[3 + r] * x[1] + d[6 + r] * x[2];
 }
 
-// y = sum over the pivots' columns of what is below them times u, 3 a pivot; whole vectors.
-inline void times_below(const PanelMatrix& m, const Panel& p, const double* u, double* y) {
-    const size_t ld = p.ld(), columns = 3 * p.pivots, rows = ld - columns;
-    const double* below = m.value + p.value + columns;
-    constexpr size_t kTogether = 4;  // vectors
-    const auto some = [&](size_t i, auto vectors) {
-        constexpr size_t kVectors = decltype(vectors)::value;
-        Vector sum[kVectors] = {};
-        const double* a = below + i;
-        for (size_t c = 0; c < columns; ++c, a += ld)
-            for (size_t v = 0; v < kVectors; ++v) sum[v] += load(a + kWidth * v) * u[c];
-        for (size_t v = 0; v < kVectors; ++v) store(y + i + kWidth * v, sum[v]);
-    };
-    size_t i = 0;
-    for (; i + kTogether * kWidth <= rows; i += kTogether * kWidth) some(i, Number<kTogether>());
-    for (; i < rows; i += kWidth) some(i, Number<1>());
-}
-
-// Sums over the rows below a panel's pivots of three of its columns times y, whose numbers past the end are 0: four
-// sums each, whatever the width, added in pairs.
-inline void dot_below(const double* a, size_t ld, const double* y, size_t rows, double (&dot)[3]) {
-    Vector sum[3][4 / kWidth] = {};
-    for (size_t i = 0; i < rows; i += 4)
-        for (size_t c = 0; c < 3; ++c)
-            for (size_t w = 0; w < 4; w += kWidth) sum[c][w / kWidth] += load(a + c * ld + i + w) * load(y + i + w);
-    for (size_t c = 0; c < 3; ++c)
-        dot[c] = (sum[c][0][0] + sum[c][0][1]) + (sum[c][2 / kWidth][2 % kWidth] + sum[c][2 / kWidth][3 % kWidth]);
-}
-
-// Within its pivots, then what they do to all rows below at once.
-inline void solve_down(const PanelMatrix& m, const Panel& p, double* x) {
-    const size_t ld = p.ld(), columns = 3 * p.pivots;
-    const uint32_t* row = m.row + p.row_begin;
-    double *u = m.scratch, *y = m.scratch + columns;
-    for (size_t k = 0; k < p.pivots; ++k)
-        for (size_t c = 0; c < 3; ++c) u[3 * k + c] = x[3 * row[k] + c];
-    for (size_t k = 0; k < p.pivots; ++k) {
-        const double* a = m.value + p.value + 3 * k * ld;
-        double own[3];
-        times(m.inverse + 9 * (p.first + k), u + 3 * k, own);
-        for (size_t c = 0; c < 3; ++c) u[3 * k + c] = own[c];
-        for (size_t i = 3 * (k + 1); i < columns; ++i)
-            u[i] -= a[i] * own[0] + a[ld + i] * own[1] + a[2 * ld + i] * own[2];
-    }
-    times_below(m, p, u, y);
-    for (size_t k = 0; k < p.pivots; ++k)
-        for (size_t c = 0; c < 3; ++c) x[3 * row[k] + c] = u[3 * k + c];
-    for (size_t i = p.pivots; i < p.rows; ++i)
-        for (size_t c = 0; c < 3; ++c) x[3 * row[i] + c] -= y[3 * (i - p.pivots) + c];
-}
-
-inline void solve_up(const PanelMatrix& m, const Panel& p, double* x) {
-    const size_t ld = p.ld();
-    const uint32_t* row = m.row + p.row_begin;
-    double* y = m.scratch;
-    for (size_t i = 0; i < p.rows; ++i)
-        for (size_t c = 0; c < 3; ++c) y[3 * i + c] = x[3 * row[i] + c];
-    for (size_t c = 0; c < kPanelPadding; ++c) y[ld + c] = 0;
-    for (size_t k = p.pivots; k-- > 0;) {
-        const size_t from = 3 * (k + 1);
-        double dot[3], z[3];
-        dot_below(m.value + p.value + 3 * k * ld + from, ld, y + from, ld - from, dot);
-        times(m.inverse + 9 * (p.first + k), dot, z);
-        for (size_t c = 0; c < 3; ++c) y[3 * k + c] -= z[c];
-    }
-    for (size_t k = 0; k < p.pivots; ++k)
-        for (size_t c = 0; c < 3; ++c) x[3 * row[k] + c] = y[3 * k + c];
-}
-
 void solve(const PanelMatrix& m, double* x) {
-    for (const Panel* p = m.panel; p != m.panel_end; ++p) solve_down(m, *p, x);
-    for (const Panel* p = m.panel_end; p-- != m.panel;) solve_up(m, *p, x);
+    for (const Panel* p = m.panel; p != m.panel_end; ++p) {
+        const size_t ld = p->ld();
+        const uint32_t* row = m.row + p->row_begin;
+        for (size_t k = 0; k < p->pivots; ++k) {
+            const double* a = m.value + p->value + 3 * k * ld;
+            double u[3];
+            times(m.inverse + 9 * (p->first + k), x + 4 * row[k], u);
+            for (size_t c = 0; c < 3; ++c) x[4 * row[k] + c] = u[c];
+            for (size_t i = k + 1; i < p->rows; ++i)
+                for (size_t w = 0; w < 4; w += kWidth) {
+                    const double* below = a + 3 * i + w;
+                    double* to = x + 4 * row[i] + w;
+                    store(to, load(to) - (load(below) * u[0] + load(below + ld) * u[1] + load(below + 2 * ld) * u[2]));
+                }
+        }
+    }
+    for (const Panel* p = m.panel_end; p-- != m.panel;) {
+        const size_t ld = p->ld();
+        const uint32_t* row = m.row + p->row_begin;
+        for (size_t k = p->pivots; k-- > 0;) {
+            const double* a = m.value + p->value + 3 * k * ld;
+            Vector sum[3][4 / kWidth] = {};
+            for (size_t i = k + 1; i < p->rows; ++i)
+                for (size_t c = 0; c < 3; ++c)
+                    for (size_t w = 0; w < 4; w += kWidth)
+                        sum[c][w / kWidth] += load(a + c * ld + 3 * i + w) * load(x + 4 * row[i] + w);
+            double dot[3], z[3];
+            for (size_t c = 0; c < 3; ++c) dot[c] = sum[c][0][0] + sum[c][0][1] + sum[c][2 / kWidth][2 % kWidth];
+            times(m.inverse + 9 * (p->first + k), dot, z);
+            for (size_t c = 0; c < 3; ++c) x[4 * row[k] + c] -= z[c];
+        }
+    }
 }
 
 }  // namespace

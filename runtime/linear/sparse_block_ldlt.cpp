@@ -166,7 +166,7 @@ void SparseBlockLdlt::find_panels() {
     value_.assign(values + kPanelPadding, 0);
     scratch_.assign(largest + kPanelPadding, 0);
     inverse_.resize(9 * pivot_.back());
-    work_.assign(3 * pivot_.back(), 0);
+    work_.assign(4 * pivot_.back(), 0);
     sign_.clear();
     for (uint32_t i : order_) sign_.resize(sign_.size() + triples(i), unknown_[i].multiplier ? -1.0 : 1.0);
 }
@@ -278,12 +278,13 @@ PanelMatrix SparseBlockLdlt::matrix() const {
 
 void SparseBlockLdlt::solve(double* x, const PanelKernels& kernels) const {
     auto triples_of = [&](uint32_t i, auto visit) {  // in x and in the order of elimination
-        for (uint32_t t = 0; t < triples(i); ++t) visit(x + 6 * i + 3 * t, &work_[3 * (pivot_[position_[i]] + t)]);
+        for (uint32_t t = 0; t < triples(i); ++t) visit(x + 6 * i + 3 * t, &work_[4 * (pivot_[position_[i]] + t)]);
     };
     auto copy = [](const double* from, double* to) {
         for (int r = 0; r < 3; ++r) to[r] = from[r];
     };
-    for (uint32_t i = 0; i < unknowns(); ++i) triples_of(i, copy);
+    for (uint32_t i = 0; i < unknowns(); ++i)
+        triples_of(i, [&](const double* outer, double* inner) { copy(outer, inner), inner[3] = 0; });
     kernels.solve(matrix(), work_.data());
     for (uint32_t i = 0; i < unknowns(); ++i) {
         std::fill_n(x + 6 * i + 3, 3, 0.0);
