@@ -40,7 +40,8 @@ GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const
 
 void GroupSolve::build() {
     system_.scheme.set_length(clock_.length());
-    build_rows(system_, group_, w_.partition.blocks, w_.joints, w_.elements, w_.pairs, w_.nodes, !solver_.lanes);
+    build_rows(system_, group_, w_.partition.blocks, w_.joints, w_.elements, w_.pairs, w_.nodes, !solver_.lanes,
+               solver_.energies);
     if (solver_.lanes) {
         build_lanes(w_.team, system_, group_, w_.pairs, w_.nodes, *settings_.kernels);
         build_grain_lanes(w_.team, system_, group_, w_.pairs.grains);

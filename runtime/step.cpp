@@ -20,6 +20,7 @@
 #include "models/plastic.h"
 #include "publish/publish.h"
 #include "sleep/sleep.h"
+#include "solvers/minimisation.h"
 #include "world.h"
 
 namespace taut {
@@ -84,6 +85,7 @@ void detect(World& w, Stopwatch& watch) {
 void solve(World& w, Stopwatch& watch) {
     const Solver& solver = *solvers()[w.def.solver];
     const taut_vec3 g = w.def.gravity;
+    const MinimisationSettings minimisation{w.def.minimise_tolerance, w.def.line_search != 0, w.relaxation};
     const SolverSettings settings{
         w.def.sweeps,
         w.def.geometric_stiffness != 0,
@@ -98,7 +100,8 @@ void solve(World& w, Stopwatch& watch) {
         w.def.restitution_threshold,
         {static_cast<FrictionModel>(w.def.friction_model), w.def.stepping == TAUT_STEPPING_VELOCITY,
          w.def.stabilisation},
-        {0, w.def.relaxation, static_cast<MomentumRule>(w.def.momentum), w.def.fixed_step != 0}};
+        {0, w.def.relaxation, static_cast<MomentumRule>(w.def.momentum), w.def.fixed_step != 0},
+        &minimisation};
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
@@ -110,6 +113,8 @@ void solve(World& w, Stopwatch& watch) {
     for (uint32_t i = 0; i < w.partition.group_count; ++i) GroupSolve(w, i, solver, settings, report, watch).run();
     if (const uint32_t failures = report.failures; failures > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
+    if (report.unfinished > 0)
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u minimisations ended before their tolerance", report.unfinished);
     if (!w.frozen.empty()) {
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%zu bodies quarantined: their motion was not finite", w.frozen.size());
         drop_bad_impulses(w.pairs, w.joints, w.elements);

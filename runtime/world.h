@@ -29,6 +29,8 @@ namespace taut {
 
 constexpr uint32_t kMaxSubsteps = 64;  // of a step, by its def
 
+struct Relaxation;
+
 struct World {
     explicit World(const taut_world_def& checked_def, uint32_t world_id = 0);
 
@@ -81,6 +83,7 @@ struct World {
     SolveReports reports;  // of the last step, where def.report asks for them
 
     StageObserver* observer = nullptr;  // of tests; null: nobody looks on
+    Relaxation* relaxation = nullptr;   // of taut_world_relax while it works, else null: a step of no time
 
     // State too: the substep that soft rows keep the frequency of, whatever becomes of the time step [s]. None is
     // longer.
@@ -106,7 +109,7 @@ void describe(Visitor& visitor, Of& of) {
            velocity_filter, max_catch_up, threads, hooks, sleeping, sleep_speed, sleep_time, contact_events, hit_speed,
            continuous, max_bodies, max_colliders, max_joints, max_contacts, adaptive_damping, restitution_threshold,
            stepping, stabilisation, relaxation, friction_model, momentum, fixed_step, scheme, newmark_beta,
-           newmark_gamma, report, air_density, air_pressure, wind] = of;
+           newmark_gamma, report, air_density, air_pressure, wind, minimise_tolerance, line_search] = of;
     TAUT_FIELDS(visitor, gravity.x, gravity.y, gravity.z, time_step, substeps, restitution_threshold, wind.x, wind.y,
                 wind.z);
     TAUT_ASIDE(visitor, contact_events, hit_speed);
@@ -117,15 +120,15 @@ void describe(Visitor& visitor, Of& of) {
     auto& [memory, def, team, id, nodes, shapes, colliders, joints, elements, cables, softs, attachments, broadphase,
            pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
            contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
-           torn, yielded, fell_asleep, woke, moved_before, frozen, profile, reports, observer, spring_substep,
-           first_substep, impacts] = of;
+           torn, yielded, fell_asleep, woke, moved_before, frozen, profile, reports, observer, relaxation,
+           spring_substep, first_substep, impacts] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,
                 broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);
     TAUT_ASIDE(visitor, sensors, last_step);
-    // Not state: the host's own (memory, team, id, pre_solve, observer, first_substep); what a step works with (system,
-    // scratch, watch, impacts, moved_before); what steps told (all others), which a restoration forgets.
+    // Not state: the host's own (memory, team, id, pre_solve, observer, relaxation, first_substep); what a step works
+    // with (system, scratch, watch, impacts, moved_before); what steps told (all others), which a restoration forgets.
 }
 
 // One fixed time step. Throws std::bad_alloc only before the state changes or with the state still consistent.

@@ -25,6 +25,12 @@ typedef enum taut_solver {
     TAUT_SOLVER_MINIMUM_RESIDUAL = 5,       /**< algorithm 2 */
     TAUT_SOLVER_CONJUGATE_RESIDUALS = 6,    /**< algorithm 3 */
     TAUT_SOLVER_CONJUGATE_GRADIENTS = 7,    /**< algorithm 1, on the energy: rigid rows are stiff springs */
+    TAUT_SOLVER_MINIMISATION = 8,           /**< cloths, solids and cables of particles alone, in implicit Euler: Newton's
+                                                 method with line search on their energy (Gast and Schroeder 2014), which
+                                                 bears steps as long as a film frame and recovers from any tangle. A step
+                                                 of a world that has something else returns TAUT_UNSUPPORTED: rigid
+                                                 dynamic bodies, joints, what moves and may touch (filter mask not 0),
+                                                 rigid elements (a compliance of 0), cloths with pressure or gas */
     TAUT_SOLVER_MAX = 0x7fffffff
 } taut_solver;
 
@@ -70,7 +76,7 @@ typedef struct taut_world_def {
                                   joints whip about, and up to 64 for swept cloths and solids. Default 4 */
     uint32_t fixed_substeps; /**< 1: no island takes more than substeps. Default 0 */
     uint32_t sweeps;         /**< iterations a substep, [0, 1000]; 0: the solver's own: 1 of sweeps, 60 of conjugate
-                                  gradients, 30 of others. Default 0 */
+                                  gradients, at most 1000 of minimisation, 30 of others. Default 0 */
     uint32_t geometric_stiffness; /**< 0 leaves it out (for comparison only). Default 1 */
     float velocity_filter;        /**< low-pass factor of the velocity that geometric stiffness spares, [0, 1]; 0: plain
                                        implicit Euler damping (Tournier 2015). Default 0.25 */
@@ -128,6 +134,11 @@ typedef struct taut_world_def {
                                              Default 1.2 */
     float air_pressure;                 /**< of that air [Pa], [0, 1e7]; see taut_cloth_def. Default 101325 */
     taut_vec3 wind;                     /**< velocity of that air [m/s], each within 1e3. Default 0 */
+    float minimise_tolerance;           /**< of TAUT_SOLVER_MINIMISATION: it ends where forces that are left would move
+                                             free vertices by so much in a substep, root mean square [m], [1e-12, 1].
+                                             Default 1e-6 */
+    uint32_t line_search;               /**< of the same: 0 takes each step of Newton's method as it comes (for
+                                             comparison only). Default 1 */
 } taut_world_def;
 
 /** What taut_world_advance did. */
@@ -136,6 +147,13 @@ typedef struct taut_advance {
     float fraction; /**< time left over, in parts of the last step, [0, 1): weight of the newer pose when rendering */
     double dropped; /**< time given up because of max_catch_up [s] */
 } taut_advance;
+
+/** What taut_world_relax reached. */
+typedef struct taut_relaxation {
+    uint32_t steps;     /**< of Newton's method, of all islands together */
+    uint32_t converged; /**< 1: every island is within the tolerance */
+    float residual;     /**< largest acceleration left of an island, root mean square over its masses [m/s^2] */
+} taut_relaxation;
 
 TAUT_API void taut_world_def_init(taut_world_def* def);
 /** Name of a solver, such as "block_ldlt"; null beyond the last one. Thread safety: any thread. */
@@ -153,7 +171,8 @@ TAUT_API taut_result taut_world_destroy(taut_world world);
 TAUT_API int32_t taut_world_is_valid(taut_world world);
 
 /** Advances by one time step, beside the time that taut_world_advance has left over.
- * @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY. */
+ * @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY, TAUT_UNSUPPORTED (what the solver does not take,
+ *         by name; nothing has changed). */
 TAUT_API taut_result taut_world_step(taut_world world);
 /**
  * Adds seconds [0, 1e3] of frame time to an accumulator and takes whole steps from it, none or several. What the host
@@ -162,6 +181,19 @@ TAUT_API taut_result taut_world_step(taut_world world);
  * @return as taut_world_step; TAUT_INVALID_ARGUMENT.
  */
 TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
+
+/**
+ * Brings all that moves to rest where its forces balance, in a world of TAUT_SOLVER_MINIMISATION: a minimum of elastic
+ * energy and gravity, found from where things are, whatever that is, with what is pinned where it is now. No time
+ * passes; velocities are 0 after it; what it changes is told by taut_events.moved as a step's. A world that takes this
+ * may be of any use after it: cloths and solids hung, loaded or pressed into their places before a game begins.
+ * @param tolerance where it ends: acceleration left, root mean square over the masses of an island [m/s^2],
+ *        [1e-9, 1e3]. @param max_steps of Newton's method, of each island, [1, 100000]. @param out may be null.
+ * @return TAUT_OK, also where max_steps did not suffice (see out); TAUT_INVALID_ARGUMENT, TAUT_UNSUPPORTED (another
+ *         solver; what a step of this one refuses; gravity and an island that nothing holds), TAUT_STALE_HANDLE,
+ *         TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_world_relax(taut_world world, float tolerance, uint32_t max_steps, taut_relaxation* out);
 
 /** The def as checked at creation, with what was set since. */
 TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);

@@ -5,6 +5,7 @@
 
 #include "advance.h"
 #include "api/access.h"
+#include "check/minimised.h"
 #include "integrate/scheme.h"
 #include "sleep/wake.h"
 
@@ -17,9 +18,10 @@ constexpr Range kSleepSpeed{0, 10};             // [m/s]
 constexpr Range kSleepTime{0, 1e3};             // [s]
 constexpr Range kRestitutionThreshold{0, 1e4};  // [m/s]
 constexpr Range kRelaxation{1e-3, 1.999};
-constexpr Range kAirDensity{0, 1e4};   // [kg/m^3]
-constexpr Range kAirPressure{0, 1e7};  // [Pa]
-constexpr Range kWind{-1e3, 1e3};      // [m/s]
+constexpr Range kAirDensity{0, 1e4};           // [kg/m^3]
+constexpr Range kAirPressure{0, 1e7};          // [Pa]
+constexpr Range kWind{-1e3, 1e3};              // [m/s]
+constexpr Range kMinimiseTolerance{1e-12, 1};  // [m]
 constexpr Range kNewmarkBeta{0.25, 0.5}, kNewmarkGamma{0.5, 1};
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
@@ -56,6 +58,8 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .number("air_density", def.air_density, kAirDensity)
         .number("air_pressure", def.air_pressure, kAirPressure)
         .vector("wind", def.wind, kWind)
+        .number("minimise_tolerance", def.minimise_tolerance, kMinimiseTolerance)
+        .boolean("line_search", def.line_search)
         .choice("stepping", def.stepping, TAUT_STEPPING_VELOCITY)
         .number("stabilisation", def.stabilisation, kUnitInterval)
         .number("relaxation", def.relaxation, kRelaxation)
@@ -66,7 +70,9 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .number("newmark_beta", def.newmark_beta, kNewmarkBeta)
         .number("newmark_gamma", def.newmark_gamma, kNewmarkGamma)
         .require(def.newmark_gamma <= 2 * def.newmark_beta,
-                 "newmark_gamma: more than 2 newmark_beta, with which steps are not stable");
+                 "newmark_gamma: more than 2 newmark_beta, with which steps are not stable")
+        .require(def.solver != TAUT_SOLVER_MINIMISATION || def.scheme == TAUT_SCHEME_IMPLICIT_EULER,
+                 "scheme: TAUT_SOLVER_MINIMISATION takes TAUT_SCHEME_IMPLICIT_EULER alone", TAUT_UNSUPPORTED);
     return check_hooks(check, def.hooks);
 }
 
@@ -96,6 +102,8 @@ void taut_world_def_init(taut_world_def* def) {
     def->newmark_gamma = 0.5f;
     def->air_density = 1.2f;
     def->air_pressure = 101325;
+    def->minimise_tolerance = 1e-6f;
+    def->line_search = 1;
 }
 
 const char* taut_solver_name(taut_solver solver) {
@@ -132,7 +140,9 @@ taut_result taut_world_destroy(taut_world handle) {
 int32_t taut_world_is_valid(taut_world handle) { return world_lives(world_of(handle)) ? 1 : 0; }
 
 taut_result taut_world_step(taut_world handle) {
-    return with_world(__func__, handle, Use::write, [](World& world) {
+    const char* call = __func__;
+    return with_world(call, handle, Use::write, [&](World& world) {
+        if (const char* why = why_not_minimised(world)) return refuse(TAUT_UNSUPPORTED, "%s: %s", call, why);
         take_step(world);
         return TAUT_OK;
     });
@@ -142,6 +152,7 @@ taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* 
     Check check(__func__);
     if (!check.number("seconds", seconds, kAdvance)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
+        if (const char* why = why_not_minimised(world)) return refuse(TAUT_UNSUPPORTED, "%s: %s", check.call(), why);
         const Advance done = advance(world, seconds);
         if (out) {
             const float weight = static_cast<float>(render_weight(world));

@@ -7,7 +7,7 @@
 //   error(c)                        c(F)
 //   jacobian(g, j)                  dc/dF g: [row][3]
 //   curvature(s, part)              d2(s . c)/dF2 with s = -lambda, as a form
-//   positive_sum(s, d)              a positive bound of that and dc/dF^T D dc/dF, as a form
+//   hessian(s, d, part)             the sum of that and dc/dF^T D dc/dF, or a positive bound of it, as a form
 //
 // where a form gives the block of two nodes,  (block)_ik = sum_jl g_nj d2/dF_ij dF_kl g_ml:
 //   Node, node(g)                   what each node is asked for once
@@ -54,11 +54,11 @@ struct Continuum {
         const Strain at(data.own, deformation(data, p));
         write(at.curvature(stress(lambda), part), data, k);
     }
-    static void positive_sum(const Data& data, const Vec3* p, const double* lambda, const double* d, double softness,
-                             double* k) {
+    static void hessian(const Data& data, const Vec3* p, const double* lambda, const double* d, double softness,
+                        Curvature part, double* k) {
         const Strain at(data.own, deformation(data, p));
         const RowMatrix<kRows> modulus = RowMatrix<kRows>::Map(d) / softness;
-        write(at.positive_sum(stress(lambda), modulus), data, k);
+        write(at.hessian(stress(lambda), modulus, part), data, k);
     }
 
 private:

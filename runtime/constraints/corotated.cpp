@@ -58,20 +58,20 @@ public:
         }
     };
     Form curvature(const Stress& stress, Curvature part) const {
-        Form form{at_, hessian(stress)};
+        Form form{at_, bend(stress)};
         if (part == Curvature::positive) clip_negative<3 * Dim>(form.h);
         return form;
     }
-    Form positive_sum(const Stress& stress, const RowMatrix<kRows>& d) const {
+    Form hessian(const Stress& stress, const RowMatrix<kRows>& d, Curvature part) const {
         Eigen::Matrix<double, kRows, 3 * Dim> p = Eigen::Matrix<double, kRows, 3 * Dim>::Zero();
         for (int r = 0; r < kRows; ++r) {
             const Tensor slopes = slope(unit(r));
             for (int j = 0; j < Dim; ++j) p.row(r).template segment<Dim>(3 * j) = slopes.col(j).transpose();
         }
-        Form form{at_, hessian(stress)};
+        Form form{at_, bend(stress)};
         const Eigen::Matrix<double, kRows, 3 * Dim> dp = d.lazyProduct(p);
         form.h += p.transpose().lazyProduct(dp);
-        clip_negative<3 * Dim>(form.h);
+        if (part == Curvature::positive) clip_negative<3 * Dim>(form.h);
         return form;
     }
 
@@ -91,7 +91,7 @@ private:
     // d(M : S)/da_ij, of a surface within it.
     Tensor slope(const Tensor& m) const { return 2 * m.cwiseProduct(weight_); }
 
-    Hessian hessian(const Stress& s) const {
+    Hessian bend(const Stress& s) const {
         const Tensor m = turned(s);
         const Tensor mixed = m.cwiseProduct(weight_);
         const Tensor turns = 0.5 * (mixed * at_.sigma.asDiagonal() + at_.sigma.asDiagonal() * mixed.transpose());

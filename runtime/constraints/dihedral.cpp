@@ -142,13 +142,12 @@ struct Dihedral {
     static void stiffness(const Data&, const Vec3* p, const double* lambda, Curvature part, double* k) {
         PointStiffness<Dihedral>::Map(k) = curvature(Fold(p), -*lambda, part);
     }
-    static void positive_sum(const Data&, const Vec3* p, const double* lambda, const double* d, double softness,
-                             double* k) {
+    static void hessian(const Data&, const Vec3* p, const double* lambda, const double* d, double softness,
+                        Curvature part, double* k) {
         const Fold fold(p);
         const Gradient slopes = gradient(fold);
         const auto j = Eigen::Matrix<double, 12, 1>::Map(slopes.data());
-        PointStiffness<Dihedral>::Map(k) =
-            curvature(fold, -*lambda, Curvature::positive) + *d / softness * j * j.transpose();
+        PointStiffness<Dihedral>::Map(k) = curvature(fold, -*lambda, part) + *d / softness * j * j.transpose();
     }
 };
 

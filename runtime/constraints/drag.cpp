@@ -22,8 +22,8 @@ struct Drag {
         if (jacobian) Rows::Map(jacobian) = Rows::Map(data.g);
     }
     static void stiffness(const Data&, const Vec3*, const double*, Curvature, double*) {}
-    static void positive_sum(const Data& data, const Vec3*, const double*, const double* d, double softness,
-                             double* k) {
+    static void hessian(const Data& data, const Vec3*, const double*, const double* d, double softness, Curvature,
+                        double* k) {
         const Rows g = Rows::Map(data.g), modulus = Rows::Map(d) / softness, force = modulus * g;
         Rows::Map(k) = g.transpose() * force;
     }

@@ -30,9 +30,9 @@ void element_energy(const ElementType& type, const ElementBatch& batch, const El
     }
 }
 
-void positive_sum(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
-                  double* k) {
-    if (type.positive_sum) return type.positive_sum(batch, d, lambda, k);
+void element_hessian(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d,
+                     const double* lambda, Curvature part, double* k) {
+    if (type.hessian) return type.hessian(batch, d, lambda, part, k);
     const int rows = type.row.rows, nodes = type.row.nodes, width = nodes * type.freedoms;
     for (uint32_t i = 0; i < batch.count; ++i) {
         const ElementBatch one = one_of(type, batch, i);
@@ -47,11 +47,20 @@ void positive_sum(const ElementType& type, const ElementBatch& batch, const Elem
         sum = (0.5 * (sum + sum.transpose())).eval();
         const Jacobian force = Modulus(d.material, rows, rows).lazyProduct(j) / d.softness[batch.index(i)];
         sum += j.transpose().lazyProduct(force);
+        Eigen::Map<Square> out(k + size_t{i} * static_cast<uint32_t>(width * width), width, width);
+        if (part == Curvature::raw) {
+            out = sum;
+            continue;
+        }
         const Eigen::SelfAdjointEigenSolver<Square> eigen(sum);
-        Eigen::Map<Square>(k + size_t{i} * static_cast<uint32_t>(width * width), width, width) =
-            Square(eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal())
-                .lazyProduct(eigen.eigenvectors().transpose());
+        out = Square(eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal())
+                  .lazyProduct(eigen.eigenvectors().transpose());
     }
+}
+
+void positive_sum(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
+                  double* k) {
+    element_hessian(type, batch, d, lambda, Curvature::positive, k);
 }
 
 }  // namespace taut

@@ -41,9 +41,9 @@ struct ElementType {
     void (*evaluate)(const ElementBatch& batch, double* error, double* jacobian, int columns);
     // lambda: [count][rows]. k: [count][nodes freedoms][nodes freedoms], row-major, overwritten.
     void (*stiffness)(const ElementBatch& batch, const double* lambda, Curvature part, double* k);
-    // What positive_sum() below is to give, where a type has a cheaper way to it; else null.
-    void (*positive_sum)(const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
-                         double* k) = nullptr;
+    // What element_hessian() below is to give, where a type has a way of its own; else null.
+    void (*hessian)(const ElementBatch& batch, const ElementStiffness& d, const double* lambda, Curvature part,
+                    double* k) = nullptr;
     // Its fused sweep in lanes, where it has one; else null.
     ElementSweep ElementKernels::*sweep = nullptr;
 };
@@ -70,8 +70,10 @@ extern const ElementType kQuadraticBendElement;  // bend of cloth whose rest sha
 // W = 1/2 C^T D C of each [J].
 void element_energy(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, double* energy);
 
-// Positive part of the sum J^T D J + K, the matrix of a Newton step on W where lambda = -D C: symmetric, positive
-// semi-definite and, in any direction, no less than the sum. k as of ElementType::stiffness.
+// The sum J^T D J + K, the matrix of a Newton step on W where lambda = -D C, symmetric; raw it is d2W/dx2. Its positive
+// part is positive semi-definite and, in any direction, no less than the sum. k as of ElementType::stiffness.
+void element_hessian(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d,
+                     const double* lambda, Curvature part, double* k);
 void positive_sum(const ElementType& type, const ElementBatch& batch, const ElementStiffness& d, const double* lambda,
                   double* k);
 

@@ -71,8 +71,8 @@ struct Green {
             return out;
         }
     };
-    Sum positive_sum(const Stress& stress, const RowMatrix<kRows>& d) const {
-        return {curvature(stress, Curvature::positive), *this, d};
+    Sum hessian(const Stress& stress, const RowMatrix<kRows>& d, Curvature part) const {
+        return {curvature(stress, part), *this, d};
     }
 
 private:

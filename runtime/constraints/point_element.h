@@ -4,8 +4,8 @@
 //   evaluate(data, p, c, j)              C, and where j is not null J: [point][row][3]
 //   stiffness(data, p, lambda, part, k)  K: [3 points][3 points], onto zeros
 //   line(data, p)                        where C has one: the span from point 0 to point 1
-//   positive_sum(data, p, lambda, d, softness, k)
-//                                        where it has a cheaper way to that; d: [row][row], overwrites k
+//   hessian(data, p, lambda, d, softness, part, k)
+//                                        where it has a way of its own to that; d: [row][row], overwrites k
 //
 // gives the element type between particles, in batches and as rows, and the constraint type between points held by
 // bodies, of which the data begin with an anchor for each point. With p_n = x_n + R_n s_n and r_n = R_n s_n,
@@ -65,20 +65,21 @@ void stiffness_of_points(const ElementBatch& batch, const double* lambda, Curvat
 }
 
 template <class E>
-void positive_sum_of_points(const ElementBatch& batch, const ElementStiffness& d, const double* lambda, double* k) {
+void hessian_of_points(const ElementBatch& batch, const ElementStiffness& d, const double* lambda, Curvature part,
+                       double* k) {
     constexpr size_t kSize = size_t{9} * E::kPoints * E::kPoints;
     for (uint32_t i = 0; i < batch.count; ++i) {
         Vec3 p[E::kPoints];
         for (uint32_t n = 0; n < E::kPoints; ++n) p[n] = batch.x[batch.node[i * E::kPoints + n]].x;
         const auto data = point_data<E>(batch.data + size_t{batch.index(i)} * kNumbers<E>);
-        E::positive_sum(data, p, lambda + i * E::kRows, d.material, d.softness[batch.index(i)], k + i * kSize);
+        E::hessian(data, p, lambda + i * E::kRows, d.material, d.softness[batch.index(i)], part, k + i * kSize);
     }
 }
 
 template <class E>
-constexpr auto positive_sum_of() -> decltype(ElementType::positive_sum) {
-    if constexpr (requires { &E::positive_sum; })
-        return positive_sum_of_points<E>;
+constexpr auto hessian_of() -> decltype(ElementType::hessian) {
+    if constexpr (requires { &E::hessian; })
+        return hessian_of_points<E>;
     else
         return nullptr;
 }
@@ -124,7 +125,7 @@ constexpr ElementType point_element(const char* name, void (*sample)(uint64_t se
              evaluate_particles<E>, stiffness_of_particles<E>, nullptr, sample, line_of_particles<E>()},
             evaluate_points<E>,
             stiffness_of_points<E>,
-            positive_sum_of<E>(),
+            hessian_of<E>(),
             sweep};
 }
 

@@ -23,8 +23,8 @@ struct QuadraticBend {
         for (int n = 0; n < 4; ++n) Mat3::Map(jacobian + 9 * n) = data.weight[n] * Mat3::Identity();
     }
     static void stiffness(const Data&, const Vec3*, const double*, Curvature, double*) {}
-    static void positive_sum(const Data& data, const Vec3*, const double*, const double* d, double softness,
-                             double* k) {
+    static void hessian(const Data& data, const Vec3*, const double*, const double* d, double softness, Curvature,
+                        double* k) {
         const Mat3 modulus = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(d) / softness;
         Eigen::Map<PointStiffness<QuadraticBend>> out(k);
         for (int n = 0; n < 4; ++n)

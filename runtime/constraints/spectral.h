@@ -62,13 +62,13 @@ struct Spectral : E {
         if (part == Curvature::positive) form.clip();
         return form;
     }
-    SpectralForm positive_sum(const Stress& s, const RowMatrix<E::kRows>& d) const {
+    SpectralForm hessian(const Stress& s, const RowMatrix<E::kRows>& d, Curvature part) const {
         SpectralForm form{this->values()};
         E::bend(s, form);
         const auto slopes = E::slopes(form.at.sigma);
         form.scaling += slopes.transpose() * d * slopes;
         if constexpr (E::kOpen) form.close_equal();
-        form.clip();
+        if (part == Curvature::positive) form.clip();
         return form;
     }
 };

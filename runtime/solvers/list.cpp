@@ -5,8 +5,8 @@ namespace taut {
 
 std::span<const Solver* const> solvers() {
     static const Solver* const list[] = {
-        &kBlockLdlt,       &kProjectedGaussSeidel, &kAcceleratedJacobi, &kJacobi, &kNonlinearGaussSeidel,
-        &kMinimumResidual, &kConjugateResiduals,   &kConjugateGradients};
+        &kBlockLdlt,       &kProjectedGaussSeidel, &kAcceleratedJacobi,  &kJacobi,      &kNonlinearGaussSeidel,
+        &kMinimumResidual, &kConjugateResiduals,   &kConjugateGradients, &kMinimisation};
     return list;
 }
 

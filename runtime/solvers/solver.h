@@ -29,6 +29,9 @@ struct IterationSettings {
     bool fixed_step = false;  // 1 / rho in place of a step measured in each iteration
 };
 
+struct MinimisationSettings;
+struct MinimisationMemory;
+
 struct SolverSettings {
     uint32_t sweeps;  // iterations a substep; 0: the solver's own default
     bool geometric_stiffness;
@@ -43,19 +46,37 @@ struct SolverSettings {
     double restitution_threshold = 0;  // [m/s]
     RowSettings rows{};
     IterationSettings iteration{};
+    const MinimisationSettings* minimisation = nullptr;  // null: its defaults
 };
 
 struct SolverReport {
     std::atomic<uint32_t> solves{0}, resolves{0}, rounds{0}, guard_trips{0}, failures{0};
-    float direct_us = 0;  // spent in direct solves
-    double residual = 0;  // largest |J v + c mu - target| of direct solves [m/s]
+    uint32_t unfinished = 0;  // minimisations that ended before their tolerance
+    float direct_us = 0;      // spent in direct solves
+    double residual = 0;      // largest |J v + c mu - target| of direct solves [m/s]
+};
+
+// Memory of minimisation, which few worlds have: made at its first use.
+class MinimisationHolder {
+public:
+    explicit MinimisationHolder(Memory& memory) : memory_(memory) {}
+    ~MinimisationHolder();
+    MinimisationHolder(const MinimisationHolder&) = delete;
+    MinimisationHolder& operator=(const MinimisationHolder&) = delete;
+
+    MinimisationMemory& get();  // throws std::bad_alloc
+
+private:
+    Memory& memory_;
+    MinimisationMemory* made_ = nullptr;
 };
 
 // Memory that solvers use during a substep, kept so that steady scenes allocate nothing.
 struct SolverScratch {
-    explicit SolverScratch(Memory& memory) : problem(memory), bounded(memory) {}
+    explicit SolverScratch(Memory& memory) : problem(memory), minimisation(memory), bounded(memory) {}
 
     ProblemMemory problem;
+    MinimisationHolder minimisation;
     Array<BoundedRow> bounded;  // of the group's blocks
 };
 
@@ -97,12 +118,13 @@ struct Solver {
     void (*settle)(Substep&);
     // From the velocity that moved the positions to the one that is kept, without that push.
     void (*relax)(Substep&);
+    bool energies = false;  // elements come without rows, as Rows::elastic, and nothing else comes at all
 };
 
 // In the order of taut_solver.
 std::span<const Solver* const> solvers();
 
 extern const Solver kBlockLdlt, kProjectedGaussSeidel, kAcceleratedJacobi, kJacobi, kNonlinearGaussSeidel,
-    kMinimumResidual, kConjugateResiduals, kConjugateGradients;
+    kMinimumResidual, kConjugateResiduals, kConjugateGradients, kMinimisation;
 
 }  // namespace taut

@@ -13,8 +13,9 @@ inline uint32_t size_of(const auto& array) { return static_cast<uint32_t>(array.
 
 // Once a frame and group: which rows there are, in the order that the solver wants them: block by block when joints
 // are solved directly, colour by colour when they are swept; contact points after them when they come as rows.
+// Energies: elements come in Rows::elastic instead, in order.
 void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Elements& elements,
-                Pairs& pairs, const Nodes& nodes, bool contacts_as_rows);
+                Pairs& pairs, const Nodes& nodes, bool contacts_as_rows, bool energies = false);
 // Once a substep: rows of the contacts that blocks own, after those of joints, at system.pose.
 void build_block_contacts(System& system, const Group& group, Array<Block>& blocks, Pairs& pairs, const Nodes& nodes);
 // Once a substep: C and J at system.pose; impulses from the forces of the last substep. frame_left: share of the

@@ -85,12 +85,11 @@ void add_elements(System& system, Elements& elements, std::span<const ElementRef
     }
 }
 
-// The same for those of a block without rows.
-void add_elastic(System& system, Elements& elements, Block& block) {
+// The same for those without rows.
+void add_energies(System& system, Elements& elements, std::span<const ElementRef> list) {
     Rows& rows = system.rows;
-    block.first_elastic_run = static_cast<uint32_t>(rows.elastic.size());
     uint32_t set = kNone;
-    for (const ElementRef& ref : block.elastic) {
+    for (const ElementRef& ref : list) {
         if (std::exchange(set, ref.set) != ref.set)
             rows.elastic.push_back({&elements.set[set], 0, static_cast<uint32_t>(rows.element.size()),
                                     static_cast<uint32_t>(rows.element_node.size())});
@@ -99,6 +98,12 @@ void add_elastic(System& system, Elements& elements, Block& block) {
             rows.element_node.push_back(system.at(node));
         ++rows.elastic.back().count;
     }
+}
+
+void add_elastic(System& system, Elements& elements, Block& block) {
+    Rows& rows = system.rows;
+    block.first_elastic_run = static_cast<uint32_t>(rows.elastic.size());
+    add_energies(system, elements, block.elastic);
     block.elastic_runs = static_cast<uint32_t>(rows.elastic.size()) - block.first_elastic_run;
 }
 
@@ -358,7 +363,7 @@ void begin_rows(std::span<const uint32_t> active_pairs, Pairs& pairs) {
 }  // namespace
 
 void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints& joints, Elements& elements,
-                Pairs& pairs, const Nodes& nodes, bool contacts_as_rows) {
+                Pairs& pairs, const Nodes& nodes, bool contacts_as_rows, bool energies) {
     Rows& rows = system.rows;
     rows.block.clear();
     rows.run.clear();
@@ -383,7 +388,13 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
     }
     rows.direct = static_cast<uint32_t>(rows.block.size());
     for (uint32_t j : group.joints) add_joint(system, joints.record[j], !contacts_as_rows);
-    add_elements(system, elements, group.elements, !contacts_as_rows);
+    if (energies) {
+        rows.sorted.assign(group.elements.begin(), group.elements.end());
+        std::ranges::sort(rows.sorted, {}, [](const ElementRef& ref) { return uint64_t{ref.set} << 32 | ref.element; });
+        add_energies(system, elements, rows.sorted);
+    } else {
+        add_elements(system, elements, group.elements, !contacts_as_rows);
+    }
     rows.joints = static_cast<uint32_t>(rows.block.size());
     constexpr size_t kPoints = 4;
     const size_t whole = (contacts_as_rows ? group.pairs.size() : 0) + group.direct_pairs.size();
@@ -457,6 +468,7 @@ void evaluate_run(System& system, const ElementRun& run) {
 void evaluate_rows(Team& team, System& system, double frame_left, double frame) {
     constexpr uint32_t kGrain = 64;  // joints, about 10 us
     system.frame_left = frame_left;
+    system.frame = frame;
     Rows& rows = system.rows;
     team.for_ranges(rows.joints, kGrain, [&](uint32_t begin, uint32_t end) {
         Pose poses[kMaxNodes];

@@ -91,7 +91,7 @@ struct ElementRun {
     uint32_t node;          // first in Rows::element_node
 };
 
-// Elements of one set that a block folds into its nodes: they have no rows.
+// Elements of one set without rows: those that a block folds into its nodes, or all of a group.
 struct ElasticRun {
     ElementSet* set;
     uint32_t count;
@@ -104,6 +104,7 @@ struct Rows {
         : block(memory),
           run(memory),
           elastic(memory),
+          sorted(memory),
           element(memory),
           element_node(memory),
           error(memory),
@@ -119,7 +120,8 @@ struct Rows {
     uint32_t lasting_spans = 0;                    // in span_data
     Array<RowBlock> block;
     Array<ElementRun> run;
-    Array<ElasticRun> elastic;              // of blocks
+    Array<ElasticRun> elastic;              // of blocks, or of a group whose solver takes energies
+    Array<ElementRef> sorted;               // scratch of build_rows()
     Array<uint32_t> element, element_node;  // of runs: index in the set; seats
     Array<double> error;                    // C(x) [m or rad]           rows; assemble()
     Array<double> jacobian;                 // dC/dx                     assemble()
@@ -212,6 +214,7 @@ struct System {
 
     Scheme scheme;          // of this substep
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
+    double frame = 0;       // length of the frame [s]; likewise
 
     Array<uint32_t> seat;     // by node + 1; begin_frame()
     Array<uint32_t> node_at;  // by seat

@@ -97,7 +97,8 @@ public:
         begin_frame(w.team, w.system, w.partition, w.nodes, true);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.scheme.set_length(h);
-        build_rows(w.system, group(), w.partition.blocks, w.joints, w.elements, w.pairs, w.nodes, !solver.lanes);
+        build_rows(w.system, group(), w.partition.blocks, w.joints, w.elements, w.pairs, w.nodes, !solver.lanes,
+                   solver.energies);
         if (!solver.lanes) return;
         build_lanes(w.team, w.system, group(), w.pairs, w.nodes, *settings.kernels);
         build_surface_lanes(w.team, w.system, group(), w.pairs.surfaces, *settings.surface_kernels);

@@ -1,0 +1,11 @@
+// What a world of TAUT_SOLVER_MINIMISATION does not take.
+#pragma once
+
+#include "world.h"
+
+namespace taut {
+
+// Why the world cannot be stepped; null: it can, as can all of other solvers. In the order of nodes and sets.
+const char* why_not_minimised(const World& world);
+
+}  // namespace taut

@@ -1,0 +1,268 @@
+#include "solvers/island_energy.h"
+
+#include <algorithm>
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kEnergyGrain = 4;   // batches that a thread takes at a time, some 20 us
+constexpr uint32_t kPointGrain = 128;  // points, likewise
+constexpr uint32_t kEnergyChunk = 64;  // batches of which matrices wait to be added, in one order whoever made them
+constexpr uint32_t kMostWidth = 3 * kMaxNodes, kMostMatrix = kMostWidth * kMostWidth;
+
+uint32_t nodes_in(const EnergyBatch& batch) { return static_cast<uint32_t>(batch.set->type->row.nodes); }
+uint32_t rows_in(const EnergyBatch& batch) { return static_cast<uint32_t>(batch.set->type->row.rows); }
+
+}  // namespace
+
+IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, double frame)
+    : s_(substep), island_(island), m_(substep.scratch.minimisation.get()), frame_(frame) {
+    for (uint32_t p = island.first_point; p < island.first_point + island.points; ++p)
+        if (m_.free[p]) mass_ += m_.scale[p] * m_.scale[p] * s_.system.scheme.stiffness();
+}
+
+// act(batch), several at once.
+template <class Act>
+void IslandEnergy::for_batches(Act&& act) const {
+    s_.team.for_ranges(island_.batches, kEnergyGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t b = begin; b < end; ++b) act(m_.batch[island_.first_batch + b]);
+    });
+}
+
+ElementBatch IslandEnergy::view(const EnergyBatch& batch) const {
+    return {batch.count, &m_.point_of[batch.node], &m_.element[batch.first], batch.set->data.data(), m_.pose.data()};
+}
+
+void IslandEnergy::place(std::span<const double> z) const {
+    for (uint32_t i = 0; i < island_.points; ++i) {
+        const uint32_t p = island_.first_point + i;
+        m_.pose[p].x = m_.begin[p] + (m_.free[p] ? Vec3(Vec3::Map(&z[3 * i]) / m_.scale[p]) : m_.led[p]);
+    }
+}
+
+// Of a change of length what comes within the frame's other substeps is left out.
+void IslandEnergy::find_errors(const EnergyBatch& batch, double* error, double* jacobian) const {
+    batch.set->type->evaluate(view(batch), error, jacobian, 3);
+    if (s_.system.frame_left == 0) return;
+    for (uint32_t i = 0; i < batch.count; ++i)
+        for (uint32_t r = 0; r < rows_in(batch); ++r)
+            error[i * rows_in(batch) + r] -= s_.system.frame_left * batch.set->drift_of(m_.element[batch.first + i])[r];
+}
+
+// D C [N, N m].
+void IslandEnergy::stress_of(const EnergyBatch& batch, uint32_t i, const double* error, double* out) const {
+    const uint32_t rows = rows_in(batch);
+    const double scale = 1 / batch.set->softness[m_.element[batch.first + i]];
+    for (uint32_t r = 0; r < rows; ++r) {
+        double sum = 0;
+        for (uint32_t k = 0; k < rows; ++k) sum += batch.set->stiffness[r * rows + k] * error[k];
+        out[r] = scale * sum;
+    }
+}
+
+void IslandEnergy::find_energies(const EnergyBatch& batch, bool with_force) const {
+    const uint32_t rows = rows_in(batch), nodes = nodes_in(batch);
+    double error[kEnergyBatch * kMaxRows], jacobian[kEnergyBatch * kMaxNodes * kMaxRows * 3];
+    find_errors(batch, error, with_force ? jacobian : nullptr);
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        const double* c = error + i * rows;
+        double f[kMaxRows] = {}, sum = 0;
+        if (!is_slack(batch, c)) stress_of(batch, i, c, f);
+        for (uint32_t r = 0; r < rows; ++r) sum += 0.5 * f[r] * c[r];
+        m_.energy[batch.first + i] = sum;
+        if (!with_force) continue;
+        for (uint32_t n = 0; n < nodes; ++n) {
+            Vec3 force = Vec3::Zero();
+            for (uint32_t r = 0; r < rows; ++r)
+                if (f[r] != 0) force += f[r] * Vec3::Map(jacobian + ((i * nodes + n) * rows + r) * 3);
+            Vec3::Map(&m_.force[3 * size_t{batch.node + i * nodes + n}]) = force;
+        }
+    }
+}
+
+double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradient) {
+    place(z);
+    for_batches([&](const EnergyBatch& batch) { find_energies(batch, !gradient.empty()); });
+    const double* const wanted = &m_.wanted[3 * size_t{island_.first_point}];
+    double inertia = 0, elastic = 0, damping = 0;
+    for (uint32_t i = 0; i < size(); ++i) inertia += (z[i] - wanted[i]) * (z[i] - wanted[i]);
+    const EnergyBatch &first = m_.batch[island_.first_batch],
+                      &last = m_.batch[island_.first_batch + island_.batches - 1];
+    for (uint32_t e = first.first; e < last.first + last.count; ++e) elastic += m_.energy[e];
+    if (island_.damped) {
+        multiply(m_.damping, false, z.data(), m_.damped.data());
+        const std::span<double> bz(m_.damped.data(), size());
+        const std::span<const double> bias(&m_.bias[3 * size_t{island_.first_point}], size());
+        damping = 0.5 * dot_of(z, bz) + dot_of(z, bias);
+        for (uint32_t i = 0; i < size(); ++i) bz[i] += bias[i];
+    }
+    if (gradient.empty()) return 0.5 * inertia + elastic + damping;
+    for (uint32_t i = 0; i < size(); ++i) gradient[i] = z[i] - wanted[i] + (island_.damped ? m_.damped[i] : 0);
+    const uint32_t end = last.node + last.count * nodes_in(last);
+    for (uint32_t k = first.node; k < end; ++k) {
+        const uint32_t p = m_.point_of[k];
+        if (m_.free[p])
+            Vec3::Map(&gradient[3 * (p - island_.first_point)]) += Vec3::Map(&m_.force[3 * size_t{k}]) / m_.scale[p];
+    }
+    return 0.5 * inertia + elastic + damping;
+}
+
+// ---------------------------------------------------------------- matrices
+
+// [element][3 nodes][3 nodes]: J^T D J + K.
+void IslandEnergy::find_matrices(const EnergyBatch& batch, Curvature part, double* out) const {
+    const uint32_t rows = rows_in(batch), width = 3 * nodes_in(batch);
+    double error[kEnergyBatch * kMaxRows], lambda[kEnergyBatch * kMaxRows];
+    find_errors(batch, error, nullptr);
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        stress_of(batch, i, error + i * rows, lambda + i * rows);
+        for (uint32_t r = i * rows; r < (i + 1) * rows; ++r) lambda[r] = -lambda[r];
+    }
+    element_hessian(*batch.set->type, view(batch), {batch.set->stiffness, batch.set->softness.data()}, lambda, part,
+                    out);
+    for (uint32_t i = 0; i < batch.count; ++i)
+        if (is_slack(batch, error + i * rows)) std::fill_n(out + i * width * width, width * width, 0.0);
+}
+
+// The same of damping over h: d J^T D J but for the part of Rayleigh's, which is of the whole matrix. push: what an
+// element's own change of length does to it, [element][3 nodes] [N].
+void IslandEnergy::find_damping_of(const EnergyBatch& batch, double* out, double* push) const {
+    const uint32_t rows = rows_in(batch), nodes = nodes_in(batch), width = 3 * nodes;
+    const double h = s_.system.scheme.h, along = batch.set->relaxation - batch.set->rayleigh;
+    std::fill_n(out, batch.count * width * width, 0.0);
+    std::fill_n(push, batch.count * width, 0.0);
+    if (!(batch.set->relaxation > 0)) return;
+    if (batch.set->rayleigh > 0) find_matrices(batch, Curvature::positive, out);
+    double error[kEnergyBatch * kMaxRows], jacobian[kEnergyBatch * kMaxNodes * kMaxRows * 3];
+    find_errors(batch, error, jacobian);
+    for (uint32_t i = 0; i < batch.count; ++i) {
+        double* const matrix = out + i * width * width;
+        for (uint32_t k = 0; k < width * width; ++k) matrix[k] *= batch.set->rayleigh / h;
+        if (is_slack(batch, error + i * rows)) continue;
+        const auto slope = [&](uint32_t r, uint32_t k) {
+            return jacobian[((i * nodes + k / 3) * rows + r) * 3 + k % 3];
+        };
+        const double* const drift = batch.set->drift_of(m_.element[batch.first + i]);
+        double f[kMaxRows];
+        stress_of(batch, i, drift, f);
+        for (uint32_t k = 0; k < width; ++k) {
+            double column[kMaxRows], stress[kMaxRows];
+            for (uint32_t r = 0; r < rows; ++r) column[r] = slope(r, k);
+            stress_of(batch, i, column, stress);
+            for (uint32_t r = 0; r < rows; ++r) {
+                push[i * width + k] += batch.set->relaxation / frame_ * f[r] * column[r];
+                for (uint32_t l = 0; l < width; ++l) matrix[k * width + l] += along / h * stress[r] * slope(r, l);
+            }
+        }
+    }
+}
+
+// Between free points, in z.
+void IslandEnergy::scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const {
+    const uint32_t nodes = nodes_in(batch), width = 3 * nodes;
+    for (uint32_t i = 0; i < batch.count; ++i, matrix += width * width)
+        for (uint32_t n = 0; n < nodes; ++n) {
+            const uint32_t p = m_.point_of[batch.node + i * nodes + n];
+            if (!m_.free[p]) continue;
+            for (uint32_t m = 0; m < nodes; ++m) {
+                const uint32_t q = m_.point_of[batch.node + i * nodes + m];
+                if (!m_.free[q]) continue;
+                const double scale = times / (m_.scale[p] * m_.scale[q]);
+                double* const to = &into[9 * size_t{m_.block_of[batch.block + (i * nodes + n) * nodes + m]}];
+                const double* const from = matrix + 3 * n * width + 3 * m;
+                for (uint32_t r = 0; r < 3; ++r)
+                    for (uint32_t c = 0; c < 3; ++c) to[3 * r + c] += scale * from[r * width + c];
+            }
+        }
+}
+
+// find(batch, out) of several batches at once, then take(batch, out) in their order.
+template <class Find, class Take>
+void IslandEnergy::for_matrices(Find&& find, Take&& take) const {
+    constexpr uint32_t kRoom = kEnergyBatch * (kMostMatrix + kMostWidth);
+    m_.matrix.resize(size_t{kEnergyChunk} * kRoom);
+    for (uint32_t begin = 0; begin < island_.batches; begin += kEnergyChunk) {
+        const uint32_t count = std::min(kEnergyChunk, island_.batches - begin);
+        const EnergyBatch* const batch = &m_.batch[island_.first_batch + begin];
+        s_.team.for_ranges(count, kEnergyGrain, [&](uint32_t from, uint32_t to) {
+            for (uint32_t b = from; b < to; ++b) find(batch[b], &m_.matrix[size_t{b} * kRoom]);
+        });
+        for (uint32_t b = 0; b < count; ++b) take(batch[b], &m_.matrix[size_t{b} * kRoom]);
+    }
+}
+
+void IslandEnergy::linearise(std::span<const double> z) {
+    place(z);
+    const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
+    if (island_.damped)
+        std::copy_n(m_.damping.begin() + 9 * begin, 9 * (end - begin), m_.hessian.begin() + 9 * begin);
+    else
+        std::fill_n(m_.hessian.begin() + 9 * begin, 9 * (end - begin), 0.0);
+    for_matrices([&](const EnergyBatch& batch, double* out) { find_matrices(batch, Curvature::raw, out); },
+                 [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
+}
+
+void IslandEnergy::find_damping() {
+    const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
+    std::fill_n(m_.bias.begin() + 3 * island_.first_point, size(), 0.0);
+    if (!island_.damped) return;
+    std::fill_n(m_.damping.begin() + 9 * begin, 9 * (end - begin), 0.0);
+    for (uint32_t p = island_.first_point; p < island_.first_point + island_.points; ++p) m_.pose[p].x = m_.begin[p];
+    const auto push_of = [](const EnergyBatch& batch, auto* out) {
+        return out + batch.count * 9 * nodes_in(batch) * nodes_in(batch);
+    };
+    for_matrices([&](const EnergyBatch& batch, double* out) { find_damping_of(batch, out, push_of(batch, out)); },
+                 [&](const EnergyBatch& batch, const double* out) {
+                     scatter(batch, out, 1, m_.damping);
+                     const uint32_t nodes = nodes_in(batch), width = 3 * nodes;
+                     for (uint32_t i = 0; i < batch.count; ++i)
+                         for (uint32_t k = 0; k < width; ++k) {
+                             const uint32_t p = m_.point_of[batch.node + i * nodes + k / 3];
+                             if (!m_.free[p]) continue;
+                             double sum = push_of(batch, out)[i * width + k];
+                             for (uint32_t l = 0; l < width; ++l) {  // of held points, whose way is known
+                                 const uint32_t q = m_.point_of[batch.node + i * nodes + l / 3];
+                                 if (!m_.free[q]) sum += out[(i * width + k) * width + l] * m_.led[q][l % 3];
+                             }
+                             m_.bias[3 * size_t{p} + k % 3] += sum / m_.scale[p];
+                         }
+                 });
+}
+
+void IslandEnergy::multiply(const Array<double>& matrix, bool with_inertia, const double* d, double* out) const {
+    s_.team.for_ranges(island_.points, kPointGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) {
+            const uint32_t p = island_.first_point + i;
+            double sum[3] = {};
+            for (uint32_t b = m_.row_begin[p]; b < m_.row_begin[p + 1]; ++b) {
+                const double* const from = d + 3 * (m_.column[b] - island_.first_point);
+                const double* const a = &matrix[9 * size_t{b}];
+                for (int r = 0; r < 3; ++r)
+                    sum[r] += a[3 * r] * from[0] + a[3 * r + 1] * from[1] + a[3 * r + 2] * from[2];
+            }
+            for (int r = 0; r < 3; ++r) out[3 * i + r] = (with_inertia ? d[3 * i + r] : 0) + sum[r];
+        }
+    });
+}
+
+void IslandEnergy::multiply(std::span<const double> d, std::span<double> out) {
+    multiply(m_.hessian, true, d.data(), out.data());
+}
+
+void IslandEnergy::store_forces() const {
+    for_batches([&](const EnergyBatch& batch) {
+        if (batch.set->form == ElementForm::energy && !batch.set->pulls) return;
+        const uint32_t rows = rows_in(batch);
+        double error[kEnergyBatch * kMaxRows], f[kMaxRows];
+        find_errors(batch, error, nullptr);
+        for (uint32_t i = 0; i < batch.count; ++i) {
+            double* const lambda = batch.set->lambda_of(m_.element[batch.first + i]);
+            const bool slack = is_slack(batch, error + i * rows);
+            stress_of(batch, i, error + i * rows, f);
+            for (uint32_t r = 0; r < rows; ++r) lambda[r] = slack ? 0 : -f[r];
+            batch.set->fresh[m_.element[batch.first + i]] = 0;
+        }
+    });
+}
+
+}  // namespace taut

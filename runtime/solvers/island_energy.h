@@ -1,0 +1,50 @@
+// The energy of one island in a substep, over the displacements of its points,
+//   E = 1/2 |x - y|^2_M / a + sum W(x) + 1/2 (x - x_n)^T B (x - x_n)/h,   a = h t (system/scheme.h)
+// with W of the elements and B their damping, of x_n and positive (Gast and Schroeder 2014, section 4: lagged). The
+// unknowns are z = s (x - x_n) with s = sqrt(m/a) [sqrt(J)], in which inertia has the matrix 1; held points have none.
+#pragma once
+
+#include "solvers/minimisation.h"
+#include "solvers/solver.h"
+
+namespace taut {
+
+class IslandEnergy final : public Objective {
+public:
+    IslandEnergy(Substep& substep, const EnergyIsland& island, double frame);
+
+    uint32_t size() const override { return 3 * island_.points; }
+    double evaluate(std::span<const double> z, std::span<double> gradient) override;
+    void linearise(std::span<const double> z) override;
+    void multiply(std::span<const double> d, std::span<double> out) override;
+
+    // Damping, at x_n.
+    void find_damping();
+    double mass() const { return mass_; }  // of its free points [kg]
+    // lambda = -D C at the places of the last evaluation, of sets that keep it.
+    void store_forces() const;
+
+private:
+    template <class Act>
+    void for_batches(Act&& act) const;
+    ElementBatch view(const EnergyBatch& batch) const;
+    void place(std::span<const double> z) const;
+    void find_errors(const EnergyBatch& batch, double* error, double* jacobian) const;
+    bool is_slack(const EnergyBatch& batch, const double* error) const { return batch.set->pulls && !(*error > 0); }
+    void stress_of(const EnergyBatch& batch, uint32_t i, const double* error, double* out) const;
+    void find_energies(const EnergyBatch& batch, bool with_force) const;
+    void find_matrices(const EnergyBatch& batch, Curvature part, double* out) const;
+    void find_damping_of(const EnergyBatch& batch, double* out, double* push) const;
+    void scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const;
+    template <class Find, class Take>
+    void for_matrices(Find&& find, Take&& take) const;
+    void multiply(const Array<double>& matrix, bool with_inertia, const double* d, double* out) const;
+
+    Substep& s_;
+    const EnergyIsland& island_;
+    MinimisationMemory& m_;
+    const double frame_;  // [s]
+    double mass_ = 0;
+};
+
+}  // namespace taut

@@ -1,0 +1,128 @@
+// Minimisation: of each island of deformables the energy of the substep (island_energy.h), by Newton's method with line
+// search (minimise.h), in place of rows. Contacts and joints do not come here.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/island_energy.h"
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kMostNewtonSteps = 1000;
+constexpr double kLongestStep = 1e3;  // of a direction, root mean square [m]: l of Gast and Schroeder 2014, section 3.1
+
+class GroupMinimisation {
+public:
+    explicit GroupMinimisation(Substep& s) : s_(s), m_(s.scratch.minimisation.get()), h_(s.system.scheme.h) {}
+
+    void run() {
+        if (s_.system.rows.elastic.empty()) return;
+        find_energy_graph(s_.system, s_.nodes, s_.group, m_);
+        make_room();
+        begin();
+        for (const EnergyIsland& island : m_.island) {
+            IslandEnergy energy(s_, island, s_.system.frame);
+            energy.find_damping();
+            solve(island, energy);
+        }
+    }
+
+private:
+    void make_room() {
+        const size_t points = m_.seat.size(), blocks = m_.column.size();
+        m_.pose.resize(points, {Vec3::Zero(), Mat3::Identity()});
+        m_.begin.resize(points);
+        m_.led.resize(points);
+        m_.scale.resize(points);
+        for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped})
+            each->resize(3 * points);
+        m_.hessian.resize(9 * blocks);
+        const bool damped = std::ranges::any_of(m_.island, [](const EnergyIsland& each) { return each.damped; });
+        m_.damping.resize(damped ? 9 * blocks : 0);
+    }
+
+    // x_n, y and what held points are led by.
+    void begin() {
+        const System& system = s_.system;
+        for (uint32_t p = 0; p < m_.seat.size(); ++p) {
+            const uint32_t seat = m_.seat[p];
+            const Vec3 way = h_ * system.exact[seat].v;
+            m_.begin[p] = system.pose[seat].x;
+            m_.led[p] = m_.free[p] ? Vec3::Zero() : way;
+            m_.scale[p] =
+                m_.free[p] ? std::sqrt(s_.nodes.mass[system.node_at[seat]].mass / system.scheme.stiffness()) : 0;
+            Vec3::Map(&m_.wanted[3 * size_t{p}]) = m_.scale[p] * (m_.free[p] ? way : Vec3::Zero());
+        }
+    }
+
+    // The better of two guesses: x_n + h v_n, and what forces as they are at x_n would do; or where it is, if both are
+    // beyond all numbers (Gast and Schroeder 2014, section 3.1).
+    void guess(const EnergyIsland& island, IslandEnergy& energy, std::span<double> x) {
+        const size_t first = 3 * size_t{island.first_point};
+        const std::span<double> other(&m_.guess[first], x.size()), slope(&m_.slope[first], x.size());
+        const auto energy_at = [&](std::span<const double> z) {
+            const double value = energy.evaluate(z, {});
+            return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+        };
+        std::ranges::fill(x, 0.0);
+        const double still = energy.evaluate(x, slope);
+        for (uint32_t i = 0; i < island.points; ++i) {
+            const uint32_t p = island.first_point + i;
+            if (m_.free[p]) Vec3::Map(&x[3 * i]) = m_.scale[p] * h_ * s_.system.start[m_.seat[p]].v;
+        }
+        std::ranges::transform(slope, other.begin(), [](double g) { return -g; });
+        const double moving = energy_at(x), pushed = energy_at(other);
+        if (pushed < moving) std::ranges::copy(other, x.begin());
+        if (!std::isfinite(std::min(moving, pushed)) && std::isfinite(still)) std::ranges::fill(x, 0.0);
+    }
+
+    void solve(const EnergyIsland& island, IslandEnergy& energy) {
+        const std::span<double> x(&m_.x[3 * size_t{island.first_point}], energy.size());
+        const std::span<double> before(&m_.guess[3 * size_t{island.first_point}], energy.size());
+        guess(island, energy, x);
+        std::ranges::copy(x, before.begin());
+        const double unit = std::sqrt(energy.mass() / s_.system.scheme.stiffness());  // of z, over a way of all [1/m]
+        MinimiseSettings settings;
+        settings.tolerance = asked_.tolerance * unit;
+        settings.longest_step = kLongestStep * unit;
+        settings.most_steps = s_.settings.sweeps ? s_.settings.sweeps : kMostNewtonSteps;
+        settings.line_search = asked_.line_search;
+        const MinimiseReport done = minimise(energy, x, settings, m_.newton);
+        s_.report.solves += done.steps;
+        s_.report.rounds += done.iterations;
+        if (!done.converged) ++s_.report.unfinished;
+        s_.report.residual = std::max(s_.report.residual, done.gradient / (unit * h_));
+        if (!std::isfinite(done.value)) std::ranges::copy(before, x.begin());
+        energy.evaluate(x, {});
+        energy.store_forces();
+        for (uint32_t i = 0; i < island.points; ++i) {
+            const uint32_t p = island.first_point + i, seat = m_.seat[p];
+            if (!m_.free[p]) continue;
+            s_.system.exact[seat].v = Vec3::Map(&x[3 * i]) / (m_.scale[p] * h_);
+            set_sweep_velocity(s_.system.sweep[seat].velocity, s_.system.exact[seat]);
+        }
+    }
+
+    Substep& s_;
+    MinimisationMemory& m_;
+    const double h_;  // [s]
+    const MinimisationSettings asked_ = s_.settings.minimisation ? *s_.settings.minimisation : MinimisationSettings{};
+};
+
+}  // namespace
+
+MinimisationMemory& MinimisationHolder::get() {
+    if (!made_) made_ = ::new (HostAllocator<MinimisationMemory>(memory_).allocate(1)) MinimisationMemory(memory_);
+    return *made_;
+}
+
+MinimisationHolder::~MinimisationHolder() {
+    if (!made_) return;
+    made_->~MinimisationMemory();
+    HostAllocator<MinimisationMemory>(memory_).deallocate(made_, 1);
+}
+
+const Solver kMinimisation{"minimisation", false,           false, [](Substep& s) { GroupMinimisation(s).run(); },
+                           nullptr,        [](Substep&) {}, true};
+
+}  // namespace taut

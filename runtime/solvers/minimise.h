@@ -1,0 +1,66 @@
+// Minimisation by Newton's method with line search (Gast and Schroeder 2014, section 3.1), over any function that has a
+// gradient and a product with its Hessian: it knows neither elements nor schemes. It finds a local minimum from
+// anywhere: directions come from conjugate gradients that end where the Hessian is indefinite, all go downhill, and
+// values that are not finite are walls.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/memory.h"
+
+namespace taut {
+
+class Objective {
+public:
+    virtual uint32_t size() const = 0;
+    // E(x) and, unless empty, dE/dx; they may be not finite.
+    virtual double evaluate(std::span<const double> x, std::span<double> gradient) = 0;
+    // d2E/dx2 at x, symmetric, for multiply().
+    virtual void linearise(std::span<const double> x) = 0;
+    virtual void multiply(std::span<const double> d, std::span<double> out) = 0;
+
+protected:
+    ~Objective() = default;
+};
+
+struct MinimiseSettings {
+    double tolerance = 1e-8;  // tau: of |dE/dx|, where it ends
+    // sigma: conjugate gradients end at min(1/2, sigma sqrt(max(|dE/dx|, tau))) of their residual (ibid.), with the
+    // first |dE/dx| for a unit.
+    double sigma = 1;
+    double downhill = 1e-2;     // kappa: least cosine of a direction against -dE/dx (ibid.)
+    double longest_step = 1e3;  // l: of a direction (ibid.)
+    uint32_t most_steps = 1000;
+    bool line_search = true;  // else directions are taken as they are, whatever becomes of E
+};
+
+struct MinimiseReport {
+    uint32_t steps = 0;              // of Newton's method: linear solves
+    uint32_t iterations = 0;         // of conjugate gradients, in all of them
+    uint32_t evaluations = 0;        // of E with dE/dx
+    uint32_t indefinite = 0;         // steps at which conjugate gradients met a negative curvature
+    uint32_t gradient_steps = 0;     // that went along -dE/dx in place of that
+    double value = 0, gradient = 0;  // E and |dE/dx| at the end
+    bool converged = false;          // |dE/dx| < tau
+};
+
+// What it works with, kept so that steady problems allocate nothing.
+struct MinimiseScratch {
+    explicit MinimiseScratch(Memory& m)
+        : gradient(m), direction(m), residual(m), search(m), image(m), trial(m), trial_gradient(m) {}
+    void resize(size_t size) {
+        for (Array<double>* each : {&gradient, &direction, &residual, &search, &image, &trial, &trial_gradient})
+            each->resize(size);
+    }
+
+    Array<double> gradient, direction, residual, search, image, trial, trial_gradient;
+};
+
+// From x, which becomes the best that was found. E of x is finite.
+MinimiseReport minimise(Objective& of, std::span<double> x, const MinimiseSettings& settings, MinimiseScratch& scratch);
+
+// a . b, in one order whoever asks.
+double dot_of(std::span<const double> a, std::span<const double> b);
+
+}  // namespace taut
