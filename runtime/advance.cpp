@@ -174,6 +174,36 @@ void take_step(World& world) {
     for_paths(nodes, [](KinematicPath& path, NodeMotion&) { path.follows = path.asked = false; });
 }
 
+void take_rest(World& world, Relaxation& relaxation) {
+    Nodes& nodes = world.nodes;
+    Array<Speed> led(nodes.slots(), Speed{}, world.memory);
+    const auto for_led = [&](auto&& act) {
+        for (uint32_t node = 0; node < nodes.slots(); ++node)
+            if (nodes.info[node].kind == NodeKind::kinematic) act(nodes.motion[node], led[node]);
+    };
+    wake_all(world);
+    nodes.load = nodes.applied;
+    for_led([](NodeMotion& motion, Speed& speed) {
+        speed = {motion.v, motion.w};
+        set_speed(motion, {});
+    });
+    world.relaxation = &relaxation;
+    const auto end = [&] {
+        world.relaxation = nullptr;
+        nodes.load.clear();
+        for_led([](NodeMotion& motion, const Speed& speed) { set_speed(motion, speed); });
+    };
+    try {
+        step(world);
+    } catch (...) {
+        end();
+        throw;
+    }
+    end();
+    for (uint32_t node = 0; node < nodes.slots(); ++node)
+        if (moves_by_forces(nodes.info[node].kind)) set_speed(nodes.motion[node], {});
+}
+
 Advance advance(World& world, double seconds) {
     begin_call(world);
     make_room(world.nodes);

@@ -17,6 +17,9 @@ struct Advance {
 
 // One step, beside the accumulator: forces act over it, and targets are reached at its end. Throws as step().
 void take_step(World& world);
+// A step of no time: statics by the world's solver. Kinematic nodes stay, and go on as before after it; what moves by
+// forces is at rest then. Throws as step().
+void take_rest(World& world, Relaxation& relaxation);
 // As many whole steps as seconds more of frame time give. A failed first step throws, with nothing changed; a later one
 // only ends it: the time left stays in the accumulator, and the next call meets the failure.
 Advance advance(World& world, double seconds);

@@ -8,6 +8,7 @@
 #include "check/minimised.h"
 #include "integrate/scheme.h"
 #include "sleep/wake.h"
+#include "solvers/minimisation.h"
 
 using namespace taut;
 
@@ -22,6 +23,8 @@ constexpr Range kAirDensity{0, 1e4};           // [kg/m^3]
 constexpr Range kAirPressure{0, 1e7};          // [Pa]
 constexpr Range kWind{-1e3, 1e3};              // [m/s]
 constexpr Range kMinimiseTolerance{1e-12, 1};  // [m]
+constexpr Range kRestTolerance{1e-9, 1e3};     // [m/s^2]
+constexpr uint32_t kMostRestSteps = 100000;
 constexpr Range kNewmarkBeta{0.25, 0.5}, kNewmarkGamma{0.5, 1};
 
 Check& check_hooks(Check& check, const taut_hooks& hooks) {
@@ -158,6 +161,19 @@ taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* 
             const float weight = static_cast<float>(render_weight(world));
             *out = {done.steps, std::min(weight, std::nextafter(1.0f, 0.0f)), done.dropped};
         }
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_world_relax(taut_world handle, float tolerance, uint32_t max_steps, taut_relaxation* out) {
+    Check check(__func__);
+    if (!check.number("tolerance", tolerance, kRestTolerance).count("max_steps", max_steps, 1, kMostRestSteps))
+        return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) {
+        if (const char* why = why_not_relaxed(world)) return refuse(TAUT_UNSUPPORTED, "%s: %s", check.call(), why);
+        Relaxation relaxation{tolerance, max_steps};
+        take_rest(world, relaxation);
+        if (out) *out = {relaxation.steps, relaxation.converged ? 1u : 0u, to_float(relaxation.residual)};
         return TAUT_OK;
     });
 }

@@ -32,4 +32,36 @@ const char* why_not_minimised(const World& world) {
     return nullptr;
 }
 
+const char* why_not_relaxed(World& world) {
+    if (!solvers()[world.def.solver]->energies) return "the world's solver is not TAUT_SOLVER_MINIMISATION";
+    if (const char* why = why_not_minimised(world)) return why;
+    const Nodes& nodes = world.nodes;
+    Array<uint32_t> parent(world.memory);
+    Array<uint8_t> held(nodes.slots(), uint8_t{0}, world.memory);
+    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+        parent.push_back(node);
+        held[node] = nodes.info[node].kind != NodeKind::particle;
+    }
+    const auto root_of = [&](uint32_t node) {
+        while (parent[node] != node) node = parent[node] = parent[parent[node]];
+        return node;
+    };
+    for_each_element(world.elements, [&](const ElementSet&, uint32_t, std::span<const uint32_t> ends) {
+        const uint32_t first = root_of(ends[0]);
+        for (const uint32_t node : ends) {
+            const uint32_t other = root_of(node);
+            held[first] |= held[other];
+            parent[other] = first;
+        }
+    });
+    const taut_vec3& g = world.def.gravity;
+    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+        if (held[root_of(node)]) continue;
+        const bool falls = nodes.mass[node].gravity_scale != 0 && (g.x != 0 || g.y != 0 || g.z != 0);
+        if (falls || (node < nodes.applied.size() && nodes.applied[node].any()))
+            return "something that nothing holds, with a force on it, has no rest";
+    }
+    return nullptr;
+}
+
 }  // namespace taut

@@ -1,6 +1,7 @@
 #include "solvers/island_energy.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace taut {
 namespace {
@@ -8,15 +9,19 @@ namespace {
 constexpr uint32_t kEnergyGrain = 4;   // batches that a thread takes at a time, some 20 us
 constexpr uint32_t kPointGrain = 128;  // points, likewise
 constexpr uint32_t kEnergyChunk = 64;  // batches of which matrices wait to be added, in one order whoever made them
-constexpr uint32_t kMostWidth = 3 * kMaxNodes, kMostMatrix = kMostWidth * kMostWidth;
+constexpr uint32_t kEnergyWidth = 3 * kMaxNodes, kEnergyMatrix = kEnergyWidth * kEnergyWidth;
 
 uint32_t nodes_in(const EnergyBatch& batch) { return static_cast<uint32_t>(batch.set->type->row.nodes); }
 uint32_t rows_in(const EnergyBatch& batch) { return static_cast<uint32_t>(batch.set->type->row.rows); }
 
 }  // namespace
 
-IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, double frame)
-    : s_(substep), island_(island), m_(substep.scratch.minimisation.get()), frame_(frame) {
+IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool statics)
+    : s_(substep),
+      island_(island),
+      m_(substep.scratch.minimisation.get()),
+      statics_(statics),
+      damped_(island.damped && !statics) {
     for (uint32_t p = island.first_point; p < island.first_point + island.points; ++p)
         if (m_.free[p]) mass_ += m_.scale[p] * m_.scale[p] * s_.system.scheme.stiffness();
 }
@@ -80,26 +85,37 @@ void IslandEnergy::find_energies(const EnergyBatch& batch, bool with_force) cons
     }
 }
 
+double IslandEnergy::sum_of_energies() const {
+    const EnergyBatch& last = m_.batch[island_.first_batch + island_.batches - 1];
+    double sum = 0;
+    for (uint32_t e = m_.batch[island_.first_batch].first; e < last.first + last.count; ++e) sum += m_.energy[e];
+    return sum;
+}
+
 double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradient) {
     place(z);
     for_batches([&](const EnergyBatch& batch) { find_energies(batch, !gradient.empty()); });
-    const double* const wanted = &m_.wanted[3 * size_t{island_.first_point}];
-    double inertia = 0, elastic = 0, damping = 0;
-    for (uint32_t i = 0; i < size(); ++i) inertia += (z[i] - wanted[i]) * (z[i] - wanted[i]);
-    const EnergyBatch &first = m_.batch[island_.first_batch],
-                      &last = m_.batch[island_.first_batch + island_.batches - 1];
-    for (uint32_t e = first.first; e < last.first + last.count; ++e) elastic += m_.energy[e];
-    if (island_.damped) {
+    const std::span<const double> wanted(&m_.wanted[3 * size_t{island_.first_point}], size());
+    const double elastic = sum_of_energies();
+    double inertia = 0, damping = 0;
+    if (statics_)
+        inertia = -2 * dot_of(z, wanted);
+    else
+        for (uint32_t i = 0; i < size(); ++i) inertia += (z[i] - wanted[i]) * (z[i] - wanted[i]);
+    if (damped_) {
         multiply(m_.damping, false, z.data(), m_.damped.data());
         const std::span<double> bz(m_.damped.data(), size());
         const std::span<const double> bias(&m_.bias[3 * size_t{island_.first_point}], size());
         damping = 0.5 * dot_of(z, bz) + dot_of(z, bias);
         for (uint32_t i = 0; i < size(); ++i) bz[i] += bias[i];
     }
+    terms_ = std::abs(0.5 * inertia) + elastic + std::abs(damping);
     if (gradient.empty()) return 0.5 * inertia + elastic + damping;
-    for (uint32_t i = 0; i < size(); ++i) gradient[i] = z[i] - wanted[i] + (island_.damped ? m_.damped[i] : 0);
+    for (uint32_t i = 0; i < size(); ++i)
+        gradient[i] = (statics_ ? 0 : z[i]) - wanted[i] + (damped_ ? m_.damped[i] : 0);
+    const EnergyBatch& last = m_.batch[island_.first_batch + island_.batches - 1];
     const uint32_t end = last.node + last.count * nodes_in(last);
-    for (uint32_t k = first.node; k < end; ++k) {
+    for (uint32_t k = m_.batch[island_.first_batch].node; k < end; ++k) {
         const uint32_t p = m_.point_of[k];
         if (m_.free[p])
             Vec3::Map(&gradient[3 * (p - island_.first_point)]) += Vec3::Map(&m_.force[3 * size_t{k}]) / m_.scale[p];
@@ -150,7 +166,7 @@ void IslandEnergy::find_damping_of(const EnergyBatch& batch, double* out, double
             for (uint32_t r = 0; r < rows; ++r) column[r] = slope(r, k);
             stress_of(batch, i, column, stress);
             for (uint32_t r = 0; r < rows; ++r) {
-                push[i * width + k] += batch.set->relaxation / frame_ * f[r] * column[r];
+                push[i * width + k] += batch.set->relaxation / s_.system.frame * f[r] * column[r];
                 for (uint32_t l = 0; l < width; ++l) matrix[k * width + l] += along / h * stress[r] * slope(r, l);
             }
         }
@@ -179,7 +195,7 @@ void IslandEnergy::scatter(const EnergyBatch& batch, const double* matrix, doubl
 // find(batch, out) of several batches at once, then take(batch, out) in their order.
 template <class Find, class Take>
 void IslandEnergy::for_matrices(Find&& find, Take&& take) const {
-    constexpr uint32_t kRoom = kEnergyBatch * (kMostMatrix + kMostWidth);
+    constexpr uint32_t kRoom = kEnergyBatch * (kEnergyMatrix + kEnergyWidth);
     m_.matrix.resize(size_t{kEnergyChunk} * kRoom);
     for (uint32_t begin = 0; begin < island_.batches; begin += kEnergyChunk) {
         const uint32_t count = std::min(kEnergyChunk, island_.batches - begin);
@@ -194,7 +210,7 @@ void IslandEnergy::for_matrices(Find&& find, Take&& take) const {
 void IslandEnergy::linearise(std::span<const double> z) {
     place(z);
     const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
-    if (island_.damped)
+    if (damped_)
         std::copy_n(m_.damping.begin() + 9 * begin, 9 * (end - begin), m_.hessian.begin() + 9 * begin);
     else
         std::fill_n(m_.hessian.begin() + 9 * begin, 9 * (end - begin), 0.0);
@@ -205,7 +221,7 @@ void IslandEnergy::linearise(std::span<const double> z) {
 void IslandEnergy::find_damping() {
     const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
     std::fill_n(m_.bias.begin() + 3 * island_.first_point, size(), 0.0);
-    if (!island_.damped) return;
+    if (!damped_) return;
     std::fill_n(m_.damping.begin() + 9 * begin, 9 * (end - begin), 0.0);
     for (uint32_t p = island_.first_point; p < island_.first_point + island_.points; ++p) m_.pose[p].x = m_.begin[p];
     const auto push_of = [](const EnergyBatch& batch, auto* out) {
@@ -246,7 +262,7 @@ void IslandEnergy::multiply(const Array<double>& matrix, bool with_inertia, cons
 }
 
 void IslandEnergy::multiply(std::span<const double> d, std::span<double> out) {
-    multiply(m_.hessian, true, d.data(), out.data());
+    multiply(m_.hessian, !statics_, d.data(), out.data());
 }
 
 void IslandEnergy::store_forces() const {

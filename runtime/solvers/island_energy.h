@@ -2,6 +2,7 @@
 //   E = 1/2 |x - y|^2_M / a + sum W(x) + 1/2 (x - x_n)^T B (x - x_n)/h,   a = h t (system/scheme.h)
 // with W of the elements and B their damping, of x_n and positive (Gast and Schroeder 2014, section 4: lagged). The
 // unknowns are z = s (x - x_n) with s = sqrt(m/a) [sqrt(J)], in which inertia has the matrix 1; held points have none.
+// In statics 1/a and B are 0, and E = sum W(x) - f . (x - x_n) with the external forces f.
 #pragma once
 
 #include "solvers/minimisation.h"
@@ -11,12 +12,13 @@ namespace taut {
 
 class IslandEnergy final : public Objective {
 public:
-    IslandEnergy(Substep& substep, const EnergyIsland& island, double frame);
+    IslandEnergy(Substep& substep, const EnergyIsland& island, bool statics);
 
     uint32_t size() const override { return 3 * island_.points; }
     double evaluate(std::span<const double> z, std::span<double> gradient) override;
     void linearise(std::span<const double> z) override;
     void multiply(std::span<const double> d, std::span<double> out) override;
+    double size_of_terms() const override { return terms_; }
 
     // Damping, at x_n.
     void find_damping();
@@ -28,6 +30,7 @@ private:
     template <class Act>
     void for_batches(Act&& act) const;
     ElementBatch view(const EnergyBatch& batch) const;
+    double sum_of_energies() const;
     void place(std::span<const double> z) const;
     void find_errors(const EnergyBatch& batch, double* error, double* jacobian) const;
     bool is_slack(const EnergyBatch& batch, const double* error) const { return batch.set->pulls && !(*error > 0); }
@@ -43,7 +46,8 @@ private:
     Substep& s_;
     const EnergyIsland& island_;
     MinimisationMemory& m_;
-    const double frame_;  // [s]
+    const bool statics_, damped_;
+    double terms_ = 0;  // [J]
     double mass_ = 0;
 };
 

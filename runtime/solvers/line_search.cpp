@@ -10,7 +10,7 @@ namespace {
 class WolfeSearch {
 public:
     WolfeSearch(LineFunction& phi, const LinePoint& begin, const LineSettings& settings, uint32_t& trials)
-        : phi_(phi), begin_(begin), set_(settings), noise_(settings.rounding * std::abs(begin.value)), count_(trials) {}
+        : phi_(phi), begin_(begin), set_(settings), noise_(settings.rounding * settings.terms), count_(trials) {}
 
     LinePoint run() {
         LinePoint last = begin_;

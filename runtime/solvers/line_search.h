@@ -22,7 +22,8 @@ protected:
 struct LineSettings {
     double decrease = 1e-4;     // c_1, share of the first slope by which the value falls (section 3.1)
     double curvature = 0.9;     // c_2, share of it that the slope may keep: that for Newton's method (ibid.)
-    double rounding = 1e-12;    // of a value, within which slopes alone decide (Hager and Zhang 2005, section 4)
+    double terms = 0;           // sizes of what a value is the sum of
+    double rounding = 1e-12;    // share of these within which slopes alone decide (Hager and Zhang 2005, section 4)
     double longest = 1;         // part
     uint32_t most_trials = 60;  // halves a bracket down to rounding
 };

@@ -1,5 +1,6 @@
 // Minimisation: of each island of deformables the energy of the substep (island_energy.h), by Newton's method with line
-// search (minimise.h), in place of rows. Contacts and joints do not come here.
+// search (minimise.h), in place of rows. Contacts and joints do not come here. In statics it is the energy at rest, and
+// the velocity that is found the way there over h.
 #include <algorithm>
 #include <cmath>
 
@@ -16,18 +17,29 @@ public:
     explicit GroupMinimisation(Substep& s) : s_(s), m_(s.scratch.minimisation.get()), h_(s.system.scheme.h) {}
 
     void run() {
+        if (asked_.relaxation) hold_still();
         if (s_.system.rows.elastic.empty()) return;
         find_energy_graph(s_.system, s_.nodes, s_.group, m_);
         make_room();
         begin();
         for (const EnergyIsland& island : m_.island) {
-            IslandEnergy energy(s_, island, s_.system.frame);
+            IslandEnergy energy(s_, island, asked_.relaxation != nullptr);
             energy.find_damping();
             solve(island, energy);
         }
     }
 
 private:
+    // What no element takes anywhere stays. Accelerations by what is not elastic are known from here on.
+    void hold_still() {
+        for (const uint32_t node : s_.group.nodes) {
+            Velocity& u = s_.system.exact[s_.system.at(node)];
+            Velocity& start = s_.system.start[s_.system.at(node)];
+            start.v = (u.v - start.v) / h_;
+            u = {};
+        }
+    }
+
     void make_room() {
         const size_t points = m_.seat.size(), blocks = m_.column.size();
         m_.pose.resize(points, {Vec3::Zero(), Mat3::Identity()});
@@ -41,17 +53,24 @@ private:
         m_.damping.resize(damped ? 9 * blocks : 0);
     }
 
-    // x_n, y and what held points are led by.
+    // x_n, y and what held points are led by; in statics external forces in place of y.
     void begin() {
         const System& system = s_.system;
         for (uint32_t p = 0; p < m_.seat.size(); ++p) {
             const uint32_t seat = m_.seat[p];
-            const Vec3 way = h_ * system.exact[seat].v;
             m_.begin[p] = system.pose[seat].x;
-            m_.led[p] = m_.free[p] ? Vec3::Zero() : way;
-            m_.scale[p] =
-                m_.free[p] ? std::sqrt(s_.nodes.mass[system.node_at[seat]].mass / system.scheme.stiffness()) : 0;
-            Vec3::Map(&m_.wanted[3 * size_t{p}]) = m_.scale[p] * (m_.free[p] ? way : Vec3::Zero());
+            m_.led[p] = Vec3::Zero();
+            m_.scale[p] = 0;
+            Vec3 wanted = Vec3::Zero();
+            if (!m_.free[p]) {
+                m_.led[p] = h_ * system.exact[seat].v;
+            } else {
+                const double mass = s_.nodes.mass[system.node_at[seat]].mass;
+                m_.scale[p] = std::sqrt(mass / system.scheme.stiffness());
+                wanted = asked_.relaxation ? Vec3(mass / m_.scale[p] * system.start[seat].v)
+                                           : Vec3(m_.scale[p] * h_ * system.exact[seat].v);
+            }
+            Vec3::Map(&m_.wanted[3 * size_t{p}]) = wanted;
         }
     }
 
@@ -65,6 +84,7 @@ private:
             return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
         };
         std::ranges::fill(x, 0.0);
+        if (asked_.relaxation) return;
         const double still = energy.evaluate(x, slope);
         for (uint32_t i = 0; i < island.points; ++i) {
             const uint32_t p = island.first_point + i;
@@ -81,17 +101,18 @@ private:
         const std::span<double> before(&m_.guess[3 * size_t{island.first_point}], energy.size());
         guess(island, energy, x);
         std::ranges::copy(x, before.begin());
-        const double unit = std::sqrt(energy.mass() / s_.system.scheme.stiffness());  // of z, over a way of all [1/m]
+        const double a = s_.system.scheme.stiffness(), unit = std::sqrt(energy.mass() / a);  // of z, over a way [1/m]
         MinimiseSettings settings;
         settings.tolerance = asked_.tolerance * unit;
         settings.longest_step = kLongestStep * unit;
         settings.most_steps = s_.settings.sweeps ? s_.settings.sweeps : kMostNewtonSteps;
         settings.line_search = asked_.line_search;
+        if (asked_.relaxation) {
+            settings.tolerance = asked_.relaxation->tolerance * a * unit;
+            settings.most_steps = asked_.relaxation->most_steps;
+        }
         const MinimiseReport done = minimise(energy, x, settings, m_.newton);
-        s_.report.solves += done.steps;
-        s_.report.rounds += done.iterations;
-        if (!done.converged) ++s_.report.unfinished;
-        s_.report.residual = std::max(s_.report.residual, done.gradient / (unit * h_));
+        tell(done, unit);
         if (!std::isfinite(done.value)) std::ranges::copy(before, x.begin());
         energy.evaluate(x, {});
         energy.store_forces();
@@ -101,6 +122,19 @@ private:
             s_.system.exact[seat].v = Vec3::Map(&x[3 * i]) / (m_.scale[p] * h_);
             set_sweep_velocity(s_.system.sweep[seat].velocity, s_.system.exact[seat]);
         }
+    }
+
+    void tell(const MinimiseReport& done, double unit) {
+        s_.report.solves += done.steps;
+        s_.report.rounds += done.iterations;
+        if (Relaxation* of = asked_.relaxation) {
+            of->steps += done.steps;
+            of->residual = std::max(of->residual, done.gradient / (s_.system.scheme.stiffness() * unit));
+            of->converged = of->converged && done.converged;
+            return;
+        }
+        if (!done.converged) ++s_.report.unfinished;
+        s_.report.residual = std::max(s_.report.residual, done.gradient / (unit * h_));
     }
 
     Substep& s_;

@@ -122,6 +122,7 @@ private:
         const LinePoint begin{0, report_.value, dot_of(s_.direction, s_.gradient)};
         if (!(begin.slope < 0)) return false;
         LineSettings settings;
+        settings.terms = of_.size_of_terms();
         settings.longest = std::max(1.0, set_.longest_step / length_of(s_.direction));
         const LinePoint found = search_line(*this, begin, settings, trials_);
         if (found.part == 0) return false;

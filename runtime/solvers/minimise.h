@@ -19,6 +19,8 @@ public:
     // d2E/dx2 at x, symmetric, for multiply().
     virtual void linearise(std::span<const double> x) = 0;
     virtual void multiply(std::span<const double> d, std::span<double> out) = 0;
+    // Sum of the sizes of the terms of E, as last evaluated: what rounding leaves of E goes by that.
+    virtual double size_of_terms() const = 0;
 
 protected:
     ~Objective() = default;

@@ -111,7 +111,7 @@ struct Chain {
 
 // The uppermost carries most. With it the others are relieved: they fall as they are.
 TEST(Break, OnlyTheWorstOfThoseThatCarryOneForce) {
-    for (uint32_t solver = 0; taut_solver_name(static_cast<taut_solver>(solver)); ++solver) {
+    for (uint32_t solver = 0; solver < TAUT_SOLVER_MINIMISATION; ++solver) {
         taut_world_def world_def;
         taut_world_def_init(&world_def);
         world_def.solver = static_cast<taut_solver>(solver);

@@ -442,15 +442,11 @@ TEST(Attachment, KeepsTheMomentumOfTwoClothsAndAWeld) {
 
 // ---------------------------------------------------------------- every solver, swept ones
 
-uint32_t solver_count() {
-    uint32_t count = 0;
-    while (taut_solver_name(static_cast<taut_solver>(count))) ++count;
-    return count;
-}
 class AttachedWithEachSolver : public testing::TestWithParam<uint32_t> {};
-INSTANTIATE_TEST_SUITE_P(Of, AttachedWithEachSolver, testing::Range(0u, solver_count()), [](const auto& each) {
-    return std::string(taut_solver_name(static_cast<taut_solver>(each.param)));
-});
+INSTANTIATE_TEST_SUITE_P(Of, AttachedWithEachSolver, testing::Range(0u, uint32_t{TAUT_SOLVER_MINIMISATION}),
+                         [](const auto& each) {
+                             return std::string(taut_solver_name(static_cast<taut_solver>(each.param)));
+                         });
 
 // A weight hangs from a cloth that hangs by its corners, by all kinds: it stays finite, and near.
 TEST_P(AttachedWithEachSolver, HangsFromACloth) {

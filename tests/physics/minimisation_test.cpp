@@ -26,8 +26,8 @@ struct TangleCase {
     int frames;    // within which it recovers
 };
 void PrintTo(const TangleCase& of, std::ostream* out) {
-    *out << (of.tangle == Tangle::random ? "random" : "point") << of.nodes << "_"
-         << static_cast<long long>(of.young) << "_Pa";
+    *out << (of.tangle == Tangle::random ? "random" : "point") << of.nodes << "_" << static_cast<long long>(of.young)
+         << "_Pa";
 }
 
 // A cube of 1 m in steps of a film's frames, whose vertices are anywhere within it, or all in its middle.
@@ -257,6 +257,134 @@ TEST(MinimisedBeam, FollowsVerticesThatAreLed) {
     const std::vector<Vec> after = points_of(solid);
     for (size_t v = 0; v < after.size(); ++v)
         EXPECT_NEAR(after[v].x, beam.points[v].x + frames * world.frame(), v < 4 ? 1e-5 : 2e-3) << v;
+}
+
+// ---------------------------------------------------------------- statics
+
+// Random starts within a box, by seed.
+std::vector<taut_pos> scattered(size_t count, uint64_t seed, const Vec& low, const Vec& high) {
+    std::mt19937_64 random(seed);
+    const auto between = [&](double a, double b) {
+        return a + (b - a) * std::ldexp(static_cast<double>(random() >> 11), -53);
+    };
+    std::vector<taut_pos> out(count);
+    for (taut_pos& p : out) p.x = between(low.x, high.x), p.y = between(low.y, high.y), p.z = between(low.z, high.z);
+    return out;
+}
+
+constexpr float kRestWithin = 1e-5f;  // [m/s^2]
+
+void relax(const World& world, uint32_t most = 5000) {
+    taut_relaxation done{};
+    ok(taut_world_relax(world.handle, kRestWithin, most, &done));
+    EXPECT_EQ(done.converged, 1u) << done.steps << " steps leave " << done.residual;
+    EXPECT_LT(done.residual, kRestWithin);
+}
+
+// A cantilever of any start is where damped motion comes to rest, and stays there.
+TEST(Relaxed, CantileverIsWhereMotionEnds) {
+    const Beam beam({0.5, 0.1, 0.1}, 9, 3, 3, false);
+    const Hung moved = hang_beam(TAUT_SOLVER_MINIMISATION, TAUT_SOLID_FIXED_COROTATED, false, 400, 0.2, 0, 1);
+    for (uint64_t seed = 0; seed < 10; ++seed) {
+        const World world = minimising();
+        taut_solid_def def = beam.def(TAUT_SOLID_FIXED_COROTATED, 1e5, 0.3);
+        std::vector<taut_pos> points = seed == 0 ? beam.points : scattered(beam.points.size(), seed, {}, beam.extent);
+        for (size_t v = 0; v < 9; ++v) points[v] = beam.points[v];
+        def.rest = def.points;
+        def.points = points.data();
+        def.filter.mask = 0;
+        const taut_solid solid = add(world, def);
+        beam.hold(solid);
+        relax(world);
+        const std::vector<Vec> at = points_of(solid);
+        for (size_t v = 0; v < at.size(); ++v)
+            EXPECT_LT(norm(at[v] - moved.points[v]), 1e-3 * -moved.tip) << "start " << seed << ", vertex " << v;
+        world.step(10);
+        const std::vector<Vec> after = points_of(solid);
+        for (size_t v = 0; v < at.size(); ++v) EXPECT_LT(norm(at[v] - after[v]), 1e-5) << seed;
+    }
+}
+
+// A limp strip that hardly stretches, hung by its ends: y = a cosh(x/a) - a cosh(d/2a), with the length 2 a sinh(d/2a).
+TEST(Relaxed, StripHangsAsACatenary) {
+    constexpr int kPoints = 61;
+    constexpr double kLength = 1.2, kApart = 1;
+    const Sheet strip(kPoints, 2, kLength, 0.02, 0);
+    const World world = minimising();
+    taut_cloth_def def = strip.def(TAUT_CLOTH_TRIANGLES);
+    std::vector<taut_pos> points = strip.points;
+    for (taut_pos& p : points) {  // along a parabola of about that length
+        p.x *= kApart / kLength;
+        p.y = 1.1 * (p.x - kApart) * p.x;
+    }
+    def.rest = def.points;
+    def.points = points.data();
+    def.stretch_stiffness[0] = def.stretch_stiffness[1] = 5e4f;
+    def.shear_stiffness = 2e4f;
+    def.filter.mask = 0;
+    const taut_cloth cloth = add(world, def);
+    for (const int i : {0, kPoints - 1})
+        for (int k = 0; k < 2; ++k) ok(taut_cloth_pin(cloth, strip.at(i, k), 1));
+    relax(world);
+    double low = 0.01, high = 10;  // a
+    for (int i = 0; i < 100; ++i) {
+        const double a = 0.5 * (low + high);
+        (2 * a * std::sinh(kApart / (2 * a)) > kLength ? low : high) = a;
+    }
+    const std::vector<Vec> at = points_of(cloth);
+    const double sag = low * (std::cosh(kApart / (2 * low)) - 1);
+    for (const Vec& p : at)
+        EXPECT_NEAR(p.y, low * (std::cosh((p.x - kApart / 2) / low) - std::cosh(kApart / (2 * low))), 1e-3 * sag);
+}
+
+// A sheet hung by two corners, from ten starts in which each vertex is off by up to two edges: one rest.
+TEST(Relaxed, SheetHasOneRest) {
+    const Sheet sheet(11, 11, 1, 1, 0);
+    std::vector<std::vector<Vec>> found;
+    double sag = 0;
+    for (uint64_t seed = 0; seed <= 10; ++seed) {
+        const World world = minimising();
+        taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
+        std::vector<taut_pos> points = sheet.points;
+        const std::vector<taut_pos> off = scattered(points.size(), seed, {-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2});
+        for (size_t v = 0; seed > 0 && v < points.size(); ++v)
+            if (v != sheet.at(0, 0) && v != sheet.at(0, 10))
+                points[v] = {points[v].x + off[v].x, points[v].y + off[v].y, points[v].z + off[v].z};
+        def.rest = def.points;
+        def.points = points.data();
+        def.bending_stiffness = 0.1f;
+        def.filter.mask = 0;
+        const taut_cloth cloth = add(world, def);
+        for (const int k : {0, 10}) ok(taut_cloth_pin(cloth, sheet.at(0, k), 1));
+        relax(world);
+        found.push_back(points_of(cloth));
+    }
+    for (const Vec& p : found[0]) sag = std::max(sag, -p.y);
+    for (size_t seed = 1; seed < found.size(); ++seed)
+        for (size_t v = 0; v < found[0].size(); ++v)
+            EXPECT_LT(norm(found[seed][v] - found[0][v]), 1e-3 * sag) << seed << ", vertex " << v;
+}
+
+TEST(Relaxed, RefusesWhatHasNoRest) {
+    taut_relaxation done{};
+    const World other;
+    EXPECT_EQ(taut_world_relax(other.handle, 1e-3f, 100, &done), TAUT_UNSUPPORTED);
+    TangledCube cube({Tangle::point, 3, 1e5, 10});
+    const taut_world world = cube.world.handle;
+    EXPECT_EQ(taut_world_relax(world, 0, 100, &done), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_world_relax(world, NAN, 100, &done), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_world_relax(world, 1e-3f, 0, &done), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_world_relax({0}, 1e-3f, 100, &done), TAUT_STALE_HANDLE);
+    ok(taut_world_set_gravity(world, {0, -1, 0}));
+    const uint64_t before = cube.hash();
+    EXPECT_EQ(taut_world_relax(world, 1e-3f, 100, &done), TAUT_UNSUPPORTED);
+    EXPECT_NE(std::string(taut_last_error()).find("nothing holds"), std::string::npos) << taut_last_error();
+    EXPECT_EQ(cube.hash(), before);
+    ok(taut_world_set_gravity(world, {0, 0, 0}));
+    EXPECT_EQ(taut_world_relax(world, 1e-3f, 1000, &done), TAUT_OK);
+    EXPECT_EQ(done.converged, 1u);
+    EXPECT_LT(cube.largest_change(), 1e-3);
+    EXPECT_EQ(taut_world_relax(world, 1e-3f, 1, nullptr), TAUT_OK);
 }
 
 // ---------------------------------------------------------------- as a world

@@ -38,6 +38,7 @@ public:
             for (uint32_t k = 0; k < count; ++k) out[i] += matrix[i * count + k] * d[k];
         }
     }
+    double size_of_terms() const override { return 0; }
     bool never_rose() const {
         return std::ranges::is_sorted(at, [](double a, double b) { return a > b + 1e-12 * std::abs(b); });
     }
@@ -173,9 +174,9 @@ TEST(Minimise, TakesWhatIsNotFiniteForAWall) {
 // sqrt(1 + x^2): Newton's steps grow from everywhere beyond 1.
 TEST(Minimise, WithoutTheSearchNewtonsStepsRunAway) {
     for (const bool search : {true, false}) {
-        Analytic f = of_one([](double x) { return std::sqrt(1 + x * x); },
-                            [](double x) { return x / std::sqrt(1 + x * x); },
-                            [](double x) { return 1 / ((1 + x * x) * std::sqrt(1 + x * x)); });
+        Analytic f =
+            of_one([](double x) { return std::sqrt(1 + x * x); }, [](double x) { return x / std::sqrt(1 + x * x); },
+                   [](double x) { return 1 / ((1 + x * x) * std::sqrt(1 + x * x)); });
         std::vector<double> x{2};
         MinimiseSettings settings;
         settings.line_search = search;
@@ -223,9 +224,7 @@ TEST(LineSearch, FindsStepsThatAreStronglyWolfe) {
         for (const double curvature : {0.9, 0.1, 1e-3}) {
             Line line;  // a valley that is no parabola
             line.value = [=](double p) { return std::cosh(2 * (p - least) / (1 + least)) + 0.1 * (p - least); };
-            line.slope = [=](double p) {
-                return 2 / (1 + least) * std::sinh(2 * (p - least) / (1 + least)) + 0.1;
-            };
+            line.slope = [=](double p) { return 2 / (1 + least) * std::sinh(2 * (p - least) / (1 + least)) + 0.1; };
             if (line.slope(0) >= 0) continue;
             LineSettings settings;
             settings.curvature = curvature;

@@ -22,7 +22,7 @@ struct NetStep {
 std::vector<NetStep> net_steps() {
     std::vector<NetStep> steps;
     for (size_t s = 0; s < solvers().size(); ++s)
-        if (!solvers()[s]->direct && !solvers()[s]->lanes)
+        if (!solvers()[s]->direct && !solvers()[s]->lanes && !solvers()[s]->energies)
             for (const double hz : {30.0, 60.0, 120.0, 240.0}) steps.push_back({s, hz});
     return steps;
 }

@@ -8,6 +8,7 @@
 #include "constraints/material.h"
 #include "constraints/shape_functions.h"
 #include "rig.h"
+#include "solvers/minimisation.h"
 
 namespace taut::test::newton {
 namespace {
@@ -309,6 +310,7 @@ public:
             node_.push_back(mesh.held[n] ? fixed(mesh.rest[n]) : particle(kMass, start[n].x));
         gravity = kGravity;
         settings.sweeps = sweeps;
+        settings.minimisation = &minimisation;
         for (const Part& part : mesh.parts) {
             Elements& all = w.elements;
             ElementSet& set = all.set[all.add(*part.type)];
@@ -347,6 +349,7 @@ public:
     }
 
 private:
+    const MinimisationSettings minimisation{1e-13};
     std::vector<uint32_t> node_;
     const Solver* solver_;
 };
@@ -394,6 +397,7 @@ std::vector<Way> ways_of(const Solver& solver) {
     if (solver.direct) return {{ElementForm::energy, 1, 0, 300, 1e-8}, {ElementForm::rows, 0.1, 0, 300, 1e-3}};
     // Sweeps go by where a substep begins, and keep velocities in float.
     if (solver.lanes) return {{ElementForm::rows, 1.0 / 50, 10, 1500, 3e-3}};
+    if (solver.energies) return {{ElementForm::energy, 0.05, 0, 1, 1e-7}};
     return {{ElementForm::rows, 0.05, 300, 1, 2e-5}};
 }
 

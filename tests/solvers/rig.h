@@ -24,6 +24,14 @@ inline taut_world_def default_def() {
     return def;
 }
 
+// Places in the list of those that take joints.
+inline std::vector<size_t> solvers_of_joints() {
+    std::vector<size_t> out;
+    for (size_t i = 0; i < solvers().size(); ++i)
+        if (!solvers()[i]->energies) out.push_back(i);
+    return out;
+}
+
 class Rig {
 public:
     explicit Rig(double substep = 1.0 / 240) : w(default_def()) {
