@@ -26,9 +26,11 @@ const char* why_not_minimised(const World& world) {
             return "a particle or vertex that may touch (filter.mask is not 0): TAUT_SOLVER_MINIMISATION has no "
                    "contacts";
     }
-    for (const ElementSet& set : world.elements.set)
-        if (set.type && set.size() > 0 && !(set.stiffness[0] > 0))
-            return "a compliance of 0: TAUT_SOLVER_MINIMISATION takes what gives way";
+    for (const ElementSet& set : world.elements.set) {
+        if (!set.type || set.size() == 0) continue;
+        if (set.type->freedoms != 3) return "attachments: TAUT_SOLVER_MINIMISATION takes none";
+        if (!(set.stiffness[0] > 0)) return "a compliance of 0: TAUT_SOLVER_MINIMISATION takes what gives way";
+    }
     return nullptr;
 }
 

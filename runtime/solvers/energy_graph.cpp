@@ -137,6 +137,7 @@ private:
         m_.point_of.resize(node);
         m_.block_of.resize(block);
         m_.energy.resize(m_.element.size());
+        m_.error.resize(m_.element.size() * kMaxRows);
         m_.force.resize(3 * size_t{node});
     }
 

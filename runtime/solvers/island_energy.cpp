@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace taut {
 namespace {
@@ -22,6 +23,7 @@ IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool st
       m_(substep.scratch.minimisation.get()),
       statics_(statics),
       damped_(island.damped && !statics) {
+    at()[0] = std::numeric_limits<double>::quiet_NaN();  // nothing is known yet
     for (uint32_t p = island.first_point; p < island.first_point + island.points; ++p)
         if (m_.free[p]) mass_ += m_.scale[p] * m_.scale[p] * s_.system.scheme.stiffness();
 }
@@ -69,6 +71,7 @@ void IslandEnergy::find_energies(const EnergyBatch& batch, bool with_force) cons
     const uint32_t rows = rows_in(batch), nodes = nodes_in(batch);
     double error[kEnergyBatch * kMaxRows], jacobian[kEnergyBatch * kMaxNodes * kMaxRows * 3];
     find_errors(batch, error, with_force ? jacobian : nullptr);
+    std::copy_n(error, batch.count * rows, errors_of(batch));
     for (uint32_t i = 0; i < batch.count; ++i) {
         const double* c = error + i * rows;
         double f[kMaxRows] = {}, sum = 0;
@@ -94,6 +97,7 @@ double IslandEnergy::sum_of_energies() const {
 
 double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradient) {
     place(z);
+    std::ranges::copy(z, at().begin());
     for_batches([&](const EnergyBatch& batch) { find_energies(batch, !gradient.empty()); });
     const std::span<const double> wanted(&m_.wanted[3 * size_t{island_.first_point}], size());
     const double elastic = sum_of_energies();
@@ -126,10 +130,9 @@ double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradi
 // ---------------------------------------------------------------- matrices
 
 // [element][3 nodes][3 nodes]: J^T D J + K.
-void IslandEnergy::find_matrices(const EnergyBatch& batch, Curvature part, double* out) const {
+void IslandEnergy::find_matrices(const EnergyBatch& batch, const double* error, Curvature part, double* out) const {
     const uint32_t rows = rows_in(batch), width = 3 * nodes_in(batch);
-    double error[kEnergyBatch * kMaxRows], lambda[kEnergyBatch * kMaxRows];
-    find_errors(batch, error, nullptr);
+    double lambda[kEnergyBatch * kMaxRows];
     for (uint32_t i = 0; i < batch.count; ++i) {
         stress_of(batch, i, error + i * rows, lambda + i * rows);
         for (uint32_t r = i * rows; r < (i + 1) * rows; ++r) lambda[r] = -lambda[r];
@@ -148,9 +151,9 @@ void IslandEnergy::find_damping_of(const EnergyBatch& batch, double* out, double
     std::fill_n(out, batch.count * width * width, 0.0);
     std::fill_n(push, batch.count * width, 0.0);
     if (!(batch.set->relaxation > 0)) return;
-    if (batch.set->rayleigh > 0) find_matrices(batch, Curvature::positive, out);
     double error[kEnergyBatch * kMaxRows], jacobian[kEnergyBatch * kMaxNodes * kMaxRows * 3];
     find_errors(batch, error, jacobian);
+    if (batch.set->rayleigh > 0) find_matrices(batch, error, Curvature::positive, out);
     for (uint32_t i = 0; i < batch.count; ++i) {
         double* const matrix = out + i * width * width;
         for (uint32_t k = 0; k < width * width; ++k) matrix[k] *= batch.set->rayleigh / h;
@@ -207,15 +210,17 @@ void IslandEnergy::for_matrices(Find&& find, Take&& take) const {
     }
 }
 
+// After evaluate() at z, as a rule, of which errors are known.
 void IslandEnergy::linearise(std::span<const double> z) {
-    place(z);
+    if (!std::ranges::equal(z, at())) evaluate(z, {});
     const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
     if (damped_)
         std::copy_n(m_.damping.begin() + 9 * begin, 9 * (end - begin), m_.hessian.begin() + 9 * begin);
     else
         std::fill_n(m_.hessian.begin() + 9 * begin, 9 * (end - begin), 0.0);
-    for_matrices([&](const EnergyBatch& batch, double* out) { find_matrices(batch, Curvature::raw, out); },
-                 [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
+    for_matrices(
+        [&](const EnergyBatch& batch, double* out) { find_matrices(batch, errors_of(batch), Curvature::raw, out); },
+        [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
 }
 
 void IslandEnergy::find_damping() {

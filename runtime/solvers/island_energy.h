@@ -36,7 +36,9 @@ private:
     bool is_slack(const EnergyBatch& batch, const double* error) const { return batch.set->pulls && !(*error > 0); }
     void stress_of(const EnergyBatch& batch, uint32_t i, const double* error, double* out) const;
     void find_energies(const EnergyBatch& batch, bool with_force) const;
-    void find_matrices(const EnergyBatch& batch, Curvature part, double* out) const;
+    void find_matrices(const EnergyBatch& batch, const double* error, Curvature part, double* out) const;
+    double* errors_of(const EnergyBatch& batch) const { return &m_.error[size_t{batch.first} * kMaxRows]; }
+    std::span<double> at() const { return {&m_.at[3 * size_t{island_.first_point}], 3 * size_t{island_.points}}; }
     void find_damping_of(const EnergyBatch& batch, double* out, double* push) const;
     void scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const;
     template <class Find, class Take>

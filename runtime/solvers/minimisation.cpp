@@ -46,7 +46,7 @@ private:
         m_.begin.resize(points);
         m_.led.resize(points);
         m_.scale.resize(points);
-        for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped})
+        for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped, &m_.at})
             each->resize(3 * points);
         m_.hessian.resize(9 * blocks);
         const bool damped = std::ranges::any_of(m_.island, [](const EnergyIsland& each) { return each.damped; });

@@ -73,6 +73,8 @@ struct MinimisationMemory {
           damped(m),
           hessian(m),
           damping(m),
+          at(m),
+          error(m),
           energy(m),
           force(m),
           matrix(m),
@@ -106,7 +108,9 @@ struct MinimisationMemory {
     Array<double> damped;  // damping z
     // by block, nine each
     Array<double> hessian, damping;  // of z, without inertia [1]
+    Array<double> at;                // where errors and energies are those of
     // by element
+    Array<double> error;   // [kMaxRows] C, one after the other within a batch
     Array<double> energy;  // [J]
     Array<double> force;   // [nodes][3], gradient of W [N]
     Array<double> matrix;  // of a chunk, [element][3 nodes][3 nodes] [N/m]

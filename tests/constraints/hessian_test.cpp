@@ -41,6 +41,7 @@ Matrix stiffness_of(const ElementType& type) {
 TEST(Hessian, OfEveryTypeIsThatOfItsEnergy) {
     for (const ElementType* type : element_types())
         for (uint64_t seed = 1; seed <= 20; ++seed) {
+            if (type->freedoms != 3) continue;  // of bodies, whose turns are none of these coordinates
             const Single at(*type, seed);
             // Rows of principal stretches are those of an isotropic material alone.
             const bool isotropic = std::string_view(type->name).find("stretches") != std::string_view::npos;

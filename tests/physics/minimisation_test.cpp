@@ -52,12 +52,12 @@ public:
         def.filter.mask = 0;
         solid = add(world, def);
     }
-    // Frames until every cell has its volume within a hundredth, but no more than so many.
+    // Frames until no cell is inverted and each has its volume within a twentieth, but no more than so many.
     int recover(int most) {
         for (int frame = 1; frame <= most; ++frame) {
             world.step();
             solves += static_cast<int>(world.profile().solves);
-            if (largest_change() < 0.01) return frame;
+            if (largest_change() < 0.05) return frame;
         }
         return most + 1;
     }
@@ -81,36 +81,52 @@ public:
     int solves = 0;
 };
 
-class Tangled : public testing::TestWithParam<TangleCase> {};
+class Tangled : public testing::TestWithParam<TangleCase> {
+protected:
+    static void expect_recovery() {
+        TangledCube cube(GetParam());
+        const int frames = cube.recover(GetParam().frames);
+        RecordProperty("frames", frames);
+        RecordProperty("solves", cube.solves);
+        std::printf("%d frames, %.1f solves each\n", frames, static_cast<double>(cube.solves) / frames);
+        EXPECT_LE(frames, GetParam().frames) << "cells are off by " << cube.largest_change();
+    }
+};
 
-TEST_P(Tangled, Recovers) {
-    TangledCube cube(GetParam());
-    const int frames = cube.recover(GetParam().frames);
-    RecordProperty("frames", frames);
-    RecordProperty("solves", cube.solves);
-    std::printf("%d frames, %.1f solves each\n", frames, static_cast<double>(cube.solves) / frames);
-    EXPECT_LE(frames, GetParam().frames) << "cells are off by " << cube.largest_change();
+TEST_P(Tangled, Recovers) { expect_recovery(); }
+// Of three stiffnesses the highest recovers in one step, the lowest within 120.
+std::vector<TangleCase> tangles(int nodes) {
+    std::vector<TangleCase> out;
+    for (const Tangle tangle : {Tangle::random, Tangle::point})
+        for (const auto& [young, frames] : {std::pair(1e7, 1), {1e5, 40}, {1e4, 120}})
+            out.push_back({tangle, nodes, young, frames});
+    return out;
 }
-INSTANTIATE_TEST_SUITE_P(Cubes, Tangled,
-                         testing::Values(TangleCase{Tangle::random, 9, 1e7, 1}, TangleCase{Tangle::random, 9, 1e5, 40},
-                                         TangleCase{Tangle::random, 9, 1e3, 120}, TangleCase{Tangle::point, 9, 1e7, 1},
-                                         TangleCase{Tangle::point, 9, 1e5, 40}, TangleCase{Tangle::point, 9, 1e3, 120}),
+INSTANTIATE_TEST_SUITE_P(Cubes, Tangled, testing::ValuesIn(tangles(7)), testing::PrintToStringParamName());
+
+class SoakTangled : public Tangled {};
+TEST_P(SoakTangled, Recovers) { expect_recovery(); }
+INSTANTIATE_TEST_SUITE_P(Cubes17, SoakTangled, testing::ValuesIn(tangles(17)), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Cubes33, SoakTangled,
+                         testing::Values(TangleCase{Tangle::random, 33, 1e7, 1}, TangleCase{Tangle::point, 33, 1e7, 1}),
                          testing::PrintToStringParamName());
 
 // The same program by a setting: each step of Newton's method as it comes.
 TEST(TangledCube, WithoutTheSearchNewtonsMethodDoesNotRecover) {
-    TangledCube cube({Tangle::random, 9, 1e7, 1}, [](taut_world_def& def) {
-        def.line_search = 0;
-        def.sweeps = 200;
-    });
-    EXPECT_GT(cube.recover(5), 5);
-    for (const Vec& p : points_of(cube.solid)) EXPECT_TRUE(finite(p));
+    for (const bool search : {true, false}) {
+        TangledCube cube({Tangle::random, 5, 1e7, 1}, [&](taut_world_def& def) {
+            def.line_search = search;
+            def.sweeps = 500;
+        });
+        EXPECT_EQ(cube.recover(3) <= 3, search);
+        for (const Vec& p : points_of(cube.solid)) EXPECT_TRUE(finite(p));
+    }
 }
 
 TEST(TangledCube, HasTheSameBitsOnAnyTeam) {
     std::vector<uint64_t> hashes;
     for (const uint32_t threads : {1u, 2u, 5u}) {
-        TangledCube cube({Tangle::random, 9, 1e4, 3}, [&](taut_world_def& def) { def.threads = threads; });
+        TangledCube cube({Tangle::random, 9, 1e3, 3}, [&](taut_world_def& def) { def.threads = threads; });
         cube.world.step(3);
         hashes.push_back(cube.hash());
     }
@@ -120,7 +136,7 @@ TEST(TangledCube, HasTheSameBitsOnAnyTeam) {
 
 // What is inside moves by forces between its own points alone.
 TEST(TangledCube, KeepsItsCentreOfMass) {
-    TangledCube cube({Tangle::random, 9, 1e6, 3});
+    TangledCube cube({Tangle::random, 7, 1e5, 3});
     const std::vector<taut_body> vertices = bodies_of(cube.solid);
     const auto centre = [&] {
         Vec sum;
@@ -172,7 +188,7 @@ Hung hang_beam(taut_solver solver, taut_solid_material material, bool hexahedra,
         def.time_step = 1.0f / 60;
         def.substeps = substeps;
     });
-    const Beam beam({0.5, 0.1, 0.1}, 9, 3, 3, hexahedra);
+    const Beam beam({0.5, 0.1, 0.1}, 6, 2, 2, hexahedra);
     taut_solid_def def = beam.def(material, 1e5, 0.3);
     def.filter.mask = 0;
     def.damping = static_cast<float>(damping);
@@ -181,7 +197,7 @@ Hung hang_beam(taut_solver solver, taut_solid_material material, bool hexahedra,
     beam.hold(solid);
     world.step(steps);
     const std::vector<Vec> points = points_of(solid);
-    return {points, points[beam.at(8, 1, 1)].y - beam.points[beam.at(8, 1, 1)].y};
+    return {points, points[beam.at(5, 1, 1)].y - beam.points[beam.at(5, 1, 1)].y};
 }
 
 class MinimisedBeam : public testing::TestWithParam<std::tuple<taut_solid_material, bool>> {};
@@ -189,8 +205,8 @@ class MinimisedBeam : public testing::TestWithParam<std::tuple<taut_solid_materi
 // At rest both solve the same equations.
 TEST_P(MinimisedBeam, HangsAsSolvedDirectly) {
     const auto [material, hex] = GetParam();
-    const Hung mine = hang_beam(TAUT_SOLVER_MINIMISATION, material, hex, 240, 0.2, 0, 1);
-    const Hung direct = hang_beam(TAUT_SOLVER_BLOCK_LDLT, material, hex, 240, 0.2, 0, 1);
+    const Hung mine = hang_beam(TAUT_SOLVER_MINIMISATION, material, hex, 600, 0.4, 0, 1);
+    const Hung direct = hang_beam(TAUT_SOLVER_BLOCK_LDLT, material, hex, 600, 0.4, 0, 1);
     EXPECT_LT(direct.tip, -0.02);
     for (size_t i = 0; i < mine.points.size(); ++i)
         EXPECT_LT(norm(mine.points[i] - direct.points[i]), 1e-3 * -direct.tip) << i;
@@ -281,15 +297,18 @@ void relax(const World& world, uint32_t most = 5000) {
     EXPECT_LT(done.residual, kRestWithin);
 }
 
-// A cantilever of any start is where damped motion comes to rest, and stays there.
+// A cantilever, from ten starts in which each vertex is off by up to half a beam's height, is where damped motion comes
+// to rest, and stays there.
 TEST(Relaxed, CantileverIsWhereMotionEnds) {
-    const Beam beam({0.5, 0.1, 0.1}, 9, 3, 3, false);
-    const Hung moved = hang_beam(TAUT_SOLVER_MINIMISATION, TAUT_SOLID_FIXED_COROTATED, false, 400, 0.2, 0, 1);
-    for (uint64_t seed = 0; seed < 10; ++seed) {
+    const Beam beam({0.5, 0.1, 0.1}, 6, 2, 2, false);
+    const Hung moved = hang_beam(TAUT_SOLVER_MINIMISATION, TAUT_SOLID_FIXED_COROTATED, false, 600, 0.4, 0, 1);
+    for (uint64_t seed = 0; seed <= 10; ++seed) {
         const World world = minimising();
         taut_solid_def def = beam.def(TAUT_SOLID_FIXED_COROTATED, 1e5, 0.3);
-        std::vector<taut_pos> points = seed == 0 ? beam.points : scattered(beam.points.size(), seed, {}, beam.extent);
-        for (size_t v = 0; v < 9; ++v) points[v] = beam.points[v];
+        std::vector<taut_pos> points = beam.points;
+        const std::vector<taut_pos> off = scattered(points.size(), seed, {-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05});
+        for (size_t v = 4; seed > 0 && v < points.size(); ++v)
+            points[v] = {points[v].x + off[v].x, points[v].y + off[v].y, points[v].z + off[v].z};
         def.rest = def.points;
         def.points = points.data();
         def.filter.mask = 0;
@@ -297,11 +316,13 @@ TEST(Relaxed, CantileverIsWhereMotionEnds) {
         beam.hold(solid);
         relax(world);
         const std::vector<Vec> at = points_of(solid);
-        for (size_t v = 0; v < at.size(); ++v)
-            EXPECT_LT(norm(at[v] - moved.points[v]), 1e-3 * -moved.tip) << "start " << seed << ", vertex " << v;
+        double most = 0, after = 0;
+        for (size_t v = 0; v < at.size(); ++v) most = std::max(most, norm(at[v] - moved.points[v]));
+        EXPECT_LT(most, 1e-3 * -moved.tip) << "start " << seed;
         world.step(10);
-        const std::vector<Vec> after = points_of(solid);
-        for (size_t v = 0; v < at.size(); ++v) EXPECT_LT(norm(at[v] - after[v]), 1e-5) << seed;
+        const std::vector<Vec> then = points_of(solid);
+        for (size_t v = 0; v < at.size(); ++v) after = std::max(after, norm(at[v] - then[v]));
+        EXPECT_LT(after, 1e-5) << "start " << seed;
     }
 }
 
