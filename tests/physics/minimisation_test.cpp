@@ -224,7 +224,7 @@ TEST(MinimisedBeam, SwingsAsSolvedDirectly) {
         const Hung direct =
             hang_beam(TAUT_SOLVER_BLOCK_LDLT, TAUT_SOLID_FIXED_COROTATED, false, 15, damping, rayleigh, 16);
         EXPECT_LT(direct.tip, -0.01);
-        EXPECT_NEAR(mine.tip, direct.tip, 0.01 * -direct.tip) << damping << " " << rayleigh;
+        EXPECT_NEAR(mine.tip, direct.tip, 0.02 * -direct.tip) << damping << " " << rayleigh;
     }
 }
 
