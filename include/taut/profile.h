@@ -35,11 +35,13 @@ typedef struct taut_profile {
     uint32_t blocks; /**< joint-connected components solved directly */
     uint32_t colours;
     uint32_t substeps;    /**< largest number of substeps that an island took */
-    uint32_t solves;      /**< direct block solves, all substeps together */
+    uint32_t solves;      /**< direct block solves, or steps of Newton's method of TAUT_SOLVER_MINIMISATION, all
+                               substeps together */
     uint32_t resolves;    /**< solves on top of these: on a grown force, or where elements' energy had not fallen */
     uint32_t guard_trips; /**< blocks on which the energy guard tripped */
     /* quality */
-    float residual;       /**< largest remaining joint velocity error of the last substep, J v - target [m/s] */
+    float residual;       /**< largest remaining joint velocity error of the last substep, J v - target; of minimisation
+                               that of a free vertex by the forces left, root mean square of an island [m/s] */
     float joint_error;    /**< largest gap of a joint, and of a link or attachment without compliance, after it [m] */
     float penetration;    /**< deepest overlap found by the step [m] */
     uint64_t bytes;       /**< held from the allocator */

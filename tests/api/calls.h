@@ -27,6 +27,7 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              return taut_world_wake_box(w, {-1, -1, -1}, {1, 1, 1});
          }},
         {"taut_world_advance", [](taut_world w) { return taut_world_advance(w, 0, nullptr); }},
+        {"taut_world_relax", [](taut_world w) { return taut_world_relax(w, 1, 1, nullptr); }},
         {"taut_world_get_gravity",
          [](taut_world w) {
              taut_vec3 out;

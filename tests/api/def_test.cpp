@@ -234,10 +234,10 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         changed(TAUT_STRUCT_SIZE, "struct_size", [&](Def& d) { d.struct_size = size; });
     }
 
-    const Field fields[] = {FIELD3(Def, gravity, -1e4, 1e4), FIELD(Def, time_step, 1e-4, 0.1),
+    const Field fields[] = {FIELD3(Def, gravity, -1e4, 1e4),   FIELD(Def, time_step, 1e-4, 0.1),
                             FIELD(Def, velocity_filter, 0, 1), FIELD(Def, sleep_speed, 0, 10),
-                            FIELD(Def, sleep_time, 0, 1e3), FIELD(Def, restitution_threshold, 0, 1e4),
-                            FIELD(Def, stabilisation, 0, 1), FIELD(Def, relaxation, 0.001, 1.999)};
+                            FIELD(Def, sleep_time, 0, 1e3),    FIELD(Def, restitution_threshold, 0, 1e4),
+                            FIELD(Def, stabilisation, 0, 1),   FIELD(Def, relaxation, 0.001, 1.999)};
     for (const Field& field : fields) {
         for (double value : {std::nan(""), HUGE_VAL, -HUGE_VAL, below(field, field.lo), above(field, field.hi)}) {
             const Def def = with(good, field, value);
@@ -273,7 +273,16 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
         changed(TAUT_OK, count.name, [&](Def& d) { d.*count.field = count.hi; });
     }
     changed(TAUT_INVALID_ARGUMENT, "solver", [](Def& d) { d.solver = TAUT_SOLVER_MAX; });
-    changed(TAUT_OK, "solver", [](Def& d) { d.solver = TAUT_SOLVER_CONJUGATE_GRADIENTS; });
+    changed(TAUT_OK, "solver", [](Def& d) { d.solver = TAUT_SOLVER_MINIMISATION; });
+    changed(TAUT_UNSUPPORTED, "scheme", [](Def& d) {
+        d.solver = TAUT_SOLVER_MINIMISATION;
+        d.scheme = TAUT_SCHEME_BDF2;
+    });
+    changed(TAUT_INVALID_ARGUMENT, "minimise_tolerance", [](Def& d) { d.minimise_tolerance = 0; });
+    changed(TAUT_INVALID_ARGUMENT, "minimise_tolerance", [](Def& d) { d.minimise_tolerance = NAN; });
+    changed(TAUT_OK, "minimise_tolerance", [](Def& d) { d.minimise_tolerance = 1; });
+    changed(TAUT_INVALID_ARGUMENT, "line_search", [](Def& d) { d.line_search = 2; });
+    changed(TAUT_OK, "line_search", [](Def& d) { d.line_search = 0; });
     changed(TAUT_INVALID_ARGUMENT, "stepping", [](Def& d) { d.stepping = TAUT_STEPPING_MAX; });
     changed(TAUT_OK, "stepping", [](Def& d) { d.stepping = TAUT_STEPPING_VELOCITY; });
     changed(TAUT_INVALID_ARGUMENT, "friction_model", [](Def& d) { d.friction_model = TAUT_FRICTION_MAX; });
