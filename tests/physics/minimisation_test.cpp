@@ -455,6 +455,16 @@ TEST(MinimisedWorld, RefusesWhatItDoesNotTake) {
     refused("joints");
     ok(taut_joint_remove(rod));
     world.step();
+    taut_attachment_def hold;
+    taut_attachment_def_init(&hold);
+    hold.compliance = 1e-3f;
+    ok(taut_solid_find_anchor(cube.solid, {0.3, 0.4, 0.6}, &hold.a, nullptr));
+    ok(taut_world_get_anchor(world.handle, {0}, {0.3, 0.4, 0.6}, &hold.b));
+    taut_attachment held{};
+    ok(taut_world_add_attachment(world.handle, &hold, &held));
+    refused("attachments");
+    ok(taut_attachment_remove(held));
+    world.step();
     const Beam beam({1, 1, 1}, 2, 2, 2, false);
     taut_solid_def touching = beam.def(TAUT_SOLID_FIXED_COROTATED, 1e5, 0.3);
     const taut_solid solid = add(world, touching);
