@@ -108,8 +108,11 @@ void untangle(const SurfaceFinder& finder, Array<SurfaceContact>& found) {
         for (const uint32_t node : was.node)
             if (node != kNone && stays(was)) tangled[node] = 1;
     constexpr int kTangled = 3;  // nodes
+    // Those in touch before have their sides from a time without a tangle: in a rope under tension more would follow
+    // through the hole that they leave.
     std::erase_if(found, [&](const SurfaceContact& contact) {
-        return std::ranges::count_if(contact.node, [&](uint32_t n) { return n != kNone && tangled[n]; }) >= kTangled;
+        return std::ranges::count_if(contact.node, [&](uint32_t n) { return n != kNone && tangled[n]; }) >= kTangled &&
+               !finder.before(contact.a, contact.b);
     });
     for (const SurfaceCrossing& of : surfaces.crossing) {
         const Crossing crossing(scene.softs, of);
