@@ -27,10 +27,12 @@ bool is_listed(const Softs& softs, uint64_t feature) {
 auto features_of(const SurfaceContact& contact) { return std::pair(contact.a, contact.b); }
 auto features_of_name(const SurfaceContactName& name) { return std::pair(name.a, name.b); }
 
-void list_names(const Array<SurfaceContact>& contacts, Array<SurfaceContactName>& names) {
+// Of those from an index on.
+void list_names(const Array<SurfaceContact>& contacts, Array<SurfaceContactName>& names, size_t from = 0) {
     names.clear();
-    reserve_more(names, contacts.size());
-    for (uint32_t i = 0; i < contacts.size(); ++i) names.push_back({contacts[i].a, contacts[i].b, i});
+    reserve_more(names, contacts.size() - from);
+    for (auto i = static_cast<uint32_t>(from); i < contacts.size(); ++i)
+        names.push_back({contacts[i].a, contacts[i].b, i});
 }
 
 }  // namespace
@@ -286,10 +288,21 @@ static void find(Team& team, const SurfaceScene& scene) {
     finder.keep_still();
 }
 
-// Those found, by features.
+// Of two lists in order.
+static void merge_names(std::span<const SurfaceContactName> one, std::span<const SurfaceContactName> other,
+                        Array<SurfaceContactName>& out) {
+    out.resize(one.size() + other.size());
+    std::ranges::merge(one, other, out.begin(), {}, features_of_name, features_of_name);
+}
+
+// Those found, by features. What stays within a frame comes last, in order, and is most of them.
 static void order_found(SurfaceContacts& surfaces) {
-    list_names(surfaces.found, surfaces.order);
-    std::ranges::sort(surfaces.order, {}, features_of_name);
+    Array<SurfaceContactName>& names = surfaces.name_found;
+    list_names(surfaces.found, names);
+    auto stays = names.empty() ? names.end() : names.end() - 1;
+    while (stays != names.begin() && features_of_name(stays[-1]) < features_of_name(*stays)) --stays;
+    std::ranges::sort(names.begin(), stays, {}, features_of_name);
+    merge_names({names.begin(), stays}, {stays, names.end()}, surfaces.order);
 }
 
 static void take_found(SurfaceContacts& surfaces) {
@@ -336,7 +349,9 @@ static void keep_pushes(SurfaceContacts& surfaces) {
         kept.force = {};
         kept.gap = kApart;
     }
-    if (surfaces.found.size() > found) order_found(surfaces);
+    list_names(surfaces.found, surfaces.name_found, found);
+    std::swap(surfaces.order, surfaces.name_merged);
+    merge_names(surfaces.name_merged, surfaces.name_found, surfaces.order);
 }
 
 void renew_surface_contacts(Team& team, const SurfaceScene& scene, const PreSolve& pre_solve,

@@ -109,6 +109,8 @@ struct SurfaceContacts {
           cut(memory),
           name_before(memory),
           order(memory),
+          name_found(memory),
+          name_merged(memory),
           near(memory),
           colliders(memory),
           corner(memory),
@@ -129,6 +131,7 @@ struct SurfaceContacts {
     SharedList<SurfaceCrossing> cut;
     Array<SurfaceContactName> name_before;  // of contact
     Array<SurfaceContactName> order;        // of found
+    Array<SurfaceContactName> name_found, name_merged;
     Array<uint32_t> near, colliders;
     Array<collision::Corner> corner;
     Array<SurfaceSpan> span;
@@ -136,8 +139,8 @@ struct SurfaceContacts {
 };
 template <class Visitor, Like<SurfaceContacts> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [contact, touch, touch_now, part, gone, version, found, near_feature, touching, cut, name_before, order, near,
-           colliders, corner, span, crossing] = of;
+    auto& [contact, touch, touch_now, part, gone, version, found, near_feature, touching, cut, name_before, order,
+           name_found, name_merged, near, colliders, corner, span, crossing] = of;
     TAUT_FIELDS(visitor, contact, gone);
     TAUT_ASIDE(visitor, version, touch);  // events change no motion
 }
