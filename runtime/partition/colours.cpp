@@ -280,9 +280,24 @@ void Partition::list_grains(uint32_t g, const Grains& grains) {
     list_by_colour(grain_colour_, is_own, groups[g].grains, groups[g].grain_colour_begin);
 }
 
+// Those that push come first in their colours, so that lanes side by side have work or have none.
+static void list_pushing_first(const SurfaceContacts& surfaces, Group& group) {
+    for (uint32_t colour = 0; colour < kMaxColours; ++colour) {
+        const auto list = group.surfaces.begin();
+        uint32_t first = group.surface_colour_begin[colour], last = group.surface_colour_begin[colour + 1];
+        while (first < last) {
+            if (surfaces.contact[list[first]].force.normal > 0)
+                ++first;
+            else
+                std::swap(list[first], list[--last]);
+        }
+    }
+}
+
 void Partition::list_surfaces(uint32_t g, const SurfaceContacts& surfaces) {
     const auto is_own = [&](uint32_t k) { return !surface_in_block_[k] && is_in(g, movers_of(surfaces.contact[k])); };
     list_by_colour(surface_colour_, is_own, groups[g].surfaces, groups[g].surface_colour_begin);
+    list_pushing_first(surfaces, groups[g]);
 }
 
 void Partition::renew_surfaces(uint32_t g, const SurfaceContacts& surfaces, std::span<const uint32_t> successor) {
@@ -304,6 +319,7 @@ void Partition::renew_surfaces(uint32_t g, const SurfaceContacts& surfaces, std:
     }
     list_by_colour(
         surface_colour_, [](uint32_t) { return true; }, groups[g].surfaces, groups[g].surface_colour_begin);
+    list_pushing_first(surfaces, groups[g]);
 }
 
 void Partition::list_spans(const Pairs& pairs) {
