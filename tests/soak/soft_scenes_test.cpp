@@ -1,4 +1,5 @@
 // Scenes in which cloth, gas and cables carry loads: what they must weigh, how they must roll.
+#include "bench/crossings.h"
 #include "scenes/running_scene.h"
 
 namespace {
@@ -73,6 +74,35 @@ TEST(Tyre, Rolls) {
     EXPECT_GT(way / turned, pressed);
     EXPECT_LT(way / turned, free + half);
     RecordProperty("rolling_radius_m", std::to_string(way / turned));
+}
+
+// A sheet that both ends turn into a rope, stretched to twice its length, goes through itself in few places, never for
+// long: counted in double precision by a test of its own.
+TEST(SweptTwist, ComesApartWhereItCrosses) {
+    scenes::Options options;
+    options.swept = true;
+    RunningScene run(scenes::make_scene("cloth_twist", options));
+    std::vector<std::array<uint32_t, 3>> faces;
+    const std::vector<uint32_t>& corner = run.scene.cloths[0].triangles;
+    for (size_t i = 0; i < corner.size(); i += 3) faces.push_back({corner[i], corner[i + 1], corner[i + 2]});
+    ASSERT_FALSE(faces.empty());
+    size_t most = 0, last = 0;
+    constexpr int kFrames = 300, kEvery = 10, kMost = 20;
+    for (int frame = 1; frame <= kFrames; ++frame) {
+        run.step();
+        if (frame % kEvery != 0) continue;
+        std::vector<taut_pos> points;
+        for (const taut_body v : run.world.cloth_vertices[0]) {
+            const Vec x = position(v);
+            points.push_back({x.x, x.y, x.z});
+        }
+        const bench::Skin skin{points, faces, {}};
+        last = bench::count_crossings(std::span(&skin, 1)).own[0];
+        most = std::max(most, last);
+    }
+    EXPECT_LE(most, kMost);
+    EXPECT_EQ(last, 0u);
+    EXPECT_TRUE(run.sound());
 }
 
 // The cable bears bag, hook and rocks, none of which is lost.
