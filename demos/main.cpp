@@ -47,7 +47,8 @@ void print_log(taut_log_level level, const char* text, void*) {
 }
 
 scenes::Scene scene_of(const Options& options) {
-    scenes::Scene scene = scenes::make_scene(options.scene, {options.seed, options.mesh, options.swept});
+    scenes::Scene scene = scenes::make_scene(
+        options.scene, {options.seed, options.mesh, options.swept, options.from_point, options.line_search});
     if (options.substeps) scene.world.substeps = *options.substeps;
     if (options.solver) scene.world.solver = scenes::solver_named(*options.solver);
     scene.world.hooks.log = print_log;

@@ -53,6 +53,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--threads", options.threads, "threads of a step")->check(CLI::Range(1, 64));
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");
+    app.add_flag("--from-point", options.from_point, "what begins tangled has all its vertices in one point");
+    app.add_flag("!--no-line-search", options.line_search, "minimisation takes each of Newton's steps as it comes");
     CLI::Option* mesh_flag =
         app.add_option("--mesh", options.mesh, "mesh file of the scene; without a scene an OBJ file for mesh_drop");
     CLI::Option* cloth_flag =

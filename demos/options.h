@@ -11,6 +11,8 @@ struct Options {
     std::string scene = "main";
     std::string mesh;
     bool swept = false;
+    bool from_point = false;
+    bool line_search = true;
     std::optional<uint32_t> frames;  // else the scene's own number
     uint32_t every = 1;              // draws the last of each so many frames
     std::string out;                 // folder of the PNG frames, empty: none

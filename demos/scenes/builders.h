@@ -42,6 +42,8 @@ Scene build_cloth_row(double n, double r, const Options& options);
 Scene build_cloth_load(double n, double r, const Options& options);
 Scene build_beam(double n, double r, const Options& options);
 Scene build_solid_drop(double n, double r, const Options& options);
+Scene build_tangled_cube(double n, double r, const Options& options);
+Scene build_cube_stretch(double n, double r, const Options& options);
 Scene build_armadillo(double n, double r, const Options& options);
 Scene build_armadillos(double n, double r, const Options& options);
 Scene build_cloth_loaded(double n, double r, const Options& options);

@@ -12,6 +12,7 @@ namespace scenes {
 namespace {
 
 constexpr double kLeastR = 1e-3, kMostR = 1e15;
+constexpr uint32_t kNewtonSteps = 100;  // of a step, where nothing makes them converge
 
 // Matches a name against a pattern and reads the numbers in place of N and R.
 bool match(const std::string& pattern, const std::string& name, double& n, double& r) {
@@ -100,6 +101,12 @@ const std::vector<Family>& families() {
          build_beam, 49},
         {"solidsN_eR", "solids3_e1e5", "N soft cubes of R Pa dropped beside each other", 240, false, build_solid_drop,
          50},
+        {"tangled_cubeN_eR", "tangled_cube9_e1e5",
+         "a cube of N^3 vertices and R Pa begins in random places (Gast and Schroeder 2014, figure 8)", 60, false,
+         build_tangled_cube, 100, false, true},
+        {"cube_stretchN_eR", "cube_stretch9_e1e5",
+         "a cube of N^3 vertices and R Pa is stretched, then pushed back a little (ibid., figures 3 and 4)", 72, false,
+         build_cube_stretch, 100, false, true},
         {"armadillo_eR", "armadillo_e1e5", "a figure of R Pa falls on the ground", 240, false, build_armadillo, 0, true,
          true},
         {"cloth_loaded", "cloth_loaded", "balls of 500 vertices' mass hang on a sheet", 360, false, build_cloth_loaded,
@@ -176,6 +183,10 @@ Scene make_scene(const std::string& name, const Options& options, const std::vec
         if (!family.needs_mesh && !family.takes_mesh && !options.mesh.empty())
             throw BadScene("scene '" + name + "' takes no mesh");
         Scene scene = family.build(n, r, options);
+        if (!options.line_search) {
+            scene.world.line_search = 0;
+            scene.world.sweeps = kNewtonSteps;
+        }
         if (options.swept) {
             for (Cloth& cloth : scene.cloths) cloth.def.solve = TAUT_DEFORMABLE_SWEPT;
             for (Solid& solid : scene.solids) solid.def.solve = TAUT_DEFORMABLE_SWEPT;

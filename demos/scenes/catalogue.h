@@ -9,9 +9,11 @@
 namespace scenes {
 
 struct Options {
-    uint64_t seed = 0;   // above 0: a random start, the same for the same seed
-    std::string mesh;    // file of scenes that take one
-    bool swept = false;  // cloths and solids are swept, not solved directly
+    uint64_t seed = 0;        // above 0: a random start, the same for the same seed
+    std::string mesh;         // file of scenes that take one
+    bool swept = false;       // cloths and solids are swept, not solved directly
+    bool from_point = false;  // what begins tangled has all its vertices in one point
+    bool line_search = true;  // else minimisation takes Newton's steps as they come, few of them
 };
 
 // A family of scenes. In a pattern, N stands for a count and R for a mass, ratio or weight.

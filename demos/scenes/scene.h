@@ -153,6 +153,7 @@ struct Cloth {
 struct Solid {
     taut_solid_def def{};  // initialised
     std::vector<taut_pos> points;
+    std::vector<taut_pos> rest;  // or none: points
     std::vector<uint32_t> cells;
     std::vector<uint32_t> triangles;  // of the boundary, without a mesh
     std::vector<uint32_t> pinned;
@@ -174,16 +175,17 @@ struct Track {
     Shake shake;
 };
 
-// What moves by plan: a kinematic body or pinned vertices of a cloth, by the track along a direction from the start and
-// about a pivot; the drive of a joint, whose target and speed follow the track; or a cable's end that is reeled: what
-// is paid out [m] follows it. A body's motions are made one after another, each of what those before it say.
+// What moves by plan: a kinematic body or pinned vertices of a cloth or solid, by the track along a direction from the
+// start and about a pivot; the drive of a joint, whose target and speed follow the track; or a cable's end that is
+// reeled: what is paid out [m] follows it. A body's motions are made one after another, each of what those before it
+// say.
 struct Motion {
     int body = -1, joint = -1;
     uint32_t axis = 0;  // of the joint; the cable's end
     taut_vec3 along{};  // of the body or vertices, [m] a unit of the track
     Track track;
     int cable = -1;
-    int cloth = -1;
+    int cloth = -1, solid = -1;
     std::vector<uint32_t> vertices{};
     taut_vec3 about{};  // of the body or vertices, [rad] a unit of the track
     taut_pos pivot{};

@@ -263,6 +263,7 @@ taut_cloth TautWorld::add(Cloth plan, uint64_t index) const {
 
 taut_solid TautWorld::add(Solid plan, uint64_t index) const {
     plan.def.points = plan.points.data();
+    plan.def.rest = plan.rest.empty() ? nullptr : plan.rest.data();
     plan.def.point_count = static_cast<uint32_t>(plan.points.size());
     if (plan.def.corners != TAUT_SOLID_MESHLESS) {
         plan.def.cells = plan.cells.data();
@@ -298,7 +299,7 @@ void TautWorld::follow_plans() {
         if (motion.body >= 0) {
             if (!moved[static_cast<size_t>(motion.body)]) move(motion.body, time);
             moved[static_cast<size_t>(motion.body)] = true;
-        } else if (motion.cloth >= 0)
+        } else if (motion.cloth >= 0 || motion.solid >= 0)
             move_vertices(motion, point.value);
         else if (motion.cable >= 0)
             check(taut_cable_set_reel_speed(cables[static_cast<size_t>(motion.cable)], motion.axis,
@@ -356,13 +357,16 @@ void TautWorld::move(int body, double time) const {
 }
 
 void TautWorld::move_vertices(const Motion& motion, double value) const {
-    const auto cloth = static_cast<size_t>(motion.cloth);
+    const bool solid = motion.solid >= 0;
+    const auto soft = static_cast<size_t>(solid ? motion.solid : motion.cloth);
+    const std::vector<taut_pos>& points = solid ? scene_.solids[soft].points : scene_.cloths[soft].points;
+    const std::vector<taut_body>& bodies_of = solid ? solid_vertices[soft] : cloth_vertices[soft];
     const taut_quat by = turn_of(motion, value);
     for (const uint32_t vertex : motion.vertices) {
         taut_pose pose{};
-        pose.position = moved_point(motion, by, scene_.cloths[cloth].points[vertex], value);
+        pose.position = moved_point(motion, by, points[vertex], value);
         pose.rotation = {0, 0, 0, 1};
-        check(taut_body_move_kinematic(cloth_vertices[cloth][vertex], &pose), "moving a vertex");
+        check(taut_body_move_kinematic(bodies_of[vertex], &pose), "moving a vertex");
     }
 }
 

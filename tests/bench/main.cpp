@@ -49,8 +49,9 @@ struct Subject {
 };
 
 Subject subject(const Options& options) {
-    scenes::Scene scene =
-        scenes::make_scene(options.scene, {options.seed, options.mesh, options.swept}, bench_families());
+    scenes::Scene scene = scenes::make_scene(
+        options.scene, {options.seed, options.mesh, options.swept, options.from_point, options.line_search},
+        bench_families());
     if (options.rate != 60) scene.world.time_step = static_cast<float>(1 / options.rate);
     scene.world.report = options.report.empty() ? 0 : 1;
     if (options.substeps) scene.world.substeps = *options.substeps;

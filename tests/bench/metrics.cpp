@@ -104,6 +104,7 @@ const char* const kFieldHelp = R"(JSON fields (one object on one line):
   pairs pairs_end                     triangles that cross and share no vertex, of a cloth's own and of different ones,
                                       most of the samples (each tenth step) and at the end
   inverted inverted_end               cells turned inside out, most ever and at the end
+  inverted_until                      steps after which none was any more
   pairs_own pairs_own_end             crossing triangles of a solid's own boundary
   tip_ratio                           of a beam: mean sink of its end over the last second, in parts of theory's
   rest_speed                          mean speed of vertices over the last second [m/s]

@@ -42,6 +42,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
                                               "of ode: step (default with joints) or quickstep");
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");
+    app.add_flag("--from-point", options.from_point, "what begins tangled has all its vertices in one point");
+    app.add_flag("!--no-line-search", options.line_search, "minimisation takes each of Newton's steps as it comes");
     app.add_option("--mesh", options.mesh, "mesh file, of scenes that take one");
     app.add_flag("--no-geometric-stiffness", no_stiffness, "leave it out, for comparison");
     app.add_flag("--adaptive-damping", options.adaptive_damping, "damp by the size of the geometric stiffness");

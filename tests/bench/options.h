@@ -28,6 +28,8 @@ struct Options {
     std::string report;
     std::string mesh;
     bool swept = false;
+    bool from_point = false;
+    bool line_search = true;
 };
 
 // Nothing: *exit_code says with what to end. Throws scenes::BadScene for what contradicts itself.

@@ -103,6 +103,7 @@ SoftShape::SoftShape(const scenes::Cloth& cloth) : mass(cloth.points.size(), 0.0
 }
 
 SoftShape::SoftShape(const scenes::Solid& solid) : mass(solid.points.size(), 0.0) {
+    const std::vector<taut_pos>& rest = solid.rest.empty() ? solid.points : solid.rest;
     // Three edges of a corner each, right-handed.
     static constexpr uint32_t kCorners[8][4] = {{0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
                                                 {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}};
@@ -112,8 +113,7 @@ SoftShape::SoftShape(const scenes::Solid& solid) : mass(solid.points.size(), 0.0
         const uint32_t* v = &solid.cells[c];
         double volume = 0;
         const auto part = [&](const uint32_t(&p)[4]) {
-            return std::fabs(six_volumes(of(solid.points[v[p[0]]]), of(solid.points[v[p[1]]]),
-                                         of(solid.points[v[p[2]]]), of(solid.points[v[p[3]]]))) /
+            return std::fabs(six_volumes(of(rest[v[p[0]]]), of(rest[v[p[1]]]), of(rest[v[p[2]]]), of(rest[v[p[3]]]))) /
                    6;
         };
         if (corners == 4) {
@@ -133,13 +133,13 @@ SoftShape::SoftShape(const scenes::Solid& solid) : mass(solid.points.size(), 0.0
         for (size_t t = 0; t < solid.triangles.size(); t += 3) {
             const uint32_t* v = &solid.triangles[t];
             faces.push_back({v[0], v[1], v[2]});
-            volume += six_volumes({}, of(solid.points[v[0]]), of(solid.points[v[1]]), of(solid.points[v[2]])) / 6;
+            volume += six_volumes({}, of(rest[v[0]]), of(rest[v[1]]), of(rest[v[2]])) / 6;
         }
         for (double& m : mass) m = static_cast<double>(solid.def.density) * volume / static_cast<double>(mass.size());
     }
     find_sides(*this);
     for (const uint32_t v : solid.pinned) mass[v] = 0;
-    size = longest_side(solid.points);
+    size = longest_side(rest);
 }
 
 SoftMetrics::SoftMetrics(const scenes::Scene& scene, const Engine& engine, uint32_t steps, double rigid, double mass)
@@ -283,7 +283,7 @@ void SoftMetrics::measure_crossings() {
     pairs_own_ = std::max(pairs_own_, pairs_own_end_);
 }
 
-void SoftMetrics::measure_cells() {
+void SoftMetrics::measure_cells(uint32_t step) {
     inverted_end_ = 0;
     for (size_t i = 0; i < shapes_.size(); ++i) {
         const std::vector<taut_pos>& x = states_[i].points;
@@ -295,6 +295,7 @@ void SoftMetrics::measure_cells() {
                 [&](const auto& t) { return !(six_volumes(of(x[t[0]]), of(x[t[1]]), of(x[t[2]]), of(x[t[3]])) > 0); });
     }
     inverted_ = std::max(inverted_, inverted_end_);
+    if (inverted_end_ > 0) inverted_until_ = step + 1;
 }
 
 void SoftMetrics::after_step(uint32_t step, double rigid, const std::vector<Motion>& bodies) {
@@ -302,7 +303,7 @@ void SoftMetrics::after_step(uint32_t step, double rigid, const std::vector<Moti
     if (!finite_) return;
     measure_stretch();
     measure_depth(bodies);
-    measure_cells();
+    measure_cells(step);
     if (step % kEvery == 0 || step == last_) measure_crossings();
     const double now = energy() + rigid;
     energy_most_ = std::max(energy_most_, now);
@@ -346,6 +347,7 @@ void SoftMetrics::report(nlohmann::ordered_json& json) const {
     if (!scene_.solids.empty()) {
         json["inverted"] = inverted_;
         json["inverted_end"] = inverted_end_;
+        json["inverted_until"] = inverted_until_;
         json["pairs_own"] = pairs_own_;
         json["pairs_own_end"] = pairs_own_end_;
     }

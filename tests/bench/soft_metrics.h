@@ -49,7 +49,7 @@ private:
     double energy() const;
     void measure_stretch();
     void measure_depth(const std::vector<Motion>& bodies);
-    void measure_cells();
+    void measure_cells(uint32_t step);
     void name_points();
     void measure_crossings();
 
@@ -64,6 +64,7 @@ private:
     double weight_ = 0, size_ = 0;                             // m g of all that moves [N], [m]
     double energy_start_ = 0, energy_most_ = 0, energy_lost_;  // [J], [J], [m]
     size_t inverted_ = 0, inverted_end_ = 0;                   // cells
+    uint32_t inverted_until_ = 0;                              // steps after which none was, to the end
     std::vector<PointDepth> depths_;                           // of the scene's shapes
     std::vector<std::vector<uint32_t>> ids_;                   // of the vertices of each; those sewn together have one
     size_t pairs_ = 0, pairs_end_ = 0, pairs_own_ = 0, pairs_own_end_ = 0;  // that cross; own: of solids' own
