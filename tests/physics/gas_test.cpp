@@ -163,7 +163,7 @@ TEST(Pressure, IsRefusedBySolversWithoutIt) {
         ++refused;
         EXPECT_NE(std::string(taut_last_error()).find("pressure"), std::string::npos) << taut_last_error();
     }
-    EXPECT_EQ(refused, 7);
+    EXPECT_EQ(refused, 8);
 }
 
 class Balloon : public testing::TestWithParam<GasCase> {};
