@@ -79,6 +79,14 @@ SurfaceContact push_apart(const SurfaceScene& scene, const SurfaceCrossing& of, 
     return contact;
 }
 
+// Of two surfaces: sum w_i n . x_i >= 0 [m].
+bool is_on_its_side(const SurfaceScene& scene, const SurfaceContact& contact) {
+    Vec3 apart = Vec3::Zero();
+    for (size_t n = 0; n < std::size(contact.node); ++n)
+        if (contact.node[n] != kNone) apart += static_cast<double>(contact.weight[n]) * scene.place_of(contact.node[n]);
+    return apart.dot(contact.normal.cast<double>()) >= 0;
+}
+
 }  // namespace
 
 bool goes_through(const Vec3f& p, const Vec3f& q, const Vec3f (&face)[3]) {
@@ -108,11 +116,11 @@ void untangle(const SurfaceFinder& finder, Array<SurfaceContact>& found) {
         for (const uint32_t node : was.node)
             if (node != kNone && stays(was)) tangled[node] = 1;
     constexpr int kTangled = 3;  // nodes
-    // Those in touch before have their sides from a time without a tangle: in a rope under tension more would follow
-    // through the hole that they leave.
+    // Those in touch before, and still on their sides, have these from a time without a tangle: in a rope under tension
+    // more would follow through the hole that they leave.
     std::erase_if(found, [&](const SurfaceContact& contact) {
         return std::ranges::count_if(contact.node, [&](uint32_t n) { return n != kNone && tangled[n]; }) >= kTangled &&
-               !finder.before(contact.a, contact.b);
+               !(finder.before(contact.a, contact.b) && is_on_its_side(scene, contact));
     });
     for (const SurfaceCrossing& of : surfaces.crossing) {
         const Crossing crossing(scene.softs, of);

@@ -10,8 +10,9 @@ namespace taut {
 // Where the segment from p to q goes through a triangle.
 bool goes_through(const Vec3f& p, const Vec3f& q, const Vec3f (&face)[3]);
 
-// From the crossings in SurfaceContacts, and those before that stay: takes away new contacts of what is tangled, which
-// hold it as it is, and adds such that push edges along the ways in which they shorten the cut.
+// From the crossings in SurfaceContacts, and those before that stay: takes away contacts of what is tangled, which hold
+// it as it is, but for those in touch before that are on their sides, and adds such that push edges along the ways in
+// which they shorten the cut.
 void untangle(const SurfaceFinder& finder, Array<SurfaceContact>& found);
 
 }  // namespace taut
