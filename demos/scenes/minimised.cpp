@@ -52,7 +52,8 @@ Scene build_tangled_cube(double n, double r, const Options& options) {
     return scene;
 }
 
-// Two sides are led apart to twice its length in a second, and for a frame towards each other two seconds later.
+// Two sides are led apart to twice its length in a second; a second later they are back in two frames from a push
+// towards each other.
 Scene build_cube_stretch(double n, double r, const Options& options) {
     constexpr double kApart = 0.5, kPulse = 0.3, kStretched = 1, kPushed = 2;  // of each side [m]; [s]
     Scene scene = film_hall(1.8);
