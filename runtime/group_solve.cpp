@@ -7,6 +7,7 @@
 #include "integrate/scheme.h"
 #include "models/air.h"
 #include "publish/publish.h"
+#include "solvers/minimisation.h"
 #include "solvers/restitution.h"
 #include "system/assemble.h"
 
@@ -76,6 +77,8 @@ void GroupSolve::begin() {
         turn_lanes(w_.team, system_, group_, *settings_.kernels);
     }
     shift_kinematic(system_, w_.nodes, clock_.begin());
+    if (solver_.energies)
+        place_obstacles(w_.nodes, w_.colliders, w_.shapes, clock_.end(), w_.scratch.minimisation.get().obstacles);
     if (w_.def.report) w_.reports.begin(measured());
     build_block_contacts(system_, group_, w_.partition.blocks, w_.pairs, w_.nodes);
     tell(Stage::predict);

@@ -52,7 +52,20 @@ void find_touches(World& w, double lead) {
         w.team, {w.nodes, w.colliders, w.shapes, w.softs, w.elements, w.pairs, w.broadphase, w.def.time_step});
 }
 
+// Of solvers that take ways out in place of contacts.
+void detect_obstacles(World& w, Stopwatch& watch) {
+    update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
+    tell(w, {Stage::bounds});
+    w.profile.broadphase_us = watch.lap();
+    w.pairs.surfaces.contact.clear();
+    ++w.pairs.surfaces.version;
+    find_obstacles(w.nodes, w.colliders, w.shapes, w.softs, w.scratch.minimisation.get().obstacles);
+    tell(w, {Stage::contacts});
+    w.profile.narrowphase_us = watch.lap();
+}
+
 void detect(World& w, Stopwatch& watch) {
+    if (solvers()[w.def.solver]->energies) return detect_obstacles(w, watch);
     const double lead = mean_age(w);
     recall_pairs(w);
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
@@ -111,6 +124,8 @@ void solve(World& w, Stopwatch& watch) {
     make_room_for_scheme(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
     for (uint32_t i = 0; i < w.partition.group_count; ++i) GroupSolve(w, i, solver, settings, report, watch).run();
+    if (solver.energies)
+        tell_pushes(w.system.scheme.h, w.softs, w.nodes, w.scratch.minimisation.get().obstacles, w.pairs.surfaces);
     if (const uint32_t failures = report.failures; failures > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u block solves failed: their nodes moved freely", failures);
     if (report.unfinished > 0)

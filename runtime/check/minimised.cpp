@@ -14,6 +14,20 @@ bool may_touch(const World& world, uint32_t node) {
     return any;
 }
 
+// Whether some collider of a node that may be met has no level set, or is met from one side only.
+const char* why_no_obstacle(const World& world, uint32_t node) {
+    const char* why = nullptr;
+    for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
+        const Collider& collider = world.colliders.record[c];
+        if (collider.sensor || world.colliders.traits[c].filter.mask == 0) return;
+        if (!collision::has_level_set(world.shapes[collider.shape].shape))
+            why = "a mesh or height field that may be touched: TAUT_SOLVER_MINIMISATION takes shapes in closed form";
+        if (world.colliders.traits[c].one_way != Vec3f::Zero())
+            why = "a collider of one way: TAUT_SOLVER_MINIMISATION keeps out on all sides";
+    });
+    return why;
+}
+
 }  // namespace
 
 const char* why_not_minimised(const World& world) {
@@ -22,9 +36,11 @@ const char* why_not_minimised(const World& world) {
     for (uint32_t node = 0; node < world.nodes.slots(); ++node) {
         const NodeKind kind = world.nodes.info[node].kind;
         if (kind == NodeKind::dynamic) return "a rigid dynamic body: TAUT_SOLVER_MINIMISATION takes none";
-        if (kind == NodeKind::particle && may_touch(world, node))
-            return "a particle or vertex that may touch (filter.mask is not 0): TAUT_SOLVER_MINIMISATION has no "
-                   "contacts";
+        if (kind == NodeKind::particle && world.nodes.info[node].soft == kNone && may_touch(world, node))
+            return "a particle or cable that may touch (filter.mask is not 0): TAUT_SOLVER_MINIMISATION has contacts "
+                   "of cloths and solids alone";
+        if (kind == NodeKind::fixed || kind == NodeKind::kinematic)
+            if (const char* why = why_no_obstacle(world, node)) return why;
     }
     for (const ElementSet& set : world.elements.set) {
         if (!set.type || set.size() == 0) continue;

@@ -5,6 +5,7 @@
 #include <taut/collider.h>
 
 #include "detect/approach.h"
+#include "detect/obstacles.h"
 #include "partition/partition.h"
 #include "system/impacts.h"
 
@@ -42,6 +43,10 @@ void gather_impulses(const System& system, const Impacts& impacts, const Pairs& 
 void watch_surfaces(Team& team, const Nodes& nodes, const Colliders& colliders, Pairs& pairs);
 // After each substep of a group.
 void gather_surface_impulses(Team& team, const System& system, const Impacts& impacts, SurfaceContacts& surfaces);
+// After a step of a solver that takes ways out in place of contacts: what pushed becomes contacts of surfaces.
+// substep: the length of its last substep [s].
+void tell_pushes(double substep, const Softs& softs, const Nodes& nodes, Obstacles& obstacles,
+                 SurfaceContacts& surfaces);
 // The watched pair of an index into Pairs::list, or null.
 WatchedPair* find_watched(ContactWatch& watch, uint32_t pair);
 

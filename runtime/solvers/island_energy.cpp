@@ -21,6 +21,7 @@ IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool st
     : s_(substep),
       island_(island),
       m_(substep.scratch.minimisation.get()),
+      contacts_(substep.team, island, m_),
       statics_(statics),
       damped_(island.damped && !statics) {
     at()[0] = std::numeric_limits<double>::quiet_NaN();  // nothing is known yet
@@ -40,10 +41,16 @@ ElementBatch IslandEnergy::view(const EnergyBatch& batch) const {
     return {batch.count, &m_.point_of[batch.node], &m_.element[batch.first], batch.set->data.data(), m_.pose.data()};
 }
 
-void IslandEnergy::place(std::span<const double> z) const {
+void IslandEnergy::place(std::span<double> z) {
     for (uint32_t i = 0; i < island_.points; ++i) {
         const uint32_t p = island_.first_point + i;
         m_.pose[p].x = m_.begin[p] + (m_.free[p] ? Vec3(Vec3::Map(&z[3 * i]) / m_.scale[p]) : m_.led[p]);
+    }
+    if (!contacts_.any()) return;
+    contacts_.project();
+    for (uint32_t i = 0; i < island_.points; ++i) {
+        const uint32_t p = island_.first_point + i;
+        if (m_.touch[p].count > 0) Vec3::Map(&z[3 * i]) = m_.scale[p] * (m_.pose[p].x - m_.begin[p]);
     }
 }
 
@@ -95,7 +102,7 @@ double IslandEnergy::sum_of_energies() const {
     return sum;
 }
 
-double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradient) {
+double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
     place(z);
     std::ranges::copy(z, at().begin());
     for_batches([&](const EnergyBatch& batch) { find_energies(batch, !gradient.empty()); });
@@ -124,7 +131,18 @@ double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradi
         if (m_.free[p])
             Vec3::Map(&gradient[3 * (p - island_.first_point)]) += Vec3::Map(&m_.force[3 * size_t{k}]) / m_.scale[p];
     }
+    if (contacts_.any()) {
+        std::ranges::copy(gradient, raw().begin());
+        contacts_.pull_back(gradient);
+    }
     return 0.5 * inertia + elastic + damping;
+}
+
+void IslandEnergy::hold(std::span<double> z, std::span<double> gradient) {
+    if (!contacts_.any()) return;
+    if (!std::ranges::equal(z, at())) evaluate(z, gradient);
+    std::ranges::copy(raw(), gradient.begin());
+    contacts_.hold(gradient);
 }
 
 // ---------------------------------------------------------------- matrices
@@ -211,7 +229,7 @@ void IslandEnergy::for_matrices(Find&& find, Take&& take) const {
 }
 
 // After evaluate() at z, as a rule, of which errors are known.
-void IslandEnergy::linearise(std::span<const double> z) {
+void IslandEnergy::linearise(std::span<double> z) {
     if (!std::ranges::equal(z, at())) evaluate(z, {});
     const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
     if (damped_)
@@ -221,6 +239,7 @@ void IslandEnergy::linearise(std::span<const double> z) {
     for_matrices(
         [&](const EnergyBatch& batch, double* out) { find_matrices(batch, errors_of(batch), Curvature::raw, out); },
         [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
+    if (contacts_.any()) contacts_.restrict(m_.hessian);
 }
 
 void IslandEnergy::find_damping() {

@@ -2,10 +2,12 @@
 //   E = 1/2 |x - y|^2_M / a + sum W(x) + 1/2 (x - x_n)^T B (x - x_n)/h,   a = h t (system/scheme.h)
 // with W of the elements and B their damping, of x_n and positive (Gast and Schroeder 2014, section 4: lagged). The
 // unknowns are z = s (x - x_n) with s = sqrt(m/a) [sqrt(J)], in which inertia has the matrix 1; held points have none.
+// Points are kept out of obstacles by projection (point_contacts.h): what is evaluated is E(P(x)).
 // In statics 1/a and B are 0, and E = sum W(x) - f . (x - x_n) with the external forces f.
 #pragma once
 
 #include "solvers/minimisation.h"
+#include "solvers/point_contacts.h"
 #include "solvers/solver.h"
 
 namespace taut {
@@ -15,8 +17,9 @@ public:
     IslandEnergy(Substep& substep, const EnergyIsland& island, bool statics);
 
     uint32_t size() const override { return 3 * island_.points; }
-    double evaluate(std::span<const double> z, std::span<double> gradient) override;
-    void linearise(std::span<const double> z) override;
+    double evaluate(std::span<double> z, std::span<double> gradient) override;
+    void hold(std::span<double> z, std::span<double> gradient) override;
+    void linearise(std::span<double> z) override;
     void multiply(std::span<const double> d, std::span<double> out) override;
     double size_of_terms() const override { return terms_; }
 
@@ -31,7 +34,7 @@ private:
     void for_batches(Act&& act) const;
     ElementBatch view(const EnergyBatch& batch) const;
     double sum_of_energies() const;
-    void place(std::span<const double> z) const;
+    void place(std::span<double> z);
     void find_errors(const EnergyBatch& batch, double* error, double* jacobian) const;
     bool is_slack(const EnergyBatch& batch, const double* error) const { return batch.set->pulls && !(*error > 0); }
     void stress_of(const EnergyBatch& batch, uint32_t i, const double* error, double* out) const;
@@ -39,6 +42,8 @@ private:
     void find_matrices(const EnergyBatch& batch, const double* error, Curvature part, double* out) const;
     double* errors_of(const EnergyBatch& batch) const { return &m_.error[size_t{batch.first} * kMaxRows]; }
     std::span<double> at() const { return {&m_.at[3 * size_t{island_.first_point}], 3 * size_t{island_.points}}; }
+    // dE'/dz of the last evaluation with a gradient.
+    std::span<double> raw() const { return {&m_.raw[3 * size_t{island_.first_point}], 3 * size_t{island_.points}}; }
     void find_damping_of(const EnergyBatch& batch, double* out, double* push) const;
     void scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const;
     template <class Find, class Take>
@@ -48,6 +53,7 @@ private:
     Substep& s_;
     const EnergyIsland& island_;
     MinimisationMemory& m_;
+    PointContacts contacts_;
     const bool statics_, damped_;
     double terms_ = 0;  // [J]
     double mass_ = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solvers/island_energy.h"
+#include "solvers/point_contacts.h"
 
 namespace taut {
 namespace {
@@ -17,11 +18,13 @@ public:
     explicit GroupMinimisation(Substep& s) : s_(s), m_(s.scratch.minimisation.get()), h_(s.system.scheme.h) {}
 
     void run() {
+        m_.hold.clear();
         if (asked_.relaxation) hold_still();
         if (s_.system.rows.elastic.empty()) return;
         find_energy_graph(s_.system, s_.nodes, s_.group, m_);
         make_room();
         begin();
+        if (m_.obstacles.any()) find_softs();
         for (const EnergyIsland& island : m_.island) {
             IslandEnergy energy(s_, island, asked_.relaxation != nullptr);
             energy.find_damping();
@@ -53,6 +56,15 @@ private:
         m_.damping.resize(damped ? 9 * blocks : 0);
     }
 
+    void find_softs() {
+        const size_t points = m_.seat.size();
+        m_.raw.resize(3 * points);
+        m_.soft.resize(points);
+        m_.touch.resize(points);
+        m_.hold_of.resize(points);
+        for (uint32_t p = 0; p < points; ++p) m_.soft[p] = s_.nodes.info[s_.system.node_at[m_.seat[p]]].soft;
+    }
+
     // x_n, y and what held points are led by; in statics external forces in place of y.
     void begin() {
         const System& system = s_.system;
@@ -79,7 +91,7 @@ private:
     void guess(const EnergyIsland& island, IslandEnergy& energy, std::span<double> x) {
         const size_t first = 3 * size_t{island.first_point};
         const std::span<double> other(&m_.guess[first], x.size()), slope(&m_.slope[first], x.size());
-        const auto energy_at = [&](std::span<const double> z) {
+        const auto energy_at = [&](std::span<double> z) {
             const double value = energy.evaluate(z, {});
             return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
         };
@@ -113,7 +125,10 @@ private:
         }
         const MinimiseReport done = minimise(energy, x, settings, m_.newton);
         tell(done, unit);
-        if (!std::isfinite(done.value)) std::ranges::copy(before, x.begin());
+        if (!std::isfinite(done.value)) {
+            std::ranges::copy(before, x.begin());
+            m_.hold.clear();
+        }
         energy.evaluate(x, {});
         energy.store_forces();
         for (uint32_t i = 0; i < island.points; ++i) {
@@ -143,6 +158,12 @@ private:
     const MinimisationSettings asked_ = s_.settings.minimisation ? *s_.settings.minimisation : MinimisationSettings{};
 };
 
+// Friction, but for statics.
+void rub(Substep& s) {
+    if (!s.settings.minimisation || !s.settings.minimisation->relaxation)
+        rub_points(s.system, s.scratch.minimisation.get());
+}
+
 }  // namespace
 
 MinimisationMemory& MinimisationHolder::get() {
@@ -156,7 +177,12 @@ MinimisationHolder::~MinimisationHolder() {
     HostAllocator<MinimisationMemory>(memory_).deallocate(made_, 1);
 }
 
-const Solver kMinimisation{"minimisation", false,           false, [](Substep& s) { GroupMinimisation(s).run(); },
-                           nullptr,        [](Substep&) {}, true};
+const Solver kMinimisation{"minimisation",
+                           false,
+                           false,
+                           [](Substep& s) { GroupMinimisation(s).run(); },
+                           nullptr,
+                           [](Substep& s) { rub(s); },
+                           true};
 
 }  // namespace taut

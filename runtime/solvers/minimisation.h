@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "detect/obstacles.h"
 #include "solvers/minimise.h"
 #include "system/system.h"
 
@@ -43,9 +44,31 @@ struct EnergyIsland {
     bool damped;
 };
 
+constexpr uint32_t kMostWays = 3;  // surfaces that a point is on: as many hold it still
+
+// Of a point: the surfaces that the last projection took it to, and how that depends on where it was.
+struct PointTouch {
+    Mat3 pull;                // dP/dx
+    uint32_t way[kMostWays];  // in the meetings of its soft body
+    uint32_t count = 0;
+
+    bool has(uint32_t other) const { return std::find(way, way + count, other) != way + count; }
+};
+
+// Of a point that surfaces hold in a Newton step.
+struct PointHold {
+    uint32_t point, count;
+    uint32_t way[kMostWays];  // as in PointTouch
+    Vec3 normal[kMostWays];   // out of each
+    double push[kMostWays];   // mu >= 0 of each, in z [sqrt(J)]
+    Mat3 along;               // 1 - N N^T
+    Mat3 curve;               // sum mu d2phi/dx2, in z [1]
+};
+
 struct MinimisationMemory {
     explicit MinimisationMemory(Memory& m)
-        : known_node(m),
+        : obstacles(m),
+          known_node(m),
           known_element(m),
           known_set(m),
           found_set(m),
@@ -78,7 +101,14 @@ struct MinimisationMemory {
           energy(m),
           force(m),
           matrix(m),
+          raw(m),
+          soft(m),
+          touch(m),
+          hold_of(m),
+          hold(m),
           newton(m) {}
+
+    Obstacles obstacles;  // of the frame
 
     // What the graph was made of, and what there is now.
     Array<uint32_t> known_node, known_element;
@@ -114,6 +144,13 @@ struct MinimisationMemory {
     Array<double> energy;  // [J]
     Array<double> force;   // [nodes][3], gradient of W [N]
     Array<double> matrix;  // of a chunk, [element][3 nodes][3 nodes] [N/m]
+
+    // by point, where there are obstacles
+    Array<double> raw;        // [3] gradient as it is before points are held back
+    Array<uint32_t> soft;     // body that it is a vertex of, or kNone
+    Array<PointTouch> touch;  // of the last projection
+    Array<uint32_t> hold_of;  // in hold, or kNone
+    Array<PointHold> hold;    // in the last Newton step
 
     MinimiseScratch newton;
 };

@@ -36,6 +36,7 @@ public:
     MinimiseReport run() {
         report_.value = evaluate(x_, s_.gradient);
         for (;; ++report_.steps) {
+            of_.hold(x_, s_.gradient);
             report_.gradient = length_of(s_.gradient);
             report_.converged = report_.gradient < set_.tolerance;
             if (report_.converged || report_.steps == set_.most_steps || !std::isfinite(report_.gradient)) break;
@@ -50,7 +51,7 @@ public:
     }
 
 private:
-    double evaluate(std::span<const double> x, std::span<double> gradient) {
+    double evaluate(std::span<double> x, std::span<double> gradient) {
         ++report_.evaluations;
         return of_.evaluate(x, gradient);
     }

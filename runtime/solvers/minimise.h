@@ -14,10 +14,16 @@ namespace taut {
 class Objective {
 public:
     virtual uint32_t size() const = 0;
-    // E(x) and, unless empty, dE/dx; they may be not finite.
-    virtual double evaluate(std::span<const double> x, std::span<double> gradient) = 0;
+    // E(x) and, unless empty, dE/dx; they may be not finite. Where E(x) = E'(P(x)), of a projection P onto what is
+    // allowed, x becomes P(x).
+    virtual double evaluate(std::span<double> x, std::span<double> gradient) = 0;
+    // At the place of the last evaluation, which a Newton step begins from: settles what P takes to the edge in that
+    // step; the gradient becomes that of E as it is then (Gast and Schroeder 2014, section 3.2: active set).
+    virtual void hold(std::span<double> x, std::span<double> gradient) {
+        static_cast<void>(x), static_cast<void>(gradient);
+    }
     // d2E/dx2 at x, symmetric, for multiply().
-    virtual void linearise(std::span<const double> x) = 0;
+    virtual void linearise(std::span<double> x) = 0;
     virtual void multiply(std::span<const double> d, std::span<double> out) = 0;
     // Sum of the sizes of the terms of E, as last evaluated: what rounding leaves of E goes by that.
     virtual double size_of_terms() const = 0;

@@ -1,0 +1,226 @@
+#include "solvers/point_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+namespace {
+
+constexpr uint32_t kTouchGrain = 128;  // points that a thread takes at a time
+constexpr uint32_t kMostTakes = 8;     // of Newton's method for a point on several surfaces: it converges in 2 or 3
+
+using Normals = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostWays>;
+using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostWays, 1>;
+using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostWays, kMostWays>;
+
+// w of least squares |N w - g|; of normals that depend on each other, in equal parts.
+Weights solve_for(const Normals& normals, const Weights& right) {
+    constexpr double kOfGram = 1e-12;
+    Gram gram = normals.transpose() * normals;
+    gram.diagonal().array() += kOfGram;
+    return gram.ldlt().solve(right);
+}
+
+// 1 - N N^T of the space that normals span.
+Mat3 across(const Normals& normals) {
+    Mat3 out = Mat3::Identity();
+    for (Eigen::Index i = 0; i < normals.cols(); ++i) {
+        constexpr double kDependent = 1e-6;  // sine of an angle: what rounding leaves of one that is spanned already
+        const Vec3 rest = out * normals.col(i);
+        const double size = rest.norm();
+        if (size > kDependent) out -= rest * rest.transpose() / (size * size);
+    }
+    return out;
+}
+
+}  // namespace
+
+PointContacts::PointContacts(Team& team, const EnergyIsland& island, MinimisationMemory& memory)
+    : team_(team), island_(island), m_(memory), first_hold_(m_.hold.size()) {
+    if (!m_.obstacles.any()) return;
+    for (uint32_t p = island.first_point; p < island.first_point + island.points; ++p) {
+        m_.hold_of[p] = kNone;
+        any_ = any_ || !meetings_of(p).empty();
+    }
+}
+
+std::span<const Meeting> PointContacts::meetings_of(uint32_t point) const {
+    const uint32_t soft = m_.soft[point];
+    return soft == kNone || !m_.free[point] ? std::span<const Meeting>() : m_.obstacles.of(soft);
+}
+
+// ---------------------------------------------------------------- projection
+
+uint32_t PointContacts::deepest(const PointTouch& touch, std::span<const Meeting> meetings, double radius,
+                                const Vec3& x) const {
+    uint32_t found = kNone;
+    double depth = 0;
+    for (uint32_t i = 0; i < meetings.size(); ++i) {
+        const Obstacle& obstacle = m_.obstacles.list[meetings[i].obstacle];
+        if (!obstacle.may_hold(x, radius) || touch.has(i)) continue;
+        const double distance = obstacle.level(x, radius).distance;
+        if (distance < depth) found = i, depth = distance;
+    }
+    return found;
+}
+
+// x - N (N^T N)^-1 phi, and its derivative.
+void PointContacts::take_out(PointTouch& touch, std::span<const Meeting> meetings, double radius, Vec3& x) const {
+    touch.pull.setIdentity();
+    for (uint32_t round = 0; round < (touch.count == 1 ? 1 : kMostTakes); ++round) {
+        Normals normals(3, touch.count);
+        Weights distance(touch.count);
+        Mat3 curvature[kMostWays];
+        for (uint32_t i = 0; i < touch.count; ++i) {
+            const collision::LevelSet level = m_.obstacles.list[meetings[touch.way[i]].obstacle].level(x, radius);
+            normals.col(i) = level.gradient;
+            distance[i] = level.distance;
+            curvature[i] = level.curvature;
+        }
+        const Weights weight = solve_for(normals, distance);
+        Mat3 pull = across(normals);
+        for (uint32_t i = 0; i < touch.count; ++i) pull -= weight[i] * curvature[i];
+        x -= normals * weight;
+        touch.pull = pull * touch.pull;
+    }
+}
+
+void PointContacts::project_point(uint32_t p) {
+    const std::span<const Meeting> meetings = meetings_of(p);
+    PointTouch& touch = m_.touch[p];
+    touch.count = 0;
+    if (meetings.empty()) return;
+    const double radius = m_.obstacles.radius[m_.soft[p]];
+    const Vec3 from = m_.pose[p].x;
+    if (m_.hold_of[p] != kNone) {
+        const PointHold& hold = m_.hold[m_.hold_of[p]];
+        for (uint32_t i = 0; i < hold.count; ++i) touch.way[touch.count++] = hold.way[i];
+        take_out(touch, meetings, radius, m_.pose[p].x);
+    }
+    while (touch.count < kMostWays) {
+        const uint32_t way = deepest(touch, meetings, radius, m_.pose[p].x);
+        if (way == kNone) break;
+        touch.way[touch.count++] = way;
+        m_.pose[p].x = from;
+        take_out(touch, meetings, radius, m_.pose[p].x);
+    }
+}
+
+void PointContacts::project() {
+    team_.for_ranges(island_.points, kTouchGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i) project_point(island_.first_point + i);
+    });
+}
+
+void PointContacts::pull_back(std::span<double> gradient) const {
+    for (uint32_t i = 0; i < island_.points; ++i) {
+        const PointTouch& touch = m_.touch[island_.first_point + i];
+        if (touch.count == 0) continue;
+        Eigen::Map<Vec3> g(&gradient[3 * i]);
+        g = (touch.pull.transpose() * g).eval();
+    }
+}
+
+// ---------------------------------------------------------------- what is held
+
+// Least squares of g = N mu with mu >= 0: what would pull most is let go until nothing does.
+void PointContacts::hold_point(uint32_t p, Vec3& gradient) {
+    const std::span<const Meeting> meetings = meetings_of(p);
+    const PointTouch& touch = m_.touch[p];
+    const double radius = m_.obstacles.radius[m_.soft[p]];
+    PointHold hold{p, touch.count, {}, {}, {}, Mat3::Zero(), Mat3::Zero()};
+    Mat3 curvature[kMostWays];
+    for (uint32_t i = 0; i < touch.count; ++i) {
+        const collision::LevelSet level =
+            m_.obstacles.list[meetings[touch.way[i]].obstacle].level(m_.pose[p].x, radius);
+        hold.way[i] = touch.way[i];
+        hold.normal[i] = level.gradient;
+        curvature[i] = level.curvature;
+    }
+    while (hold.count > 0) {
+        Normals normals(3, hold.count);
+        for (uint32_t i = 0; i < hold.count; ++i) normals.col(i) = hold.normal[i];
+        const Weights push = solve_for(normals, normals.transpose() * gradient);
+        Eigen::Index least;
+        if (!(push.minCoeff(&least) < 0)) {
+            hold.along = across(normals);
+            for (uint32_t i = 0; i < hold.count; ++i) {
+                hold.push[i] = push[i];
+                hold.curve += push[i] / m_.scale[p] * curvature[i];
+            }
+            gradient = hold.along * gradient;
+            m_.hold_of[p] = static_cast<uint32_t>(m_.hold.size());
+            m_.hold.push_back(hold);
+            return;
+        }
+        --hold.count;
+        for (auto i = static_cast<uint32_t>(least); i < hold.count; ++i) {
+            hold.way[i] = hold.way[i + 1];
+            hold.normal[i] = hold.normal[i + 1];
+            curvature[i] = curvature[i + 1];
+        }
+    }
+}
+
+void PointContacts::hold(std::span<double> gradient) {
+    m_.hold.resize(first_hold_);
+    for (uint32_t i = 0; i < island_.points; ++i) {
+        const uint32_t p = island_.first_point + i;
+        m_.hold_of[p] = kNone;
+        if (m_.touch[p].count == 0) continue;
+        Vec3 g = Vec3::Map(&gradient[3 * i]);
+        hold_point(p, g);
+        Vec3::Map(&gradient[3 * i]) = g;
+    }
+}
+
+void PointContacts::restrict(Array<double>& matrix) const {
+    using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    if (m_.hold.size() == first_hold_) return;
+    team_.for_ranges(island_.points, kTouchGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t p = island_.first_point + begin; p < island_.first_point + end; ++p) {
+            const PointHold* const row = m_.hold_of[p] == kNone ? nullptr : &m_.hold[m_.hold_of[p]];
+            for (uint32_t b = m_.row_begin[p]; b < m_.row_begin[p + 1]; ++b) {
+                const uint32_t q = m_.column[b];
+                Eigen::Map<RowMajor3> a(&matrix[9 * size_t{b}]);
+                if (row && p == q) a -= row->curve;
+                if (row) a = (row->along * a).eval();
+                if (m_.hold_of[q] != kNone) a = (a * m_.hold[m_.hold_of[q]].along).eval();
+                if (row && p == q) a += Mat3::Identity() - row->along;
+            }
+        }
+    });
+}
+
+// ---------------------------------------------------------------- friction
+
+void rub_points(System& system, MinimisationMemory& m) {
+    const double h = system.scheme.h;
+    for (const PointHold& hold : m.hold) {
+        const uint32_t seat = m.seat[hold.point];
+        const uint32_t soft = m.soft[hold.point];
+        const double mass = m.scale[hold.point] * m.scale[hold.point] * system.scheme.stiffness();
+        Vec3& v = system.exact[seat].v;
+        const Vec3 place = m.pose[hold.point].x;
+        double most = 0;
+        Vec3 driven = Vec3::Zero();
+        for (uint32_t i = 0; i < hold.count; ++i) {
+            const Meeting& meeting = m.obstacles.of(soft)[hold.way[i]];
+            most += meeting.friction * m.scale[hold.point] * hold.push[i] * h;
+            driven += m.obstacles.list[meeting.obstacle].velocity_at(place) / hold.count;
+        }
+        const Vec3 slide = hold.along * (v - driven);
+        const double speed = slide.norm();
+        const Vec3 rubbed = speed > 0 ? Vec3(-std::min(most, mass * speed) / speed * slide) : Vec3(Vec3::Zero());
+        v += rubbed / mass;
+        for (uint32_t i = 0; i < hold.count; ++i) {
+            const Meeting& meeting = m.obstacles.of(soft)[hold.way[i]];
+            const Obstacle& obstacle = m.obstacles.list[meeting.obstacle];
+            m.obstacles.push.push_back({system.node_at[seat], obstacle.collider, obstacle.node, place - obstacle.centre,
+                                        hold.normal[i], m.scale[hold.point] * hold.push[i] * h, rubbed / hold.count,
+                                        hold.normal[i].dot(obstacle.velocity_at(place) - system.start[seat].v)});
+        }
+    }
+}
+
+}  // namespace taut
