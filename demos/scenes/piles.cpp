@@ -69,9 +69,9 @@ Scene build_hulls(double n, double, const Options& options) {
     for (int i = 0; i < static_cast<int>(n); ++i) {
         const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
         const double middle = 0.5 * (kRow - 1);
-        Body body =
-            crate(shapes[static_cast<size_t>(i % kShapes)],
-                  {(column - middle) * kSpacing, 0.6 + layer * kSpacing, (row - middle) * kSpacing}, kMass, Look::stone);
+        Body body = crate(shapes[static_cast<size_t>(i % kShapes)],
+                          {(column - middle) * kSpacing, 0.6 + layer * kSpacing, (row - middle) * kSpacing}, kMass,
+                          Look::stone);
         body.rotation = turn(random.direction(), 3 * random.uniform());
         scene.roles.pile.push_back(scene.add_body(body));
     }

@@ -98,6 +98,46 @@ Solid box_of_tets(const double (&size)[3], const int (&nodes)[3], taut_pos corne
     return solid;
 }
 
+Solid ball_of_tets(double radius, int n, taut_pos centre) {
+    Solid solid = box_of_tets({2, 2, 2}, {n, n, n}, {-1, -1, -1});
+    for (taut_pos& p : solid.points) {
+        const double most = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        const double length = std::hypot(p.x, p.y, p.z);
+        // On its shell, from a cube in the middle to a sphere.
+        const double part = length > 0 ? radius * ((1 - most) / std::sqrt(3) + most * most / length) : 0;
+        p = {centre.x + part * p.x, centre.y + part * p.y, centre.z + part * p.z};
+    }
+    return solid;
+}
+
+Solid ring_of_tets(double ring, double tube, int around, int across, taut_pos centre) {
+    constexpr double kTau = 6.283185307179586;
+    Solid solid;
+    taut_solid_def_init(&solid.def);
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j < across; ++j)
+            for (int k = 0; k < across; ++k) {
+                const double a = 2.0 * j / (across - 1) - 1, b = 2.0 * k / (across - 1) - 1, turn = kTau * i / around;
+                // Shells of a square become circles towards the outside, as those of the ball.
+                const double most = std::max(std::abs(a), std::abs(b)), length = std::hypot(a, b);
+                const double part = length > 0 ? tube * ((1 - most) / std::sqrt(2) + most * most / length) : 0;
+                const double r = ring + part * a;
+                solid.points.push_back(
+                    {centre.x + r * std::cos(turn), centre.y + r * std::sin(turn), centre.z + part * b});
+            }
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j + 1 < across; ++j)
+            for (int k = 0; k + 1 < across; ++k) {
+                uint32_t corner[8];
+                for (int b = 0; b < 8; ++b)
+                    corner[b] = static_cast<uint32_t>((((i + (b & 1)) % around) * across + j + (b >> 1 & 1)) * across +
+                                                      k + (b >> 2));
+                std::swap(corner[1], corner[2]), std::swap(corner[5], corner[6]);  // radial, around, along z
+                add_five_tets(corner, (i + j + k) % 2 != 0, solid.cells);
+            }
+    return solid;
+}
+
 Solid box_of_hexahedra(const double (&size)[3], const int (&nodes)[3], taut_pos corner) {
     static constexpr int kRound[8] = {0, 4, 5, 1, 2, 6, 7, 3};
     Solid solid = box_of_points(size, nodes, corner);

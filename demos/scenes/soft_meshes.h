@@ -36,6 +36,12 @@ void add_five_tets(const uint32_t (&corner)[8], bool odd, std::vector<uint32_t>&
 // Box of such cells with its least corner there [m].
 Solid box_of_tets(const double (&size)[3], const int (&nodes)[3], taut_pos corner);
 
+// Ball of such cells, n^3 vertices: a cube whose shells become round towards the outside.
+Solid ball_of_tets(double radius, int n, taut_pos centre);
+
+// Ring about the z axis of such cells, `around` of them, an even number, and across^2 vertices in its round section.
+Solid ring_of_tets(double ring, double tube, int around, int across, taut_pos centre);
+
 // Box of hexahedra.
 Solid box_of_hexahedra(const double (&size)[3], const int (&nodes)[3], taut_pos corner);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/soft_reading.h"
+
 namespace taut {
 namespace {
 
@@ -28,6 +30,30 @@ const char* why_no_obstacle(const World& world, uint32_t node) {
     return why;
 }
 
+// Whether vertices can be within it.
+bool has_inside(const World& world, const Soft& soft) {
+    return soft.kind == SoftKind::solid && !is_meshless(world, soft);
+}
+
+// Whether surfaces meet of which none has an inside.
+const char* why_no_surfaces(const World& world) {
+    constexpr const char* kWhy =
+        "surfaces that may touch each other, or themselves, without cells: TAUT_SOLVER_MINIMISATION knows who is "
+        "within cells of solids";
+    for (const Soft& one : world.softs.record) {
+        const uint32_t a = one.node.empty() ? kNone : collider_of(world.nodes, one);
+        if (a == kNone || has_inside(world, one)) continue;
+        if (one.self) return kWhy;
+        for (const Soft& other : world.softs.record) {
+            const uint32_t b = other.node.empty() || &one == &other ? kNone : collider_of(world.nodes, other);
+            if (b != kNone && !has_inside(world, other) &&
+                filters_agree(world.colliders.traits[a].filter, world.colliders.traits[b].filter))
+                return kWhy;
+        }
+    }
+    return nullptr;
+}
+
 }  // namespace
 
 const char* why_not_minimised(const World& world) {
@@ -42,6 +68,7 @@ const char* why_not_minimised(const World& world) {
         if (kind == NodeKind::fixed || kind == NodeKind::kinematic)
             if (const char* why = why_no_obstacle(world, node)) return why;
     }
+    if (const char* why = why_no_surfaces(world)) return why;
     for (const ElementSet& set : world.elements.set) {
         if (!set.type || set.size() == 0) continue;
         if (set.type->freedoms != 3) return "attachments: TAUT_SOLVER_MINIMISATION takes none";

@@ -1,5 +1,8 @@
 #include "detect/obstacles.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "detect/surfaces.h"
 
 namespace taut {
@@ -19,10 +22,125 @@ void find_box(const collision::Box& box, Obstacle& out) {
     out.hi = at + reach;
 }
 
+// ---------------------------------------------------------------- soft bodies
+
+// Where it is and, as it moves now, goes in the frame [m].
+collision::ItemBox swept_box(const ObstacleScene& scene, const Soft& soft) {
+    collision::ItemBox box;
+    for (const uint32_t node : soft.node) {
+        const NodeMotion& motion = scene.nodes.motion[node];
+        box.add(motion.x);
+        box.add(Vec3(motion.x + scene.time * motion.v));
+    }
+    return box;
+}
+
+const ElementSet& stretch_of(const ObstacleScene& scene, const Soft& soft) {
+    return scene.elements.set[soft.sets[0].set];
+}
+
+// Against compression on one side [Pa]; of a cloth over its thickness.
+double modulus_of(const ObstacleScene& scene, const Soft& soft, double radius) {
+    const double stiffness = stretch_of(scene, soft).stiffness[0];
+    return soft.kind == SoftKind::solid ? stiffness : stiffness / (2 * radius);
+}
+
+// Whether it has an inside that is known.
+bool has_cells(const ObstacleScene& scene, const Soft& soft) {
+    return soft.kind == SoftKind::solid && (stretch_of(scene, soft).type->row.nodes == 4 || soft.cell_points > 1);
+}
+
+void list_cells(const ElementSet& set, uint32_t cell_points, Array<uint32_t>& out) {
+    // Six about the diagonal from corner 0 to 6, as shape_functions.h numbers them.
+    static constexpr uint32_t kCut[6][2] = {{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}};
+    for (uint32_t e = 0; e < set.size(); e += cell_points) {
+        if (!set.lives(e)) continue;
+        const std::span<const uint32_t> node = set.nodes_of(e);
+        if (node.size() == 4)
+            out.insert(out.end(), node.begin(), node.end());
+        else
+            for (const auto& cut : kCut) out.insert(out.end(), {node[0], node[cut[0]], node[cut[1]], node[6]});
+    }
+}
+
+void make_shape(const ObstacleScene& scene, uint32_t index, SoftShape& out) {
+    const Soft& soft = scene.softs.record[index];
+    if (out.soft == index && out.mesh_version == soft.mesh_version) return;
+    out.soft = index;
+    out.mesh_version = soft.mesh_version;
+    out.triangle.clear();
+    for (const uint32_t vertex : soft.triangle) out.triangle.push_back(soft.node[vertex]);
+    out.vertex.assign(out.triangle.begin(), out.triangle.end());
+    std::ranges::sort(out.vertex);
+    out.vertex.erase(std::unique(out.vertex.begin(), out.vertex.end()), out.vertex.end());
+    out.cell.clear();
+    if (has_cells(scene, soft)) list_cells(stretch_of(scene, soft), soft.cell_points, out.cell);
+    const auto box_of = [&](const Array<uint32_t>& node, uint32_t corners) {
+        return [&scene, &node, corners](uint32_t i) {
+            collision::ItemBox box;
+            for (uint32_t k = 0; k < corners; ++k) box.add(scene.nodes.motion[node[corners * size_t{i} + k]].x);
+            return box;
+        };
+    };
+    out.surface.build(static_cast<uint32_t>(out.triangle.size() / 3), box_of(out.triangle, 3));
+    out.cells.build(static_cast<uint32_t>(out.cell.size() / 4), box_of(out.cell, 4));
+}
+
+// Who meets whom, and what is solved together for that.
+class SoftMeetings {
+public:
+    SoftMeetings(const ObstacleScene& scene, Obstacles& out) : scene_(scene), out_(out) {}
+
+    void find() {
+        const Softs& softs = scene_.softs;
+        out_.between.clear();
+        out_.tie.clear();
+        uint32_t used = 0;
+        for (uint32_t s = 0; s < softs.record.size(); ++s) {
+            if (softs.record[s].node.empty() || collider_of(scene_.nodes, softs.record[s]) == kNone) continue;
+            if (used == out_.softs.size()) out_.softs.emplace_back(*out_.tie.get_allocator().memory);
+            make_shape(scene_, s, out_.softs[used++]);
+        }
+        while (out_.softs.size() > used) out_.softs.pop_back();
+        for (SoftShape& each : out_.softs)
+            each.swept = swept_box(scene_, scene_.softs.record[each.soft]), each.tied = false;
+        for (SoftShape& one : out_.softs) {
+            one.first = static_cast<uint32_t>(out_.between.size());
+            for (uint32_t k = 0; k < used; ++k) meet(static_cast<uint32_t>(&one - out_.softs.data()), k);
+            one.meetings = static_cast<uint32_t>(out_.between.size()) - one.first;
+        }
+    }
+
+private:
+    const Soft& soft_of(uint32_t i) const { return scene_.softs.record[out_.softs[i].soft]; }
+    void meet(uint32_t i, uint32_t k) {
+        const Soft &one = soft_of(i), &other = soft_of(k);
+        if (out_.softs[k].cell.empty()) return;
+        const ColliderTraits& a = scene_.colliders.traits[collider_of(scene_.nodes, one)];
+        const ColliderTraits& b = scene_.colliders.traits[collider_of(scene_.nodes, other)];
+        if (i == k ? !one.self : !filters_agree(a.filter, b.filter)) return;
+        if (i != k && !out_.softs[i].swept.meets(out_.softs[k].swept)) return;
+        const double stiffness = std::min(modulus_of(scene_, one, out_.radius[out_.softs[i].soft]),
+                                          modulus_of(scene_, other, out_.radius[out_.softs[k].soft]));
+        out_.between.push_back({i, k, static_cast<double>(friction_of(a.material, b.material)), stiffness});
+        tie(i);
+        tie(k);
+        out_.tie.insert(out_.tie.end(), {one.node.front(), other.node.front()});
+    }
+    void tie(uint32_t i) {
+        if (std::exchange(out_.softs[i].tied, true)) return;
+        const Array<uint32_t>& node = soft_of(i).node;
+        for (size_t n = 1; n < node.size(); ++n) out_.tie.insert(out_.tie.end(), {node[n - 1], node[n]});
+    }
+
+    const ObstacleScene& scene_;
+    Obstacles& out_;
+};
+
 }  // namespace
 
-void find_obstacles(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Softs& softs,
-                    Obstacles& out) {
+void find_obstacles(const ObstacleScene& scene, Obstacles& out) {
+    const auto& [nodes, colliders, shapes, softs, elements, time] = scene;
     out.list.clear();
     out.met.clear();
     out.first.assign(softs.record.size(), 0);
@@ -46,6 +164,7 @@ void find_obstacles(const Nodes& nodes, const Colliders& colliders, const Shapes
         }
         out.count[s] = static_cast<uint32_t>(out.met.size()) - out.first[s];
     }
+    SoftMeetings(scene, out).find();
 }
 
 void place_obstacles(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, double elapsed,

@@ -1,9 +1,11 @@
 // What vertices of soft bodies may not enter where a solver takes no contacts but ways out: the shapes of all that
-// forces do not move, as level sets. For minimisation.
+// forces do not move, as level sets, and the cells of soft bodies. For minimisation.
 #pragma once
 
+#include "collision/box_tree.h"
 #include "collision/level_set.h"
 #include "state/colliders.h"
+#include "state/elements.h"
 #include "state/shapes.h"
 #include "state/softs.h"
 
@@ -42,34 +44,78 @@ struct Meeting {
     double friction;
 };
 
-// What a vertex pushes an obstacle by in a substep.
+// Two soft bodies, or one and itself: vertices of the first may come into cells of the second.
+struct SoftMeeting {
+    uint32_t one, other;  // in Obstacles::softs
+    double friction;
+    double stiffness;  // of what gives way more, of the penalty within [Pa]
+};
+
+// What a soft body that meets some is made of, by nodes.
+struct SoftShape {
+    explicit SoftShape(Memory& memory)
+        : vertex(memory), triangle(memory), cell(memory), surface(memory), cells(memory) {}
+
+    uint32_t soft = kNone;
+    uint64_t mesh_version = 0;          // by which it is known to be as it was
+    Array<uint32_t> vertex;             // on its surface
+    Array<uint32_t> triangle;           // [3] of that
+    Array<uint32_t> cell;               // [4] tetrahedra, into which hexahedra are cut; none of cloths
+    collision::BoxTree surface, cells;  // of these, to be refitted
+    collision::ItemBox swept;           // where it is and, as it moves, goes in the frame [m]
+    bool tied = false;                  // is in Obstacles::tie
+    uint32_t first = 0, meetings = 0;   // in Obstacles::between: of its vertices
+};
+
+// What a vertex pushes an obstacle by in a substep, or a point of the surface of a soft body.
 struct PointPush {
-    uint32_t node, collider, other;  // of the vertex; the obstacle and its node
-    Vec3 lever;                      // of the vertex, from the centre of mass of that [m]
-    Vec3 normal;                     // out of the obstacle
-    double impulse;                  // along that, on the vertex [N s]
-    Vec3 rubbed;                     // of friction, likewise
-    double approach;                 // how fast the two closed before [m/s]
+    uint32_t node, collider;  // of the vertex; of the other
+    uint32_t other[3];        // nodes: the first is the obstacle's, alone, or a triangle's
+    float weight[3];          // of these, in sum 1
+    Vec3 lever;               // of the vertex, from the obstacle's centre of mass [m]
+    Vec3 normal;              // out of the other
+    double gap;               // [m]
+    double impulse;           // along the normal, on the vertex [N s]
+    Vec3 rubbed;              // of friction, likewise
+    double approach;          // how fast the two closed before [m/s]
 };
 
 struct Obstacles {
     explicit Obstacles(Memory& memory)
-        : list(memory), met(memory), first(memory), count(memory), radius(memory), push(memory) {}
+        : list(memory),
+          met(memory),
+          first(memory),
+          count(memory),
+          radius(memory),
+          softs(memory),
+          between(memory),
+          tie(memory),
+          push(memory) {}
 
     std::span<const Meeting> of(uint32_t soft) const { return {met.data() + first[soft], count[soft]}; }
-    bool any() const { return !met.empty(); }
+    bool any() const { return !met.empty() || !between.empty(); }
 
     Array<Obstacle> list;
     Array<Meeting> met;
     // By soft body.
     Array<uint32_t> first, count;  // in met
     Array<double> radius;          // of its vertices [m]
+    Array<SoftShape> softs;        // those that meet some
+    Array<SoftMeeting> between;    // by the first
+    Array<uint32_t> tie;           // pairs of nodes of soft bodies that meet: they are solved together
     Array<PointPush> push;         // of the frame so far; solvers
 };
 
 // Those of a frame.
-void find_obstacles(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Softs& softs,
-                    Obstacles& out);
+struct ObstacleScene {
+    const Nodes& nodes;
+    const Colliders& colliders;
+    const Shapes& shapes;
+    const Softs& softs;
+    const Elements& elements;
+    double time;  // of the frame [s]
+};
+void find_obstacles(const ObstacleScene& scene, Obstacles& out);
 // Where they are `elapsed` after the start of the frame [s].
 void place_obstacles(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, double elapsed,
                      Obstacles& obstacles);

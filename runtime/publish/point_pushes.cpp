@@ -12,13 +12,24 @@ SurfaceContact contact_of(const PointPush& push, const Softs& softs, const Nodes
     const uint32_t soft = nodes.info[push.node].soft;
     SurfaceContact out;
     out.a = uint64_t{soft} << 32 | push.node;
-    out.b = feature_of_shape(push.collider, 0);
-    out.node[0] = push.other, out.weight[0] = -1;
-    out.node[1] = push.node, out.weight[1] = 1;
-    out.lever = push.lever.cast<float>();
-    out.normal = push.normal.cast<float>();
     out.collider[0] = collider_of(nodes, softs.record[soft]);
-    out.collider[1] = push.collider;
+    if (push.collider != kNone) {
+        out.b = feature_of_shape(push.collider, 0);
+        out.collider[1] = push.collider;
+        out.node[0] = push.other[0], out.weight[0] = -1;
+        out.node[1] = push.node, out.weight[1] = 1;
+        out.lever = push.lever.cast<float>();
+    } else {
+        const uint32_t other = nodes.info[push.other[0]].soft;
+        out.b = uint64_t{other} << 32 | push.other[0];
+        out.collider[1] = collider_of(nodes, softs.record[other]);
+        out.node[0] = push.node, out.weight[0] = 1;
+        for (int k = 0; k < 3; ++k) {
+            if (push.weight[k] == 0) continue;
+            out.node[k + 1] = push.other[k];
+            out.weight[k + 1] = -push.weight[k];
+        }
+    }
     out.approach = static_cast<float>(push.approach);
     return out;
 }
@@ -27,7 +38,7 @@ SurfaceContact contact_of(const PointPush& push, const Softs& softs, const Nodes
 
 void tell_pushes(double substep, const Softs& softs, const Nodes& nodes, Obstacles& obstacles,
                  SurfaceContacts& surfaces) {
-    const auto name = [](const PointPush& push) { return std::tuple(push.node, push.collider); };
+    const auto name = [](const PointPush& push) { return std::tuple(push.node, push.collider, push.other[0]); };
     std::ranges::stable_sort(obstacles.push, {}, name);
     for (size_t i = 0; i < obstacles.push.size(); ++i) {
         const PointPush& push = obstacles.push[i];
@@ -38,7 +49,7 @@ void tell_pushes(double substep, const Softs& softs, const Nodes& nodes, Obstacl
         const Vec3f rubbed = push.rubbed.cast<float>();
         const auto impulse = static_cast<float>(push.impulse), rate = static_cast<float>(1 / substep);
         contact.normal = n;
-        contact.lever = push.lever.cast<float>();
+        contact.gap = static_cast<float>(push.gap);
         contact.pushed += impulse;
         contact.push += impulse * n;
         contact.rubbed += rubbed;

@@ -12,7 +12,7 @@ namespace {
 class EnergyGraph {
 public:
     EnergyGraph(const System& system, const Nodes& nodes, const Group& group, MinimisationMemory& memory)
-        : rows_(system.rows), m_(memory) {
+        : system_(system), rows_(system.rows), m_(memory) {
         m_.found_free.assign(system.node_at.size(), 0);
         for (const uint32_t node : group.nodes)
             if (nodes.mass[node].inv_mass > 0) m_.found_free[system.at(node)] = 1;
@@ -35,6 +35,7 @@ public:
         same &= settle(m_.known_free, m_.found_free);
         same &= settle(m_.known_node, rows_.element_node);
         same &= settle(m_.known_element, rows_.element);
+        same &= settle(m_.known_tie, m_.obstacles.tie);
         return same;
     }
     void build() {
@@ -66,6 +67,13 @@ private:
         return kNone;
     }
 
+    // Their common root.
+    uint32_t unite(uint32_t one, uint32_t other) {
+        const uint32_t a = root_of(one), b = root_of(other);
+        m_.scratch[0][std::max(a, b)] = std::min(a, b);
+        return std::min(a, b);
+    }
+
     // scratch[0]: a seat that leads to the island's root; scratch[1]: of roots the island, in the order of elements.
     void unite() {
         const auto seats = static_cast<uint32_t>(m_.found_free.size());
@@ -75,15 +83,13 @@ private:
         for (const ElasticRun& run : rows_.elastic)
             for (uint32_t i = 0; i < run.count; ++i) {
                 uint32_t first = kNone;
-                for (const uint32_t seat : seats_of(run, i)) {
-                    if (!is_free(seat)) continue;
-                    const uint32_t root = root_of(seat);
-                    if (first == kNone)
-                        first = root;
-                    else
-                        m_.scratch[0][std::max(first, root)] = std::min(first, root), first = std::min(first, root);
-                }
+                for (const uint32_t seat : seats_of(run, i))
+                    if (is_free(seat)) first = first == kNone ? root_of(seat) : unite(first, seat);
             }
+        for (size_t i = 0; i < m_.obstacles.tie.size(); i += 2) {
+            const uint32_t seat[2] = {system_.at(m_.obstacles.tie[i]), system_.at(m_.obstacles.tie[i + 1])};
+            if (is_free(seat[0]) && is_free(seat[1])) unite(seat[0], seat[1]);
+        }
         m_.island.clear();
         for (const ElasticRun& run : rows_.elastic)
             for (uint32_t i = 0; i < run.count; ++i)
@@ -211,6 +217,7 @@ private:
         }
     }
 
+    const System& system_;
     const Rows& rows_;
     MinimisationMemory& m_;
 };

@@ -22,6 +22,7 @@ IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool st
       island_(island),
       m_(substep.scratch.minimisation.get()),
       contacts_(substep.team, island, m_),
+      solids_(substep.team, island, m_),
       statics_(statics),
       damped_(island.damped && !statics) {
     at()[0] = std::numeric_limits<double>::quiet_NaN();  // nothing is known yet
@@ -107,7 +108,7 @@ double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
     std::ranges::copy(z, at().begin());
     for_batches([&](const EnergyBatch& batch) { find_energies(batch, !gradient.empty()); });
     const std::span<const double> wanted(&m_.wanted[3 * size_t{island_.first_point}], size());
-    const double elastic = sum_of_energies();
+    const double elastic = sum_of_energies() + (solids_.any() ? solids_.evaluate() : 0);
     double inertia = 0, damping = 0;
     if (statics_)
         inertia = -2 * dot_of(z, wanted);
@@ -131,6 +132,7 @@ double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
         if (m_.free[p])
             Vec3::Map(&gradient[3 * (p - island_.first_point)]) += Vec3::Map(&m_.force[3 * size_t{k}]) / m_.scale[p];
     }
+    if (solids_.any()) solids_.add_gradient(gradient);
     if (contacts_.any()) {
         std::ranges::copy(gradient, raw().begin());
         contacts_.pull_back(gradient);
@@ -240,6 +242,7 @@ void IslandEnergy::linearise(std::span<double> z) {
         [&](const EnergyBatch& batch, double* out) { find_matrices(batch, errors_of(batch), Curvature::raw, out); },
         [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
     if (contacts_.any()) contacts_.restrict(m_.hessian);
+    if (solids_.any()) solids_.linearise();
 }
 
 void IslandEnergy::find_damping() {
@@ -287,6 +290,7 @@ void IslandEnergy::multiply(const Array<double>& matrix, bool with_inertia, cons
 
 void IslandEnergy::multiply(std::span<const double> d, std::span<double> out) {
     multiply(m_.hessian, !statics_, d.data(), out.data());
+    if (solids_.any()) solids_.add_product(d.data(), out.data());
 }
 
 void IslandEnergy::store_forces() const {

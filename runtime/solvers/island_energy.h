@@ -8,6 +8,7 @@
 
 #include "solvers/minimisation.h"
 #include "solvers/point_contacts.h"
+#include "solvers/solid_contacts.h"
 #include "solvers/solver.h"
 
 namespace taut {
@@ -54,6 +55,7 @@ private:
     const EnergyIsland& island_;
     MinimisationMemory& m_;
     PointContacts contacts_;
+    SolidContacts solids_;
     const bool statics_, damped_;
     double terms_ = 0;  // [J]
     double mass_ = 0;

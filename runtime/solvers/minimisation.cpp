@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "solvers/island_energy.h"
-#include "solvers/point_contacts.h"
 
 namespace taut {
 namespace {
@@ -19,6 +18,7 @@ public:
 
     void run() {
         m_.hold.clear();
+        m_.pair.clear();
         if (asked_.relaxation) hold_still();
         if (s_.system.rows.elastic.empty()) return;
         find_energy_graph(s_.system, s_.nodes, s_.group, m_);
@@ -62,7 +62,12 @@ private:
         m_.soft.resize(points);
         m_.touch.resize(points);
         m_.hold_of.resize(points);
-        for (uint32_t p = 0; p < points; ++p) m_.soft[p] = s_.nodes.info[s_.system.node_at[m_.seat[p]]].soft;
+        m_.point_of_node.assign(s_.nodes.slots(), kNone);
+        for (uint32_t p = 0; p < points; ++p) {
+            const uint32_t node = s_.system.node_at[m_.seat[p]];
+            m_.soft[p] = s_.nodes.info[node].soft;
+            m_.point_of_node[node] = p;
+        }
     }
 
     // x_n, y and what held points are led by; in statics external forces in place of y.
@@ -160,8 +165,9 @@ private:
 
 // Friction, but for statics.
 void rub(Substep& s) {
-    if (!s.settings.minimisation || !s.settings.minimisation->relaxation)
-        rub_points(s.system, s.scratch.minimisation.get());
+    if (s.settings.minimisation && s.settings.minimisation->relaxation) return;
+    rub_points(s.system, s.scratch.minimisation.get());
+    rub_solids(s.system, s.scratch.minimisation.get());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "constraints/point_penalty.h"
 #include "detect/obstacles.h"
 #include "solvers/minimise.h"
 #include "system/system.h"
@@ -55,6 +56,22 @@ struct PointTouch {
     bool has(uint32_t other) const { return std::find(way, way + count, other) != way + count; }
 };
 
+constexpr uint32_t kMostWithin = 2;  // soft bodies that a vertex is pushed out of at once
+
+// A vertex of a surface, and where it is within.
+struct VertexWithin {
+    uint32_t vertex, shape;  // its node; in Obstacles::softs
+    uint32_t count;
+    uint32_t meeting[kMostWithin], triangle[kMostWithin];  // in Obstacles::between; nearest, of the other's surface
+};
+
+// A vertex and the triangle that it is pushed to.
+struct PenaltyPair {
+    uint32_t meeting;  // in Obstacles::between
+    uint32_t node[4], point[4];
+    PenaltyTerms terms;
+};
+
 // Of a point that surfaces hold in a Newton step.
 struct PointHold {
     uint32_t point, count;
@@ -70,6 +87,7 @@ struct MinimisationMemory {
         : obstacles(m),
           known_node(m),
           known_element(m),
+          known_tie(m),
           known_set(m),
           found_set(m),
           known_free(m),
@@ -106,12 +124,16 @@ struct MinimisationMemory {
           touch(m),
           hold_of(m),
           hold(m),
+          point_of_node(m),
+          within(m),
+          pair(m),
+          pair_matrix(m),
           newton(m) {}
 
     Obstacles obstacles;  // of the frame
 
     // What the graph was made of, and what there is now.
-    Array<uint32_t> known_node, known_element;
+    Array<uint32_t> known_node, known_element, known_tie;
     Array<uint64_t> known_set, found_set;   // serial of each run's set, its length, whether it is damped
     Array<uint8_t> known_free, found_free;  // by seat
 
@@ -151,6 +173,11 @@ struct MinimisationMemory {
     Array<PointTouch> touch;  // of the last projection
     Array<uint32_t> hold_of;  // in hold, or kNone
     Array<PointHold> hold;    // in the last Newton step
+    // Where soft bodies meet.
+    Array<uint32_t> point_of_node;  // by node, or kNone
+    Array<VertexWithin> within;     // scratch of SolidContacts
+    Array<PenaltyPair> pair;        // of the last evaluation
+    Array<double> pair_matrix;      // of each, [12][12] in z [1]
 
     MinimiseScratch newton;
 };

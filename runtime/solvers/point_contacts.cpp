@@ -216,8 +216,15 @@ void rub_points(System& system, MinimisationMemory& m) {
         for (uint32_t i = 0; i < hold.count; ++i) {
             const Meeting& meeting = m.obstacles.of(soft)[hold.way[i]];
             const Obstacle& obstacle = m.obstacles.list[meeting.obstacle];
-            m.obstacles.push.push_back({system.node_at[seat], obstacle.collider, obstacle.node, place - obstacle.centre,
-                                        hold.normal[i], m.scale[hold.point] * hold.push[i] * h, rubbed / hold.count,
+            m.obstacles.push.push_back({system.node_at[seat],
+                                        obstacle.collider,
+                                        {obstacle.node, kNone, kNone},
+                                        {1, 0, 0},
+                                        place - obstacle.centre,
+                                        hold.normal[i],
+                                        0,
+                                        m.scale[hold.point] * hold.push[i] * h,
+                                        rubbed / hold.count,
                                         hold.normal[i].dot(obstacle.velocity_at(place) - system.start[seat].v)});
         }
     }
