@@ -240,7 +240,7 @@ Scene build_film_stack(double n, double r, const Options& options) {
             scene.add_solid(std::move(box));
         }
     Track strike;
-    strike.keys = {{0, 0, 0}, {0.5, 0, 0}, {1.0, 1.6, 3}, {1.5, 2.4, 0}};
+    strike.keys = {{0, 0, 0}, {0.5, 0, 0}, {1.5, 1.4, 2}, {2.5, 2.6, 0}};
     add_led(scene, cube_shape(scene, 0.5), {-0.5 * rows * kBox - 1.2, 0.6, 0}, {0, 0, 0, 1}, {1, 0, 0}, strike,
             Look::stone);
     scene.camera = {{1.8, 1.6, 3.6}, {0, 0.6, 0}, 40};
