@@ -16,8 +16,9 @@ namespace taut::collision {
 
 // ---------------------------------------------------------------- shapes
 
-struct Hull;     // vertices, merged faces, edges with their two faces; see hull.h
-struct Surface;  // triangles with their neighbours, of a mesh or a height field; see surface.h
+struct Hull;          // vertices, merged faces, edges with their two faces; see hull.h
+struct Surface;       // triangles with their neighbours, of a mesh or a height field; see surface.h
+struct DistanceGrid;  // signed distance of a closed mesh, sampled; see distance_grid.h
 
 enum class ShapeKind : uint8_t { plane, box, sphere, capsule, hull, cylinder, cone, tapered_capsule, surface };
 constexpr int kShapeKinds = 9;
@@ -32,12 +33,13 @@ struct Shape {
     Vec3f size = Vec3f::Zero();
     std::shared_ptr<const Hull> hull;                  // hull only
     std::shared_ptr<const Surface> surface = nullptr;  // surface only; size: its scale along x, y, z, none of them 0
+    std::shared_ptr<const DistanceGrid> distance = nullptr;  // of a surface, where the host had it sampled
 };
 
-// But for hull and surface, which the host's shapes hold.
+// But for hull, surface and distance, which the host's shapes hold.
 template <class Visitor, Like<Shape> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, size, hull, surface] = of;
+    auto& [kind, size, hull, surface, distance] = of;
     TAUT_FIELDS(visitor, kind, size);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "collision/distance_grid.h"
 #include "collision/hull.h"
 #include "collision/revolution.h"
 
@@ -197,9 +198,12 @@ LevelSet tapered_level(const Shape& shape, const Vec3& at) {
     return turned(at, [&](const Vec2& place) { return level_of_tapered(shape, place); });
 }
 
+LevelSet surface_level(const Shape& shape, const Vec3& at) { return shape.distance->at(at); }
+
 using Level = LevelSet (*)(const Shape& shape, const Vec3& at);
-constexpr std::array<Level, kConvexKinds> kLevels = {plane_level, box_level,      sphere_level, capsule_level,
-                                                     hull_level,  cylinder_level, cone_level,   tapered_level};
+constexpr std::array<Level, kShapeKinds> kLevels = {plane_level,   box_level,     sphere_level,
+                                                    capsule_level, hull_level,    cylinder_level,
+                                                    cone_level,    tapered_level, surface_level};
 
 }  // namespace
 

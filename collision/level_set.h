@@ -1,5 +1,5 @@
-// Signed distance to the shapes that are known in closed form, as a level set with two derivatives and in double
-// precision: what minimisation projects its points by.
+// Signed distance to shapes, as a level set with two derivatives and in double precision: what minimisation keeps its
+// points out by.
 #pragma once
 
 #include "collision/collide.h"
@@ -14,10 +14,12 @@ struct LevelSet {
     Mat3 curvature = Mat3::Zero();
 };
 
-// Whether a shape has one: all but surfaces.
-inline bool has_level_set(const Shape& shape) { return shape.kind != ShapeKind::surface; }
+// Whether it is known in closed form, so that x - phi grad phi is on the surface: of all but surfaces, which have one
+// where it was sampled.
+inline bool is_exact(const Shape& shape) { return shape.kind != ShapeKind::surface; }
+inline bool has_level_set(const Shape& shape) { return is_exact(shape) || shape.distance != nullptr; }
 
-// At a point in the shape's frame [m].
+// At a point in the shape's frame [m], of one that has it.
 LevelSet level_set(const Shape& shape, const Vec3& at);
 
 }  // namespace taut::collision

@@ -50,6 +50,7 @@ Scene build_film_ring(double n, double r, const Options& options);
 Scene build_film_hole(double n, double r, const Options& options);
 Scene build_film_squeeze(double n, double r, const Options& options);
 Scene build_film_stack(double n, double r, const Options& options);
+Scene build_film_tori(double n, double r, const Options& options);
 Scene build_armadillo(double n, double r, const Options& options);
 Scene build_armadillos(double n, double r, const Options& options);
 Scene build_cloth_loaded(double n, double r, const Options& options);

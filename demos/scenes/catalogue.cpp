@@ -120,6 +120,8 @@ const std::vector<Family>& families() {
          build_film_squeeze, 0, true, true},
         {"film_stackN_eR", "film_stack4_e1e5", "N x N boxes are struck (ibid., figure 14)", 60, false, build_film_stack,
          8, false, true},
+        {"film_toriN_eR", "film_tori2_e1e5", "N^3 rings fall into a bowl (ibid., figure 1)", 96, false, build_film_tori,
+         5, false, true},
         {"armadillo_eR", "armadillo_e1e5", "a figure of R Pa falls on the ground", 240, false, build_armadillo, 0, true,
          true},
         {"cloth_loaded", "cloth_loaded", "balls of 500 vertices' mass hang on a sheet", 360, false, build_cloth_loaded,

@@ -249,4 +249,75 @@ Scene build_film_stack(double n, double r, const Options& options) {
     return scene;
 }
 
+namespace {
+
+// A shell between two spheres, open at the top, its rim flat: closed, looking outward.
+Shape bowl(double inner, double outer, double high) {
+    constexpr int kAround = 48, kDown = 16;
+    constexpr double kTau = 6.283185307179586;
+    Shape shape;
+    shape.kind = ShapeKind::mesh;
+    shape.sampled = true;
+    // Rings from the lowest point outside up to the rim and down inside.
+    std::vector<std::pair<double, double>> profile;   // radius, height
+    const auto add_arc = [&](double radius, int i) {  // about a centre above the lowest point
+        const double angle = std::acos((outer - high) / radius) * i / kDown;
+        profile.emplace_back(radius * std::sin(angle), outer - radius * std::cos(angle));
+    };
+    for (int i = 1; i <= kDown; ++i) add_arc(outer, i);
+    for (int i = kDown; i >= 1; --i) add_arc(inner, i);
+    shape.points.push_back({0, 0, 0});
+    for (const auto& [r, y] : profile)
+        for (int k = 0; k < kAround; ++k) {
+            const double turn = kTau * k / kAround;
+            shape.points.push_back({static_cast<float>(r * std::cos(turn)), static_cast<float>(y),
+                                    static_cast<float>(r * std::sin(turn))});
+        }
+    shape.points.push_back({0, static_cast<float>(outer - inner), 0});
+    const auto at = [](size_t ring, int k) { return static_cast<uint32_t>(1 + ring * kAround + k % kAround); };
+    for (int k = 0; k < kAround; ++k) {
+        shape.indices.insert(shape.indices.end(), {0, at(0, k), at(0, k + 1)});
+        for (size_t ring = 0; ring + 1 < profile.size(); ++ring)
+            shape.indices.insert(shape.indices.end(), {at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k),
+                                                       at(ring + 1, k + 1), at(ring, k + 1)});
+        const auto top = static_cast<uint32_t>(shape.points.size() - 1);
+        shape.indices.insert(shape.indices.end(), {top, at(profile.size() - 1, k + 1), at(profile.size() - 1, k)});
+    }
+    return shape;
+}
+
+}  // namespace
+
+// n x n x n rings of r Pa fall into a bowl, 5 steps a frame.
+Scene build_film_tori(double n, double r, const Options& options) {
+    constexpr double kPitch = 0.36;  // [m]
+    const int side = std::max(1, static_cast<int>(n));
+    Scene scene = film_stage(3);
+    scene.world.substeps = 5;
+    Body body;
+    body.kind = TAUT_BODY_STATIC;
+    body.shape = scene.add_shape(bowl(1.2, 1.35, 0.9));
+    body.look = Look::stone;
+    scene.add_body(body);
+    Random random(options.seed + 1);
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+            for (int k = 0; k < side; ++k) {
+                const taut_pos centre{kPitch * (i - 0.5 * (side - 1)), 1.1 + 0.3 * j, kPitch * (k - 0.5 * (side - 1))};
+                Solid ring = ring_of_tets(0.11, 0.045, 16, 4, {0, 0, 0});
+                const double tilt = random.uniform(), turn = 6.28 * random.uniform();
+                for (taut_pos& p : ring.points) {
+                    const double y = p.y * std::cos(tilt) - p.z * std::sin(tilt);
+                    const double z = p.y * std::sin(tilt) + p.z * std::cos(tilt);
+                    p = {centre.x + p.x * std::cos(turn) - z * std::sin(turn), centre.y + y,
+                         centre.z + p.x * std::sin(turn) + z * std::cos(turn)};
+                }
+                make_rubber(ring, r, kPaints[scene.solids.size() % std::size(kPaints)]);
+                ring.def.self_collision = 1;
+                scene.add_solid(std::move(ring));
+            }
+    scene.camera = {{2.6, 2.6, 3.4}, {0, 0.9, 0}, 40};
+    return scene;
+}
+
 }  // namespace scenes

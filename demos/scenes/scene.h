@@ -39,6 +39,7 @@ struct Shape {
     int hull = -1;                  // scaled hull: index of the hull among the scene's shapes
     taut_vec3 scale{1, 1, 1};       // scaled hull
     std::vector<uint32_t> indices;  // mesh, three a triangle
+    bool sampled = false;           // its distances are: taut_shape_sample_distance
     uint32_t rows = 0;              // height field
     float spacing = 1;              // between its samples, either way [m]
     std::vector<float> heights;     // row by row [m]

@@ -75,7 +75,8 @@ taut_result add_shape(taut_world world, const Shape& shape, const std::vector<ta
             def.vertices = shape.points.data();
             def.triangle_count = static_cast<uint32_t>(shape.indices.size() / 3);
             def.indices = shape.indices.data();
-            return taut_world_add_mesh(world, &def, out);
+            const taut_result added = taut_world_add_mesh(world, &def, out);
+            return added == TAUT_OK && shape.sampled ? taut_shape_sample_distance(*out, 0) : added;
         }
         case ShapeKind::height_field: {
             taut_height_field_def def;

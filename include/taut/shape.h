@@ -117,10 +117,10 @@ typedef enum taut_shape_kind {
  * Surface of triangles, in the body's frame. Static and kinematic bodies only; it collides with all convex shapes but
  * planes, round ones exactly. A triangle looks to the side from which its corners run counter-clockwise, and is met
  * from that side alone: a body whose centre is behind it by more than half of the body's reach passes. Edges at which
- * the surface is flat or hollow catch nothing, whatever the triangulation. Coordinates that differ by less than 5e-7 of the largest become equal, and vertices at the same place
- * one. Left out and counted in taut_mesh_info: triangles thinner than 1e-5 of their longest edge, and second copies of
- * a triangle. Refused: no triangle left, an index out of range, a coordinate that is not finite or beyond
- * TAUT_SHAPE_MAX_SIZE.
+ * the surface is flat or hollow catch nothing, whatever the triangulation. Coordinates that differ by less than 5e-7 of
+ * the largest become equal, and vertices at the same place one. Left out and counted in taut_mesh_info: triangles
+ * thinner than 1e-5 of their longest edge, and second copies of a triangle. Refused: no triangle left, an index out of
+ * range, a coordinate that is not finite or beyond TAUT_SHAPE_MAX_SIZE.
  */
 typedef struct taut_mesh_def {
     uint32_t struct_size;
@@ -198,6 +198,18 @@ TAUT_API taut_result taut_world_add_height_field(taut_world world, const taut_he
  * @return as taut_world_add_mesh; TAUT_INVALID_ARGUMENT if the shape is neither mesh nor height field.
  */
 TAUT_API taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* out);
+
+/**
+ * Samples the signed distance of a closed mesh on a grid, for worlds of TAUT_SOLVER_MINIMISATION: vertices of cloths
+ * and solids that come within it are pushed out by a penalty of k depth^3, k the modulus of their material. A grid
+ * takes the place of an earlier one; scaled copies of the shape have none of their own.
+ * @param mesh closed, its triangles looking outward. @param cell_size [m], in the range of shapes' sizes; 0: a 64th of
+ * its longest side. Features thinner than a cell are lost.
+ * @return TAUT_OK; TAUT_UNSUPPORTED with the reason for an open mesh, a height field, one that looks inward, or cells
+ * so small that it would take more than 16777216; TAUT_INVALID_ARGUMENT if the shape is neither mesh nor height field,
+ * or for a cell_size out of range; TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_shape_sample_distance(taut_shape mesh, float cell_size);
 
 /** Removes a shape. @return TAUT_OK; TAUT_IN_USE while a body uses it; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_shape_remove(taut_shape shape);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "api/shape_def.h"
+#include "collision/distance_grid.h"
 
 using namespace taut;
 
@@ -97,6 +98,7 @@ taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* 
         collision::Shape shape = world.shapes[index].shape;
         if (!check_surface(check, shape)) return check.result();
         shape.size = shape.size.cwiseProduct(factor);
+        shape.distance = nullptr;
         const collision::Box box = collision::bounds(shape, {Vec3::Zero(), Mat3f::Identity()});
         check.vector("scaled box", to_vec3(box.lo.cast<double>()), kShapeCoordinate)
             .vector("scaled box", to_vec3(box.hi.cast<double>()), kShapeCoordinate)
@@ -126,6 +128,23 @@ taut_result taut_shape_triangles(taut_shape handle, taut_vec3* positions, uint32
         check.require(shape.hull || shape.surface, "shape is neither a hull nor a mesh nor a height field");
         if (!check) return check.result();
         return copy_triangles(check, shape, positions, capacity, count);
+    });
+}
+
+taut_result taut_shape_sample_distance(taut_shape mesh, float cell_size) {
+    Check check(__func__);
+    if (cell_size != 0) check.number("cell_size", cell_size, kShapeSize);
+    if (!check) return check.result();
+    return with(check.call(), mesh, Use::write, [&](World& world, uint32_t index) {
+        collision::Shape& shape = world.shapes[index].shape;
+        if (!check_surface(check, shape)) return check.result();
+        const collision::Box& box = world.shapes[index].box;
+        const char* reason = nullptr;
+        auto grid = collision::sample_distance(
+            shape, cell_size > 0 ? double(cell_size) : double((box.hi - box.lo).maxCoeff()) / 64, &reason);
+        if (!grid) return refuse(TAUT_UNSUPPORTED, "%s: %s", check.call(), reason);
+        shape.distance = std::move(grid);
+        return TAUT_OK;
     });
 }
 

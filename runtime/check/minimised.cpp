@@ -23,7 +23,9 @@ const char* why_no_obstacle(const World& world, uint32_t node) {
         const Collider& collider = world.colliders.record[c];
         if (collider.sensor || world.colliders.traits[c].filter.mask == 0) return;
         if (!collision::has_level_set(world.shapes[collider.shape].shape))
-            why = "a mesh or height field that may be touched: TAUT_SOLVER_MINIMISATION takes shapes in closed form";
+            why =
+                "a mesh or height field that may be touched and has no distances sampled: "
+                "taut_shape_sample_distance";
         if (world.colliders.traits[c].one_way != Vec3f::Zero())
             why = "a collider of one way: TAUT_SOLVER_MINIMISATION keeps out on all sides";
     });

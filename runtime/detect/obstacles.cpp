@@ -147,6 +147,7 @@ void find_obstacles(const ObstacleScene& scene, Obstacles& out) {
     out.count.assign(softs.record.size(), 0);
     out.radius.assign(softs.record.size(), 0);
     out.push.clear();
+    out.penalties = false;
     for (uint32_t c = 0; c < colliders.record.size(); ++c)
         if (is_obstacle(nodes, colliders.record[c]))
             out.list.push_back({&shapes[colliders.record[c].shape].shape, c, colliders.record[c].node});
@@ -160,7 +161,8 @@ void find_obstacles(const ObstacleScene& scene, Obstacles& out) {
             const ColliderTraits& other = colliders.traits[out.list[i].collider];
             if (!filters_agree(traits.filter, other.filter)) continue;
             const auto friction = static_cast<double>(friction_of(traits.material, other.material));
-            out.met.push_back({i, friction});
+            out.met.push_back({i, friction, modulus_of(scene, softs.record[s], out.radius[s])});
+            out.penalties = out.penalties || !out.list[i].exact();
         }
         out.count[s] = static_cast<uint32_t>(out.met.size()) - out.first[s];
     }

@@ -22,6 +22,7 @@ struct Obstacle {
     Vec3 surface_v = Vec3::Zero(), surface_w = Vec3::Zero();  // of its surface against the node: v + w x p, world axes
     Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();                // box [m]
 
+    bool exact() const { return collision::is_exact(*shape); }
     bool may_hold(const Vec3& x, double radius) const {
         return ((x - lo).array() > -radius).all() && ((hi - x).array() > -radius).all();
     }
@@ -42,6 +43,7 @@ struct Obstacle {
 struct Meeting {
     uint32_t obstacle;  // in Obstacles::list
     double friction;
+    double stiffness;  // of the penalty within one that is not exact [Pa]
 };
 
 // Two soft bodies, or one and itself: vertices of the first may come into cells of the second.
@@ -97,6 +99,7 @@ struct Obstacles {
 
     Array<Obstacle> list;
     Array<Meeting> met;
+    bool penalties = false;  // some of them are not exact
     // By soft body.
     Array<uint32_t> first, count;  // in met
     Array<double> radius;          // of its vertices [m]

@@ -22,6 +22,7 @@ IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool st
       island_(island),
       m_(substep.scratch.minimisation.get()),
       contacts_(substep.team, island, m_),
+      penalties_(substep.team, island, m_),
       solids_(substep.team, island, m_),
       statics_(statics),
       damped_(island.damped && !statics) {
@@ -108,7 +109,8 @@ double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
     std::ranges::copy(z, at().begin());
     for_batches([&](const EnergyBatch& batch) { find_energies(batch, !gradient.empty()); });
     const std::span<const double> wanted(&m_.wanted[3 * size_t{island_.first_point}], size());
-    const double elastic = sum_of_energies() + (solids_.any() ? solids_.evaluate() : 0);
+    const double elastic =
+        sum_of_energies() + (solids_.any() ? solids_.evaluate() : 0) + (penalties_.any() ? penalties_.evaluate() : 0);
     double inertia = 0, damping = 0;
     if (statics_)
         inertia = -2 * dot_of(z, wanted);
@@ -133,6 +135,7 @@ double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
             Vec3::Map(&gradient[3 * (p - island_.first_point)]) += Vec3::Map(&m_.force[3 * size_t{k}]) / m_.scale[p];
     }
     if (solids_.any()) solids_.add_gradient(gradient);
+    if (penalties_.any()) penalties_.add_gradient(gradient);
     if (contacts_.any()) {
         std::ranges::copy(gradient, raw().begin());
         contacts_.pull_back(gradient);
@@ -241,6 +244,7 @@ void IslandEnergy::linearise(std::span<double> z) {
     for_matrices(
         [&](const EnergyBatch& batch, double* out) { find_matrices(batch, errors_of(batch), Curvature::raw, out); },
         [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
+    if (penalties_.any()) penalties_.add_matrix(m_.hessian);
     if (contacts_.any()) contacts_.restrict(m_.hessian);
     if (solids_.any()) solids_.linearise();
 }

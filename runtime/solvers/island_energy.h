@@ -8,6 +8,7 @@
 
 #include "solvers/minimisation.h"
 #include "solvers/point_contacts.h"
+#include "solvers/point_penalties.h"
 #include "solvers/solid_contacts.h"
 #include "solvers/solver.h"
 
@@ -55,6 +56,7 @@ private:
     const EnergyIsland& island_;
     MinimisationMemory& m_;
     PointContacts contacts_;
+    PointPenalties penalties_;
     SolidContacts solids_;
     const bool statics_, damped_;
     double terms_ = 0;  // [J]

@@ -62,6 +62,7 @@ private:
         m_.soft.resize(points);
         m_.touch.resize(points);
         m_.hold_of.resize(points);
+        if (m_.obstacles.penalties) m_.penalty.resize(points);
         m_.point_of_node.assign(s_.nodes.slots(), kNone);
         for (uint32_t p = 0; p < points; ++p) {
             const uint32_t node = s_.system.node_at[m_.seat[p]];
@@ -167,6 +168,7 @@ private:
 void rub(Substep& s) {
     if (s.settings.minimisation && s.settings.minimisation->relaxation) return;
     rub_points(s.system, s.scratch.minimisation.get());
+    rub_penalties(s.system, s.scratch.minimisation.get());
     rub_solids(s.system, s.scratch.minimisation.get());
 }
 

@@ -56,6 +56,13 @@ struct PointTouch {
     bool has(uint32_t other) const { return std::find(way, way + count, other) != way + count; }
 };
 
+// Of a point within obstacles with a penalty, by where it is.
+struct PointPenalty {
+    double energy = 0;             // [J]
+    Vec3 gradient = Vec3::Zero();  // [N]
+    Mat3 matrix = Mat3::Zero();    // [N/m]
+};
+
 constexpr uint32_t kMostWithin = 2;  // soft bodies that a vertex is pushed out of at once
 
 // A vertex of a surface, and where it is within.
@@ -124,6 +131,7 @@ struct MinimisationMemory {
           touch(m),
           hold_of(m),
           hold(m),
+          penalty(m),
           point_of_node(m),
           within(m),
           pair(m),
@@ -168,11 +176,12 @@ struct MinimisationMemory {
     Array<double> matrix;  // of a chunk, [element][3 nodes][3 nodes] [N/m]
 
     // by point, where there are obstacles
-    Array<double> raw;        // [3] gradient as it is before points are held back
-    Array<uint32_t> soft;     // body that it is a vertex of, or kNone
-    Array<PointTouch> touch;  // of the last projection
-    Array<uint32_t> hold_of;  // in hold, or kNone
-    Array<PointHold> hold;    // in the last Newton step
+    Array<double> raw;            // [3] gradient as it is before points are held back
+    Array<uint32_t> soft;         // body that it is a vertex of, or kNone
+    Array<PointTouch> touch;      // of the last projection
+    Array<uint32_t> hold_of;      // in hold, or kNone
+    Array<PointHold> hold;        // in the last Newton step
+    Array<PointPenalty> penalty;  // of the last evaluation, where some obstacles have one
     // Where soft bodies meet.
     Array<uint32_t> point_of_node;  // by node, or kNone
     Array<VertexWithin> within;     // scratch of SolidContacts

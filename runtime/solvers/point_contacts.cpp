@@ -57,7 +57,7 @@ uint32_t PointContacts::deepest(const PointTouch& touch, std::span<const Meeting
     double depth = 0;
     for (uint32_t i = 0; i < meetings.size(); ++i) {
         const Obstacle& obstacle = m_.obstacles.list[meetings[i].obstacle];
-        if (!obstacle.may_hold(x, radius) || touch.has(i)) continue;
+        if (!obstacle.exact() || !obstacle.may_hold(x, radius) || touch.has(i)) continue;
         const double distance = obstacle.level(x, radius).distance;
         if (distance < depth) found = i, depth = distance;
     }
@@ -194,39 +194,47 @@ void PointContacts::restrict(Array<double>& matrix) const {
 
 // ---------------------------------------------------------------- friction
 
+void rub_point(System& system, MinimisationMemory& m, uint32_t point, const Mat3& along,
+               std::span<const ObstaclePush> pushes) {
+    const uint32_t seat = m.seat[point];
+    const double mass = m.scale[point] * m.scale[point] * system.scheme.stiffness();
+    const auto count = static_cast<double>(pushes.size());
+    Vec3& v = system.exact[seat].v;
+    const Vec3& place = m.pose[point].x;
+    double most = 0;
+    Vec3 driven = Vec3::Zero();
+    for (const ObstaclePush& push : pushes) {
+        most += push.friction * push.impulse;
+        driven += push.obstacle->velocity_at(place) / count;
+    }
+    const Vec3 slide = along * (v - driven);
+    const double speed = slide.norm();
+    const Vec3 rubbed = speed > 0 ? Vec3(-std::min(most, mass * speed) / speed * slide) : Vec3(Vec3::Zero());
+    v += rubbed / mass;
+    for (const ObstaclePush& push : pushes) {
+        const Obstacle& of = *push.obstacle;
+        m.obstacles.push.push_back({system.node_at[seat],
+                                    of.collider,
+                                    {of.node, kNone, kNone},
+                                    {1, 0, 0},
+                                    place - of.centre,
+                                    push.normal,
+                                    push.gap,
+                                    push.impulse,
+                                    rubbed / count,
+                                    push.normal.dot(of.velocity_at(place) - system.start[seat].v)});
+    }
+}
+
 void rub_points(System& system, MinimisationMemory& m) {
-    const double h = system.scheme.h;
     for (const PointHold& hold : m.hold) {
-        const uint32_t seat = m.seat[hold.point];
-        const uint32_t soft = m.soft[hold.point];
-        const double mass = m.scale[hold.point] * m.scale[hold.point] * system.scheme.stiffness();
-        Vec3& v = system.exact[seat].v;
-        const Vec3 place = m.pose[hold.point].x;
-        double most = 0;
-        Vec3 driven = Vec3::Zero();
+        ObstaclePush pushes[kMostWays];
         for (uint32_t i = 0; i < hold.count; ++i) {
-            const Meeting& meeting = m.obstacles.of(soft)[hold.way[i]];
-            most += meeting.friction * m.scale[hold.point] * hold.push[i] * h;
-            driven += m.obstacles.list[meeting.obstacle].velocity_at(place) / hold.count;
+            const Meeting& meeting = m.obstacles.of(m.soft[hold.point])[hold.way[i]];
+            pushes[i] = {&m.obstacles.list[meeting.obstacle], meeting.friction, hold.normal[i],
+                         m.scale[hold.point] * hold.push[i] * system.scheme.h, 0};
         }
-        const Vec3 slide = hold.along * (v - driven);
-        const double speed = slide.norm();
-        const Vec3 rubbed = speed > 0 ? Vec3(-std::min(most, mass * speed) / speed * slide) : Vec3(Vec3::Zero());
-        v += rubbed / mass;
-        for (uint32_t i = 0; i < hold.count; ++i) {
-            const Meeting& meeting = m.obstacles.of(soft)[hold.way[i]];
-            const Obstacle& obstacle = m.obstacles.list[meeting.obstacle];
-            m.obstacles.push.push_back({system.node_at[seat],
-                                        obstacle.collider,
-                                        {obstacle.node, kNone, kNone},
-                                        {1, 0, 0},
-                                        place - obstacle.centre,
-                                        hold.normal[i],
-                                        0,
-                                        m.scale[hold.point] * hold.push[i] * h,
-                                        rubbed / hold.count,
-                                        hold.normal[i].dot(obstacle.velocity_at(place) - system.start[seat].v)});
-        }
+        rub_point(system, m, hold.point, hold.along, {pushes, hold.count});
     }
 }
 

@@ -43,8 +43,21 @@ private:
     bool any_ = false;
 };
 
-// Velocities of a substep, after its positions: friction takes what it can within the cone of the pushes, never more
-// than all of the way along the surface, so that it adds no energy. Tells of the contacts in Obstacles::push.
+// What an obstacle pushes a point by in a substep.
+struct ObstaclePush {
+    const Obstacle* obstacle;
+    double friction;
+    Vec3 normal;     // out of it
+    double impulse;  // along that [N s]
+    double gap;      // [m]
+};
+
+// The velocity of a point after the positions of a substep: friction takes what it can within the cone of the pushes,
+// never more than all of the way along the surface (along: 1 - N N^T), so that it adds no energy. Tells of the contacts
+// in Obstacles::push.
+void rub_point(System& system, MinimisationMemory& memory, uint32_t point, const Mat3& along,
+               std::span<const ObstaclePush> pushes);
+// The same of all that are held.
 void rub_points(System& system, MinimisationMemory& memory);
 
 }  // namespace taut

@@ -22,13 +22,13 @@ public:
     std::function<Vector(const Vector&)> hessian;  // row-major
 
     uint32_t size() const override { return count; }
-    double evaluate(std::span<const double> x, std::span<double> gradient) override {
+    double evaluate(std::span<double> x, std::span<double> gradient) override {
         Vector g(count);
         const double e = last = value(Vector(x.begin(), x.end()), g);
         if (!gradient.empty()) std::ranges::copy(g, gradient.begin());
         return e;
     }
-    void linearise(std::span<const double> x) override {
+    void linearise(std::span<double> x) override {
         Vector g(count);
         at.push_back(value(Vector(x.begin(), x.end()), g));
         matrix = hessian(Vector(x.begin(), x.end()));

@@ -1,0 +1,181 @@
+#include "collision/distance_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/box_tree.h"
+#include "collision/surface.h"
+#include "constraints/point_penalty.h"
+
+namespace taut::collision {
+namespace {
+
+// Where a line along x crosses the surface, and whether from its back to its front as x grows.
+struct Crossing {
+    double x;
+    int turn;  // 1: into it, -1: out of it
+};
+
+class Sampling {
+public:
+    Sampling(std::span<const Vec3f> corners, DistanceGrid& out, Memory& memory)
+        : corners_(corners), out_(out), tree_(memory) {}
+
+    void run() {
+        tree_.build(static_cast<uint32_t>(corners_.size() / 3), [&](uint32_t t) {
+            ItemBox box;
+            for (int k = 0; k < 3; ++k) box.add(corner(t, k));
+            return box;
+        });
+        find_crossings();
+        for (uint32_t k = 0; k < out_.nodes[2]; ++k)
+            for (uint32_t j = 0; j < out_.nodes[1]; ++j) sample_line(j, k);
+    }
+
+private:
+    Vec3 corner(uint32_t triangle, int k) const { return corners_[3 * size_t{triangle} + size_t(k)].cast<double>(); }
+    double place(int axis, uint32_t i) const { return out_.corner[axis] + out_.cell * i; }
+    // Lines go a little beside the samples, lest they meet edges of meshes that lie on the grid.
+    double line(int axis, uint32_t i) const {
+        return place(axis, i) + out_.cell * (axis == 1 ? 1.234567e-5 : 2.345678e-5);
+    }
+    size_t line_of(uint32_t j, uint32_t k) const { return size_t{k} * out_.nodes[1] + j; }
+
+    void find_crossings() {
+        crossing_.resize(size_t{out_.nodes[1]} * out_.nodes[2]);
+        for (uint32_t t = 0; t < corners_.size() / 3; ++t) {
+            const Vec3 a = corner(t, 0), u = corner(t, 1) - a, v = corner(t, 2) - a;
+            const double area = u.y() * v.z() - u.z() * v.y();  // of its shadow along x, twice
+            if (area == 0) continue;
+            ItemBox box;
+            for (int k = 0; k < 3; ++k) box.add(corner(t, k));
+            uint32_t first[2], last[2];
+            for (int axis = 1; axis < 3; ++axis) {
+                first[axis - 1] =
+                    static_cast<uint32_t>(std::max(0.0, std::floor((box.lo[axis] - out_.corner[axis]) / out_.cell)));
+                last[axis - 1] = static_cast<uint32_t>(std::ceil((box.hi[axis] - out_.corner[axis]) / out_.cell));
+            }
+            for (uint32_t k = first[1]; k <= std::min(last[1], out_.nodes[2] - 1); ++k)
+                for (uint32_t j = first[0]; j <= std::min(last[0], out_.nodes[1] - 1); ++j) {
+                    const double y = line(1, j) - a.y(), z = line(2, k) - a.z();
+                    const double b = (y * v.z() - z * v.y()) / area, c = (u.y() * z - u.z() * y) / area;
+                    if (b >= 0 && c >= 0 && b + c < 1)
+                        crossing_[line_of(j, k)].push_back({a.x() + b * u.x() + c * v.x(), area < 0 ? 1 : -1});
+                }
+        }
+    }
+
+    void sample_line(uint32_t j, uint32_t k) {
+        std::vector<Crossing>& crossings = crossing_[line_of(j, k)];
+        std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+        size_t next = 0;
+        int winding = 0;
+        for (uint32_t i = 0; i < out_.nodes[0]; ++i) {
+            const Vec3 point(place(0, i), place(1, j), place(2, k));
+            for (; next < crossings.size() && crossings[next].x < point.x(); ++next) winding += crossings[next].turn;
+            const double distance = std::sqrt(
+                distance_squared(tree_.nearest(point, [&](uint32_t t) { return distance_squared(t, point); }), point));
+            out_.distance[(size_t{k} * out_.nodes[1] + j) * out_.nodes[0] + i] =
+                static_cast<float>(winding > 0 ? -distance : distance);
+        }
+    }
+    double distance_squared(uint32_t t, const Vec3& point) const {
+        const Vec3 triangle[3] = {corner(t, 0), corner(t, 1), corner(t, 2)};
+        const TrianglePoint nearest = nearest_on_triangle(point, triangle);
+        Vec3 apart = point;
+        for (int i = 0; i < 3; ++i) apart -= nearest.weight[i] * triangle[i];
+        return apart.squaredNorm();
+    }
+
+    std::span<const Vec3f> corners_;
+    DistanceGrid& out_;
+    BoxTree tree_;
+    std::vector<std::vector<Crossing>> crossing_;  // of each line
+};
+
+// Six times the volume within [m^3]: negative where it looks inward.
+double volume_of(std::span<const Vec3f> corners) {
+    double sum = 0;
+    for (size_t i = 0; i < corners.size(); i += 3)
+        sum += corners[i].cast<double>().dot(corners[i + 1].cast<double>().cross(corners[i + 2].cast<double>()));
+    return sum;
+}
+
+bool is_open(const Surface& surface) {
+    for (uint32_t t = 0; t < surface.slots(); ++t)
+        for (int edge = 0; edge < 3; ++edge)
+            if (!surface.has(t) || surface.neighbour(t, edge) == kNoTriangle) return true;
+    return false;
+}
+
+}  // namespace
+
+// phi = sum over the 8 corners of a cell of w_x w_y w_z phi_c.
+LevelSet DistanceGrid::at(const Vec3& point) const {
+    LevelSet out;
+    out.distance = std::numeric_limits<double>::infinity();
+    const Vec3 from = (point - corner) / cell;
+    uint32_t begin[3];
+    double weight[3][2];
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(from[axis] >= 0 && from[axis] <= nodes[axis] - 1)) return out;
+        begin[axis] = std::min(static_cast<uint32_t>(from[axis]), nodes[axis] - 2);
+        weight[axis][1] = from[axis] - begin[axis];
+        weight[axis][0] = 1 - weight[axis][1];
+    }
+    out.distance = 0;
+    for (uint32_t c = 0; c < 8; ++c) {
+        const uint32_t bit[3] = {c & 1, c >> 1 & 1, c >> 2};
+        const double value = static_cast<double>(
+            distance[(size_t{begin[2] + bit[2]} * nodes[1] + begin[1] + bit[1]) * nodes[0] + begin[0] + bit[0]]);
+        double part[3], slope[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            part[axis] = weight[axis][bit[axis]];
+            slope[axis] = (bit[axis] ? 1 : -1) / cell;
+        }
+        out.distance += part[0] * part[1] * part[2] * value;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int b = (axis + 1) % 3, d = (axis + 2) % 3;
+            out.gradient[axis] += slope[axis] * part[b] * part[d] * value;
+            out.curvature(axis, b) += slope[axis] * slope[b] * part[d] * value;
+        }
+    }
+    out.curvature = (out.curvature + out.curvature.transpose()).eval();
+    return out;
+}
+
+std::shared_ptr<const DistanceGrid> sample_distance(const Shape& shape, double cell, const char** reason) {
+    if (is_open(*shape.surface)) {
+        *reason = "an open surface has no inside";
+        return nullptr;
+    }
+    std::vector<Vec3f> corners;
+    surface_triangles(shape, corners);
+    if (!(volume_of(corners) > 0)) {
+        *reason = "its triangles look inward";
+        return nullptr;
+    }
+    auto out = std::make_shared<DistanceGrid>();
+    ItemBox box;
+    for (const Vec3f& each : corners) box.add(each.cast<double>());
+    out->cell = cell;
+    out->corner = box.lo - Vec3::Constant(cell);
+    double samples = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double along = std::ceil((box.hi[axis] - box.lo[axis]) / cell) + 3;
+        samples *= along;
+        out->nodes[axis] = static_cast<uint32_t>(std::min(along, 1e9));
+    }
+    if (!(samples <= kMostSamples)) {
+        *reason = "the cells are too small: more than 16777216 samples";
+        return nullptr;
+    }
+    out->distance.resize(static_cast<size_t>(samples));
+    const taut_hooks hooks{};
+    Memory memory(hooks);
+    Sampling(corners, *out, memory).run();
+    return out;
+}
+
+}  // namespace taut::collision

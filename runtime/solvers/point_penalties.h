@@ -1,0 +1,34 @@
+// Contacts of the points of an island with obstacles whose level set is sampled: a penalty within these (Gast and
+// Schroeder 2014, section 5.2),  Phi = k |phi|^3 where phi < 0 [J],  k [Pa].
+#pragma once
+
+#include <span>
+
+#include "solvers/minimisation.h"
+#include "system/system.h"
+#include "threads/team.h"
+
+namespace taut {
+
+class PointPenalties {
+public:
+    PointPenalties(Team& team, const EnergyIsland& island, MinimisationMemory& memory)
+        : team_(team), island_(island), m_(memory) {}
+
+    bool any() const { return m_.obstacles.penalties; }
+    // Sum of the penalties at MinimisationMemory::pose [J].
+    double evaluate();
+    // Adds what they are by, in z: 3 numbers a point of the island, and blocks on the diagonal.
+    void add_gradient(std::span<double> gradient) const;
+    void add_matrix(Array<double>& matrix) const;
+
+private:
+    Team& team_;
+    const EnergyIsland& island_;
+    MinimisationMemory& m_;
+};
+
+// As rub_points().
+void rub_penalties(System& system, MinimisationMemory& memory);
+
+}  // namespace taut
