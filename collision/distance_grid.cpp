@@ -111,37 +111,41 @@ bool is_open(const Surface& surface) {
 
 }  // namespace
 
-// phi = sum over the 8 corners of a cell of w_x w_y w_z phi_c.
+// phi = sum over the 27 nodes around the nearest one of w_x w_y w_z phi_i, w the quadratic B-spline: with t from there
+// in cells, (1/2 - t)^2/2, 3/4 - t^2, (1/2 + t)^2/2.
 LevelSet DistanceGrid::at(const Vec3& point) const {
     LevelSet out;
     out.distance = std::numeric_limits<double>::infinity();
     const Vec3 from = (point - corner) / cell;
-    uint32_t begin[3];
-    double weight[3][2];
+    uint32_t first[3];
+    double weight[3][3][3];  // axis, derivative, node
     for (int axis = 0; axis < 3; ++axis) {
-        if (!(from[axis] >= 0 && from[axis] <= nodes[axis] - 1)) return out;
-        begin[axis] = std::min(static_cast<uint32_t>(from[axis]), nodes[axis] - 2);
-        weight[axis][1] = from[axis] - begin[axis];
-        weight[axis][0] = 1 - weight[axis][1];
+        if (!(from[axis] >= 0.5 && from[axis] < nodes[axis] - 1.5)) return out;
+        const double nearest = std::floor(from[axis] + 0.5), t = from[axis] - nearest;
+        first[axis] = static_cast<uint32_t>(nearest) - 1;
+        const double of[3][3] = {{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
+                                 {t - 0.5, -2 * t, t + 0.5},
+                                 {1, -2, 1}};
+        double scale = 1;
+        for (int order = 0; order < 3; ++order, scale /= cell)
+            for (int i = 0; i < 3; ++i) weight[axis][order][i] = scale * of[order][i];
     }
-    out.distance = 0;
-    for (uint32_t c = 0; c < 8; ++c) {
-        const uint32_t bit[3] = {c & 1, c >> 1 & 1, c >> 2};
-        const double value = static_cast<double>(
-            distance[(size_t{begin[2] + bit[2]} * nodes[1] + begin[1] + bit[1]) * nodes[0] + begin[0] + bit[0]]);
-        double part[3], slope[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            part[axis] = weight[axis][bit[axis]];
-            slope[axis] = (bit[axis] ? 1 : -1) / cell;
-        }
-        out.distance += part[0] * part[1] * part[2] * value;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int b = (axis + 1) % 3, d = (axis + 2) % 3;
-            out.gradient[axis] += slope[axis] * part[b] * part[d] * value;
-            out.curvature(axis, b) += slope[axis] * slope[b] * part[d] * value;
-        }
-    }
-    out.curvature = (out.curvature + out.curvature.transpose()).eval();
+    const auto sum = [&](int x, int y, int z) {  // of the derivatives of these orders
+        double all = 0;
+        for (uint32_t k = 0; k < 3; ++k)
+            for (uint32_t j = 0; j < 3; ++j) {
+                const float* const row =
+                    &distance[(size_t{first[2] + k} * nodes[1] + first[1] + j) * nodes[0] + first[0]];
+                double line = 0;
+                for (uint32_t i = 0; i < 3; ++i) line += weight[0][x][i] * static_cast<double>(row[i]);
+                all += weight[1][y][j] * weight[2][z][k] * line;
+            }
+        return all;
+    };
+    out.distance = sum(0, 0, 0);
+    out.gradient = {sum(1, 0, 0), sum(0, 1, 0), sum(0, 0, 1)};
+    const double xy = sum(1, 1, 0), yz = sum(0, 1, 1), zx = sum(1, 0, 1);
+    out.curvature << sum(2, 0, 0), xy, zx, xy, sum(0, 2, 0), yz, zx, yz, sum(0, 0, 2);
     return out;
 }
 
@@ -160,10 +164,10 @@ std::shared_ptr<const DistanceGrid> sample_distance(const Shape& shape, double c
     ItemBox box;
     for (const Vec3f& each : corners) box.add(each.cast<double>());
     out->cell = cell;
-    out->corner = box.lo - Vec3::Constant(cell);
+    out->corner = box.lo - Vec3::Constant(2 * cell);
     double samples = 1;
     for (int axis = 0; axis < 3; ++axis) {
-        const double along = std::ceil((box.hi[axis] - box.lo[axis]) / cell) + 3;
+        const double along = std::ceil((box.hi[axis] - box.lo[axis]) / cell) + 5;
         samples *= along;
         out->nodes[axis] = static_cast<uint32_t>(std::min(along, 1e9));
     }

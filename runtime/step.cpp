@@ -59,7 +59,8 @@ void detect_obstacles(World& w, Stopwatch& watch) {
     w.profile.broadphase_us = watch.lap();
     w.pairs.surfaces.contact.clear();
     ++w.pairs.surfaces.version;
-    find_obstacles({w.nodes, w.colliders, w.shapes, w.softs, w.elements, w.def.time_step},
+    const taut_vec3 g = w.def.gravity;
+    find_obstacles({w.nodes, w.colliders, w.shapes, w.softs, w.elements, w.def.time_step, Vec3(g.x, g.y, g.z)},
                    w.scratch.minimisation.get().obstacles);
     tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();

