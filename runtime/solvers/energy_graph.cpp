@@ -117,7 +117,7 @@ private:
             m_.element[at] = rows_.element[rows_.elastic[r].element + i];
         });
         m_.batch.clear();
-        uint32_t at = 0, node = 0, block = 0;
+        uint32_t at = 0, node = 0, block = 0, frame = 0;
         for (uint32_t k = 0; k < m_.island.size(); ++k) {
             EnergyIsland& island = m_.island[k];
             island.first_batch = static_cast<uint32_t>(m_.batch.size());
@@ -126,7 +126,10 @@ private:
                 const ElasticRun& run = rows_.elastic[run_of[at]];
                 const bool joins = m_.batch.size() > island.first_batch && m_.batch.back().run == run_of[at] &&
                                    m_.batch.back().count < kEnergyBatch;
-                if (!joins) m_.batch.push_back({run.set, run_of[at], at, 0, node, block});
+                if (!joins) {
+                    m_.batch.push_back({run.set, run_of[at], at, 0, node, block, frame});
+                    if (run.set->type->energy) ++frame;
+                }
                 ++m_.batch.back().count;
                 node += nodes_in(run);
                 block += nodes_in(run) * nodes_in(run);
@@ -137,6 +140,7 @@ private:
         m_.point_of.resize(node);
         m_.block_of.resize(block);
         m_.energy.resize(m_.element.size());
+        m_.frame.resize(frame * size_t{kFrameNumbers});
         m_.error.resize(m_.element.size() * kMaxRows);
         m_.force.resize(3 * size_t{node});
     }

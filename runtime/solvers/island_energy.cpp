@@ -40,6 +40,22 @@ ElementBatch IslandEnergy::view(const EnergyBatch& batch) const {
     return {batch.count, &m_.point_of[batch.node], &m_.element[batch.first], batch.set->data.data(), m_.pose.data()};
 }
 
+const EnergyKernel* IslandEnergy::kernel_of(const EnergyBatch& batch) const {
+    return batch.set->type->energy ? &(kernels_.*batch.set->type->energy) : nullptr;
+}
+
+EnergyLanes IslandEnergy::lanes_of(const EnergyBatch& batch) const {
+    static_assert(sizeof(Pose) % sizeof(double) == 0);
+    return {batch.count,
+            &m_.point_of[batch.node],
+            &m_.element[batch.first],
+            batch.set->data.data(),
+            m_.pose.data()->x.data(),
+            sizeof(Pose) / sizeof(double),
+            batch.set->stiffness,
+            batch.set->softness.data()};
+}
+
 void IslandEnergy::place(std::span<const double> z) const {
     for (uint32_t i = 0; i < island_.points; ++i) {
         const uint32_t p = island_.first_point + i;
@@ -68,6 +84,10 @@ void IslandEnergy::stress_of(const EnergyBatch& batch, uint32_t i, const double*
 }
 
 void IslandEnergy::find_energies(const EnergyBatch& batch, bool with_force) const {
+    if (const EnergyKernel* const kernel = kernel_of(batch)) {
+        double* const force = with_force ? &m_.force[3 * size_t{batch.node}] : nullptr;
+        return kernel->evaluate(lanes_of(batch), frame_of(batch), &m_.energy[batch.first], force);
+    }
     const uint32_t rows = rows_in(batch), nodes = nodes_in(batch);
     double error[kEnergyBatch * kMaxRows], jacobian[kEnergyBatch * kMaxNodes * kMaxRows * 3];
     find_errors(batch, error, with_force ? jacobian : nullptr);
@@ -219,7 +239,11 @@ void IslandEnergy::linearise(std::span<const double> z) {
     else
         std::fill_n(m_.hessian.begin() + 9 * begin, 9 * (end - begin), 0.0);
     for_matrices(
-        [&](const EnergyBatch& batch, double* out) { find_matrices(batch, errors_of(batch), Curvature::raw, out); },
+        [&](const EnergyBatch& batch, double* out) {
+            if (const EnergyKernel* const kernel = kernel_of(batch))
+                return kernel->hessian(lanes_of(batch), frame_of(batch), out);
+            find_matrices(batch, errors_of(batch), Curvature::raw, out);
+        },
         [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
 }
 

@@ -30,6 +30,10 @@ private:
     template <class Act>
     void for_batches(Act&& act) const;
     ElementBatch view(const EnergyBatch& batch) const;
+    // Null where its set's energy does not come in lanes.
+    const EnergyKernel* kernel_of(const EnergyBatch& batch) const;
+    EnergyLanes lanes_of(const EnergyBatch& batch) const;
+    double* frame_of(const EnergyBatch& batch) const { return &m_.frame[size_t{batch.frame} * kFrameNumbers]; }
     double sum_of_energies() const;
     void place(std::span<const double> z) const;
     void find_errors(const EnergyBatch& batch, double* error, double* jacobian) const;
@@ -48,6 +52,7 @@ private:
     Substep& s_;
     const EnergyIsland& island_;
     MinimisationMemory& m_;
+    const EnergyKernels& kernels_ = energy_kernels();
     const bool statics_, damped_;
     double terms_ = 0;  // [J]
     double mass_ = 0;

@@ -26,7 +26,7 @@ struct MinimisationSettings {
     Relaxation* relaxation = nullptr;  // statics in place of a substep, and what comes of it
 };
 
-constexpr uint32_t kEnergyBatch = 8;  // elements evaluated together, at most
+constexpr uint32_t kEnergyBatch = kDoubles;  // elements evaluated together, at most
 
 // Of one set.
 struct EnergyBatch {
@@ -35,6 +35,7 @@ struct EnergyBatch {
     uint32_t first, count;  // of elements, in the order of islands
     uint32_t node;          // first in point_of
     uint32_t block;         // first in block_of
+    uint32_t frame;         // in units of kFrameNumbers, of sets whose energy comes in lanes
 };
 
 struct EnergyIsland {
@@ -76,6 +77,7 @@ struct MinimisationMemory {
           at(m),
           error(m),
           energy(m),
+          frame(m),
           force(m),
           matrix(m),
           newton(m) {}
@@ -112,6 +114,7 @@ struct MinimisationMemory {
     // by element
     Array<double> error;   // [kMaxRows] C, one after the other within a batch
     Array<double> energy;  // [J]
+    Array<double> frame;   // of batches: what energies in lanes leave for matrices
     Array<double> force;   // [nodes][3], gradient of W [N]
     Array<double> matrix;  // of a chunk, [element][3 nodes][3 nodes] [N/m]
 
