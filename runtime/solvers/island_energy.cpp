@@ -127,7 +127,7 @@ double IslandEnergy::evaluate(std::span<const double> z, std::span<double> gradi
     else
         for (uint32_t i = 0; i < size(); ++i) inertia += (z[i] - wanted[i]) * (z[i] - wanted[i]);
     if (damped_) {
-        multiply(m_.damping, false, z.data(), m_.damped.data());
+        multiply(m_.damping, z.data(), m_.damped.data());
         const std::span<double> bz(m_.damped.data(), size());
         const std::span<const double> bias(&m_.bias[3 * size_t{island_.first_point}], size());
         damping = 0.5 * dot_of(z, bz) + dot_of(z, bias);
@@ -196,23 +196,24 @@ void IslandEnergy::find_damping_of(const EnergyBatch& batch, double* out, double
     }
 }
 
-// Between free points, in z.
-void IslandEnergy::scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const {
+// Between free points, in z. Both matrices are symmetric: what is a block by rows of one is by columns of the other.
+void IslandEnergy::scatter(const EnergyBatch& batch, const double* matrix, Array<double>& into) const {
     const uint32_t nodes = nodes_in(batch), width = 3 * nodes;
-    for (uint32_t i = 0; i < batch.count; ++i, matrix += width * width)
-        for (uint32_t n = 0; n < nodes; ++n) {
-            const uint32_t p = m_.point_of[batch.node + i * nodes + n];
-            if (!m_.free[p]) continue;
-            for (uint32_t m = 0; m < nodes; ++m) {
-                const uint32_t q = m_.point_of[batch.node + i * nodes + m];
-                if (!m_.free[q]) continue;
-                const double scale = times / (m_.scale[p] * m_.scale[q]);
-                double* const to = &into[9 * size_t{m_.block_of[batch.block + (i * nodes + n) * nodes + m]}];
-                const double* const from = matrix + 3 * n * width + 3 * m;
+    const uint32_t* point = &m_.point_of[batch.node];
+    const uint32_t* block = &m_.block_of[batch.block];
+    for (uint32_t i = 0; i < batch.count; ++i, matrix += width * width, point += nodes) {
+        double inverse[kMaxNodes];  // of s; a held point has none
+        for (uint32_t n = 0; n < nodes; ++n) inverse[n] = m_.free[point[n]] ? 1 / m_.scale[point[n]] : 0;
+        for (uint32_t n = 0; n < nodes; ++n)
+            for (uint32_t m = 0; m < nodes; ++m, ++block) {
+                const double scale = inverse[n] * inverse[m];
+                if (scale == 0) continue;
+                double* const to = &into[9 * size_t{*block}];
+                const double* const from = matrix + 3 * m * width + 3 * n;
                 for (uint32_t r = 0; r < 3; ++r)
                     for (uint32_t c = 0; c < 3; ++c) to[3 * r + c] += scale * from[r * width + c];
             }
-        }
+    }
 }
 
 // find(batch, out) of several batches at once, then take(batch, out) in their order.
@@ -244,7 +245,7 @@ void IslandEnergy::linearise(std::span<const double> z) {
                 return kernel->hessian(lanes_of(batch), frame_of(batch), out);
             find_matrices(batch, errors_of(batch), Curvature::raw, out);
         },
-        [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, 1, m_.hessian); });
+        [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, m_.hessian); });
 }
 
 void IslandEnergy::find_damping() {
@@ -258,7 +259,7 @@ void IslandEnergy::find_damping() {
     };
     for_matrices([&](const EnergyBatch& batch, double* out) { find_damping_of(batch, out, push_of(batch, out)); },
                  [&](const EnergyBatch& batch, const double* out) {
-                     scatter(batch, out, 1, m_.damping);
+                     scatter(batch, out, m_.damping);
                      const uint32_t nodes = nodes_in(batch), width = 3 * nodes;
                      for (uint32_t i = 0; i < batch.count; ++i)
                          for (uint32_t k = 0; k < width; ++k) {
@@ -274,24 +275,17 @@ void IslandEnergy::find_damping() {
                  });
 }
 
-void IslandEnergy::multiply(const Array<double>& matrix, bool with_inertia, const double* d, double* out) const {
+void IslandEnergy::multiply(const Array<double>& matrix, const double* d, double* out) const {
+    const BlockRows rows{m_.row_begin.data(), m_.column.data(), matrix.data()};
     s_.team.for_ranges(island_.points, kPointGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t i = begin; i < end; ++i) {
-            const uint32_t p = island_.first_point + i;
-            double sum[3] = {};
-            for (uint32_t b = m_.row_begin[p]; b < m_.row_begin[p + 1]; ++b) {
-                const double* const from = d + 3 * (m_.column[b] - island_.first_point);
-                const double* const a = &matrix[9 * size_t{b}];
-                for (int r = 0; r < 3; ++r)
-                    sum[r] += a[3 * r] * from[0] + a[3 * r + 1] * from[1] + a[3 * r + 2] * from[2];
-            }
-            for (int r = 0; r < 3; ++r) out[3 * i + r] = (with_inertia ? d[3 * i + r] : 0) + sum[r];
-        }
+        multiply_rows_(rows, island_.first_point + begin, island_.first_point + end, island_.first_point, d, out);
     });
 }
 
 void IslandEnergy::multiply(std::span<const double> d, std::span<double> out) {
-    multiply(m_.hessian, !statics_, d.data(), out.data());
+    multiply(m_.hessian, d.data(), out.data());
+    if (statics_) return;
+    for (size_t i = 0; i < d.size(); ++i) out[i] += d[i];
 }
 
 void IslandEnergy::store_forces() const {

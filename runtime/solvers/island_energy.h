@@ -5,6 +5,7 @@
 // In statics 1/a and B are 0, and E = sum W(x) - f . (x - x_n) with the external forces f.
 #pragma once
 
+#include "linear/block_rows.h"
 #include "solvers/minimisation.h"
 #include "solvers/solver.h"
 
@@ -44,15 +45,16 @@ private:
     double* errors_of(const EnergyBatch& batch) const { return &m_.error[size_t{batch.first} * kMaxRows]; }
     std::span<double> at() const { return {&m_.at[3 * size_t{island_.first_point}], 3 * size_t{island_.points}}; }
     void find_damping_of(const EnergyBatch& batch, double* out, double* push) const;
-    void scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const;
+    void scatter(const EnergyBatch& batch, const double* matrix, Array<double>& into) const;
     template <class Find, class Take>
     void for_matrices(Find&& find, Take&& take) const;
-    void multiply(const Array<double>& matrix, bool with_inertia, const double* d, double* out) const;
+    void multiply(const Array<double>& matrix, const double* d, double* out) const;
 
     Substep& s_;
     const EnergyIsland& island_;
     MinimisationMemory& m_;
     const EnergyKernels& kernels_ = energy_kernels();
+    const MultiplyRows multiply_rows_ = multiply_rows();
     const bool statics_, damped_;
     double terms_ = 0;  // [J]
     double mass_ = 0;

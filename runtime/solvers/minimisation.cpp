@@ -48,9 +48,9 @@ private:
         m_.scale.resize(points);
         for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped, &m_.at})
             each->resize(3 * points);
-        m_.hessian.resize(9 * blocks);
+        m_.hessian.resize(9 * blocks + kBlockPadding);
         const bool damped = std::ranges::any_of(m_.island, [](const EnergyIsland& each) { return each.damped; });
-        m_.damping.resize(damped ? 9 * blocks : 0);
+        m_.damping.resize(damped ? 9 * blocks + kBlockPadding : 0);
     }
 
     // x_n, y and what held points are led by; in statics external forces in place of y.

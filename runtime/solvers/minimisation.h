@@ -108,7 +108,7 @@ struct MinimisationMemory {
     Array<double> bias;    // gradient of damping at z = 0
     Array<double> x, guess, slope;
     Array<double> damped;  // damping z
-    // by block, nine each
+    // by block, nine each by columns, padded
     Array<double> hessian, damping;  // of z, without inertia [1]
     Array<double> at;                // where errors and energies are those of
     // by element

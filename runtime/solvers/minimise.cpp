@@ -21,11 +21,6 @@ namespace {
 
 double length_of(std::span<const double> a) { return std::sqrt(dot_of(a, a)); }
 
-// y += times x
-void add_times(std::span<double> y, double times, std::span<const double> x) {
-    for (size_t i = 0; i < y.size(); ++i) y[i] += times * x[i];
-}
-
 class Minimisation final : LineFunction {
 public:
     Minimisation(Objective& of, std::span<double> x, const MinimiseSettings& settings, MinimiseScratch& scratch)
@@ -75,8 +70,10 @@ private:
             }
             ++report_.iterations;
             const double part = square / curvature;
-            add_times(s_.direction, part, s_.search);
-            add_times(s_.residual, -part, s_.image);
+            for (size_t i = 0; i < s_.search.size(); ++i) {
+                s_.direction[i] += part * s_.search[i];
+                s_.residual[i] -= part * s_.image[i];
+            }
             const double next = dot_of(s_.residual, s_.residual), beta = next / square;
             for (size_t i = 0; i < s_.search.size(); ++i) s_.search[i] = s_.residual[i] + beta * s_.search[i];
             square = next;
