@@ -19,8 +19,12 @@ public:
     double evaluate(std::span<const double> z, std::span<double> gradient) override;
     void linearise(std::span<const double> z) override;
     void multiply(std::span<const double> d, std::span<double> out) override;
+    double direct_cost() const override;
+    bool solve(std::span<double> x) override;
     double size_of_terms() const override { return terms_; }
 
+    // Makes z the place of the last evaluation, which it is as a rule.
+    void settle_at(std::span<const double> z);
     // Damping, at x_n.
     void find_damping();
     double mass() const { return mass_; }  // of its free points [kg]

@@ -114,7 +114,7 @@ private:
         const MinimiseReport done = minimise(energy, x, settings, m_.newton);
         tell(done, unit);
         if (!std::isfinite(done.value)) std::ranges::copy(before, x.begin());
-        energy.evaluate(x, {});
+        energy.settle_at(x);
         energy.store_forces();
         for (uint32_t i = 0; i < island.points; ++i) {
             const uint32_t p = island.first_point + i, seat = m_.seat[p];

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "linear/sparse_block_ldlt.h"
 #include "solvers/minimise.h"
 #include "system/system.h"
 
@@ -80,6 +81,8 @@ struct MinimisationMemory {
           frame(m),
           force(m),
           matrix(m),
+          factor(m),
+          solution(m),
           newton(m) {}
 
     // What the graph was made of, and what there is now.
@@ -117,6 +120,9 @@ struct MinimisationMemory {
     Array<double> frame;   // of batches: what energies in lanes leave for matrices
     Array<double> force;   // [nodes][3], gradient of W [N]
     Array<double> matrix;  // of a chunk, [element][3 nodes][3 nodes] [N/m]
+
+    Array<SparseBlockLdlt> factor;  // by island
+    Array<double> solution;         // [points][6], of that
 
     MinimiseScratch newton;
 };
