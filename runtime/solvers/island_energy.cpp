@@ -308,7 +308,8 @@ bool IslandEnergy::solve(std::span<double> x) {
     const uint32_t first = island_.first_point;
     const auto for_lower = [&](auto&& act) {
         for (uint32_t i = 0; i < island_.points; ++i)
-            for (uint32_t b = m_.row_begin[first + i]; m_.column[b] <= first + i; ++b) act(i, m_.column[b] - first, b);
+            for (uint32_t b = m_.row_begin[first + i]; b < m_.row_begin[first + i + 1]; ++b)
+                if (m_.column[b] <= first + i) act(i, m_.column[b] - first, b);
     };
     if (!factor.analysed()) {
         factor.begin(island_.points);
