@@ -59,7 +59,9 @@ private:
         if (direct_ && solve_directly()) return;
         const double size = report_.gradient;
         if (report_.steps == 0) first_ = size;
-        const double end = std::min(0.5, set_.sigma * std::sqrt(std::max(size, set_.tolerance) / first_)) * size;
+        constexpr double kWhole = 1e-6;  // of a residual: the step without the search is Newton's own
+        const double share = set_.line_search ? 0.5 : kWhole;
+        const double end = std::min(share, set_.sigma * std::sqrt(std::max(size, set_.tolerance) / first_)) * size;
         std::ranges::fill(s_.direction, 0.0);
         std::ranges::transform(s_.gradient, s_.residual.begin(), [](double g) { return -g; });
         s_.search = s_.residual;
@@ -74,7 +76,7 @@ private:
             }
             of_.multiply(s_.search, s_.image);
             const double curvature = dot_of(s_.search, s_.image);
-            if (!(curvature > 0) || !std::isfinite(curvature)) {
+            if (!is_usable(curvature)) {
                 if (k == 0) s_.direction = s_.residual;
                 ++report_.indefinite;
                 return;
@@ -89,6 +91,10 @@ private:
             for (size_t i = 0; i < s_.search.size(); ++i) s_.search[i] = s_.residual[i] + beta * s_.search[i];
             square = next;
         }
+    }
+    // Without the search a step is -H^-1 g as it comes, be it uphill.
+    bool is_usable(double curvature) const {
+        return std::isfinite(curvature) && (set_.line_search ? curvature > 0 : curvature != 0);
     }
     bool solve_directly() {
         std::ranges::transform(s_.gradient, s_.direction.begin(), [](double g) { return -g; });
