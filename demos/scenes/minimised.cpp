@@ -37,7 +37,7 @@ Solid soft_cube(int nodes, double young, taut_pos corner) {
 
 }  // namespace
 
-// Its vertices are anywhere within its box, or all in the middle.
+// Its vertices are anywhere within its box, or all in the middle. Swept: neo-Hookean, in steps of real time.
 Scene build_tangled_cube(double n, double r, const Options& options) {
     Scene scene = film_hall(1.8);
     const taut_pos corner{-kCube / 2, 0.5, -kCube / 2};
@@ -48,6 +48,13 @@ Scene build_tangled_cube(double n, double r, const Options& options) {
         const auto part = [&] { return options.from_point ? 0.5 : random.uniform(); };
         const double x = part(), y = part(), z = part();
         p = {corner.x + kCube * x, corner.y + kCube * y, corner.z + kCube * z};
+    }
+    if (options.swept) {  // beside minimisation: real time's solver and material, at its steps
+        const taut_world_def usual = empty_scene().world;
+        scene.world.solver = usual.solver;
+        scene.world.time_step = usual.time_step;
+        scene.world.substeps = usual.substeps;
+        solid.def.material = TAUT_SOLID_NEO_HOOKEAN;
     }
     solid.look = {SoftColours::stress, r, 0, ""};
     scene.add_solid(std::move(solid));

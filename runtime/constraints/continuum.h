@@ -109,8 +109,11 @@ void sample_continuum(uint64_t seed, void* data, Pose* x) {
 }
 
 template <int Nodes, class Strain>
-constexpr ElementType continuum_element(const char* name, ElementSweep ElementKernels::*sweep = nullptr) {
-    return point_element<Continuum<Nodes, Strain>>(name, sample_continuum<Nodes, Strain>, sweep);
+constexpr ElementType continuum_element(const char* name, ElementSweep ElementKernels::*sweep = nullptr,
+                                        EnergyKernel EnergyKernels::*energy = nullptr) {
+    ElementType type = point_element<Continuum<Nodes, Strain>>(name, sample_continuum<Nodes, Strain>, sweep);
+    type.energy = energy;
+    return type;
 }
 
 }  // namespace taut

@@ -10,6 +10,7 @@
 
 #include "constraints/constraint.h"
 #include "constraints/element_kernels.h"
+#include "constraints/energy_kernels.h"
 
 namespace taut {
 
@@ -46,6 +47,8 @@ struct ElementType {
                     double* k) = nullptr;
     // Its fused sweep in lanes, where it has one; else null.
     ElementSweep ElementKernels::*sweep = nullptr;
+    // Its energy in lanes, likewise.
+    EnergyKernel EnergyKernels::*energy = nullptr;
 };
 
 // Every type there is; tests, hash and snapshots loop over it.

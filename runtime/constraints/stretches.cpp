@@ -47,9 +47,13 @@ using StretchesAndVolume = Spectral<Stretches<true>>;
 
 }  // namespace
 
-constinit const ElementType kStretchTet4 = continuum_element<4, PrincipalStretches>("principal stretches tet4");
-constinit const ElementType kStretchHex8 = continuum_element<8, PrincipalStretches>("principal stretches hex8");
-constinit const ElementType kStretchVolumeTet4 = continuum_element<4, StretchesAndVolume>("stretches and volume tet4");
-constinit const ElementType kStretchVolumeHex8 = continuum_element<8, StretchesAndVolume>("stretches and volume hex8");
+constinit const ElementType kStretchTet4 =
+    continuum_element<4, PrincipalStretches>("principal stretches tet4", nullptr, &EnergyKernels::stretch_tet4);
+constinit const ElementType kStretchHex8 =
+    continuum_element<8, PrincipalStretches>("principal stretches hex8", nullptr, &EnergyKernels::stretch_hex8);
+constinit const ElementType kStretchVolumeTet4 =
+    continuum_element<4, StretchesAndVolume>("stretches and volume tet4", nullptr, &EnergyKernels::stretch_volume_tet4);
+constinit const ElementType kStretchVolumeHex8 =
+    continuum_element<8, StretchesAndVolume>("stretches and volume hex8", nullptr, &EnergyKernels::stretch_volume_hex8);
 
 }  // namespace taut

@@ -1,22 +1,11 @@
-// Vectors in lanes, and one side of a lane group; for the sweeps that are templates over the lanes (simd/lanes.h).
+// One side of a lane group; for the sweeps that are templates over the lanes (simd/lanes.h).
 #pragma once
 
 #include "constraints/contact_lanes.h"
 #include "simd/lanes.h"
+#include "simd/vec3_lanes.h"
 
 namespace taut {
-
-template <class F>
-struct Vec3Lanes {
-    F x, y, z;
-    friend Vec3Lanes operator+(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Vec3Lanes operator*(const F& s, const Vec3Lanes& a) { return {s * a.x, s * a.y, s * a.z}; }
-    friend F dot(const Vec3Lanes& a, const Vec3Lanes& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    friend Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
-        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    }
-};
 
 inline void prefetch_to_write(const void* at) {
 #if defined(__x86_64__) || defined(__i386__)

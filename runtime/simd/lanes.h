@@ -13,93 +13,103 @@
 
 namespace taut {
 
-struct ScalarLanes {
-    float f[kLanes];
+template <class N, int Width>
+struct ScalarLanesOf {
+    using Number = N;
+    using Lanes = ScalarLanesOf;
+    static constexpr int kWidth = Width;
+    Number f[Width];
 
-    static ScalarLanes load(const float* p) {
-        ScalarLanes r;
-        for (int i = 0; i < kLanes; ++i) r.f[i] = p[i];
+    static Lanes load(const Number* p) {
+        Lanes r;
+        for (int i = 0; i < Width; ++i) r.f[i] = p[i];
         return r;
     }
-    static ScalarLanes all(float x) {
-        ScalarLanes r;
-        for (float& e : r.f) e = x;
+    static Lanes all(Number x) {
+        Lanes r;
+        for (Number& e : r.f) e = x;
         return r;
     }
-    void store(float* p) const {
-        for (int i = 0; i < kLanes; ++i) p[i] = f[i];
+    void store(Number* p) const {
+        for (int i = 0; i < Width; ++i) p[i] = f[i];
     }
     template <class Op>
-    static ScalarLanes zip(const ScalarLanes& a, const ScalarLanes& b, Op op) {
-        ScalarLanes r;
-        for (int i = 0; i < kLanes; ++i) r.f[i] = op(a.f[i], b.f[i]);
+    static Lanes zip(const Lanes& a, const Lanes& b, Op op) {
+        Lanes r;
+        for (int i = 0; i < Width; ++i) r.f[i] = op(a.f[i], b.f[i]);
         return r;
     }
-    friend ScalarLanes operator+(const ScalarLanes& a, const ScalarLanes& b) {
-        return zip(a, b, [](float x, float y) { return x + y; });
+    friend Lanes operator+(const Lanes& a, const Lanes& b) {
+        return zip(a, b, [](Number x, Number y) { return x + y; });
     }
-    friend ScalarLanes operator-(const ScalarLanes& a, const ScalarLanes& b) {
-        return zip(a, b, [](float x, float y) { return x - y; });
+    friend Lanes operator-(const Lanes& a, const Lanes& b) {
+        return zip(a, b, [](Number x, Number y) { return x - y; });
     }
-    friend ScalarLanes operator*(const ScalarLanes& a, const ScalarLanes& b) {
-        return zip(a, b, [](float x, float y) { return x * y; });
+    friend Lanes operator*(const Lanes& a, const Lanes& b) {
+        return zip(a, b, [](Number x, Number y) { return x * y; });
     }
-    friend ScalarLanes operator/(const ScalarLanes& a, const ScalarLanes& b) {
-        return zip(a, b, [](float x, float y) { return x / y; });
+    friend Lanes operator/(const Lanes& a, const Lanes& b) {
+        return zip(a, b, [](Number x, Number y) { return x / y; });
     }
-    static ScalarLanes max(const ScalarLanes& a, const ScalarLanes& b) {
-        return zip(a, b, [](float x, float y) { return x > y ? x : y; });
+    static Lanes max(const Lanes& a, const Lanes& b) {
+        return zip(a, b, [](Number x, Number y) { return x > y ? x : y; });
     }
-    static ScalarLanes sqrt(const ScalarLanes& a) {
-        return zip(a, a, [](float x, float) { return __builtin_sqrtf(x); });
+    static Lanes sqrt(const Lanes& a) {
+        return zip(a, a, [](Number x, Number) {
+            if constexpr (sizeof(Number) == sizeof(float))
+                return __builtin_sqrtf(x);
+            else
+                return __builtin_sqrt(x);
+        });
     }
     // a > b ? yes : no
-    static ScalarLanes if_greater(const ScalarLanes& a, const ScalarLanes& b, const ScalarLanes& yes,
-                                  const ScalarLanes& no) {
-        ScalarLanes r;
-        for (int i = 0; i < kLanes; ++i) r.f[i] = a.f[i] > b.f[i] ? yes.f[i] : no.f[i];
+    static Lanes if_greater(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {
+        Lanes r;
+        for (int i = 0; i < Width; ++i) r.f[i] = a.f[i] > b.f[i] ? yes.f[i] : no.f[i];
         return r;
     }
     // a > b, a bit a lane
-    static unsigned greater(const ScalarLanes& a, const ScalarLanes& b) {
+    static unsigned greater(const Lanes& a, const Lanes& b) {
         unsigned bits = 0;
-        for (int i = 0; i < kLanes; ++i) bits |= static_cast<unsigned>(a.f[i] > b.f[i]) << i;
+        for (int i = 0; i < Width; ++i) bits |= static_cast<unsigned>(a.f[i] > b.f[i]) << i;
         return bits;
     }
-    static float largest(const ScalarLanes& a) {
-        float most = a.f[0];
-        for (int i = 1; i < kLanes; ++i) most = a.f[i] > most ? a.f[i] : most;
+    static Number largest(const Lanes& a) {
+        Number most = a.f[0];
+        for (int i = 1; i < Width; ++i) most = a.f[i] > most ? a.f[i] : most;
         return most;
     }
     // Whether any lane of any of them is not 0.
-    template <class... Lanes>
-    static bool any(const Lanes&... lanes) {
+    template <class... Each>
+    static bool any(const Each&... lanes) {
         bool found = false;
-        for (int i = 0; i < kLanes; ++i) found = found || ((lanes.f[i] != 0) || ...);
+        for (int i = 0; i < Width; ++i) found = found || ((lanes.f[i] != 0) || ...);
         return found;
     }
-    // Rows of eight or four floats, one for each lane, become columns: out[c] holds component c of all lanes.
+    // Rows of eight or four numbers, one for each lane, become columns: out[c] holds component c of all lanes.
     template <int Columns>
-    static void transpose(const float* const row[kLanes], ScalarLanes (&out)[Columns]) {
+    static void transpose(const Number* const row[Width], Lanes (&out)[Columns]) {
         for (int c = 0; c < Columns; ++c)
-            for (int lane = 0; lane < kLanes; ++lane) out[c].f[lane] = row[lane][c];
+            for (int lane = 0; lane < Width; ++lane) out[c].f[lane] = row[lane][c];
     }
     template <int Columns>
-    static void transpose_back(const ScalarLanes (&in)[Columns], float* const row[kLanes]) {
+    static void transpose_back(const Lanes (&in)[Columns], Number* const row[Width]) {
         for (int c = 0; c < Columns; ++c)
-            for (int lane = 0; lane < kLanes; ++lane) row[lane][c] = in[c].f[lane];
+            for (int lane = 0; lane < Width; ++lane) row[lane][c] = in[c].f[lane];
     }
 };
+using ScalarLanes = ScalarLanesOf<float, kLanes>;
 
 // Twice as many lanes as R has.
 template <class R>
 struct Twice {
+    using Number = typename R::Number;
     static constexpr int kWidth = 2 * R::kWidth;
     R lo, hi;
 
-    static Twice load(const float* p) { return {R::load(p), R::load(p + R::kWidth)}; }
-    static Twice all(float x) { return {R::all(x), R::all(x)}; }
-    void store(float* p) const {
+    static Twice load(const Number* p) { return {R::load(p), R::load(p + R::kWidth)}; }
+    static Twice all(Number x) { return {R::all(x), R::all(x)}; }
+    void store(Number* p) const {
         lo.store(p);
         hi.store(p + R::kWidth);
     }
@@ -112,14 +122,14 @@ struct Twice {
     static Twice if_greater(Twice a, Twice b, Twice yes, Twice no) {
         return {R::if_greater(a.lo, b.lo, yes.lo, no.lo), R::if_greater(a.hi, b.hi, yes.hi, no.hi)};
     }
-    static float largest(Twice a) { return R::largest(R::max(a.lo, a.hi)); }
+    static Number largest(Twice a) { return R::largest(R::max(a.lo, a.hi)); }
     static unsigned greater(Twice a, Twice b) { return R::greater(a.lo, b.lo) | R::greater(a.hi, b.hi) << R::kWidth; }
     template <class... Lanes>
     static bool any(Lanes... lanes) {
         return R::any(lanes.lo..., lanes.hi...);
     }
     template <int Columns>
-    static void transpose(const float* const row[kWidth], Twice (&out)[Columns]) {
+    static void transpose(const Number* const row[kWidth], Twice (&out)[Columns]) {
         R lo_[Columns], hi_[Columns];
         R::transpose(row, lo_);
         R::transpose(row + R::kWidth, hi_);
@@ -127,7 +137,7 @@ struct Twice {
         for (int c = 0; c < Columns; ++c) out[c] = {lo_[c], hi_[c]};
     }
     template <int Columns>
-    static void transpose_back(const Twice (&in)[Columns], float* const row[kWidth]) {
+    static void transpose_back(const Twice (&in)[Columns], Number* const row[kWidth]) {
         R a_[Columns], b_[Columns];
 #pragma GCC unroll 8
         for (int c = 0; c < Columns; ++c) a_[c] = in[c].lo, b_[c] = in[c].hi;
@@ -138,6 +148,7 @@ struct Twice {
 
 #if defined(__SSE2__)
 struct Sse2Register {
+    using Number = float;
     static constexpr int kWidth = 4;
     __m128 f;
 
@@ -202,6 +213,7 @@ using BaseLanes = ScalarLanes;
 
 #if defined(__AVX2__)
 struct Avx2Register {
+    using Number = float;
     static constexpr int kWidth = 8;
     __m256 f;
 
@@ -272,6 +284,7 @@ using Avx2Lanes = Twice<Avx2Register>;
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 struct Avx512Register {
+    using Number = float;
     static constexpr int kWidth = 16;
     __m512 f;
 

@@ -8,6 +8,7 @@ namespace taut {
 
 constexpr int kLanes = 16;                          // floats that a kernel works on side by side
 constexpr uint32_t kAllLanes = (1u << kLanes) - 1;  // a bit for each
+constexpr int kDoubles = 8;                         // numbers of double precision, likewise
 
 enum class Width : uint8_t { scalar, sse2, avx2, avx512 };
 

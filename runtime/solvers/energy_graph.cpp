@@ -12,7 +12,7 @@ namespace {
 class EnergyGraph {
 public:
     EnergyGraph(const System& system, const Nodes& nodes, const Group& group, MinimisationMemory& memory)
-        : system_(system), rows_(system.rows), m_(memory) {
+        : system_(system), rows_(system.rows), node_at_(system.node_at), m_(memory) {
         m_.found_free.assign(system.node_at.size(), 0);
         for (const uint32_t node : group.nodes)
             if (nodes.mass[node].inv_mass > 0) m_.found_free[system.at(node)] = 1;
@@ -43,6 +43,8 @@ public:
         list_elements();
         list_points();
         list_blocks();
+        m_.factor.clear();
+        for (size_t k = 0; k < m_.island.size(); ++k) m_.factor.emplace_back(*m_.factor.get_allocator().memory);
     }
     // A set's arrays may have moved, and its slot too.
     void find_sets() {
@@ -123,7 +125,7 @@ private:
             m_.element[at] = rows_.element[rows_.elastic[r].element + i];
         });
         m_.batch.clear();
-        uint32_t at = 0, node = 0, block = 0;
+        uint32_t at = 0, node = 0, block = 0, frame = 0;
         for (uint32_t k = 0; k < m_.island.size(); ++k) {
             EnergyIsland& island = m_.island[k];
             island.first_batch = static_cast<uint32_t>(m_.batch.size());
@@ -132,7 +134,10 @@ private:
                 const ElasticRun& run = rows_.elastic[run_of[at]];
                 const bool joins = m_.batch.size() > island.first_batch && m_.batch.back().run == run_of[at] &&
                                    m_.batch.back().count < kEnergyBatch;
-                if (!joins) m_.batch.push_back({run.set, run_of[at], at, 0, node, block});
+                if (!joins) {
+                    m_.batch.push_back({run.set, run_of[at], at, 0, node, block, frame});
+                    if (run.set->type->energy) ++frame;
+                }
                 ++m_.batch.back().count;
                 node += nodes_in(run);
                 block += nodes_in(run) * nodes_in(run);
@@ -143,33 +148,42 @@ private:
         m_.point_of.resize(node);
         m_.block_of.resize(block);
         m_.energy.resize(m_.element.size());
+        m_.frame.resize(frame * size_t{kFrameNumbers});
         m_.error.resize(m_.element.size() * kMaxRows);
         m_.force.resize(3 * size_t{node});
     }
 
-    // Island by island, in the order in which elements name them. scratch[0], [1]: by seat its point and the island
-    // that this belongs to.
+    // Island by island, in the order of nodes, as meshes have them: neighbours are near. scratch[0], [1]: by seat its
+    // point and the island that this belongs to.
     void list_points() {
         m_.scratch[1].assign(m_.found_free.size(), kNone);
+        m_.scratch[0].resize(m_.found_free.size());
         m_.seat.clear();
         m_.free.clear();
         for (uint32_t k = 0; k < m_.island.size(); ++k) {
             EnergyIsland& island = m_.island[k];
             island.first_point = static_cast<uint32_t>(m_.seat.size());
-            for (uint32_t b = island.first_batch; b < island.first_batch + island.batches; ++b) {
-                const EnergyBatch& batch = m_.batch[b];
-                uint32_t node = batch.node;
-                for (uint32_t e = batch.first; e < batch.first + batch.count; ++e)
-                    for (const uint32_t seat : seats_of(rows_.elastic[batch.run], m_.scratch[3][e])) {
-                        if (std::exchange(m_.scratch[1][seat], k) != k) {
-                            m_.scratch[0][seat] = static_cast<uint32_t>(m_.seat.size());
-                            m_.seat.push_back(seat);
-                            m_.free.push_back(is_free(seat));
-                        }
-                        m_.point_of[node++] = m_.scratch[0][seat];
-                    }
-            }
+            for_seats(island, [&](uint32_t seat, uint32_t) {
+                if (std::exchange(m_.scratch[1][seat], k) != k) m_.seat.push_back(seat);
+            });
             island.points = static_cast<uint32_t>(m_.seat.size()) - island.first_point;
+            std::sort(m_.seat.begin() + island.first_point, m_.seat.end(),
+                      [&](uint32_t a, uint32_t b) { return node_at_[a] < node_at_[b]; });
+            for (uint32_t p = island.first_point; p < m_.seat.size(); ++p) {
+                m_.scratch[0][m_.seat[p]] = p;
+                m_.free.push_back(is_free(m_.seat[p]));
+            }
+            for_seats(island, [&](uint32_t seat, uint32_t node) { m_.point_of[node] = m_.scratch[0][seat]; });
+        }
+    }
+    // act(seat, place in point_of) of each node of an island's elements; scratch[3] as list_elements() left it.
+    template <class Act>
+    void for_seats(const EnergyIsland& island, Act&& act) const {
+        for (uint32_t b = island.first_batch; b < island.first_batch + island.batches; ++b) {
+            const EnergyBatch& batch = m_.batch[b];
+            uint32_t node = batch.node;
+            for (uint32_t e = batch.first; e < batch.first + batch.count; ++e)
+                for (const uint32_t seat : seats_of(rows_.elastic[batch.run], m_.scratch[3][e])) act(seat, node++);
         }
     }
 
@@ -219,6 +233,7 @@ private:
 
     const System& system_;
     const Rows& rows_;
+    std::span<const uint32_t> node_at_;  // by seat
     MinimisationMemory& m_;
 };
 

@@ -6,6 +6,7 @@
 // In statics 1/a and B are 0, and E = sum W(x) - f . (x - x_n) with the external forces f.
 #pragma once
 
+#include "linear/block_rows.h"
 #include "solvers/minimisation.h"
 #include "solvers/point_contacts.h"
 #include "solvers/point_penalties.h"
@@ -23,8 +24,12 @@ public:
     void hold(std::span<double> z, std::span<double> gradient) override;
     void linearise(std::span<double> z) override;
     void multiply(std::span<const double> d, std::span<double> out) override;
+    double direct_cost() const override;
+    bool solve(std::span<double> x) override;
     double size_of_terms() const override { return terms_; }
 
+    // Makes z the place of the last evaluation, which it is as a rule.
+    void settle_at(std::span<double> z, std::span<double> gradient);
     // Damping, at x_n.
     void find_damping();
     double mass() const { return mass_; }  // of its free points [kg]
@@ -35,6 +40,10 @@ private:
     template <class Act>
     void for_batches(Act&& act) const;
     ElementBatch view(const EnergyBatch& batch) const;
+    // Null where its set's energy does not come in lanes.
+    const EnergyKernel* kernel_of(const EnergyBatch& batch) const;
+    EnergyLanes lanes_of(const EnergyBatch& batch) const;
+    double* frame_of(const EnergyBatch& batch) const { return &m_.frame[size_t{batch.frame} * kFrameNumbers]; }
     double sum_of_energies() const;
     void place(std::span<double> z);
     void find_errors(const EnergyBatch& batch, double* error, double* jacobian) const;
@@ -47,10 +56,10 @@ private:
     // dE'/dz of the last evaluation with a gradient.
     std::span<double> raw() const { return {&m_.raw[3 * size_t{island_.first_point}], 3 * size_t{island_.points}}; }
     void find_damping_of(const EnergyBatch& batch, double* out, double* push) const;
-    void scatter(const EnergyBatch& batch, const double* matrix, double times, Array<double>& into) const;
+    void scatter(const EnergyBatch& batch, const double* matrix, Array<double>& into) const;
     template <class Find, class Take>
     void for_matrices(Find&& find, Take&& take) const;
-    void multiply(const Array<double>& matrix, bool with_inertia, const double* d, double* out) const;
+    void multiply(const Array<double>& matrix, const double* d, double* out) const;
 
     Substep& s_;
     const EnergyIsland& island_;
@@ -58,6 +67,8 @@ private:
     PointContacts contacts_;
     PointPenalties penalties_;
     SolidContacts solids_;
+    const EnergyKernels& kernels_ = energy_kernels();
+    const MultiplyRows multiply_rows_ = multiply_rows();
     const bool statics_, damped_;
     double terms_ = 0;  // [J]
     double mass_ = 0;

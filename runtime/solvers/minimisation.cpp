@@ -51,9 +51,9 @@ private:
         m_.scale.resize(points);
         for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped, &m_.at})
             each->resize(3 * points);
-        m_.hessian.resize(9 * blocks);
+        m_.hessian.resize(9 * blocks + kBlockPadding);
         const bool damped = std::ranges::any_of(m_.island, [](const EnergyIsland& each) { return each.damped; });
-        m_.damping.resize(damped ? 9 * blocks : 0);
+        m_.damping.resize(damped ? 9 * blocks + kBlockPadding : 0);
     }
 
     void find_softs() {
@@ -135,7 +135,7 @@ private:
             std::ranges::copy(before, x.begin());
             m_.hold.clear();
         }
-        energy.evaluate(x, {});
+        energy.settle_at(x, {});
         energy.store_forces();
         for (uint32_t i = 0; i < island.points; ++i) {
             const uint32_t p = island.first_point + i, seat = m_.seat[p];

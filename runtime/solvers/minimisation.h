@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "constraints/point_penalty.h"
 #include "detect/obstacles.h"
+#include "linear/sparse_block_ldlt.h"
 #include "solvers/minimise.h"
 #include "system/system.h"
 
@@ -28,7 +29,7 @@ struct MinimisationSettings {
     Relaxation* relaxation = nullptr;  // statics in place of a substep, and what comes of it
 };
 
-constexpr uint32_t kEnergyBatch = 8;  // elements evaluated together, at most
+constexpr uint32_t kEnergyBatch = kDoubles;  // elements evaluated together, at most
 
 // Of one set.
 struct EnergyBatch {
@@ -37,6 +38,7 @@ struct EnergyBatch {
     uint32_t first, count;  // of elements, in the order of islands
     uint32_t node;          // first in point_of
     uint32_t block;         // first in block_of
+    uint32_t frame;         // in units of kFrameNumbers, of sets whose energy comes in lanes
 };
 
 struct EnergyIsland {
@@ -124,6 +126,7 @@ struct MinimisationMemory {
           at(m),
           error(m),
           energy(m),
+          frame(m),
           force(m),
           matrix(m),
           raw(m),
@@ -136,6 +139,8 @@ struct MinimisationMemory {
           within(m),
           pair(m),
           pair_matrix(m),
+          factor(m),
+          solution(m),
           newton(m) {}
 
     Obstacles obstacles;  // of the frame
@@ -166,12 +171,13 @@ struct MinimisationMemory {
     Array<double> bias;    // gradient of damping at z = 0
     Array<double> x, guess, slope;
     Array<double> damped;  // damping z
-    // by block, nine each
+    // by block, nine each by columns, padded
     Array<double> hessian, damping;  // of z, without inertia [1]
     Array<double> at;                // where errors and energies are those of
     // by element
     Array<double> error;   // [kMaxRows] C, one after the other within a batch
     Array<double> energy;  // [J]
+    Array<double> frame;   // of batches: what energies in lanes leave for matrices
     Array<double> force;   // [nodes][3], gradient of W [N]
     Array<double> matrix;  // of a chunk, [element][3 nodes][3 nodes] [N/m]
 
@@ -187,6 +193,8 @@ struct MinimisationMemory {
     Array<VertexWithin> within;     // scratch of SolidContacts
     Array<PenaltyPair> pair;        // of the last evaluation
     Array<double> pair_matrix;      // of each, [12][12] in z [1]
+    Array<SparseBlockLdlt> factor;  // by island
+    Array<double> solution;         // [points][6], of that
 
     MinimiseScratch newton;
 };

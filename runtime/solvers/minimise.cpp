@@ -21,11 +21,6 @@ namespace {
 
 double length_of(std::span<const double> a) { return std::sqrt(dot_of(a, a)); }
 
-// y += times x
-void add_times(std::span<double> y, double times, std::span<const double> x) {
-    for (size_t i = 0; i < y.size(); ++i) y[i] += times * x[i];
-}
-
 class Minimisation final : LineFunction {
 public:
     Minimisation(Objective& of, std::span<double> x, const MinimiseSettings& settings, MinimiseScratch& scratch)
@@ -57,31 +52,56 @@ private:
     }
 
     // H d = -g by conjugate gradients from d = 0, which ends where the curvature p . H p is not positive: with the last
-    // iterate, or with -g at the first one. Either goes downhill.
+    // iterate, or with -g at the first one. Either goes downhill. Where that lasts it is solved directly: whether it
+    // would end with the next product nobody knows, so that what is cheaper costs at most twice as much. From then on
+    // directly at once, until a matrix is not positive.
     void find_direction() {
+        bool was_tried = direct_;
+        if (direct_ && solve_directly()) return;
         const double size = report_.gradient;
         if (report_.steps == 0) first_ = size;
-        const double end = std::min(0.5, set_.sigma * std::sqrt(std::max(size, set_.tolerance) / first_)) * size;
+        constexpr double kWhole = 1e-6;  // of a residual: the step without the search is Newton's own
+        const double share = set_.line_search ? 0.5 : kWhole;
+        const double end = std::min(share, set_.sigma * std::sqrt(std::max(size, set_.tolerance) / first_)) * size;
         std::ranges::fill(s_.direction, 0.0);
         std::ranges::transform(s_.gradient, s_.residual.begin(), [](double g) { return -g; });
         s_.search = s_.residual;
         double square = size * size;
+        const double rent = of_.direct_cost();
         for (size_t k = 0; k < most_iterations() && std::sqrt(square) > end; ++k) {
+            if (!was_tried && static_cast<double>(k) >= rent) {
+                was_tried = true;
+                s_.image = s_.direction;
+                if (solve_directly()) return;
+                s_.direction = s_.image;
+            }
             of_.multiply(s_.search, s_.image);
             const double curvature = dot_of(s_.search, s_.image);
-            if (!(curvature > 0) || !std::isfinite(curvature)) {
+            if (!is_usable(curvature)) {
                 if (k == 0) s_.direction = s_.residual;
                 ++report_.indefinite;
                 return;
             }
             ++report_.iterations;
             const double part = square / curvature;
-            add_times(s_.direction, part, s_.search);
-            add_times(s_.residual, -part, s_.image);
+            for (size_t i = 0; i < s_.search.size(); ++i) {
+                s_.direction[i] += part * s_.search[i];
+                s_.residual[i] -= part * s_.image[i];
+            }
             const double next = dot_of(s_.residual, s_.residual), beta = next / square;
             for (size_t i = 0; i < s_.search.size(); ++i) s_.search[i] = s_.residual[i] + beta * s_.search[i];
             square = next;
         }
+    }
+    // Without the search a step is -H^-1 g as it comes, be it uphill.
+    bool is_usable(double curvature) const {
+        return std::isfinite(curvature) && (set_.line_search ? curvature > 0 : curvature != 0);
+    }
+    bool solve_directly() {
+        std::ranges::transform(s_.gradient, s_.direction.begin(), [](double g) { return -g; });
+        direct_ = of_.solve(s_.direction);
+        if (direct_) ++report_.direct;
+        return direct_;
     }
     // In exact arithmetic as many as there are unknowns reach the solution.
     size_t most_iterations() const { return x_.size(); }
@@ -147,8 +167,9 @@ private:
     const MinimiseSettings& set_;
     MinimiseScratch& s_;
     MinimiseReport report_;
-    double first_ = 1;  // |dE/dx| at the first step
-    double tried_ = 0;  // the part that trial and trial_gradient belong to
+    bool direct_ = false;  // the last step was solved so
+    double first_ = 1;     // |dE/dx| at the first step
+    double tried_ = 0;     // the part that trial and trial_gradient belong to
     uint32_t trials_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "base/memory.h"
@@ -25,6 +26,10 @@ public:
     // d2E/dx2 at x, symmetric, for multiply().
     virtual void linearise(std::span<double> x) = 0;
     virtual void multiply(std::span<const double> d, std::span<double> out) = 0;
+    // What solve() costs, in products: conjugate gradients that took as many give way to it. Infinite without it.
+    virtual double direct_cost() const { return std::numeric_limits<double>::infinity(); }
+    // x, once -dE/dx, becomes Newton's direction; false: the matrix is not positive, and x is anything.
+    virtual bool solve(std::span<double>) { return false; }
     // Sum of the sizes of the terms of E, as last evaluated: what rounding leaves of E goes by that.
     virtual double size_of_terms() const = 0;
 
@@ -46,6 +51,7 @@ struct MinimiseSettings {
 struct MinimiseReport {
     uint32_t steps = 0;              // of Newton's method: linear solves
     uint32_t iterations = 0;         // of conjugate gradients, in all of them
+    uint32_t direct = 0;             // steps that were solved directly
     uint32_t evaluations = 0;        // of E with dE/dx
     uint32_t indefinite = 0;         // steps at which conjugate gradients met a negative curvature
     uint32_t gradient_steps = 0;     // that went along -dE/dx in place of that

@@ -39,6 +39,21 @@ public:
             for (uint32_t k = 0; k < count; ++k) out[i] += matrix[i * count + k] * d[k];
         }
     }
+    double direct_cost() const override { return direct_after; }
+    bool solve(std::span<double> x) override {  // by elimination
+        Vector a = matrix;
+        for (uint32_t k = 0; k < count; ++k) {
+            if (!(a[k * count + k] > 0)) return false;
+            for (uint32_t i = k + 1; i < count; ++i) {
+                const double ratio = a[i * count + k] / a[k * count + k];
+                for (uint32_t j = k; j < count; ++j) a[i * count + j] -= ratio * a[k * count + j];
+                x[i] -= ratio * x[k];
+            }
+        }
+        for (uint32_t k = count; k-- > 0; x[k] /= a[k * count + k])
+            for (uint32_t j = k + 1; j < count; ++j) x[k] -= a[k * count + j] * x[j];
+        return true;
+    }
     double size_of_terms() const override { return 1 + std::abs(last); }
     bool never_rose() const {
         return std::ranges::is_sorted(at, [](double a, double b) { return a > b + 1e-12 * std::abs(b); });
@@ -46,6 +61,7 @@ public:
 
     uint32_t count = 1;
     double last = 0;
+    double direct_after = std::numeric_limits<double>::infinity();  // products
     Vector matrix, at;
 };
 
@@ -143,6 +159,27 @@ TEST(Minimise, SolvesAQuadraticByOneExactStep) {
     EXPECT_EQ(report.steps, 1u);
     EXPECT_EQ(report.evaluations, 2u);  // the whole step is tried first, and taken
     EXPECT_LE(report.iterations, 4u);
+}
+
+// From where conjugate gradients cost as much on: the same minimum with fewer of their iterations, and they go on where
+// the matrix is not positive.
+TEST(Minimise, SolvesDirectlyWhereThatIsCheaper) {
+    uint32_t iterations[2] = {}, direct = 0, indefinite = 0;
+    for (const bool solves : {false, true}) {
+        Analytic f = chained_rosenbrock(40);
+        if (solves) f.direct_after = 5;
+        std::vector<double> x(40, -1.5);
+        const MinimiseReport report = run(f, x);
+        EXPECT_TRUE(report.converged);
+        EXPECT_TRUE(f.never_rose());
+        iterations[solves] = report.iterations;
+        direct += report.direct;
+        if (solves) indefinite = report.indefinite;
+        for (const double each : x) EXPECT_NEAR(each, 1, 1e-8) << solves;
+    }
+    EXPECT_GT(direct, 0u);
+    EXPECT_GT(indefinite, 0u);
+    EXPECT_LT(iterations[1], iterations[0]);
 }
 
 // Two wells: at the ridge between them the curvature is negative, and conjugate gradients give the way down.

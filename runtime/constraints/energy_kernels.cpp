@@ -1,0 +1,12 @@
+// Run-time choice of the build of energies in lanes.
+#include "constraints/energy_kernels.h"
+
+namespace taut {
+
+const EnergyKernels& energy_kernels() {
+    static const EnergyKernels* const kBuilds[] = {&kEnergyKernelsScalar, &kEnergyKernelsSse2, &kEnergyKernelsAvx2,
+                                                   &kEnergyKernelsAvx512};
+    return *kBuilds[static_cast<size_t>(kernel_width())];
+}
+
+}  // namespace taut
