@@ -175,14 +175,13 @@ void PointContacts::hold(std::span<double> gradient) {
 }
 
 void PointContacts::restrict(Array<double>& matrix) const {
-    using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
     if (m_.hold.size() == first_hold_) return;
     team_.for_ranges(island_.points, kTouchGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t p = island_.first_point + begin; p < island_.first_point + end; ++p) {
             const PointHold* const row = m_.hold_of[p] == kNone ? nullptr : &m_.hold[m_.hold_of[p]];
             for (uint32_t b = m_.row_begin[p]; b < m_.row_begin[p + 1]; ++b) {
                 const uint32_t q = m_.column[b];
-                Eigen::Map<RowMajor3> a(&matrix[9 * size_t{b}]);
+                Eigen::Map<Mat3> a(&matrix[9 * size_t{b}]);
                 if (row && p == q) a -= row->curve;
                 if (row) a = (row->along * a).eval();
                 if (m_.hold_of[q] != kNone) a = (a * m_.hold[m_.hold_of[q]].along).eval();
