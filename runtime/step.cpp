@@ -60,8 +60,10 @@ void detect_obstacles(World& w, Stopwatch& watch) {
     w.pairs.surfaces.contact.clear();
     ++w.pairs.surfaces.version;
     const taut_vec3 g = w.def.gravity;
+    Obstacles& obstacles = w.scratch.minimisation.get().obstacles;
     find_obstacles({w.nodes, w.colliders, w.shapes, w.softs, w.elements, w.def.time_step, Vec3(g.x, g.y, g.z)},
-                   w.scratch.minimisation.get().obstacles);
+                   obstacles);
+    wake_met(w, w.def.time_step, obstacles);
     tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();
 }

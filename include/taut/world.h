@@ -25,12 +25,12 @@ typedef enum taut_solver {
     TAUT_SOLVER_MINIMUM_RESIDUAL = 5,       /**< algorithm 2 */
     TAUT_SOLVER_CONJUGATE_RESIDUALS = 6,    /**< algorithm 3 */
     TAUT_SOLVER_CONJUGATE_GRADIENTS = 7,    /**< algorithm 1, on the energy: rigid rows are stiff springs */
-    TAUT_SOLVER_MINIMISATION = 8, /**< cloths, solids and free cables of particles alone, in implicit Euler: Newton's
-                                       method with line search on their energy (Gast and Schroeder 2014), which
-                                       bears steps as long as a film frame and recovers from any tangle. A step
-                                       of a world that has something else returns TAUT_UNSUPPORTED: rigid
-                                       dynamic bodies, joints, attachments, what moves and may touch (filter
-                                       mask not 0), rigid elements (a compliance of 0), cloths with pressure or gas */
+    TAUT_SOLVER_MINIMISATION = 8, /**< cloths, solids and free cables of particles, in implicit Euler, by Newton's
+                                       method with line search on their energy (Gast and Schroeder 2014): for long
+                                       steps and tangles. Vertices stay out of static and kinematic shapes and of
+                                       cells, do not bounce, and are rubbed after a step. TAUT_UNSUPPORTED: rigid
+                                       dynamic bodies, joints, attachments, gas, a compliance of 0, and of contacts
+                                       those of cables, of cloth with cloth and with meshes without distances */
     TAUT_SOLVER_MAX = 0x7fffffff
 } taut_solver;
 

@@ -138,4 +138,32 @@ bool wake_touched(World& world) {
     return world.sleep.recall;
 }
 
+void wake_met(World& world, double time, Obstacles& obstacles) {
+    if (world.sleep.bodies == 0) return;
+    const Nodes& nodes = world.nodes;
+    const auto some = [&](const SoftShape& shape, auto&& is) {
+        return std::ranges::any_of(world.softs.record[shape.soft].node, [&](uint32_t node) { return is(nodes, node); });
+    };
+    const auto wake_all_of = [&](const SoftShape& shape) {
+        for (const uint32_t node : world.softs.record[shape.soft].node) wake(world, node);
+    };
+    for (const SoftMeeting& meeting : obstacles.between) {
+        const SoftShape &one = obstacles.softs[meeting.one], &other = obstacles.softs[meeting.other];
+        if (some(one, moves) && some(other, sleeps)) wake_all_of(other);
+        if (some(other, moves) && some(one, sleeps)) wake_all_of(one);
+    }
+    place_obstacles(nodes, world.colliders, world.shapes, time, obstacles);
+    for (const SoftShape& shape : obstacles.softs) {
+        if (!some(shape, sleeps)) continue;
+        const double radius = obstacles.radius[shape.soft];
+        for (const Meeting& meeting : obstacles.of(shape.soft)) {
+            const Obstacle& obstacle = obstacles.list[meeting.obstacle];
+            if (nodes.info[obstacle.node].kind != NodeKind::kinematic || nodes.rest[obstacle.node] != Rest::awake)
+                continue;
+            const Vec3 way = Vec3::Constant(radius) + time * obstacle.v.cwiseAbs();
+            if (shape.swept.meets({obstacle.lo - way, obstacle.hi + way})) wake_all_of(shape);
+        }
+    }
+}
+
 }  // namespace taut

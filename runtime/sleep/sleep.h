@@ -5,6 +5,7 @@
 // their manifolds and impulses, from which the island goes on when it wakes.
 #pragma once
 
+#include "detect/obstacles.h"
 #include "world.h"
 
 namespace taut {
@@ -21,6 +22,9 @@ void retire_pairs(World& world);
 // Wakes what awake nodes touch, or will touch in this step. True: its pairs are to be recalled, and contacts found
 // anew.
 bool wake_touched(World& world);
+// The same of solvers that take ways out in place of contacts: wakes soft bodies that an awake one, or a shape that its
+// host moves, may come to in a time [s].
+void wake_met(World& world, double time, Obstacles& obstacles);
 // After the step: who falls asleep, and the events of all who did or woke.
 void update_sleep(World& world);
 

@@ -39,9 +39,9 @@ SolidContacts::SolidContacts(Team& team, const EnergyIsland& island, Minimisatio
                                [&](const SoftShape& each) { return each.meetings > 0 && is_own(each); });
 }
 
-// What meets is of one island, as it is tied.
+// What meets is of one island, as it is tied; what is held as a whole is of none.
 bool SolidContacts::is_own(const SoftShape& shape) const {
-    if (!shape.tied) return false;
+    if (!shape.tied || shape.vertex.empty()) return false;
     const uint32_t point = m_.point_of_node[shape.vertex.front()];
     return point != kNone && point - island_.first_point < island_.points;
 }
@@ -101,7 +101,8 @@ void SolidContacts::find_within() {
             VertexWithin& each = m_.within[i];
             const SoftShape& shape = m_.obstacles.softs[each.shape];
             for (uint32_t k = shape.first; k < shape.first + shape.meetings && each.count < kMostWithin; ++k) {
-                const uint32_t exit = find_exit(each.vertex, m_.obstacles.softs[m_.obstacles.between[k].other]);
+                const SoftShape& other = m_.obstacles.softs[m_.obstacles.between[k].other];
+                const uint32_t exit = is_own(other) ? find_exit(each.vertex, other) : kNone;
                 if (exit == kNone) continue;
                 each.meeting[each.count] = k;
                 each.triangle[each.count++] = exit;

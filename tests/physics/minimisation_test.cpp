@@ -459,11 +459,14 @@ TEST(MinimisedWorld, RefusesWhatItDoesNotTake) {
     refused("attachments");
     ok(taut_attachment_remove(held));
     world.step();
-    const Beam beam({1, 1, 1}, 2, 2, 2, false);
-    taut_solid_def touching = beam.def(TAUT_SOLID_FIXED_COROTATED, 1e5, 0.3);
-    const taut_solid solid = add(world, touching);
+    taut_particle_def touching;
+    taut_particle_def_init(&touching);
+    touching.shape = world.sphere(0.1);
+    touching.position = {5, 5, 5};
+    taut_body particle{};
+    ok(taut_world_add_particle(world.handle, &touching, &particle));
     refused("filter.mask");
-    ok(taut_solid_remove(solid));
+    ok(taut_body_remove(particle));
     const Sheet sheet(3, 3, 1, 1, 5);
     taut_cloth_def rigid = sheet.def(TAUT_CLOTH_LINKS);
     rigid.uv = nullptr;

@@ -318,6 +318,38 @@ TEST(Minimised, HasTheSameBitsOnAnyTeam) {
     EXPECT_EQ(hashes[0], hashes[2]);
 }
 
+// What sleeps wakes for a box that its host leads, and for what falls on it.
+TEST(Minimised, SleepersWakeForWhatComes) {
+    for (const bool led : {true, false}) {
+        const World world = filming(60, [](taut_world_def& def) { def.sleeping = 1; });
+        world.add_ground();
+        const taut_solid cube = add_cube(world, {0, 0.006, 0}, [](taut_solid_def& def) { def.damping = 0.1f; });
+        world.step(300);
+        const std::vector<taut_body> vertices = bodies_of(cube);
+        const auto sleeps = [&] {
+            uint32_t awake = 1;
+            ok(taut_body_is_awake(vertices[0], &awake));
+            return awake == 0;
+        };
+        ASSERT_TRUE(sleeps());
+        const Vec before = middle_of(cube);
+        if (led)
+            world.add({.kind = TAUT_BODY_KINEMATIC,
+                       .shape = world.box({0.1, 0.1, 0.3}),
+                       .position = {-0.5, 0.15, 0.1},
+                       .velocity = {1, 0, 0}});
+        else
+            add_cube(world, {0.05, 0.5, 0.05});
+        bool woke = false;
+        for (int i = 0; i < 60; ++i) {
+            world.step();
+            woke = woke || !sleeps();
+        }
+        EXPECT_TRUE(woke) << led;
+        if (led) EXPECT_GT(middle_of(cube).x, before.x + 0.3);
+    }
+}
+
 TEST(Minimised, TakesNoMemoryOnceWarm) {
     const World world = filming();
     world.add_ground();
