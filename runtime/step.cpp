@@ -115,10 +115,11 @@ void solve(World& w, Stopwatch& watch) {
         &surface_kernels(),
         w.def.adaptive_damping != 0,
         w.def.restitution_threshold,
-        {static_cast<FrictionModel>(w.def.friction_model), w.def.stepping == TAUT_STEPPING_VELOCITY,
-         w.def.stabilisation},
+        {static_cast<FrictionModel>(w.def.friction_model), false, w.def.stabilisation, w.def.contact_stabilisation},
         {0, w.def.relaxation, static_cast<MomentumRule>(w.def.momentum), w.def.fixed_step != 0},
-        &minimisation};
+        &minimisation,
+        static_cast<Stepping>(w.def.stepping),
+        w.def.velocity_gain};
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));

@@ -109,7 +109,8 @@ void describe(Visitor& visitor, Of& of) {
            velocity_filter, max_catch_up, threads, hooks, sleeping, sleep_speed, sleep_time, contact_events, hit_speed,
            continuous, max_bodies, max_colliders, max_joints, max_contacts, adaptive_damping, restitution_threshold,
            stepping, stabilisation, relaxation, friction_model, momentum, fixed_step, scheme, newmark_beta,
-           newmark_gamma, report, air_density, air_pressure, wind, minimise_tolerance, line_search] = of;
+           newmark_gamma, report, air_density, air_pressure, wind, minimise_tolerance, line_search,
+           contact_stabilisation, velocity_gain] = of;
     TAUT_FIELDS(visitor, gravity.x, gravity.y, gravity.z, time_step, substeps, restitution_threshold, wind.x, wind.y,
                 wind.z);
     TAUT_ASIDE(visitor, contact_events, hit_speed);

@@ -34,11 +34,18 @@ typedef enum taut_solver {
     TAUT_SOLVER_MAX = 0x7fffffff
 } taut_solver;
 
-/** How a row's error depends on velocities, for solvers that iterate over rows (from TAUT_SOLVER_ACCELERATED_JACOBI).
- */
+/** How a row's error depends on velocities, for solvers that iterate over rows (TAUT_SOLVER_ACCELERATED_JACOBI to
+ *  TAUT_SOLVER_CONJUGATE_GRADIENTS); with others the last three are refused. Those go twice over a substep's rows, each
+ *  time with all iterations (Frâncu 2016, section 8.3). */
 typedef enum taut_stepping {
     TAUT_STEPPING_PROJECTION = 0, /**< evaluated at the end of the substep, again in each iteration (eq. 6.26) */
     TAUT_STEPPING_VELOCITY = 1,   /**< linearised where the substep begins: velocity time stepping (eq. 6.17 to 6.21) */
+    TAUT_STEPPING_LINKS_FIRST = 2,    /**< joints and elements by projection, then contacts alone on the velocities that
+                                           these left: what contacts do to links is left to the next substep */
+    TAUT_STEPPING_VELOCITY_FIRST = 3, /**< velocity time stepping that undoes no error, then projection from there */
+    TAUT_STEPPING_POST_STABILISED = 4, /**< the same, but projection moves positions only: the velocities kept are
+                                            those of the first pass (Cline and Pai 2003). Of implicit Euler alone, and
+                                            not with conjugate gradients, to which rigid rows are springs */
     TAUT_STEPPING_MAX = 0x7fffffff
 } taut_stepping;
 
@@ -139,6 +146,15 @@ typedef struct taut_world_def {
                                              Default 1e-6 */
     uint32_t line_search;               /**< of the same: 0 takes each step of Newton's method as it comes (for
                                              comparison only). Default 1 */
+    float contact_stabilisation;        /**< share of their overlap that contacts undo in a substep with the solvers
+                                             that iterate over rows, as stabilisation is of joints, [0, 1]; 0: softly,
+                                             by about a fourteenth and at most 3 m/s. Default 0 */
+    float velocity_gain;                /**< k_v: share of the velocity along rows, left after positions moved, that
+                                             each iteration of the same solvers takes away in a second pass, [0, 1];
+                                             0: none, velocities are those that moved the positions. With
+                                             stabilisation and contact_stabilisation (k_c) of 1, TAUT_STEPPING_PROJECTION
+                                             is plain position based dynamics at 0, and the Sequential Positions of
+                                             Frâncu 2016, section 8.2, at 0.1. Default 1 */
 } taut_world_def;
 
 /** What taut_world_advance did. */

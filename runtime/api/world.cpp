@@ -37,6 +37,28 @@ Check& check_hooks(Check& check, const taut_hooks& hooks) {
         .zero("hooks.reserved", hooks.reserved);
 }
 
+// What solvers other than those that iterate over rows have no part of.
+Check& check_passes(Check& check, const taut_world_def& def) {
+    const bool rows = def.solver >= TAUT_SOLVER_ACCELERATED_JACOBI && def.solver <= TAUT_SOLVER_CONJUGATE_GRADIENTS;
+    const bool kept = def.stepping == TAUT_STEPPING_POST_STABILISED;
+    return check
+        .require(rows || def.stepping <= TAUT_STEPPING_VELOCITY,
+                 "stepping: its passes are of solvers that iterate over rows", TAUT_UNSUPPORTED)
+        .require(rows || def.contact_stabilisation == 0,
+                 "contact_stabilisation: it is of solvers that iterate over rows", TAUT_UNSUPPORTED)
+        .require(rows || def.velocity_gain == 1, "velocity_gain: it is of solvers that iterate over rows",
+                 TAUT_UNSUPPORTED)
+        .require(!kept || def.scheme == TAUT_SCHEME_IMPLICIT_EULER,
+                 "scheme: velocities of TAUT_STEPPING_POST_STABILISED are those of TAUT_SCHEME_IMPLICIT_EULER alone",
+                 TAUT_UNSUPPORTED)
+        .require(!kept || def.solver != TAUT_SOLVER_CONJUGATE_GRADIENTS,
+                 "stepping: rigid rows of TAUT_SOLVER_CONJUGATE_GRADIENTS are springs, whose velocities are those of "
+                 "their errors",
+                 TAUT_UNSUPPORTED)
+        .require(!kept || def.velocity_gain == 1,
+                 "velocity_gain: TAUT_STEPPING_POST_STABILISED leaves velocities as they are", TAUT_UNSUPPORTED);
+}
+
 Check& check_def(Check& check, const taut_world_def& def) {
     check.struct_size(def.struct_size, sizeof def)
         .choice("solver", def.solver, static_cast<uint32_t>(solvers().size()) - 1)
@@ -63,8 +85,10 @@ Check& check_def(Check& check, const taut_world_def& def) {
         .vector("wind", def.wind, kWind)
         .number("minimise_tolerance", def.minimise_tolerance, kMinimiseTolerance)
         .boolean("line_search", def.line_search)
-        .choice("stepping", def.stepping, TAUT_STEPPING_VELOCITY)
+        .choice("stepping", def.stepping, TAUT_STEPPING_POST_STABILISED)
         .number("stabilisation", def.stabilisation, kUnitInterval)
+        .number("contact_stabilisation", def.contact_stabilisation, kUnitInterval)
+        .number("velocity_gain", def.velocity_gain, kUnitInterval)
         .number("relaxation", def.relaxation, kRelaxation)
         .choice("friction_model", def.friction_model, TAUT_FRICTION_BOX)
         .choice("momentum", def.momentum, TAUT_MOMENTUM_POWER)
@@ -76,6 +100,7 @@ Check& check_def(Check& check, const taut_world_def& def) {
                  "newmark_gamma: more than 2 newmark_beta, with which steps are not stable")
         .require(def.solver != TAUT_SOLVER_MINIMISATION || def.scheme == TAUT_SCHEME_IMPLICIT_EULER,
                  "scheme: TAUT_SOLVER_MINIMISATION takes TAUT_SCHEME_IMPLICIT_EULER alone", TAUT_UNSUPPORTED);
+    check_passes(check, def);
     return check_hooks(check, def.hooks);
 }
 
@@ -107,6 +132,7 @@ void taut_world_def_init(taut_world_def* def) {
     def->air_pressure = 101325;
     def->minimise_tolerance = 1e-6f;
     def->line_search = 1;
+    def->velocity_gain = 1;
 }
 
 const char* taut_solver_name(taut_solver solver) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solvers/solver.h"
+#include "solvers/stepping.h"
 
 namespace taut {
 
@@ -26,20 +27,47 @@ inline void dot(const Problem& problem, const Array<double>& a, const Array<doub
 using Iterate = void (*)(Problem&, const IterationSettings&);
 
 template <Iterate iterate, uint32_t default_count, Rigid rigid>
-void run_phase(Substep& s, Phase phase) {
-    Problem problem(s.system, s.scratch.problem, s.settings.rows, phase, rigid);
+void run_pass(Substep& s, const RowPass& pass, Phase phase, bool first) {
+    RowSettings rows = s.settings.rows;
+    rows.part = pass.part;
+    rows.linear = pass.linear;
+    rows.pushes = pass.pushes;
+    Problem problem(s.system, s.scratch.problem, rows, phase, rigid);
     IterationSettings settings = s.settings.iteration;
     settings.count = s.settings.sweeps ? s.settings.sweeps : default_count;
-    if (phase == Phase::project) problem.warm_start(settings.count);
+    if (phase == Phase::relax)
+        settings.relaxation *= s.settings.velocity_gain;
+    else if (first)
+        problem.warm_start(settings.count);
+    else
+        problem.go_on();
     iterate(problem, settings);
     problem.store();
 }
 
+template <Iterate iterate, uint32_t default_count, Rigid rigid>
+void project(Substep& s) {
+    const std::span<const RowPass> passes = passes_of(s.settings.stepping);
+    for (const RowPass& pass : passes) {
+        run_pass<iterate, default_count, rigid>(s, pass, Phase::project, &pass == passes.data());
+        if (!pass.pushes) s.scratch.unpushed = s.system.exact;
+    }
+}
+
+template <Iterate iterate, uint32_t default_count, Rigid rigid>
+void relax(Substep& s) {
+    if (s.settings.stepping == Stepping::post_stabilised) {
+        s.system.exact = s.scratch.unpushed;
+        return;
+    }
+    if (s.settings.velocity_gain == 0) return;
+    for (const RowPass& pass : passes_of(s.settings.stepping))
+        if (pass.pushes) run_pass<iterate, default_count, rigid>(s, pass, Phase::relax, false);
+}
+
 template <Iterate iterate, uint32_t default_count = 30, Rigid rigid = Rigid::exact>
 constexpr Solver row_solver(const char* name) {
-    return {name,    false,
-            false,   [](Substep& s) { run_phase<iterate, default_count, rigid>(s, Phase::project); },
-            nullptr, [](Substep& s) { run_phase<iterate, default_count, rigid>(s, Phase::relax); }};
+    return {name, false, false, project<iterate, default_count, rigid>, nullptr, relax<iterate, default_count, rigid>};
 }
 
 }  // namespace taut

@@ -10,6 +10,7 @@
 
 #include "partition/partition.h"
 #include "solvers/bounded_row.h"
+#include "solvers/stepping.h"
 #include "system/axis_rows.h"
 #include "system/impacts.h"
 #include "system/problem.h"
@@ -47,6 +48,8 @@ struct SolverSettings {
     RowSettings rows{};
     IterationSettings iteration{};
     const MinimisationSettings* minimisation = nullptr;  // null: its defaults
+    Stepping stepping = Stepping::projection;            // of row solvers
+    double velocity_gain = 1;  // k_v: share of an iteration's step that relaxing velocities take; 0: they stay
 };
 
 struct SolverReport {
@@ -73,11 +76,12 @@ private:
 
 // Memory that solvers use during a substep, kept so that steady scenes allocate nothing.
 struct SolverScratch {
-    explicit SolverScratch(Memory& memory) : problem(memory), minimisation(memory), bounded(memory) {}
+    explicit SolverScratch(Memory& memory) : problem(memory), minimisation(memory), bounded(memory), unpushed(memory) {}
 
     ProblemMemory problem;
     MinimisationHolder minimisation;
     Array<BoundedRow> bounded;  // of the group's blocks
+    Array<Velocity> unpushed;   // by seat: of a pass without push
 };
 
 // One substep of one group.

@@ -66,6 +66,15 @@ void Problem::add_units() {
     if (phase_ == Phase::relax && rigid_ == Rigid::soft) keep_impulses();
     if (phase_ == Phase::relax && !s_.scheme.is_one_step())  // velocities are no more those of springs' laws
         for (Unit& unit : m_.unit) unit.solved = unit.rigid;
+    take_part();
+}
+
+void Problem::take_part() {
+    if (settings_.part == Part::all) return;
+    for (Unit& unit : m_.unit) {
+        const bool link = block(unit).type->bound == Bound::free;
+        unit.solved = unit.solved && link == (settings_.part == Part::links);
+    }
 }
 
 // Velocities relax about the positions reached: J u of rigid rows, and of elastic ones rate_0 + J (u - u_0), so that
@@ -125,7 +134,7 @@ void Problem::set_locked(Unit& unit) {
         const double error = s_.rows.error[at];
         if (elastic)
             m_.target[at] = -s_.scheme.row_rate(relaxation_of(joint, r)) * error;
-        else if (phase_ == Phase::project)
+        else if (pushes())
             m_.target[at] = soft ? -joint_.bias_rate * error : -settings_.stabilisation * joint_.inv_h * error;
         for (int c = 0; c < unit.rows; ++c) {
             if (!joint.locked(c)) continue;
@@ -142,12 +151,14 @@ void Problem::set_locked(Unit& unit) {
 void Problem::add_contact(uint32_t index) {
     const RowBlock& contact = s_.rows.block[index];
     const double gap = s_.rows.error[contact.row];
-    const bool project = phase_ == Phase::project, soft = rigid_ == Rigid::soft;
+    const double share = settings_.contact_stabilisation;
+    const bool soft = rigid_ == Rigid::soft;
     Unit& normal = add(index, Unit::Law::range, 0, 1);
     normal.high = kUnbounded;
-    const double push = std::max<double>(contact_.bias_rate * gap, -contact_.push);
-    const double target = gap > 0 ? -gap * contact_.inv_h : project ? -push : 0.0;
-    const bool gives = project && gap <= 0 && !contact.hits;
+    const double push =
+        share > 0 ? -share * contact_.inv_h * gap : std::min<double>(-contact_.bias_rate * gap, contact_.push);
+    const double target = gap > 0 ? -gap * contact_.inv_h : pushes() ? push : 0.0;
+    const bool gives = pushes() && share == 0 && gap <= 0 && !contact.hits;
     const double give = gives ? softness_of(contact_) : soft ? softness_of(joint_) : 0.0;
     set_row(normal, target, give > 0 ? give * effective(normal)(0, 0) : 0.0);
     Unit& tangents = add(index, Unit::Law::disc, 1, 2);
@@ -188,7 +199,7 @@ void Problem::add_axes(uint32_t index) {
             unit.force = axis.force;
             m_.impulse.push_back(s_.scheme.impulse(static_cast<double>(*axis.force)));
             double target = phase_ == Phase::project ? axis.target : axis.relaxed_target;
-            if (axis.stop && !axis.physical && axis.gap <= 0 && phase_ == Phase::project)
+            if (axis.stop && !axis.physical && axis.gap <= 0 && pushes())
                 target = std::min<double>(contact_.push, -contact_.bias_rate * axis.gap);
             m_.target.push_back(target);
             unit.rigid = axis.compliance == 0;

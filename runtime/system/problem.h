@@ -28,10 +28,16 @@ enum class Rigid : uint8_t {
     soft,   // joint_terms(): for solvers of the energy form, where 1/c is a stiffness
 };
 
+// Rows that are solved; the others keep their impulses.
+enum class Part : uint8_t { all, links, contacts };
+
 struct RowSettings {
     FrictionModel friction = FrictionModel::cylinder;
-    bool linear = false;         // velocity time stepping
-    double stabilisation = 0.2;  // gamma: share of an error that rigid rows undo in a substep; eq. 6.19
+    bool linear = false;               // velocity time stepping
+    double stabilisation = 0.2;        // gamma: share of an error that rigid rows undo in a substep; eq. 6.19
+    double contact_stabilisation = 0;  // the same of overlaps; 0: softly, as soft_contact.h states it
+    Part part = Part::all;
+    bool pushes = true;  // else errors are left as they are
 };
 
 // Rows of one block that are projected together.
@@ -116,6 +122,8 @@ public:
 
     // u += W J^T mu, of what the last substep left and so many evaluations can turn.
     void warm_start(uint32_t evaluations);
+    // The same where u has all of them already, from another pass.
+    void go_on();
     // Rates and, in position projection, J at x_n + h u: of all units, or of one.
     void evaluate();
     void evaluate(const Unit& unit);
@@ -170,6 +178,7 @@ private:
         double size = 0, positive = 1;
         double stable_share() const { return 1 / (1 + size); }
     };
+    bool pushes() const { return phase_ == Phase::project && settings_.pushes; }
     bool is_solved(const Unit& unit, int r) const {
         return unit.solved && (unit.law != Unit::Law::free || block(unit).locked(r));
     }
@@ -183,6 +192,7 @@ private:
     void set_locked(Unit& unit);
     void linearise();
     void keep_impulses();
+    void take_part();
     void find_islands();
     uint32_t root(uint32_t seat);
     enum class Masses : uint8_t { none, whole, split };  // in the diagonal

@@ -105,4 +105,13 @@ void Problem::warm_start(uint32_t evaluations) {
     }
 }
 
+void Problem::go_on() {
+    find_turning();
+    for (const Unit& unit : m_.unit) {
+        if (unit.turning == kNone) continue;
+        for (int n = 0; n < block(unit).type->nodes; ++n)
+            m_.applied[unit.applied + static_cast<uint32_t>(n)] = jacobian(unit, n).transpose() * of(unit, m_.impulse);
+    }
+}
+
 }  // namespace taut

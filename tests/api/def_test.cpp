@@ -285,6 +285,27 @@ TEST(WorldDef, RefusesWhatItDoesNotState) {
     changed(TAUT_OK, "line_search", [](Def& d) { d.line_search = 0; });
     changed(TAUT_INVALID_ARGUMENT, "stepping", [](Def& d) { d.stepping = TAUT_STEPPING_MAX; });
     changed(TAUT_OK, "stepping", [](Def& d) { d.stepping = TAUT_STEPPING_VELOCITY; });
+    const auto by_rows = [](Def& d) { d.solver = TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL; };
+    for (const taut_stepping stepping :
+         {TAUT_STEPPING_LINKS_FIRST, TAUT_STEPPING_VELOCITY_FIRST, TAUT_STEPPING_POST_STABILISED}) {
+        changed(TAUT_UNSUPPORTED, "stepping", [&](Def& d) { d.stepping = stepping; });
+        changed(TAUT_OK, "stepping", [&](Def& d) { by_rows(d), d.stepping = stepping; });
+    }
+    changed(TAUT_UNSUPPORTED, "scheme",
+            [&](Def& d) { by_rows(d), d.stepping = TAUT_STEPPING_POST_STABILISED, d.scheme = TAUT_SCHEME_NEWMARK; });
+    changed(TAUT_UNSUPPORTED, "stepping", [](Def& d) {
+        d.solver = TAUT_SOLVER_CONJUGATE_GRADIENTS;
+        d.stepping = TAUT_STEPPING_POST_STABILISED;
+    });
+    changed(TAUT_UNSUPPORTED, "velocity_gain",
+            [&](Def& d) { by_rows(d), d.stepping = TAUT_STEPPING_POST_STABILISED, d.velocity_gain = 0; });
+    for (float Def::*gain : {&Def::contact_stabilisation, &Def::velocity_gain}) {
+        const char* name = gain == &Def::velocity_gain ? "velocity_gain" : "contact_stabilisation";
+        changed(TAUT_UNSUPPORTED, name, [&](Def& d) { d.*gain = 0.5f; });
+        for (const float value : {-0.01f, 1.01f, NAN, INFINITY})
+            changed(TAUT_INVALID_ARGUMENT, name, [&](Def& d) { by_rows(d), d.*gain = value; });
+        for (const float value : {0.0f, 1.0f}) changed(TAUT_OK, name, [&](Def& d) { by_rows(d), d.*gain = value; });
+    }
     changed(TAUT_INVALID_ARGUMENT, "friction_model", [](Def& d) { d.friction_model = TAUT_FRICTION_MAX; });
     changed(TAUT_OK, "friction_model", [](Def& d) { d.friction_model = TAUT_FRICTION_BOX; });
     changed(TAUT_INVALID_ARGUMENT, "momentum", [](Def& d) { d.momentum = TAUT_MOMENTUM_MAX; });

@@ -75,7 +75,7 @@ TEST_P(EverySolver, AgreesWithDenseEquationsOfAnElasticChain) {
     rig.rod(kNone, last, Vec3(9, 2, 0), Vec3(0.5, 0, 0), 3, 1e-4, 10);
     rig.settings.geometric_stiffness = false;
     rig.settings.sweeps = 20000;
-    rig.settings.rows.linear = true;
+    rig.settings.stepping = Stepping::velocity;
     rig.begin(solver());
     rig.predict();
     const DenseSubstep exact = solve_dense(rig, {});

@@ -76,7 +76,7 @@ TEST(ComplianceBlock, IsReachedByEverySweepingSolver) {
         Eigen::Matrix<double, 6, 6, Eigen::RowMajor> blocks[3];
         build(rig, blocks, 3, 7);
         rig.settings.sweeps = 1000;
-        rig.settings.rows.linear = true;
+        rig.settings.stepping = Stepping::velocity;
         rig.begin(*solver);
         rig.predict();
         const DenseSubstep exact = solve_dense(rig, {});

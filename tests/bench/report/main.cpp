@@ -159,6 +159,9 @@ constexpr struct {
     {"cloth_large", cloth_large},
     {"solver_times", solver_times},
     {"cloth_energy", cloth_energy},
+    {"grains_error", grains_error},
+    {"grains_velocity", grains_velocity},
+    {"mixing", mixing},
 };
 
 int report(const std::vector<std::string>& arguments) {

@@ -8,6 +8,7 @@
 
 #include "csv.h"
 #include "engine.h"
+#include "methods.h"
 #include "scenes/catalogue.h"
 #include "scenes/soft_meshes.h"
 #include "soft_metrics.h"
@@ -16,8 +17,6 @@
 namespace bench {
 
 namespace {
-
-constexpr float kShort = 0.008f, kLong = 0.016f;  // the thesis' steps [s]
 
 // A sheet in a world of one solver, step by step.
 class SheetRun {
@@ -49,6 +48,15 @@ public:
         }
         return sum;
     }
+    // Root mean square of bodies [m/s].
+    double speed(const std::vector<int>& bodies) const {
+        double sum = 0;
+        for (const int body : bodies) {
+            const Vec v = of(engine_->motion(static_cast<size_t>(body)).linear_velocity);
+            sum += dot(v, v);
+        }
+        return std::sqrt(sum / static_cast<double>(bodies.size()));
+    }
     double elastic() {  // [J]
         double sum = 0;
         for_strains([&](double strain, double rest) { sum += 0.5 * stiffness_ * std::pow(strain * rest, 2); });
@@ -69,13 +77,6 @@ private:
     SoftState state_;
 };
 
-// Solver with its settings, as a curve.
-struct Method {
-    const char* name;
-    taut_solver solver;
-    double relaxation;  // 0: the solver's own
-    taut_momentum momentum = TAUT_MOMENTUM_NESTEROV;
-};
 constexpr Method kGaussSeidel{"gauss_seidel", TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL, 0};
 constexpr Method kOverRelaxed{"sor_1.2", TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL, 1.2};
 constexpr Method kJacobi{"accelerated_jacobi", TAUT_SOLVER_ACCELERATED_JACOBI, 0};
@@ -83,18 +84,6 @@ constexpr Method kImprovedJacobi{"improved_jacobi_0.5", TAUT_SOLVER_ACCELERATED_
 constexpr Method kMinimumResidual{"minimum_residual", TAUT_SOLVER_MINIMUM_RESIDUAL, 0};
 constexpr Method kConjugateResiduals{"conjugate_residuals", TAUT_SOLVER_CONJUGATE_RESIDUALS, 0};
 constexpr Method kDirect{"direct", TAUT_SOLVER_BLOCK_LDLT, 0};
-
-bool is_direct(const Method& method) { return method.solver == TAUT_SOLVER_BLOCK_LDLT; }
-
-// The thesis' world: one step a frame without substeps.
-void as_in_thesis(scenes::Scene& scene, const Method& method, uint32_t iterations, float step) {
-    scene.world.time_step = step;
-    scene.world.substeps = scene.world.fixed_substeps = 1;
-    scene.world.solver = method.solver;
-    scene.world.sweeps = is_direct(method) ? 0 : iterations;
-    scene.world.momentum = method.momentum;
-    if (method.relaxation > 0) scene.world.relaxation = static_cast<float>(method.relaxation);
-}
 
 // Links along the threads alone.
 scenes::Scene thesis_sheet(int side, const Method& method, uint32_t iterations, float step) {
@@ -212,12 +201,15 @@ void solver_times(const fs::path& folder) {
 void cloth_energy(const fs::path& folder) {
     constexpr uint32_t kIterations = 25;  // the thesis'
     constexpr double kSide = 1;           // [m]
-    constexpr Method kGradients{"conjugate_gradients", TAUT_SOLVER_CONJUGATE_GRADIENTS, 0};
+    constexpr Method kGradients{"conjugate_gradients", TAUT_SOLVER_CONJUGATE_GRADIENTS, 0},
+        kLinearGradients{"linear_gradients", TAUT_SOLVER_CONJUGATE_GRADIENTS, 0, TAUT_MOMENTUM_NESTEROV,
+                         TAUT_STEPPING_VELOCITY};
     struct Curve {
         const char* name;
         Method method;
         taut_scheme scheme;
-        double damping;  // over stiffness, in steps
+        double damping;      // over stiffness, in steps
+        float gamma = 0.5f;  // of Newmark; beta: (gamma + 1/2)^2 / 4, which damps fast motion most
     };
     const auto sheet = [&](int n, double stiffness, const Curve& curve) {
         scenes::Scene scene = scenes::soft_hall(2);
@@ -231,6 +223,8 @@ void cloth_energy(const fs::path& folder) {
         scene.add_cloth(std::move(cloth));
         as_in_thesis(scene, curve.method, kIterations, kLong);
         scene.world.scheme = curve.scheme;
+        scene.world.newmark_gamma = curve.gamma;
+        scene.world.newmark_beta = 0.25f * (curve.gamma + 0.5f) * (curve.gamma + 0.5f);
         return scene;
     };
     const auto run = [&](Csv& csv, const char* what, const scenes::Scene& scene, const Curve& curve, double seconds,
@@ -246,10 +240,19 @@ void cloth_energy(const fs::path& folder) {
         say("%s, %s: energy %.4g J over its start after %g s\n", what, curve.name, energy, seconds);
     };
     {
+        Csv csv(folder / "sheet_energy.csv", "curve,time_s,energy_j");
+        for (const Curve& curve : {Curve{"conjugate_gradients", kGradients, TAUT_SCHEME_IMPLICIT_EULER, 0},
+                                   Curve{"gauss_seidel", kGaussSeidel, TAUT_SCHEME_IMPLICIT_EULER, 0},
+                                   Curve{"linear_gradients", kLinearGradients, TAUT_SCHEME_IMPLICIT_EULER, 0},
+                                   Curve{"direct", kDirect, TAUT_SCHEME_IMPLICIT_EULER, 0}})
+            run(csv, "sheet of 15 x 15, 200 N/m", sheet(15, 200, curve), curve, 500 * static_cast<double>(kLong), true);
+    }
+    {
         Csv csv(folder / "rubber_energy.csv", "curve,time_s,energy_j");
         for (const Curve& curve : {Curve{"conjugate_gradients", kGradients, TAUT_SCHEME_IMPLICIT_EULER, 0},
                                    Curve{"gauss_seidel", kGaussSeidel, TAUT_SCHEME_IMPLICIT_EULER, 0},
                                    Curve{"gauss_seidel_newmark", kGaussSeidel, TAUT_SCHEME_NEWMARK, 0},
+                                   Curve{"gauss_seidel_newmark_0.55", kGaussSeidel, TAUT_SCHEME_NEWMARK, 0, 0.55f},
                                    Curve{"direct", kDirect, TAUT_SCHEME_IMPLICIT_EULER, 0},
                                    Curve{"direct_newmark", kDirect, TAUT_SCHEME_NEWMARK, 0}})
             run(csv, "rubber of 10 x 10, 2 N/m", sheet(10, 2, curve), curve, 20, true);
@@ -261,6 +264,37 @@ void cloth_energy(const fs::path& folder) {
                                Curve{"direct", kDirect, TAUT_SCHEME_IMPLICIT_EULER, 0},
                                Curve{"direct_10h", kDirect, TAUT_SCHEME_IMPLICIT_EULER, 10}})
         run(csv, "sheet of 40 x 40, 2 kN/m", sheet(40, 2000, curve), curve, 6, false);
+}
+
+void mixing(const fs::path& folder) {
+    constexpr uint32_t kIterations = 30;
+    constexpr double kSeconds = 3;
+    constexpr auto kSolver = TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL;
+    constexpr auto kNone = TAUT_MOMENTUM_NESTEROV;
+    constexpr Method kMethods[] = {
+        {"position_based", kSolver, 0, kNone, TAUT_STEPPING_PROJECTION, 1, 0},
+        {"velocity", kSolver, 0, kNone, TAUT_STEPPING_VELOCITY, 0.5, 0},
+        {"links_first", kSolver, 0, kNone, TAUT_STEPPING_LINKS_FIRST, 1, 1},
+        {"velocity_first", kSolver, 0, kNone, TAUT_STEPPING_VELOCITY_FIRST, 1, 0},
+        {"post_stabilised", kSolver, 0, kNone, TAUT_STEPPING_POST_STABILISED, 1, 1},
+        {"sequential_positions", kSolver, 0, kNone, TAUT_STEPPING_PROJECTION, 1, 0.1},
+    };
+    Csv csv(folder / "mixing.csv", "method,time_s,strain,speed_m_s");
+    for (const Method& method : kMethods) {
+        scenes::Scene scene = scenes::make_scene("grains_on_cloth");
+        as_in_thesis(scene, method, kIterations, kLong);
+        const std::vector<int> pile = scene.roles.pile;
+        SheetRun run(scene);
+        double strain = 0, fastest = 0;
+        for (int frame = 1; frame * static_cast<double>(kLong) <= kSeconds; ++frame) {
+            run.step();
+            const double now = run.error(), speed = run.speed(pile);
+            strain = std::max(strain, now);
+            fastest = std::max(fastest, speed);
+            csv.row(method.name, frame * static_cast<double>(kLong), now, speed);
+        }
+        say("grains on cloth, %s: mean strain %.3g and speed %.3g m/s at most\n", method.name, strain, fastest);
+    }
 }
 
 }  // namespace bench
