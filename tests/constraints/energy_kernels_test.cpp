@@ -141,9 +141,11 @@ TEST(EnergyKernels, HaveTheSameBitsInEachBuild) {
         const Found expected = by_lanes(cells, kEnergyKernelsScalar);
         for (const EnergyKernels* build : builds) {
             const Found found = by_lanes(cells, *build);
-            EXPECT_TRUE(same_bits(found.energy, expected.energy)) << build->name << " " << cells.type.name << " " << seed;
+            EXPECT_TRUE(same_bits(found.energy, expected.energy))
+                << build->name << " " << cells.type.name << " " << seed;
             EXPECT_TRUE(same_bits(found.force, expected.force)) << build->name << " " << cells.type.name << " " << seed;
-            EXPECT_TRUE(same_bits(found.matrix, expected.matrix)) << build->name << " " << cells.type.name << " " << seed;
+            EXPECT_TRUE(same_bits(found.matrix, expected.matrix))
+                << build->name << " " << cells.type.name << " " << seed;
         }
     });
 }
