@@ -41,7 +41,8 @@ typedef enum taut_stepping {
     TAUT_STEPPING_PROJECTION = 0, /**< evaluated at the end of the substep, again in each iteration (eq. 6.26) */
     TAUT_STEPPING_VELOCITY = 1,   /**< linearised where the substep begins: velocity time stepping (eq. 6.17 to 6.21) */
     TAUT_STEPPING_LINKS_FIRST = 2,    /**< joints and elements by projection, then contacts alone on the velocities that
-                                           these left: what contacts do to links is left to the next substep */
+                                           these left: what contacts do to links is left to the next substep, and
+                                           sheets burst under what is heavier than they are */
     TAUT_STEPPING_VELOCITY_FIRST = 3, /**< velocity time stepping that undoes no error, then projection from there */
     TAUT_STEPPING_POST_STABILISED = 4, /**< the same, but projection moves positions only: the velocities kept are
                                             those of the first pass (Cline and Pai 2003). Of implicit Euler alone, and

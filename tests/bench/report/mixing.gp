@@ -1,5 +1,6 @@
 # Frâncu 2016, section 8.3 and figure 8.14: a thousand grains fall on a sheet, by projection (PBD), velocity time
-# stepping (VTS) and mixtures of the two.
+# stepping (VTS) and mixtures of the two. A curve ends where the sheet has burst: contacts after links put heavy grains
+# on light links, which know of it in the next step only.
 eval picture(1060, 420)
 set output "mixing.png"
 set multiplot layout 1, 2 margins 0.08, 0.76, 0.14, 0.9 spacing 0.1, 0

@@ -268,7 +268,7 @@ void cloth_energy(const fs::path& folder) {
 
 void mixing(const fs::path& folder) {
     constexpr uint32_t kIterations = 30;
-    constexpr double kSeconds = 3;
+    constexpr double kSeconds = 3, kBurst = 1;  // kBurst: mean strain with which a sheet is given up
     constexpr auto kSolver = TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL;
     constexpr auto kNone = TAUT_MOMENTUM_NESTEROV;
     constexpr Method kMethods[] = {
@@ -286,7 +286,7 @@ void mixing(const fs::path& folder) {
         const std::vector<int> pile = scene.roles.pile;
         SheetRun run(scene);
         double strain = 0, fastest = 0;
-        for (int frame = 1; frame * static_cast<double>(kLong) <= kSeconds; ++frame) {
+        for (int frame = 1; frame * static_cast<double>(kLong) <= kSeconds && strain < kBurst; ++frame) {
             run.step();
             const double now = run.error(), speed = run.speed(pile);
             strain = std::max(strain, now);
