@@ -30,6 +30,8 @@ public:
 
     // Makes z the place of the last evaluation, which it is as a rule.
     void settle_at(std::span<double> z, std::span<double> gradient);
+    // Lets go of points that obstacles hold.
+    void release() { contacts_.release(); }
     // Damping, at x_n.
     void find_damping();
     double mass() const { return mass_; }  // of its free points [kg]

@@ -133,7 +133,7 @@ private:
         tell(done, unit);
         if (!std::isfinite(done.value)) {
             std::ranges::copy(before, x.begin());
-            m_.hold.clear();
+            energy.release();
         }
         energy.settle_at(x, {});
         energy.store_forces();

@@ -163,15 +163,19 @@ void PointContacts::hold_point(uint32_t p, Vec3& gradient) {
 }
 
 void PointContacts::hold(std::span<double> gradient) {
-    m_.hold.resize(first_hold_);
+    release();
     for (uint32_t i = 0; i < island_.points; ++i) {
         const uint32_t p = island_.first_point + i;
-        m_.hold_of[p] = kNone;
         if (m_.touch[p].count == 0) continue;
         Vec3 g = Vec3::Map(&gradient[3 * i]);
         hold_point(p, g);
         Vec3::Map(&gradient[3 * i]) = g;
     }
+}
+
+void PointContacts::release() {
+    m_.hold.resize(first_hold_);
+    if (any_) std::fill_n(m_.hold_of.begin() + island_.first_point, island_.points, kNone);
 }
 
 void PointContacts::restrict(Array<double>& matrix) const {
