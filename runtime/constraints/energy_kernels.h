@@ -29,8 +29,8 @@ constexpr uint32_t kFrameNumbers = 21 * kDoubles;
 struct EnergyKernel {
     // energy: [count] [J]; force: [count][nodes][3], dW/dx [N], may be null.
     void (*evaluate)(const EnergyLanes& of, double* frame, double* energy, double* force);
-    // d2W/dx2 where it was evaluated last: [count][3 nodes][3 nodes] [N/m].
-    void (*hessian)(const EnergyLanes& of, const double* frame, double* k);
+    // d2W/dx2 where it was evaluated last, or its positive part: [count][3 nodes][3 nodes] [N/m].
+    void (*hessian)(const EnergyLanes& of, const double* frame, bool positive, double* k);
 };
 
 // Four builds of one source give the same bits: scalar, SSE2, AVX2, AVX-512.

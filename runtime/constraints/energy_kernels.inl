@@ -140,6 +140,14 @@ struct StretchEnergy {
                 flip[k] = F::if_greater(gap, apart, equal, flip[k]);
             }
         }
+        // Its eigenvalues are those of the scaling, and flips and twists (spectral.h).
+        void take_positive() {
+            positive_part(scaling);
+            for (int k = 0; k < 3; ++k) {
+                flip[k] = F::max(flip[k], F::all(0));
+                twist[k] = F::max(twist[k], F::all(0));
+            }
+        }
         // Column j of the block of two nodes, whose gradients are n and m along V.
         void column(int j, const F (&n)[3], const F (&m)[3], F (&out)[3]) const {
             const F half = F::all(0.5);
@@ -157,10 +165,11 @@ struct StretchEnergy {
     };
 
     // Blocks of two nodes but the first: what this has is less the sum of the others'.
-    static void hessian(const EnergyLanes& of, const double* frame, double* k) {
+    static void hessian(const EnergyLanes& of, const double* frame, bool positive, double* k) {
         const Numbers numbers(of);
         const auto at = SingularLanes<F>::load(frame);
-        const Form form(of, numbers, at);
+        Form form(of, numbers, at);
+        if (positive) form.take_positive();
         F along[Nodes][3];
         for (int n = 1; n < Nodes; ++n)
             for (int i = 0; i < 3; ++i) along[n][i] = dot(at.v[i], numbers.gradient(n));

@@ -101,4 +101,22 @@ private:
     }
 };
 
+// (S + |S|)/2 of a symmetric S = U diag(sigma) V^T, with |S| = V diag(|sigma|) V^T.
+template <class F>
+void positive_part(F (&s)[3][3]) {
+    using V = Vec3Lanes<F>;
+    const F zero = F::all(0), half = F::all(0.5);
+    const V column[3] = {{s[0][0], s[1][0], s[2][0]}, {s[0][1], s[1][1], s[2][1]}, {s[0][2], s[1][2], s[2][2]}};
+    const auto at = SingularLanes<F>::of(column);
+    for (int j = 0; j < 3; ++j) {
+        V sum = column[j];
+        for (int k = 0; k < 3; ++k) {
+            const F size = F::max(at.sigma[k], zero - at.sigma[k]);
+            const F part[3] = {at.v[k].x, at.v[k].y, at.v[k].z};
+            sum = sum + (size * part[j]) * at.v[k];
+        }
+        s[0][j] = half * sum.x, s[1][j] = half * sum.y, s[2][j] = half * sum.z;
+    }
+}
+
 }  // namespace taut

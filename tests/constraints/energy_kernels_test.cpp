@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -55,7 +56,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-Found by_lanes(const Cells& cells, const EnergyKernels& kernels) {
+Found by_lanes(const Cells& cells, const EnergyKernels& kernels, bool positive = false) {
     const EnergyKernel& kernel = kernels.*cells.type.energy;
     const EnergyLanes lanes{kCells,
                             cells.node.data(),
@@ -72,7 +73,7 @@ Found by_lanes(const Cells& cells, const EnergyKernels& kernels) {
     kernel.evaluate(lanes, frame.data(), alone.data(), nullptr);
     kernel.evaluate(lanes, frame.data(), out.energy.data(), out.force.data());
     EXPECT_TRUE(same_bits(alone, out.energy));
-    kernel.hessian(lanes, frame.data(), out.matrix.data());
+    kernel.hessian(lanes, frame.data(), positive, out.matrix.data());
     return out;
 }
 
@@ -146,8 +147,42 @@ TEST(EnergyKernels, HaveTheSameBitsInEachBuild) {
             EXPECT_TRUE(same_bits(found.force, expected.force)) << build->name << " " << cells.type.name << " " << seed;
             EXPECT_TRUE(same_bits(found.matrix, expected.matrix))
                 << build->name << " " << cells.type.name << " " << seed;
+            EXPECT_TRUE(
+                same_bits(by_lanes(cells, *build, true).matrix, by_lanes(cells, kEnergyKernelsScalar, true).matrix))
+                << build->name << " " << cells.type.name << " " << seed;
         }
     });
+}
+
+// The positive part of the matrix, and the matrix itself where that is positive.
+TEST(EnergyKernels, TakeThePositivePart) {
+    int positive = 0, indefinite = 0;
+    for_cells([&](const Cells& cells, uint64_t seed, bool decided) {
+        if (!decided) return;
+        const auto width = static_cast<Eigen::Index>(cells.freedoms());
+        const Found raw = by_lanes(cells, kEnergyKernelsScalar), found = by_lanes(cells, kEnergyKernelsScalar, true);
+        for (uint32_t i = 0; i < kCells; ++i) {
+            const auto matrix_of = [&](const Found& of) {
+                return Eigen::Map<const Eigen::MatrixXd>(&of.matrix[i * static_cast<size_t>(width * width)], width,
+                                                         width);
+            };
+            const Eigen::MatrixXd exact = matrix_of(raw), taken = matrix_of(found), removed = taken - exact;
+            const double rounding = 1e-9 * (1 + exact.norm());
+            const auto least_of = [](const Eigen::MatrixXd& m) {
+                return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m, Eigen::EigenvaluesOnly).eigenvalues()[0];
+            };
+            EXPECT_GE(least_of(taken), -rounding) << cells.type.name << " " << seed;
+            EXPECT_GE(least_of(removed), -rounding) << cells.type.name << " " << seed;
+            if (least_of(exact) > -1e-6 * rounding) {
+                EXPECT_LE(removed.norm(), rounding) << cells.type.name << " " << seed;
+                ++positive;
+            } else {
+                ++indefinite;
+            }
+        }
+    });
+    EXPECT_GT(positive, 50);
+    EXPECT_GT(indefinite, 50);
 }
 
 // What is not finite stays with its element.
