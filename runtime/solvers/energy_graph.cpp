@@ -42,6 +42,7 @@ public:
         unite();
         list_elements();
         list_points();
+        list_pieces();
         list_blocks();
         m_.factor.clear();
         for (size_t k = 0; k < m_.island.size(); ++k) m_.factor.emplace_back(*m_.factor.get_allocator().memory);
@@ -88,6 +89,8 @@ private:
                 for (const uint32_t seat : seats_of(run, i))
                     if (is_free(seat)) first = first == kNone ? root_of(seat) : unite(first, seat);
             }
+        m_.tied.resize(seats);
+        for (uint32_t i = 0; i < seats; ++i) m_.tied[i] = root_of(i);
         for (size_t i = 0; i < m_.obstacles.tie.size(); i += 2) {
             const uint32_t seat[2] = {system_.at(m_.obstacles.tie[i]), system_.at(m_.obstacles.tie[i + 1])};
             if (is_free(seat[0]) && is_free(seat[1])) unite(seat[0], seat[1]);
@@ -187,6 +190,31 @@ private:
         }
     }
 
+    // scratch[2]: by what leads points of a piece together, the piece, or that something holds it.
+    void list_pieces() {
+        constexpr uint32_t kHeld = kNone - 1;
+        Array<uint32_t>& piece_of = m_.scratch[2];
+        piece_of.assign(m_.found_free.size(), kNone);
+        for_elements([&](const EnergyBatch&, uint32_t nodes, uint32_t node, uint32_t) {
+            const std::span<const uint32_t> points(&m_.point_of[node], nodes);
+            if (std::ranges::all_of(points, [&](uint32_t p) { return m_.free[p]; })) return;
+            for (const uint32_t p : points) piece_of[m_.tied[m_.seat[p]]] = kHeld;
+        });
+        m_.piece.assign(m_.seat.size(), kNone);
+        uint32_t pieces = 0;
+        for (EnergyIsland& island : m_.island) {
+            island.first_piece = pieces;
+            for (uint32_t p = island.first_point; p < island.first_point + island.points; ++p) {
+                uint32_t& piece = piece_of[m_.tied[m_.seat[p]]];
+                if (!m_.free[p] || piece == kHeld) continue;
+                if (piece == kNone) piece = pieces++;
+                m_.piece[p] = piece;
+            }
+            island.pieces = pieces - island.first_piece;
+        }
+        m_.turn.resize(pieces);
+    }
+
     // Rows of points that share an element, ascending. scratch[0], [1]: begin and list of the places in point_of of
     // each point; [2]: size of the element of a place, and how far it is from its first one; [3]: who saw a point last.
     void list_blocks() {
@@ -211,6 +239,8 @@ private:
             std::sort(m_.column.begin() + m_.row_begin.back(), m_.column.end());
             m_.row_begin.push_back(static_cast<uint32_t>(m_.column.size()));
         }
+        m_.diagonal.resize(points);
+        for (uint32_t p = 0; p < points; ++p) m_.diagonal[p] = block_at(p, p);
         for_elements([&](const EnergyBatch&, uint32_t nodes, uint32_t node, uint32_t block) {
             for (uint32_t n = 0; n < nodes; ++n)
                 for (uint32_t m = 0; m < nodes; ++m)

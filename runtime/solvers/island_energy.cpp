@@ -1,5 +1,7 @@
 #include "solvers/island_energy.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,6 +26,7 @@ IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool st
       contacts_(substep.team, island, m_),
       penalties_(substep.team, island, m_),
       solids_(substep.team, island, m_),
+      path_(substep.team, island, m_),
       statics_(statics),
       damped_(island.damped && !statics) {
     at()[0] = std::numeric_limits<double>::quiet_NaN();  // nothing is known yet
@@ -258,7 +261,7 @@ void IslandEnergy::for_matrices(Find&& find, Take&& take) const {
     }
 }
 
-void IslandEnergy::linearise(std::span<double> z) {
+void IslandEnergy::linearise(std::span<double> z, Hessian which) {
     settle_at(z, {});
     const uint32_t begin = m_.row_begin[island_.first_point], end = m_.row_begin[island_.first_point + island_.points];
     if (damped_)
@@ -268,13 +271,38 @@ void IslandEnergy::linearise(std::span<double> z) {
     for_matrices(
         [&](const EnergyBatch& batch, double* out) {
             if (const EnergyKernel* const kernel = kernel_of(batch))
-                return kernel->hessian(lanes_of(batch), frame_of(batch), out);
-            find_matrices(batch, errors_of(batch), Curvature::raw, out);
+                return kernel->hessian(lanes_of(batch), frame_of(batch), which == Hessian::positive, out);
+            find_matrices(batch, errors_of(batch), which == Hessian::positive ? Curvature::positive : Curvature::raw,
+                          out);
         },
         [&](const EnergyBatch& batch, const double* out) { scatter(batch, out, m_.hessian); });
-    if (penalties_.any()) penalties_.add_matrix(m_.hessian);
-    if (contacts_.any()) contacts_.restrict(m_.hessian);
-    if (solids_.any()) solids_.linearise();
+    if (penalties_.any()) penalties_.add_matrix(which, m_.hessian);
+    if (contacts_.any()) contacts_.restrict(which, m_.hessian);
+    if (solids_.any()) solids_.linearise(which);
+    find_inverses();
+}
+
+void IslandEnergy::find_inverses() {
+    const uint32_t first = island_.first_point;
+    for (uint32_t p = first; p < first + island_.points; ++p) {
+        m_.inverse[p] = Mat3::Map(&m_.hessian[9 * size_t{m_.diagonal[p]}]);
+        if (!statics_) m_.inverse[p].diagonal().array() += 1;
+    }
+    if (solids_.any()) solids_.add_diagonal({&m_.inverse[first], island_.points});
+    s_.team.for_ranges(island_.points, kPointGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t p = first + begin; p < first + end; ++p) {
+            const Eigen::LLT<Mat3> factor(m_.inverse[p]);
+            m_.inverse[p] = Mat3::Identity();
+            if (factor.info() == Eigen::Success) factor.solveInPlace(m_.inverse[p]);
+        }
+    });
+}
+
+void IslandEnergy::precondition(std::span<const double> r, std::span<double> out) {
+    s_.team.for_ranges(island_.points, kPointGrain, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin; i < end; ++i)
+            Vec3::Map(&out[3 * size_t{i}]) = m_.inverse[island_.first_point + i] * Vec3::Map(&r[3 * size_t{i}]);
+    });
 }
 
 void IslandEnergy::find_damping() {

@@ -12,6 +12,7 @@
 #include "solvers/point_penalties.h"
 #include "solvers/solid_contacts.h"
 #include "solvers/solver.h"
+#include "solvers/turning_path.h"
 
 namespace taut {
 
@@ -22,11 +23,18 @@ public:
     uint32_t size() const override { return 3 * island_.points; }
     double evaluate(std::span<double> z, std::span<double> gradient) override;
     void hold(std::span<double> z, std::span<double> gradient) override;
-    void linearise(std::span<double> z) override;
+    void linearise(std::span<double> z, Hessian which) override;
     void multiply(std::span<const double> d, std::span<double> out) override;
+    // Of the blocks on the diagonal, each by its own.
+    void precondition(std::span<const double> r, std::span<double> out) override;
     double direct_cost() const override;
     bool solve(std::span<double> x) override;
     double size_of_terms() const override { return terms_; }
+    void begin_path(std::span<const double> z, std::span<const double> d) override { path_.begin(z, d); }
+    void follow(std::span<const double> z, std::span<const double> d, double part, std::span<double> place,
+                std::span<double> way) override {
+        path_.follow(z, d, part, place, way);
+    }
 
     // Makes z the place of the last evaluation, which it is as a rule.
     void settle_at(std::span<double> z, std::span<double> gradient);
@@ -58,6 +66,7 @@ private:
     // dE'/dz of the last evaluation with a gradient.
     std::span<double> raw() const { return {&m_.raw[3 * size_t{island_.first_point}], 3 * size_t{island_.points}}; }
     void find_damping_of(const EnergyBatch& batch, double* out, double* push) const;
+    void find_inverses();
     void scatter(const EnergyBatch& batch, const double* matrix, Array<double>& into) const;
     template <class Find, class Take>
     void for_matrices(Find&& find, Take&& take) const;
@@ -69,6 +78,7 @@ private:
     PointContacts contacts_;
     PointPenalties penalties_;
     SolidContacts solids_;
+    TurningPath path_;
     const EnergyKernels& kernels_ = energy_kernels();
     const MultiplyRows multiply_rows_ = multiply_rows();
     const bool statics_, damped_;

@@ -49,6 +49,7 @@ private:
         m_.begin.resize(points);
         m_.led.resize(points);
         m_.scale.resize(points);
+        m_.inverse.resize(points);
         for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped, &m_.at})
             each->resize(3 * points);
         m_.hessian.resize(9 * blocks + kBlockPadding);

@@ -44,7 +44,15 @@ struct EnergyBatch {
 struct EnergyIsland {
     uint32_t first_point, points;
     uint32_t first_batch, batches;
+    uint32_t first_piece, pieces;  // in MinimisationMemory::turn
     bool damped;
+};
+
+// Of points that elements tie together and nothing holds, along a search (turning_path.h).
+struct PieceTurn {
+    double mass = 0;                                                              // over a [kg/s^2]
+    Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero(), angular = Vec3::Zero();  // of a part of 1 of the path
+    Mat3 inertia = Mat3::Zero(), turned = Mat3::Identity();
 };
 
 constexpr uint32_t kMostWays = 3;  // surfaces that a point is on: as many hold it still
@@ -108,7 +116,11 @@ struct MinimisationMemory {
           block_of(m),
           seat(m),
           free(m),
+          tied(m),
+          piece(m),
+          turn(m),
           row_begin(m),
+          diagonal(m),
           column(m),
           scratch{Array<uint32_t>(m), Array<uint32_t>(m), Array<uint32_t>(m), Array<uint32_t>(m), Array<uint32_t>(m)},
           pose(m),
@@ -123,6 +135,7 @@ struct MinimisationMemory {
           damped(m),
           hessian(m),
           damping(m),
+          inverse(m),
           at(m),
           error(m),
           energy(m),
@@ -157,7 +170,11 @@ struct MinimisationMemory {
     Array<uint32_t> block_of;    // [element][nodes][nodes], in hessian
     Array<uint32_t> seat;        // by point
     Array<uint8_t> free;         // by point
+    Array<uint32_t> tied;        // by seat: the same of all that elements tie together
+    Array<uint32_t> piece;       // by point: in turn, or kNone where that is held
+    Array<PieceTurn> turn;       // by piece
     Array<uint32_t> row_begin;   // by point, and one past the last
+    Array<uint32_t> diagonal;    // by point: its own block
     Array<uint32_t> column;      // by block: its second point
     Array<uint32_t> scratch[5];  // of find_energy_graph()
 
@@ -173,6 +190,7 @@ struct MinimisationMemory {
     Array<double> damped;  // damping z
     // by block, nine each by columns, padded
     Array<double> hessian, damping;  // of z, without inertia [1]
+    Array<Mat3> inverse;             // by point: of its own block with inertia, or 1 where that is not positive
     Array<double> at;                // where errors and energies are those of
     // by element
     Array<double> error;   // [kMaxRows] C, one after the other within a batch

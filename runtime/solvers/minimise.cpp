@@ -35,7 +35,6 @@ public:
             report_.gradient = length_of(s_.gradient);
             report_.converged = report_.gradient < set_.tolerance;
             if (report_.converged || report_.steps == set_.most_steps || !std::isfinite(report_.gradient)) break;
-            of_.linearise(x_);
             find_direction();
             if (!(set_.line_search ? step_downhill() : step_whole())) {
                 ++report_.steps;
@@ -51,13 +50,25 @@ private:
         return of_.evaluate(x, gradient);
     }
 
-    // H d = -g by conjugate gradients from d = 0, which ends where the curvature p . H p is not positive: with the last
-    // iterate, or with -g at the first one. Either goes downhill. Where that lasts it is solved directly: whether it
-    // would end with the next product nobody knows, so that what is cheaper costs at most twice as much. From then on
-    // directly at once, until a matrix is not positive.
+    // H d = -g. Where the Hessian is not positive it is solved with the positive matrix: conjugate gradients that end
+    // at the negative curvature, as in the paper, leave directions that lead little down.
     void find_direction() {
+        of_.linearise(x_, Hessian::exact);
+        if (solve_newton(!set_.line_search)) return;
+        ++report_.indefinite;
+        of_.linearise(x_, Hessian::positive);
+        solve_newton(true);
+    }
+    // By conjugate gradients from d = 0. Where that lasts it is solved directly: whether it would end with the next
+    // product nobody knows, so that what is cheaper costs at most twice as much. From then on directly at once. False:
+    // the matrix is not positive, and not the last one; of that the last iterate is taken, which goes downhill.
+    bool solve_newton(bool is_last) {
         bool was_tried = direct_;
-        if (direct_ && solve_directly()) return;
+        if (direct_) {
+            if (solve_directly()) return true;
+            if (!is_last) return false;
+            direct_ = false;
+        }
         const double size = report_.gradient;
         if (report_.steps == 0) first_ = size;
         constexpr double kWhole = 1e-6;  // of a residual: the step without the search is Newton's own
@@ -65,22 +76,24 @@ private:
         const double end = std::min(share, set_.sigma * std::sqrt(std::max(size, set_.tolerance) / first_)) * size;
         std::ranges::fill(s_.direction, 0.0);
         std::ranges::transform(s_.gradient, s_.residual.begin(), [](double g) { return -g; });
-        s_.search = s_.residual;
-        double square = size * size;
+        of_.precondition(s_.residual, s_.eased);
+        s_.search = s_.eased;
+        double square = dot_of(s_.residual, s_.eased), left = size;
         const double rent = of_.direct_cost();
-        for (size_t k = 0; k < most_iterations() && std::sqrt(square) > end; ++k) {
+        for (size_t k = 0; k < most_iterations() && left > end; ++k) {
             if (!was_tried && static_cast<double>(k) >= rent) {
                 was_tried = true;
                 s_.image = s_.direction;
-                if (solve_directly()) return;
+                direct_ = solve_directly();
+                if (direct_) return true;
+                if (!is_last) return false;
                 s_.direction = s_.image;
             }
             of_.multiply(s_.search, s_.image);
             const double curvature = dot_of(s_.search, s_.image);
             if (!is_usable(curvature)) {
-                if (k == 0) s_.direction = s_.residual;
-                ++report_.indefinite;
-                return;
+                if (k == 0) s_.direction = s_.search;
+                return is_last;
             }
             ++report_.iterations;
             const double part = square / curvature;
@@ -88,10 +101,13 @@ private:
                 s_.direction[i] += part * s_.search[i];
                 s_.residual[i] -= part * s_.image[i];
             }
-            const double next = dot_of(s_.residual, s_.residual), beta = next / square;
-            for (size_t i = 0; i < s_.search.size(); ++i) s_.search[i] = s_.residual[i] + beta * s_.search[i];
+            of_.precondition(s_.residual, s_.eased);
+            const double next = dot_of(s_.residual, s_.eased), beta = next / square;
+            for (size_t i = 0; i < s_.search.size(); ++i) s_.search[i] = s_.eased[i] + beta * s_.search[i];
             square = next;
+            left = length_of(s_.residual);
         }
+        return true;
     }
     // Without the search a step is -H^-1 g as it comes, be it uphill.
     bool is_usable(double curvature) const {
@@ -99,24 +115,14 @@ private:
     }
     bool solve_directly() {
         std::ranges::transform(s_.gradient, s_.direction.begin(), [](double g) { return -g; });
-        direct_ = of_.solve(s_.direction);
-        if (direct_) ++report_.direct;
-        return direct_;
+        const bool solved = of_.solve(s_.direction);
+        if (solved) ++report_.direct;
+        return solved;
     }
     // In exact arithmetic as many as there are unknowns reach the solution.
     size_t most_iterations() const { return x_.size(); }
 
-    // As steep as kappa asks for, either way, else -g; no longer than l.
-    void check_direction() {
-        const double length = length_of(s_.direction), slope = dot_of(s_.direction, s_.gradient);
-        const double least = set_.downhill * length * report_.gradient;
-        if (!(slope < -least)) {
-            const bool turns = slope > least;
-            for (size_t i = 0; i < x_.size(); ++i) s_.direction[i] = turns ? -s_.direction[i] : -s_.gradient[i];
-            if (!turns) ++report_.gradient_steps;
-        }
-        clamp_direction();
-    }
+    // No longer than l.
     void clamp_direction() {
         const double length = length_of(s_.direction);
         if (!(length > set_.longest_step)) return;
@@ -124,24 +130,24 @@ private:
     }
 
     LinePoint at(double part) override {
-        for (size_t i = 0; i < x_.size(); ++i) s_.trial[i] = x_[i] + part * s_.direction[i];
+        of_.follow(x_, s_.direction, part, s_.trial, s_.way);
         LinePoint out{part, evaluate(s_.trial, s_.trial_gradient), 0};
-        out.slope = dot_of(s_.trial_gradient, s_.direction);
+        out.slope = dot_of(s_.trial_gradient, s_.way);
         tried_ = part;
         return out;
     }
     // False: no way down that rounding would not hide, not even along -g.
     bool step_downhill() {
-        check_direction();
         if (search()) return true;
         std::ranges::transform(s_.gradient, s_.direction.begin(), [](double g) { return -g; });
         ++report_.gradient_steps;
-        clamp_direction();
         return search();
     }
     bool search() {
+        clamp_direction();
         const LinePoint begin{0, report_.value, dot_of(s_.direction, s_.gradient)};
         if (!(begin.slope < 0)) return false;
+        of_.begin_path(x_, s_.direction);
         LineSettings settings;
         settings.terms = of_.size_of_terms();
         settings.longest = std::max(1.0, set_.longest_step / length_of(s_.direction));
@@ -153,7 +159,8 @@ private:
     }
     bool step_whole() {
         clamp_direction();
-        take(at(1).value);
+        for (size_t i = 0; i < x_.size(); ++i) s_.trial[i] = x_[i] + s_.direction[i];
+        take(evaluate(s_.trial, s_.trial_gradient));
         return std::isfinite(report_.value);
     }
     void take(double value) {
@@ -167,7 +174,7 @@ private:
     const MinimiseSettings& set_;
     MinimiseScratch& s_;
     MinimiseReport report_;
-    bool direct_ = false;  // the last step was solved so
+    bool direct_ = false;  // the last matrix was solved so
     double first_ = 1;     // |dE/dx| at the first step
     double tried_ = 0;     // the part that trial and trial_gradient belong to
     uint32_t trials_ = 0;

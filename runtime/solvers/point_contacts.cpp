@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/positive_part.h"
+
 namespace taut {
 namespace {
 
@@ -30,6 +32,13 @@ Mat3 across(const Normals& normals) {
         const double size = rest.norm();
         if (size > kDependent) out -= rest * rest.transpose() / (size * size);
     }
+    return out;
+}
+
+// -sum mu d2phi/dx2
+Mat3 bend_of(const PointHold& hold, Hessian which) {
+    Mat3 out = -hold.curve;
+    if (which == Hessian::positive) clip_negative<3>(out);
     return out;
 }
 
@@ -178,7 +187,7 @@ void PointContacts::release() {
     if (any_) std::fill_n(m_.hold_of.begin() + island_.first_point, island_.points, kNone);
 }
 
-void PointContacts::restrict(Array<double>& matrix) const {
+void PointContacts::restrict(Hessian which, Array<double>& matrix) const {
     if (m_.hold.size() == first_hold_) return;
     team_.for_ranges(island_.points, kTouchGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t p = island_.first_point + begin; p < island_.first_point + end; ++p) {
@@ -186,7 +195,7 @@ void PointContacts::restrict(Array<double>& matrix) const {
             for (uint32_t b = m_.row_begin[p]; b < m_.row_begin[p + 1]; ++b) {
                 const uint32_t q = m_.column[b];
                 Eigen::Map<Mat3> a(&matrix[9 * size_t{b}]);
-                if (row && p == q) a -= row->curve;
+                if (row && p == q) a += bend_of(*row, which);
                 if (row) a = (row->along * a).eval();
                 if (m_.hold_of[q] != kNone) a = (a * m_.hold[m_.hold_of[q]].along).eval();
                 if (row && p == q) a += Mat3::Identity() - row->along;

@@ -25,7 +25,7 @@ public:
     void hold(std::span<double> gradient);
     // From the matrix of E' in z to that of E at the place of hold(): T A T - sum mu d2phi/dx2 + N N^T, with
     // T = 1 - N N^T, N the normals that hold a point and mu [N] what it weighs on them.
-    void restrict(Array<double>& matrix) const;
+    void restrict(Hessian which, Array<double>& matrix) const;
     // None of the island is held any longer.
     void release();
 

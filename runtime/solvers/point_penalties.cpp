@@ -1,5 +1,6 @@
 #include "solvers/point_penalties.h"
 
+#include "constraints/positive_part.h"
 #include "solvers/point_contacts.h"
 
 namespace taut {
@@ -49,12 +50,12 @@ void PointPenalties::add_gradient(std::span<double> gradient) const {
     }
 }
 
-void PointPenalties::add_matrix(Array<double>& matrix) const {
+void PointPenalties::add_matrix(Hessian which, Array<double>& matrix) const {
     for (uint32_t p = island_.first_point; p < island_.first_point + island_.points; ++p) {
         if (!(m_.penalty[p].energy > 0)) continue;
-        const auto begin = m_.column.begin() + m_.row_begin[p], end = m_.column.begin() + m_.row_begin[p + 1];
-        const auto block = static_cast<size_t>(std::lower_bound(begin, end, p) - m_.column.begin());
-        Eigen::Map<Mat3>(&matrix[9 * block]) += m_.penalty[p].matrix / (m_.scale[p] * m_.scale[p]);
+        Mat3 k = m_.penalty[p].matrix;
+        if (which == Hessian::positive) clip_negative<3>(k);
+        Eigen::Map<Mat3>(&matrix[9 * size_t{m_.diagonal[p]}]) += k / (m_.scale[p] * m_.scale[p]);
     }
 }
 

@@ -20,7 +20,7 @@ public:
     double evaluate();
     // Adds what they are by, in z: 3 numbers a point of the island, and blocks on the diagonal.
     void add_gradient(std::span<double> gradient) const;
-    void add_matrix(Array<double>& matrix) const;
+    void add_matrix(Hessian which, Array<double>& matrix) const;
 
 private:
     Team& team_;

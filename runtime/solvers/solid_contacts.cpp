@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "constraints/point_penalty.h"
+#include "constraints/positive_part.h"
 #include "system/system.h"
 
 namespace taut {
@@ -150,7 +151,7 @@ void SolidContacts::add_gradient(std::span<double> gradient) const {
     }
 }
 
-void SolidContacts::linearise() {
+void SolidContacts::linearise(Hessian which) {
     m_.pair_matrix.resize(144 * size_t{pairs()});
     team_.for_ranges(pairs(), kPairGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
@@ -159,6 +160,11 @@ void SolidContacts::linearise() {
             double* const out = &m_.pair_matrix[144 * size_t{i}];
             point_penalty_hessian(m_.obstacles.between[pair.meeting].stiffness, place(pair.node[0]), corner, out);
             Eigen::Map<Square12> matrix(out);
+            if (which == Hessian::positive) {
+                Eigen::Matrix<double, 12, 12> positive = matrix;
+                clip_negative<12>(positive);
+                matrix = positive;
+            }
             for (int k = 0; k < 4; ++k) {
                 const uint32_t p = pair.point[k];
                 const double scale = m_.free[p] ? 1 / m_.scale[p] : 0;
@@ -172,6 +178,14 @@ void SolidContacts::linearise() {
             }
         }
     });
+}
+
+void SolidContacts::add_diagonal(std::span<Mat3> blocks) const {
+    for (uint32_t i = 0; i < pairs(); ++i) {
+        const auto matrix = Square12::Map(&m_.pair_matrix[144 * size_t{i}]);
+        for (int k = 0; k < 4; ++k)
+            blocks[pair_at(i).point[k] - island_.first_point] += matrix.block<3, 3>(3 * k, 3 * k);
+    }
 }
 
 void SolidContacts::add_product(const double* d, double* out) const {

@@ -20,7 +20,9 @@ public:
     // Adds what they are by, in z, 3 numbers a point of the island.
     void add_gradient(std::span<double> gradient) const;
     // Matrices in z of what evaluate() found, restricted as points are held.
-    void linearise();
+    void linearise(Hessian which);
+    // Adds their blocks on the diagonal, of all points of the island.
+    void add_diagonal(std::span<Mat3> blocks) const;
     // out += matrix d, of all points of the island.
     void add_product(const double* d, double* out) const;
 

@@ -101,9 +101,8 @@ std::vector<TangleCase> tangles(int nodes) {
 }
 INSTANTIATE_TEST_SUITE_P(Cubes, Tangled, testing::ValuesIn(tangles(7)), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Soak17, Tangled, testing::ValuesIn(tangles(17)), testing::PrintToStringParamName());
-INSTANTIATE_TEST_SUITE_P(Soak33, Tangled,
-                         testing::Values(TangleCase{Tangle::random, 33, 1e7, 1}, TangleCase{Tangle::point, 33, 1e7, 1}),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Soak33, Tangled, testing::ValuesIn(tangles(33)), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Soak65, Tangled, testing::ValuesIn(tangles(65)), testing::PrintToStringParamName());
 
 // The same program by a setting: each step of Newton's method as it comes.
 TEST(TangledCube, WithoutTheSearchNewtonsMethodDoesNotRecover) {
