@@ -158,6 +158,20 @@ TAUT_API taut_result taut_solid_get_triangles(taut_solid solid, uint32_t* triang
                                               uint32_t* count);
 /** Von Mises stress of each cell, the mean of its Gauss points' [Pa]; results as above. */
 TAUT_API taut_result taut_solid_get_stresses(taut_solid solid, float* stresses, uint32_t capacity, uint32_t* count);
+/**
+ * Takes a solid that is tangled, by a teleport, a bad import or a blow that no step could follow, towards a shape
+ * without inverted cells: by at most so many of Newton's steps, with line search, to a minimum of its elastic energy
+ * (Gast and Schroeder 2014). Called once a frame, a few steps each, its cost is spread; some 60 steps untangle what
+ * began anywhere at random. Pinned vertices stay, the centre of mass of a free one too; its vertices go on with the
+ * velocity of that, and are strained as they are. Contacts and attachments are met by the world's next steps. Of one
+ * without inverted cells nothing changes. A solid all of whose vertices are in one place comes back with
+ * TAUT_SOLID_FIXED_COROTATED alone: others are in balance there.
+ * @param max_steps 1 to 1000
+ * @param inverted out, may be null: inverted cells left
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY; TAUT_UNSUPPORTED in a
+ *         world of TAUT_SOLVER_MINIMISATION, whose steps do so themselves.
+ */
+TAUT_API taut_result taut_solid_recover(taut_solid solid, uint32_t max_steps, uint32_t* inverted);
 /** Volume of each cell over that at rest, negative where it is inverted; results as above. */
 TAUT_API taut_result taut_solid_get_volumes(taut_solid solid, float* ratios, uint32_t capacity, uint32_t* count);
 /**

@@ -6,6 +6,7 @@
 #include "api/deformable.h"
 #include "models/plastic.h"
 #include "models/solid.h"
+#include "recover.h"
 
 using namespace taut;
 
@@ -320,6 +321,24 @@ taut_result taut_solid_get_volumes(taut_solid handle, float* ratios, uint32_t ca
     return read_soft(check.call(), handle, [&](const World& world, const Soft& soft) {
         return copy_out(cells_of(world, soft), ratios, capacity, count, check.call(), "ratios",
                         [&](uint32_t c) { return to_float(cell_state(world, soft, c).volume); });
+    });
+}
+
+taut_result taut_solid_recover(taut_solid handle, uint32_t max_steps, uint32_t* inverted) {
+    constexpr uint32_t kMostSteps = 1000;  // as of a minimisation that nobody bounds
+    Check check(__func__);
+    if (!check.count("max_steps", max_steps, 1, kMostSteps)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+        if (solvers()[world.def.solver]->energies)
+            return refuse(TAUT_UNSUPPORTED, "%s: steps of TAUT_SOLVER_MINIMISATION recover by themselves",
+                          check.call());
+        const Soft& soft = world.softs.record[index];
+        if (inverted_cells(world, soft) > 0) {
+            for (const uint32_t node : soft.node) wake_about(world, node);
+            recover(world, soft, max_steps);
+        }
+        if (inverted) *inverted = inverted_cells(world, soft);
+        return TAUT_OK;
     });
 }
 
