@@ -40,7 +40,7 @@ extern "C" {
 #endif
 
 /** Most vertices, triangles or cells of one deformable. */
-#define TAUT_DEFORMABLE_MAX 1000000
+#define TAUT_DEFORMABLE_MAX 4000000
 
 /** How the world's default solver takes the elements of a deformable; the other solvers take all alike. */
 typedef enum taut_deformable_solve {
