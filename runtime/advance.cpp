@@ -202,6 +202,7 @@ void take_rest(World& world, Relaxation& relaxation) {
     end();
     for (uint32_t node = 0; node < nodes.slots(); ++node)
         if (moves_by_forces(nodes.info[node].kind)) set_speed(nodes.motion[node], {});
+    std::ranges::fill(nodes.history, NodeHistory{});
 }
 
 Advance advance(World& world, double seconds) {

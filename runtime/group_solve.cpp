@@ -71,7 +71,7 @@ void GroupSolve::begin() {
     if (airy_) load_surfaces(w_, index_, clock_.begin());
     if (!one_step_)
         begin_scheme(system_, group_, w_.nodes, *scheme_types()[w_.def.scheme],
-                     {w_.def.newmark_beta, w_.def.newmark_gamma});
+                     {w_.def.newmark_beta, w_.def.newmark_gamma}, solver_.energies);
     if (solver_.lanes && clock_.number() > 0) {
         turn_surface_lanes(w_.team, system_, *settings_.surface_kernels);
         turn_lanes(w_.team, system_, group_, *settings_.kernels);
@@ -159,7 +159,7 @@ void GroupSolve::commit(Substep& substep) {
     }
     if (!one_step_) {
         if (solver_.lanes) store_joint_lanes(w_.team, system_);
-        end_scheme(system_, group_, w_.nodes);
+        end_scheme(system_, group_, w_.nodes, solver_.energies);
     }
     tell(Stage::commit);
     w_.profile.commit_us += watch_.lap();

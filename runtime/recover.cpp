@@ -73,6 +73,7 @@ void recover(World& world, const Soft& soft, uint32_t most_steps) {
         NodeMotion& motion = world.nodes.motion[node];
         motion.x += world.system.scheme.h * (way_of(node) - strayed);
         set_velocity(motion, velocity, Vec3::Zero());
+        if (!world.nodes.history.empty()) world.nodes.history[node] = {};
         world.nodes.before[node] = origin_pose(world, node);
         refresh_boxes(world, node);
     }

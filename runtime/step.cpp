@@ -123,7 +123,8 @@ void solve(World& w, Stopwatch& watch) {
     SolverReport report;
     const double least = static_cast<double>(w.def.time_step) / w.least_substeps();
     w.system.stretch = static_cast<float>(std::min(1.0, least / w.spring_substep));
-    w.system.scheme = scheme_types()[w.def.scheme]->times({w.def.newmark_beta, w.def.newmark_gamma});
+    const SchemeType& scheme = w.relaxation ? kImplicitEuler : *scheme_types()[w.def.scheme];
+    w.system.scheme = scheme.times({w.def.newmark_beta, w.def.newmark_gamma});
     age_yields(w.elements, w.def.time_step, w.least_substeps());
     begin_frame(w.team, w.system, w.partition, w.nodes, w.joints.ids.count() > 0 || w.elements.ids.count() > 0);
     make_room_for_scheme(w.system, w.nodes);

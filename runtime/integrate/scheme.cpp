@@ -76,11 +76,37 @@ void find_spring_accelerations(System& system, const Group& group, const Nodes& 
     }
 }
 
+// The same of elements that have no rows, -W J^T D C at x_n.
+void add_elastic_accelerations(System& system, const Nodes& nodes) {
+    for (const ElasticRun& run : system.rows.elastic) {
+        const ElementType& type = *run.set->type;
+        const int rows = type.row.rows;
+        const Eigen::Map<const RowMatrix> stiffness(run.set->stiffness, rows, rows);
+        for (uint32_t i = 0; i < run.count; ++i) {
+            const uint32_t* const seat =
+                &system.rows.element_node[run.node + i * static_cast<uint32_t>(type.row.nodes)];
+            const uint32_t element = system.rows.element[run.element + i];
+            RowVector error(rows);
+            double jacobian[kMaxNodes * kMaxRows * 3];
+            type.evaluate({1, seat, &element, run.set->data.data(), system.pose.data()}, error.data(), jacobian, 3);
+            if (run.set->pulls && !(error[0] > 0)) continue;
+            const RowVector force = -stiffness * error / run.set->softness[element];
+            for (int n = 0; n < type.row.nodes; ++n) {
+                const uint32_t node = system.node_at[seat[n]];
+                if (node == kNone || !moves_by_forces(nodes.info[node].kind)) continue;
+                const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, kMaxRows, 3>> j(
+                    jacobian + n * rows * 3, rows, 3);
+                system.by_springs[seat[n]].v += nodes.mass[node].inv_mass * (j.transpose() * force);
+            }
+        }
+    }
+}
+
 // Nodes of which nothing is known yet: the accelerations that their springs give them.
 void begin_histories(System& system, const Group& group, Nodes& nodes) {
-    const auto is_new = [&](uint32_t node) { return nodes.history[node].length == 0; };
-    if (std::none_of(group.nodes.begin(), group.nodes.end(), is_new)) return;
+    const auto is_new = [&](uint32_t node) { return !nodes.history[node].any(); };
     find_spring_accelerations(system, group, nodes, true);
+    add_elastic_accelerations(system, nodes);
     for (const uint32_t node : group.nodes)
         if (is_new(node)) nodes.history[node].acceleration = speed_of(system.by_springs[system.at(node)]);
 }
@@ -94,11 +120,16 @@ void make_room_for_scheme(System& system, Nodes& nodes) {
         grow_to(*each, system.pose.size());
 }
 
-void begin_scheme(System& system, const Group& group, Nodes& nodes, const SchemeType& type,
-                  const SchemeSettings& settings) {
-    const Scheme& scheme = system.scheme;
+void begin_scheme(System& system, const Group& group, Nodes& nodes, const SchemeType& of,
+                  const SchemeSettings& settings, bool minimised) {
+    Scheme& scheme = system.scheme;
     const Speed none;
-    begin_histories(system, group, nodes);
+    const bool any_new = !std::ranges::all_of(group.nodes, [&](uint32_t node) { return nodes.history[node].any(); });
+    const SchemeType& type = any_new && minimised && of.first ? *of.first : of;
+    const double h = scheme.h;
+    scheme = type.times(settings);
+    scheme.set_length(h);
+    if (any_new) begin_histories(system, group, nodes);
     for (const uint32_t node : group.nodes) {
         const uint32_t at = system.at(node);
         NodeHistory& history = nodes.history[node];
@@ -113,9 +144,9 @@ void begin_scheme(System& system, const Group& group, Nodes& nodes, const Scheme
     }
 }
 
-void end_scheme(System& system, const Group& group, const Nodes& nodes) {
+void end_scheme(System& system, const Group& group, const Nodes& nodes, bool springs_known) {
     const Scheme& scheme = system.scheme;
-    find_spring_accelerations(system, group, nodes, false);
+    if (!springs_known) find_spring_accelerations(system, group, nodes, false);
     for (const uint32_t node : group.nodes) {
         const uint32_t at = system.at(node);
         const Speed turn = sum(sum(speed_of(system.coast[at]), -1, speed_of(system.ahead[at])),

@@ -29,6 +29,9 @@ struct SchemeType {
     Scheme (*times)(const SchemeSettings& settings);
     // u* and v~; null for one step, where both are v_n + h a.
     void (*start)(const SchemeStart& from, Speed& ahead, Speed& coast);
+    // What takes its place in a substep of minimisation with nodes that have no past. Others begin that from forces as
+    // they are at x_n, which of a tangle are as far from those within the substep as can be. Null: none.
+    const SchemeType* first = nullptr;
 };
 
 // In the order of taut_scheme.
@@ -41,12 +44,12 @@ inline Speed sum(const Speed& a, double share, const Speed& b) { return {a.v + s
 
 // Once a frame: room for what a scheme remembers.
 void make_room_for_scheme(System& system, Nodes& nodes);
-// After predict(), from v_n + h a in System::exact: u* in its place.
+// After predict(), from v_n + h a in System::exact: u* in its place. minimised: see SchemeType::first.
 void begin_scheme(System& system, const Group& group, Nodes& nodes, const SchemeType& type,
-                  const SchemeSettings& settings);
+                  const SchemeSettings& settings, bool minimised);
 // After positions moved by h u, from u in System::exact, and in kept of nodes in blocks: v' in its place, with springs'
-// forces at the positions reached.
-void end_scheme(System& system, const Group& group, const Nodes& nodes);
+// forces at the positions reached. springs_known: the solver left what these do in System::by_springs.
+void end_scheme(System& system, const Group& group, const Nodes& nodes, bool springs_known);
 // After store_velocity(): what the next substep has to know.
 void remember_scheme(const System& system, const Group& group, Nodes& nodes);
 

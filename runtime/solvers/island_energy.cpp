@@ -24,8 +24,8 @@ IslandEnergy::IslandEnergy(Substep& substep, const EnergyIsland& island, bool st
       island_(island),
       m_(substep.scratch.minimisation.get()),
       contacts_(substep.team, island, m_),
-      penalties_(substep.team, island, m_),
-      solids_(substep.team, island, m_),
+      penalties_(substep.team, island, m_, substep.system.scheme.contact_act() / substep.system.scheme.act),
+      solids_(substep.team, island, m_, substep.system.scheme.contact_act() / substep.system.scheme.act),
       path_(substep.team, island, m_),
       statics_(statics),
       damped_(island.damped && !statics) {
@@ -148,8 +148,19 @@ double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
     }
     terms_ = std::abs(0.5 * inertia) + elastic + std::abs(damping);
     if (gradient.empty()) return 0.5 * inertia + elastic + damping;
-    for (uint32_t i = 0; i < size(); ++i)
-        gradient[i] = (statics_ ? 0 : z[i]) - wanted[i] + (damped_ ? m_.damped[i] : 0);
+    for (uint32_t i = 0; i < size(); ++i) gradient[i] = (statics_ ? 0 : z[i]) - wanted[i];
+    add_springs(gradient);
+    add_penalties(gradient);
+    if (contacts_.any()) {
+        std::ranges::copy(gradient, raw().begin());
+        contacts_.pull_back(gradient);
+    }
+    return 0.5 * inertia + elastic + damping;
+}
+
+void IslandEnergy::add_springs(std::span<double> gradient) const {
+    if (damped_)
+        for (uint32_t i = 0; i < size(); ++i) gradient[i] += m_.damped[i];
     const EnergyBatch& last = m_.batch[island_.first_batch + island_.batches - 1];
     const uint32_t end = last.node + last.count * nodes_in(last);
     for (uint32_t k = m_.batch[island_.first_batch].node; k < end; ++k) {
@@ -157,13 +168,11 @@ double IslandEnergy::evaluate(std::span<double> z, std::span<double> gradient) {
         if (m_.free[p])
             Vec3::Map(&gradient[3 * (p - island_.first_point)]) += Vec3::Map(&m_.force[3 * size_t{k}]) / m_.scale[p];
     }
+}
+
+void IslandEnergy::add_penalties(std::span<double> gradient) const {
     if (solids_.any()) solids_.add_gradient(gradient);
     if (penalties_.any()) penalties_.add_gradient(gradient);
-    if (contacts_.any()) {
-        std::ranges::copy(gradient, raw().begin());
-        contacts_.pull_back(gradient);
-    }
-    return 0.5 * inertia + elastic + damping;
 }
 
 void IslandEnergy::hold(std::span<double> z, std::span<double> gradient) {

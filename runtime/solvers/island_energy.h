@@ -1,6 +1,7 @@
 // The energy of one island in a substep, over the displacements of its points,
-//   E = 1/2 |x - y|^2_M / a + sum W(x) + 1/2 (x - x_n)^T B (x - x_n)/h,   a = h t (system/scheme.h)
-// with W of the elements and B their damping, of x_n and positive (Gast and Schroeder 2014, section 4: lagged). The
+//   E = 1/2 |x - y|^2_M / a + sum W(x) + 1/2 (x - x_n)^T B (x - x_n)/h + c/t sum Phi(x),   y = x_n + h u*,   a = h t
+// of any scheme (system/scheme.h), with W of the elements, B their damping, of x_n and positive (Gast and Schroeder
+// 2014, section 4: lagged) and by the velocity that moves the points, as rows have it, and Phi of contacts. The
 // unknowns are z = s (x - x_n) with s = sqrt(m/a) [sqrt(J)], in which inertia has the matrix 1; held points have none.
 // Points are kept out of obstacles by projection (point_contacts.h): what is evaluated is E(P(x)).
 // In statics 1/a and B are 0, and E = sum W(x) - f . (x - x_n) with the external forces f.
@@ -45,6 +46,9 @@ public:
     double mass() const { return mass_; }  // of its free points [kg]
     // lambda = -D C at the places of the last evaluation, of sets that keep it.
     void store_forces() const;
+    // Add dE/dz of elements and their damping, and of contacts, at the place of the last evaluation with a gradient.
+    void add_springs(std::span<double> gradient) const;
+    void add_penalties(std::span<double> gradient) const;
 
 private:
     template <class Act>

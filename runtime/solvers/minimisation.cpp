@@ -19,6 +19,8 @@ public:
     void run() {
         m_.hold.clear();
         m_.pair.clear();
+        if (two_speeds_)
+            for (const uint32_t node : s_.group.nodes) s_.system.by_springs[s_.system.at(node)] = {};
         if (asked_.relaxation) hold_still();
         if (s_.system.rows.elastic.empty()) return;
         find_energy_graph(s_.system, s_.nodes, s_.group, m_);
@@ -50,6 +52,7 @@ private:
         m_.led.resize(points);
         m_.scale.resize(points);
         m_.inverse.resize(points);
+        if (two_speeds_) m_.pushed.assign(points, Vec3::Zero());
         for (Array<double>* each : {&m_.wanted, &m_.bias, &m_.x, &m_.guess, &m_.slope, &m_.damped, &m_.at})
             each->resize(3 * points);
         m_.hessian.resize(9 * blocks + kBlockPadding);
@@ -136,14 +139,34 @@ private:
             std::ranges::copy(before, x.begin());
             energy.release();
         }
-        energy.settle_at(x, {});
+        const std::span<double> slope(&m_.slope[3 * size_t{island.first_point}], energy.size());
+        energy.settle_at(x, slope);
         energy.store_forces();
+        if (two_speeds_) find_accelerations(island, energy, slope);
         for (uint32_t i = 0; i < island.points; ++i) {
             const uint32_t p = island.first_point + i, seat = m_.seat[p];
             if (!m_.free[p]) continue;
             s_.system.exact[seat].v = Vec3::Map(&x[3 * i]) / (m_.scale[p] * h_);
             set_sweep_velocity(s_.system.sweep[seat].velocity, s_.system.exact[seat]);
         }
+    }
+
+    // What springs and penalties do where the points are now, for v'.
+    void find_accelerations(const EnergyIsland& island, const IslandEnergy& energy, std::span<double> slope) {
+        const Scheme& scheme = s_.system.scheme;
+        const double c = scheme.contact_act(), rest = (h_ - c) * scheme.act / c;
+        const auto for_free = [&](auto&& act) {
+            for (uint32_t i = 0; i < island.points; ++i) {
+                const uint32_t p = island.first_point + i;
+                if (m_.free[p]) act(p, -Vec3::Map(&slope[3 * i]) / (m_.scale[p] * scheme.stiffness()));
+            }
+        };
+        std::ranges::fill(slope, 0.0);
+        energy.add_springs(slope);
+        for_free([&](uint32_t p, const Vec3& a) { s_.system.by_springs[m_.seat[p]].v = a; });
+        std::ranges::fill(slope, 0.0);
+        energy.add_penalties(slope);
+        for_free([&](uint32_t p, const Vec3& a) { m_.pushed[p] = rest * a; });
     }
 
     void tell(const MinimiseReport& done, double unit) {
@@ -162,15 +185,20 @@ private:
     Substep& s_;
     MinimisationMemory& m_;
     const double h_;  // [s]
+    const bool two_speeds_ = !s_.system.scheme.is_one_step();
     const MinimisationSettings asked_ = s_.settings.minimisation ? *s_.settings.minimisation : MinimisationSettings{};
 };
 
-// Friction, but for statics.
+// v' of contacts, and friction, but for statics.
 void rub(Substep& s) {
     if (s.settings.minimisation && s.settings.minimisation->relaxation) return;
-    rub_points(s.system, s.scratch.minimisation.get());
-    rub_penalties(s.system, s.scratch.minimisation.get());
-    rub_solids(s.system, s.scratch.minimisation.get());
+    if (s.system.rows.elastic.empty()) return;
+    MinimisationMemory& m = s.scratch.minimisation.get();
+    if (!s.system.scheme.is_one_step())
+        for (uint32_t p = 0; p < m.seat.size(); ++p) s.system.exact[m.seat[p]].v += m.pushed[p];
+    rub_points(s.system, m);
+    rub_penalties(s.system, m);
+    rub_solids(s.system, m);
 }
 
 }  // namespace

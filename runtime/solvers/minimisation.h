@@ -127,6 +127,7 @@ struct MinimisationMemory {
           begin(m),
           led(m),
           scale(m),
+          pushed(m),
           wanted(m),
           bias(m),
           x(m),
@@ -183,6 +184,7 @@ struct MinimisationMemory {
     Array<Vec3> begin;    // x_n [m]
     Array<Vec3> led;      // of a held point, what it moves in the substep [m]
     Array<double> scale;  // s = sqrt(m/a) [sqrt(J)/m]
+    Array<Vec3> pushed;   // (h - c) W p: what contacts by penalty give v' and not u [m/s]; of schemes with two
     // by point, three each: in z = s (x - x_n) [sqrt(J)]
     Array<double> wanted;  // y
     Array<double> bias;    // gradient of damping at z = 0

@@ -23,6 +23,33 @@ Weights solve_for(const Normals& normals, const Weights& right) {
     return gram.ldlt().solve(right);
 }
 
+// Of normals, those that push: mu >= 0 with N^T N mu = right. What would pull most is let go until nothing does.
+struct Pushing {
+    uint32_t count;
+    uint32_t of[kMostWays];
+    Normals normals;
+    Weights push;
+};
+Pushing pushing(const Normals& normals, const Weights& right) {
+    Pushing out{static_cast<uint32_t>(normals.cols()), {0, 1, 2}, {}, {}};
+    static_assert(kMostWays == 3);
+    while (true) {
+        out.normals.resize(3, out.count);
+        out.push.resize(out.count);
+        if (out.count == 0) return out;
+        Weights own(out.count);
+        for (uint32_t i = 0; i < out.count; ++i) {
+            out.normals.col(i) = normals.col(out.of[i]);
+            own[i] = right[out.of[i]];
+        }
+        out.push = solve_for(out.normals, own);
+        Eigen::Index least;
+        if (!(out.push.minCoeff(&least) < 0)) return out;
+        std::copy(out.of + least + 1, out.of + out.count, out.of + least);
+        --out.count;
+    }
+}
+
 // 1 - N N^T of the space that normals span.
 Mat3 across(const Normals& normals) {
     Mat3 out = Mat3::Identity();
@@ -132,43 +159,31 @@ void PointContacts::pull_back(std::span<double> gradient) const {
 
 // ---------------------------------------------------------------- what is held
 
-// Least squares of g = N mu with mu >= 0: what would pull most is let go until nothing does.
+// Least squares of g = N mu with mu >= 0.
 void PointContacts::hold_point(uint32_t p, Vec3& gradient) {
     const std::span<const Meeting> meetings = meetings_of(p);
     const PointTouch& touch = m_.touch[p];
     const double radius = m_.obstacles.radius[m_.soft[p]];
-    PointHold hold{p, touch.count, {}, {}, {}, Mat3::Zero(), Mat3::Zero()};
+    Normals normals(3, touch.count);
     Mat3 curvature[kMostWays];
     for (uint32_t i = 0; i < touch.count; ++i) {
         const collision::LevelSet level =
             m_.obstacles.list[meetings[touch.way[i]].obstacle].level(m_.pose[p].x, radius);
-        hold.way[i] = touch.way[i];
-        hold.normal[i] = level.gradient;
+        normals.col(i) = level.gradient;
         curvature[i] = level.curvature;
     }
-    while (hold.count > 0) {
-        Normals normals(3, hold.count);
-        for (uint32_t i = 0; i < hold.count; ++i) normals.col(i) = hold.normal[i];
-        const Weights push = solve_for(normals, normals.transpose() * gradient);
-        Eigen::Index least;
-        if (!(push.minCoeff(&least) < 0)) {
-            hold.along = across(normals);
-            for (uint32_t i = 0; i < hold.count; ++i) {
-                hold.push[i] = push[i];
-                hold.curve += push[i] / m_.scale[p] * curvature[i];
-            }
-            gradient = hold.along * gradient;
-            m_.hold_of[p] = static_cast<uint32_t>(m_.hold.size());
-            m_.hold.push_back(hold);
-            return;
-        }
-        --hold.count;
-        for (auto i = static_cast<uint32_t>(least); i < hold.count; ++i) {
-            hold.way[i] = hold.way[i + 1];
-            hold.normal[i] = hold.normal[i + 1];
-            curvature[i] = curvature[i + 1];
-        }
+    const Pushing found = pushing(normals, normals.transpose() * gradient);
+    if (found.count == 0) return;
+    PointHold hold{p, found.count, {}, {}, {}, across(found.normals), Mat3::Zero()};
+    for (uint32_t i = 0; i < found.count; ++i) {
+        hold.way[i] = touch.way[found.of[i]];
+        hold.normal[i] = found.normals.col(i);
+        hold.push[i] = found.push[i];
+        hold.curve += found.push[i] / m_.scale[p] * curvature[found.of[i]];
     }
+    gradient = hold.along * gradient;
+    m_.hold_of[p] = static_cast<uint32_t>(m_.hold.size());
+    m_.hold.push_back(hold);
 }
 
 void PointContacts::hold(std::span<double> gradient) {
@@ -238,14 +253,37 @@ void rub_point(System& system, MinimisationMemory& m, uint32_t point, const Mat3
     }
 }
 
+// Impulses of what holds a point [N s]. Of one step those of u, t mu. Else v' is to have the obstacle's velocity along
+// each normal, and they are what that takes: as in implicit Euler contacts do not bounce, and bear what weighs on them.
+void stop_point(System& system, const MinimisationMemory& m, const PointHold& hold, ObstaclePush* pushes) {
+    const double scale = m.scale[hold.point], mass = scale * scale * system.scheme.stiffness();
+    const auto impulse_in_u = [&](uint32_t i) { return scale * hold.push[i] * system.scheme.act; };
+    if (system.scheme.is_one_step()) {
+        for (uint32_t i = 0; i < hold.count; ++i) pushes[i].impulse = impulse_in_u(i);
+        return;
+    }
+    Vec3& v = system.exact[m.seat[hold.point]].v;
+    Normals normals(3, hold.count);
+    for (uint32_t i = 0; i < hold.count; ++i) {
+        normals.col(i) = hold.normal[i];
+        v -= impulse_in_u(i) / mass * hold.normal[i];
+    }
+    Weights missing(hold.count);
+    for (uint32_t i = 0; i < hold.count; ++i)
+        missing[i] = hold.normal[i].dot(pushes[i].obstacle->velocity_at(m.pose[hold.point].x) - v);
+    const Pushing found = pushing(normals, missing);
+    v += found.normals * found.push;
+    for (uint32_t i = 0; i < found.count; ++i) pushes[found.of[i]].impulse = mass * found.push[i];
+}
+
 void rub_points(System& system, MinimisationMemory& m) {
     for (const PointHold& hold : m.hold) {
         ObstaclePush pushes[kMostWays];
         for (uint32_t i = 0; i < hold.count; ++i) {
             const Meeting& meeting = m.obstacles.of(m.soft[hold.point])[hold.way[i]];
-            pushes[i] = {&m.obstacles.list[meeting.obstacle], meeting.friction, hold.normal[i],
-                         m.scale[hold.point] * hold.push[i] * system.scheme.h, 0};
+            pushes[i] = {&m.obstacles.list[meeting.obstacle], meeting.friction, hold.normal[i], 0, 0};
         }
+        stop_point(system, m, hold, pushes);
         rub_point(system, m, hold.point, hold.along, {pushes, hold.count});
     }
 }

@@ -40,20 +40,20 @@ double PointPenalties::evaluate() {
     });
     double sum = 0;
     for (uint32_t p = island_.first_point; p < island_.first_point + island_.points; ++p) sum += m_.penalty[p].energy;
-    return sum;
+    return share_ * sum;
 }
 
 void PointPenalties::add_gradient(std::span<double> gradient) const {
     for (uint32_t i = 0; i < island_.points; ++i) {
         const uint32_t p = island_.first_point + i;
-        if (m_.penalty[p].energy > 0) Vec3::Map(&gradient[3 * i]) += m_.penalty[p].gradient / m_.scale[p];
+        if (m_.penalty[p].energy > 0) Vec3::Map(&gradient[3 * i]) += share_ * m_.penalty[p].gradient / m_.scale[p];
     }
 }
 
 void PointPenalties::add_matrix(Hessian which, Array<double>& matrix) const {
     for (uint32_t p = island_.first_point; p < island_.first_point + island_.points; ++p) {
         if (!(m_.penalty[p].energy > 0)) continue;
-        Mat3 k = m_.penalty[p].matrix;
+        Mat3 k = share_ * m_.penalty[p].matrix;
         if (which == Hessian::positive) clip_negative<3>(k);
         Eigen::Map<Mat3>(&matrix[9 * size_t{m_.diagonal[p]}]) += k / (m_.scale[p] * m_.scale[p]);
     }

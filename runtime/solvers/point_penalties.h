@@ -12,11 +12,12 @@ namespace taut {
 
 class PointPenalties {
 public:
-    PointPenalties(Team& team, const EnergyIsland& island, MinimisationMemory& memory)
-        : team_(team), island_(island), m_(memory) {}
+    // share: of the penalties, in E.
+    PointPenalties(Team& team, const EnergyIsland& island, MinimisationMemory& memory, double share)
+        : team_(team), island_(island), m_(memory), share_(share) {}
 
     bool any() const { return m_.obstacles.penalties; }
-    // Sum of the penalties at MinimisationMemory::pose [J].
+    // Their share of E at MinimisationMemory::pose [J].
     double evaluate();
     // Adds what they are by, in z: 3 numbers a point of the island, and blocks on the diagonal.
     void add_gradient(std::span<double> gradient) const;
@@ -26,6 +27,7 @@ private:
     Team& team_;
     const EnergyIsland& island_;
     MinimisationMemory& m_;
+    const double share_;
 };
 
 // As rub_points().

@@ -33,8 +33,8 @@ bool is_within(const Vec3& point, const Vec3 (&corner)[4]) {
 
 }  // namespace
 
-SolidContacts::SolidContacts(Team& team, const EnergyIsland& island, MinimisationMemory& memory)
-    : team_(team), island_(island), m_(memory), first_pair_(m_.pair.size()) {
+SolidContacts::SolidContacts(Team& team, const EnergyIsland& island, MinimisationMemory& memory, double share)
+    : team_(team), island_(island), m_(memory), share_(share), first_pair_(m_.pair.size()) {
     if (m_.obstacles.between.empty()) return;
     any_ = std::ranges::any_of(m_.obstacles.softs,
                                [&](const SoftShape& each) { return each.meetings > 0 && is_own(each); });
@@ -138,7 +138,7 @@ double SolidContacts::evaluate() {
     });
     double sum = 0;
     for (uint32_t i = 0; i < pairs(); ++i) sum += pair_at(i).terms.energy;
-    return sum;
+    return share_ * sum;
 }
 
 void SolidContacts::add_gradient(std::span<double> gradient) const {
@@ -147,7 +147,7 @@ void SolidContacts::add_gradient(std::span<double> gradient) const {
         for (int k = 0; k < 4; ++k)
             if (m_.free[pair.point[k]])
                 Vec3::Map(&gradient[3 * size_t{pair.point[k] - island_.first_point}]) +=
-                    pair.terms.gradient[k] / m_.scale[pair.point[k]];
+                    share_ * pair.terms.gradient[k] / m_.scale[pair.point[k]];
     }
 }
 
@@ -160,6 +160,7 @@ void SolidContacts::linearise(Hessian which) {
             double* const out = &m_.pair_matrix[144 * size_t{i}];
             point_penalty_hessian(m_.obstacles.between[pair.meeting].stiffness, place(pair.node[0]), corner, out);
             Eigen::Map<Square12> matrix(out);
+            matrix *= share_;
             if (which == Hessian::positive) {
                 Eigen::Matrix<double, 12, 12> positive = matrix;
                 clip_negative<12>(positive);

@@ -12,10 +12,11 @@ namespace taut {
 
 class SolidContacts {
 public:
-    SolidContacts(Team& team, const EnergyIsland& island, MinimisationMemory& memory);
+    // share: of the penalties, in E.
+    SolidContacts(Team& team, const EnergyIsland& island, MinimisationMemory& memory, double share);
 
     bool any() const { return any_; }
-    // Sum of the penalties [J] at MinimisationMemory::pose: who is within whom, and where the surface is nearest.
+    // Their share of E [J] at MinimisationMemory::pose: who is within whom, and where the surface is nearest.
     double evaluate();
     // Adds what they are by, in z, 3 numbers a point of the island.
     void add_gradient(std::span<double> gradient) const;
@@ -39,6 +40,7 @@ private:
     Team& team_;
     const EnergyIsland& island_;
     MinimisationMemory& m_;
+    const double share_;
     const size_t first_pair_;  // of the island, in MinimisationMemory::pair
     bool any_ = false;
 };

@@ -7,6 +7,11 @@
 // and rate J u (Frâncu 2016, eq. 6.44 and 6.50),
 //   J u + c mu = -error / (h + d),   c = C / (t (h + d))
 // and geometric stiffness enters the nodes as t h K. This is the only place that knows h^2 and 1/h of rows.
+//
+// Contacts by penalty are no springs of the scheme: a force p of theirs, at the end of the substep, acts as if it were
+// constant (Kane, Repetto, Ortiz and Marsden 1999), u gains c W p and v' h W p, with c = h in one step and h/2 in
+// others. What lies still then does so at p of its weight, and with u of Newmark's (v_n + v')/2 the work of p is -p
+// times the way, which is no more than what a convex penalty loses.
 #pragma once
 
 namespace taut {
@@ -28,6 +33,7 @@ struct Scheme {
     double impulse(double force) const { return act * force; }
     double force(double impulse) const { return impulse / act; }
     double stiffness() const { return h * act; }                           // of K in the nodes [s^2]
+    double contact_act() const { return one_step ? h : 0.5 * h; }          // c [s]
     double row_compliance(double d) const { return 1 / (act * (h + d)); }  // c / C
     double row_rate(double d) const { return 1 / (h + d); }                // -target / error
 };
