@@ -8,6 +8,7 @@
 #include "deformables.h"
 #include "experiment.h"
 #include "forms.h"
+#include "newton_map.h"
 #include "scenes/catalogue.h"
 #include "thesis.h"
 
@@ -140,6 +141,20 @@ void mass_ratio(const fs::path& folder) {
         }
 }
 
+// Figure 2 of Gast and Schroeder 2014: Newton's steps to convergence from each pixel, with line search and without.
+void newton_map(const fs::path& folder) {
+    constexpr int kSize = 80;  // pixels a side
+    Csv csv(folder / "newton_map.csv", "step,searched,column,row,solves");
+    for (size_t step = 0; step < std::size(NewtonMap::kSteps); ++step)
+        for (const bool search : {false, true}) {
+            const NewtonMap map(NewtonMap::kSteps[step], search, kSize);
+            for (size_t i = 0; i < map.solves.size(); ++i)
+                csv.row(step + 1, search, i % kSize, i / kSize, map.solves[i]);
+            say("Newton's method, 1/%g s, %s: %d of %d fail, %.1f solves\n", 1 / NewtonMap::kSteps[step],
+                search ? "with line search" : "without", map.failed(), kSize * kSize, map.mean());
+        }
+}
+
 constexpr struct {
     const char* name;
     void (*measure)(const fs::path& folder);
@@ -162,6 +177,7 @@ constexpr struct {
     {"grains_error", grains_error},
     {"grains_velocity", grains_velocity},
     {"mixing", mixing},
+    {"newton_map", newton_map},
 };
 
 int report(const std::vector<std::string>& arguments) {
