@@ -25,13 +25,13 @@ typedef enum taut_solver {
     TAUT_SOLVER_MINIMUM_RESIDUAL = 5,       /**< algorithm 2 */
     TAUT_SOLVER_CONJUGATE_RESIDUALS = 6,    /**< algorithm 3 */
     TAUT_SOLVER_CONJUGATE_GRADIENTS = 7,    /**< algorithm 1, on the energy: rigid rows are stiff springs */
-    TAUT_SOLVER_MINIMISATION =
-        8, /**< cloths, solids and free cables of particles, by Newton's method with line search
-                on the energy of a substep in any scheme (Gast and Schroeder 2014): for long
-                steps and tangles, which Newmark does not calm. Vertices stay out of static and kinematic shapes and of
-                cells, do not bounce, and are rubbed after a step. TAUT_UNSUPPORTED: rigid
-                dynamic bodies, joints, attachments, gas, a compliance of 0, and of contacts
-                those of cables, of cloth with cloth and with meshes without distances */
+    TAUT_SOLVER_MINIMISATION = 8, /**< cloths, solids and free cables of particles, by Newton's method with line search
+                                       on the energy of a substep in any scheme (Gast and Schroeder 2014): for long
+                                       steps and tangles, which Newmark does not calm. Vertices stay out of static and
+                                       kinematic shapes and of cells, do not bounce, and are rubbed after a step.
+                                       TAUT_UNSUPPORTED: rigid dynamic bodies, joints, attachments, gas, a compliance
+                                       of 0, and of contacts those of cables, of cloth with cloth and with meshes
+                                       without distances */
     TAUT_SOLVER_MAX = 0x7fffffff
 } taut_solver;
 
