@@ -77,8 +77,7 @@ TEST_P(Recovers, WithinFramesAndStaysSo) {
 std::vector<RecoverCase> recoveries() {
     std::vector<RecoverCase> out;
     for (const taut_solid_material material : {TAUT_SOLID_NEO_HOOKEAN, TAUT_SOLID_FIXED_COROTATED})
-        for (const double rate : {30.0, 60.0, 120.0, 240.0})
-            for (const uint64_t seed : {1u, 2u}) out.push_back({material, rate, seed});
+        for (const double rate : {30.0, 60.0, 120.0, 240.0}) out.push_back({material, rate, 1 + out.size()});
     return out;
 }
 INSTANTIATE_TEST_SUITE_P(Cubes, Recovers, testing::ValuesIn(recoveries()), testing::PrintToStringParamName());
