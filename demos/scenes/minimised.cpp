@@ -83,7 +83,7 @@ Scene build_cube_stretch(double n, double r, const Options& options) {
         solid.pinned.insert(solid.pinned.end(), motion.vertices.begin(), motion.vertices.end());
         scene.motions.push_back(std::move(motion));
     }
-    solid.look = {SoftColours::stress, r, 0, ""};
+    solid.look = {SoftColours::stress, 3 * r, 0, ""};
     scene.add_solid(std::move(solid));
     perturb(scene, options.seed);
     return scene;
@@ -91,9 +91,10 @@ Scene build_cube_stretch(double n, double r, const Options& options) {
 
 namespace {
 
-// A hall with gravity in which things meet.
+// A hall with gravity in which things meet on the ground.
 Scene film_stage(double height) {
     Scene scene = film_hall(height);
+    scene.camera = {{1.6, 0.9 * height, 3.2}, {0, height / 3, 0}, 40};
     scene.world.gravity = {0, -9.81f, 0};
     add_ground(scene);
     return scene;
@@ -173,7 +174,7 @@ Scene build_film_hole(double n, double r, const Options& options) {
     constexpr double kTau = 6.283185307179586, kHole = 0.5, kRim = 0.1, kHigh = 1.2;  // [m]
     const int across = std::max(3, static_cast<int>(n));
     Scene scene = film_stage(2.4);
-    Solid ring = ring_of_tets(0.36, 0.14, cells_around(across), across, {0, 0, 0});
+    Solid ring = ring_of_tets(0.44, 0.15, cells_around(across), across, {0, 0, 0});
     for (taut_pos& p : ring.points) p = {p.x, kHigh + 0.3 + p.z, -p.y};
     make_rubber(ring, r, kPaints[2]);
     scene.add_solid(std::move(ring));
@@ -199,7 +200,7 @@ Scene build_film_hole(double n, double r, const Options& options) {
     Track down;
     down.keys = {{0, 0, 0}, {0.3, 0, 0}, {2.0, 0.7, 0}, {2.5, 0.7, 0}, {3.5, 0, 0}};
     add_led(scene, scene.add_shape(std::move(disc)), {0, kHigh + 0.55, 0}, {0, 0, 0, 1}, {0, -1, 0}, down, Look::wood);
-    scene.camera = {{1.9, 2.3, 2.6}, {0, 1.1, 0}, 40};
+    scene.camera = {{1.9, 2.3, 2.8}, {0, 0.9, 0}, 42};
     perturb(scene, options.seed);
     return scene;
 }
@@ -228,7 +229,7 @@ Scene build_film_squeeze(double n, double r, const Options& options) {
         add_led(scene, cube, {-kFar * in.x, 1 - kFar * in.y, -kFar * in.z}, {q[0], q[1], q[2], q[3]}, in, squeeze,
                 Look::steel);
     }
-    scene.camera = {{1.6, 1.8, 3.2}, {0, 1, 0}, 40};
+    scene.camera = {{1.8, 1.8, 3.6}, {0, 1, 0}, 40};
     return scene;
 }
 
@@ -250,7 +251,7 @@ Scene build_film_stack(double n, double r, const Options& options) {
     strike.keys = {{0, 0, 0}, {0.5, 0, 0}, {1.5, 1.4, 2}, {2.5, 2.6, 0}};
     add_led(scene, cube_shape(scene, 0.5), {-0.5 * rows * kBox - 1.2, 0.6, 0}, {0, 0, 0, 1}, {1, 0, 0}, strike,
             Look::stone);
-    scene.camera = {{1.8, 1.6, 3.6}, {0, 0.6, 0}, 40};
+    scene.camera = {{1.6, 2, 4.8}, {0.4, 0.5, 0}, 40};
     scene.stage = {{-3, 0, -2}, {3, 3, 2}};
     perturb(scene, options.seed);
     return scene;
@@ -295,12 +296,12 @@ Shape bowl(double inner, double outer, double high) {
 
 }  // namespace
 
-// n x n x n rings of r Pa fall into a bowl, 5 steps a frame.
+// n x n x n rings of r Pa fall into a bowl, apart at first and above it, five steps a film frame.
 Scene build_film_tori(double n, double r, const Options& options) {
-    constexpr double kPitch = 0.36;  // [m]
+    constexpr double kPitch = 0.32, kRing = 0.11, kTube = 0.045;  // [m]
     const int side = std::max(1, static_cast<int>(n));
     Scene scene = film_stage(3);
-    scene.world.substeps = 5;
+    scene.world.time_step = static_cast<float>(kFilmFrame / 5);
     Body body;
     body.kind = TAUT_BODY_STATIC;
     body.shape = scene.add_shape(bowl(1.2, 1.35, 0.9));
@@ -310,8 +311,9 @@ Scene build_film_tori(double n, double r, const Options& options) {
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j)
             for (int k = 0; k < side; ++k) {
-                const taut_pos centre{kPitch * (i - 0.5 * (side - 1)), 1.1 + 0.3 * j, kPitch * (k - 0.5 * (side - 1))};
-                Solid ring = ring_of_tets(0.11, 0.045, 16, 4, {0, 0, 0});
+                const taut_pos centre{kPitch * (i - 0.5 * (side - 1)), 1.1 + kPitch * j,
+                                      kPitch * (k - 0.5 * (side - 1))};
+                Solid ring = ring_of_tets(kRing, kTube, 16, 4, {0, 0, 0});
                 const double tilt = random.uniform(), turn = 6.28 * random.uniform();
                 for (taut_pos& p : ring.points) {
                     const double y = p.y * std::cos(tilt) - p.z * std::sin(tilt);
@@ -323,7 +325,7 @@ Scene build_film_tori(double n, double r, const Options& options) {
                 ring.def.self_collision = 1;
                 scene.add_solid(std::move(ring));
             }
-    scene.camera = {{2.6, 2.6, 3.4}, {0, 0.9, 0}, 40};
+    scene.camera = {{1.3, 2.7, 2}, {0, 0.6, 0}, 44};
     return scene;
 }
 
