@@ -73,13 +73,10 @@ struct PointPenalty {
     Mat3 matrix = Mat3::Zero();    // [N/m]
 };
 
-constexpr uint32_t kMostWithin = 2;  // soft bodies that a vertex is pushed out of at once
-
-// A vertex of a surface, and where it is within.
+// A vertex of a surface, and whether it is within another soft body.
 struct VertexWithin {
-    uint32_t vertex, shape;  // its node; in Obstacles::softs
-    uint32_t count;
-    uint32_t meeting[kMostWithin], triangle[kMostWithin];  // in Obstacles::between; nearest, of the other's surface
+    uint32_t vertex, meeting;  // its node; in Obstacles::between
+    uint32_t triangle;         // nearest, of the other's surface; kNone: it is outside
 };
 
 // A vertex and the triangle that it is pushed to.
@@ -210,7 +207,7 @@ struct MinimisationMemory {
     Array<PointPenalty> penalty;  // of the last evaluation, where some obstacles have one
     // Where soft bodies meet.
     Array<uint32_t> point_of_node;  // by node, or kNone
-    Array<VertexWithin> within;     // scratch of SolidContacts
+    Array<VertexWithin> within;     // of the island that is worked on
     Array<PenaltyPair> pair;        // of the last evaluation
     Array<double> pair_matrix;      // of each, [12][12] in z [1]
     Array<SparseBlockLdlt> factor;  // by island

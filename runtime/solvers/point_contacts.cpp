@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "constraints/positive_part.h"
 
@@ -9,7 +10,6 @@ namespace taut {
 namespace {
 
 constexpr uint32_t kTouchGrain = 128;  // points that a thread takes at a time
-constexpr uint32_t kMostTakes = 8;     // of Newton's method for a point on several surfaces: it converges in 2 or 3
 
 using Normals = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostWays>;
 using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostWays, 1>;
@@ -100,24 +100,30 @@ uint32_t PointContacts::deepest(const PointTouch& touch, std::span<const Meeting
     return found;
 }
 
-// x - N (N^T N)^-1 phi, and its derivative.
+// x - N (N^T N)^-1 phi, and its derivative. On one surface phi is a distance, which that takes to 0; on several as long
+// as it falls: by squares, until rounding is left, or surfaces that do not meet are at their least.
 void PointContacts::take_out(PointTouch& touch, std::span<const Meeting> meetings, double radius, Vec3& x) const {
     touch.pull.setIdentity();
-    for (uint32_t round = 0; round < (touch.count == 1 ? 1 : kMostTakes); ++round) {
+    for (double left = std::numeric_limits<double>::infinity();;) {
         Normals normals(3, touch.count);
         Weights distance(touch.count);
         Mat3 curvature[kMostWays];
+        double square = 0;
         for (uint32_t i = 0; i < touch.count; ++i) {
             const collision::LevelSet level = m_.obstacles.list[meetings[touch.way[i]].obstacle].level(x, radius);
             normals.col(i) = level.gradient;
             distance[i] = level.distance;
+            square += level.distance * level.distance;
             curvature[i] = level.curvature;
         }
+        if (!(square < left)) return;
+        left = square;
         const Weights weight = solve_for(normals, distance);
         Mat3 pull = across(normals);
         for (uint32_t i = 0; i < touch.count; ++i) pull -= weight[i] * curvature[i];
         x -= normals * weight;
         touch.pull = pull * touch.pull;
+        if (touch.count == 1) return;
     }
 }
 

@@ -35,9 +35,8 @@ bool is_within(const Vec3& point, const Vec3 (&corner)[4]) {
 
 SolidContacts::SolidContacts(Team& team, const EnergyIsland& island, MinimisationMemory& memory, double share)
     : team_(team), island_(island), m_(memory), share_(share), first_pair_(m_.pair.size()) {
-    if (m_.obstacles.between.empty()) return;
-    any_ = std::ranges::any_of(m_.obstacles.softs,
-                               [&](const SoftShape& each) { return each.meetings > 0 && is_own(each); });
+    m_.within.clear();
+    if (!m_.obstacles.between.empty()) list_vertices();
 }
 
 // What meets is of one island, as it is tied; what is held as a whole is of none.
@@ -45,6 +44,17 @@ bool SolidContacts::is_own(const SoftShape& shape) const {
     if (!shape.tied || shape.vertex.empty()) return false;
     const uint32_t point = m_.point_of_node[shape.vertex.front()];
     return point != kNone && point - island_.first_point < island_.points;
+}
+
+// Each vertex once for each body that it may be within.
+void SolidContacts::list_vertices() {
+    for (const SoftShape& shape : m_.obstacles.softs) {
+        if (shape.meetings == 0 || !is_own(shape)) continue;
+        any_ = true;
+        for (const uint32_t vertex : shape.vertex)
+            for (uint32_t k = shape.first; k < shape.first + shape.meetings; ++k)
+                if (is_own(m_.obstacles.softs[m_.obstacles.between[k].other])) m_.within.push_back({vertex, k, kNone});
+    }
 }
 
 void SolidContacts::refit() {
@@ -91,38 +101,24 @@ uint32_t SolidContacts::find_exit(uint32_t vertex, const SoftShape& other) const
 }
 
 void SolidContacts::find_within() {
-    m_.within.clear();
-    for (uint32_t i = 0; i < m_.obstacles.softs.size(); ++i) {
-        const SoftShape& shape = m_.obstacles.softs[i];
-        if (shape.meetings == 0 || !is_own(shape)) continue;
-        for (const uint32_t vertex : shape.vertex) m_.within.push_back({vertex, i, 0, {}, {}});
-    }
     team_.for_ranges(static_cast<uint32_t>(m_.within.size()), kWithinGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             VertexWithin& each = m_.within[i];
-            const SoftShape& shape = m_.obstacles.softs[each.shape];
-            for (uint32_t k = shape.first; k < shape.first + shape.meetings && each.count < kMostWithin; ++k) {
-                const SoftShape& other = m_.obstacles.softs[m_.obstacles.between[k].other];
-                const uint32_t exit = is_own(other) ? find_exit(each.vertex, other) : kNone;
-                if (exit == kNone) continue;
-                each.meeting[each.count] = k;
-                each.triangle[each.count++] = exit;
-            }
+            each.triangle = find_exit(each.vertex, m_.obstacles.softs[m_.obstacles.between[each.meeting].other]);
         }
     });
 }
 
 void SolidContacts::list_pairs() {
     m_.pair.resize(first_pair_);
-    for (const VertexWithin& each : m_.within)
-        for (uint32_t k = 0; k < each.count; ++k) {
-            const SoftMeeting& meeting = m_.obstacles.between[each.meeting[k]];
-            const SoftShape& other = m_.obstacles.softs[meeting.other];
-            PenaltyPair pair{each.meeting[k], {each.vertex}, {}, {}};
-            std::copy_n(&other.triangle[3 * size_t{each.triangle[k]}], 3, pair.node + 1);
-            for (int i = 0; i < 4; ++i) pair.point[i] = m_.point_of_node[pair.node[i]];
-            m_.pair.push_back(pair);
-        }
+    for (const VertexWithin& each : m_.within) {
+        if (each.triangle == kNone) continue;
+        const SoftShape& other = m_.obstacles.softs[m_.obstacles.between[each.meeting].other];
+        PenaltyPair pair{each.meeting, {each.vertex}, {}, {}};
+        std::copy_n(&other.triangle[3 * size_t{each.triangle}], 3, pair.node + 1);
+        for (int i = 0; i < 4; ++i) pair.point[i] = m_.point_of_node[pair.node[i]];
+        m_.pair.push_back(pair);
+    }
 }
 
 double SolidContacts::evaluate() {

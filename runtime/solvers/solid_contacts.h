@@ -33,6 +33,7 @@ private:
     PenaltyPair& pair_at(uint32_t i) const { return m_.pair[first_pair_ + i]; }
     bool is_own(const SoftShape& shape) const;
     uint32_t find_exit(uint32_t vertex, const SoftShape& other) const;
+    void list_vertices();
     void refit();
     void find_within();
     void list_pairs();

@@ -62,49 +62,43 @@ std::vector<Vec> cantilever(uint64_t seed) {
     return points_of(solid);
 }
 
-// By an edge.
-std::vector<Vec> hung_sheet(uint64_t seed) {
+// From each vertex off by so much where nothing holds it.
+std::vector<Vec> relaxed_cloth(taut_cloth_def def, std::vector<taut_pos> points, const std::vector<uint32_t>& held,
+                               double off, uint64_t seed) {
     const World world = still_world();
-    const Sheet sheet(11, 11, 1, 1, 0);
-    taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
-    std::vector<taut_pos> points = sheet.points;
     Disturbance by(seed);
-    for (size_t v = 0; v < points.size(); ++v)
-        if (v != sheet.at(0, 0) && v != sheet.at(0, 10)) points[v] = (Vec(points[v]) + 0.1 * by.vector()).pos();
+    for (uint32_t v = 0; v < points.size(); ++v)
+        if (std::ranges::find(held, v) == held.end()) points[v] = (Vec(points[v]) + off * by.vector()).pos();
     def.rest = def.points;
     def.points = points.data();
-    def.bending_stiffness = 0.1f;
     def.filter.mask = 0;
     const taut_cloth cloth = add(world, def);
-    for (const uint32_t held : {sheet.at(0, 0), sheet.at(0, 10)}) ok(taut_cloth_pin(cloth, held, 1));
-    disturb(bodies_of(cloth), {sheet.at(0, 0), sheet.at(0, 10)}, by);
-    relax(world);
-    return points_of(cloth);
-}
-
-// A strip by its ends, by a quarter of its width: what is folded over stays so, as it does not resist bending.
-std::vector<Vec> catenary(uint64_t seed) {
-    const World world = still_world();
-    const Sheet strip(61, 2, 1.2, 0.02, 0);
-    taut_cloth_def def = strip.def(TAUT_CLOTH_TRIANGLES);
-    std::vector<taut_pos> points = strip.points;
-    Disturbance by(seed);
-    for (size_t v = 0; v < points.size(); ++v) {
-        points[v].x /= 1.2;
-        points[v].y = 1.1 * (points[v].x - 1) * points[v].x;
-        if (v >= 2 && v + 2 < points.size()) points[v] = (Vec(points[v]) + 0.005 * by.vector()).pos();
-    }
-    def.rest = def.points;
-    def.points = points.data();
-    def.stretch_stiffness[0] = def.stretch_stiffness[1] = 5e4f;
-    def.shear_stiffness = 2e4f;
-    def.filter.mask = 0;
-    const taut_cloth cloth = add(world, def);
-    const std::vector<uint32_t> held{0, 1, 120, 121};
     for (const uint32_t v : held) ok(taut_cloth_pin(cloth, v, 1));
     disturb(bodies_of(cloth), held, by);
     relax(world);
     return points_of(cloth);
+}
+
+// By two corners.
+std::vector<Vec> hung_sheet(uint64_t seed) {
+    const Sheet sheet(11, 11, 1, 1, 0);
+    taut_cloth_def def = sheet.def(TAUT_CLOTH_TRIANGLES);
+    def.bending_stiffness = 0.1f;
+    return relaxed_cloth(def, sheet.points, {sheet.at(0, 0), sheet.at(0, 10)}, 0.1, seed);
+}
+
+// A strip by its ends, by a quarter of its width: what is folded over stays so, as it does not resist bending.
+std::vector<Vec> catenary(uint64_t seed) {
+    const Sheet strip(61, 2, 1.2, 0.02, 0);
+    taut_cloth_def def = strip.def(TAUT_CLOTH_TRIANGLES);
+    def.stretch_stiffness[0] = def.stretch_stiffness[1] = 5e4f;
+    def.shear_stiffness = 2e4f;
+    std::vector<taut_pos> points = strip.points;
+    for (taut_pos& p : points) {
+        p.x /= 1.2;
+        p.y = 1.1 * (p.x - 1) * p.x;
+    }
+    return relaxed_cloth(def, points, {0, 1, 120, 121}, 0.005, seed);
 }
 
 const RestCase kRests[] = {{"cantilever", cantilever}, {"sheet", hung_sheet}, {"catenary", catenary}};
