@@ -51,7 +51,8 @@ typedef enum taut_stepping {
     TAUT_STEPPING_MAX = 0x7fffffff
 } taut_stepping;
 
-/** Time integration of what joints and cables do; contacts act as in implicit Euler in all. */
+/** Time integration of what joints, cables, cloths and solids do. In all contacts act as in implicit Euler, and damping
+ *  by the mean velocity of a substep, with order 1. */
 typedef enum taut_scheme {
     TAUT_SCHEME_IMPLICIT_EULER = 0, /**< damps most and bears any force */
     TAUT_SCHEME_NEWMARK = 1, /**< Frâncu 2016, eq. 6.28 to 6.32: with beta 1/4, gamma 1/2 springs keep their energy */
