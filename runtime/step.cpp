@@ -193,8 +193,9 @@ void step(World& w) {
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
     solve(w, watch);
-    hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, followed_vertices(w), w.pairs, w.broadphase,
-              w.nodes);
+    if (!solver.energies)  // which leaves nodes where they are out of obstacles
+        hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, followed_vertices(w), w.pairs, w.broadphase,
+                  w.nodes);
     flow_solids(w);
     note_strays(w.team, w.nodes, w.colliders, w.shapes, w.frozen, w.pairs, w.broadphase);
     sense(w.team, w.nodes, w.colliders, w.shapes, w.softs, w.broadphase, w.id, w.window.steps, w.sensors);
