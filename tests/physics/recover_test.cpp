@@ -97,20 +97,11 @@ TEST(Recover, KeepsTheCentreOfMassAndItsVelocity) {
     const std::vector<taut_body> vertices = bodies_of(tangled.solid);
     for (size_t v = 0; v < vertices.size(); ++v)
         ok(taut_body_set_velocity(vertices[v], {v % 2 ? 3.0f : -1.0f, 0.5f, 0}, {}));
-    const auto mean = [&](auto&& read) {
-        Vec sum;
-        double mass = 0;
-        for (const taut_body body : vertices) {
-            const double m = mass_of(body).mass;
-            mass += m;
-            sum += m * read(body);
-        }
-        return 1 / mass * sum;
-    };
-    const Vec place = mean(position), speed = mean(velocity);
+    const Totals before = totals(vertices);
+    const Vec speed = 1 / before.mass * before.momentum;
     ok(taut_solid_recover(tangled.solid, 100, nullptr));
     EXPECT_EQ(tangled.inverted(), 0u);
-    EXPECT_LT(norm(mean(position) - place), 1e-6);
+    EXPECT_LT(norm(totals(vertices).centre - before.centre), 1e-6);
     for (const taut_body body : vertices) EXPECT_LT(norm(velocity(body) - speed), 1e-5);
 }
 
