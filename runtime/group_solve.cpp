@@ -10,6 +10,7 @@
 #include "solvers/minimisation.h"
 #include "solvers/restitution.h"
 #include "system/assemble.h"
+#include "system/reached.h"
 
 namespace taut {
 
@@ -106,6 +107,10 @@ void GroupSolve::renew_surfaces() {
                            w_.pre_solve, successor);
     surfaces_found_ = now;
     w_.partition.renew_surfaces(index_, surfaces, successor);
+    system_.reached.clear();
+    add_reached(w_.nodes, surfaces, system_.reached);
+    seat_reached(system_, w_.nodes);
+    make_room_for_scheme(system_, w_.nodes);
     Array<SurfaceHit> hits(surfaces.contact.size(), SurfaceHit{}, w_.memory);
     for (uint32_t k = 0; k < successor.size(); ++k)
         if (successor[k] != kNone) hits[successor[k]] = hits_before[k];

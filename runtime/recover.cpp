@@ -1,10 +1,14 @@
 #include "recover.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "integrate/integrate.h"
 #include "models/bodies.h"
 #include "models/soft_reading.h"
 #include "solvers/minimisation.h"
 #include "system/assemble.h"
+#include "system/reached.h"
 
 namespace taut {
 namespace {
@@ -23,6 +27,10 @@ void list_alone(const World& world, const Soft& soft, Group& group) {
 void relax_alone(World& world, const Soft& soft, Partition& alone, uint32_t most_steps) {
     System& system = world.system;
     Group& group = alone.groups[0];
+    world.nodes.list_active();
+    system.reached.clear();
+    std::ranges::copy_if(soft.node, std::back_inserter(system.reached),
+                         [&](uint32_t node) { return stands_by(world.nodes, node); });
     begin_frame(world.team, system, alone, world.nodes, true);
     system.scheme = {};
     system.scheme.set_length(world.def.time_step);

@@ -21,6 +21,7 @@
 #include "publish/publish.h"
 #include "sleep/sleep.h"
 #include "solvers/minimisation.h"
+#include "system/reached.h"
 #include "world.h"
 
 namespace taut {
@@ -35,11 +36,17 @@ namespace {
 constexpr uint32_t kGrain = 128;  // nodes that a thread takes at a time
 
 void remember_poses(Team& team, Nodes& nodes) {
-    team.for_ranges(nodes.slots(), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t node = begin; node < end; ++node)
-            if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
-                nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
+    const std::span<const uint32_t> active = nodes.active;
+    team.for_ranges(static_cast<uint32_t>(active.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (const uint32_t node : active.subspan(begin, end - begin))
+            if (nodes.rest[node] != Rest::asleep) nodes.before[node] = {nodes.origin(node), nodes.motion[node].q};
     });
+}
+
+// What the step goes through.
+void list_active(World& w) {
+    w.nodes.list_active();
+    w.colliders.list_active(w.nodes);
 }
 
 // How old contacts, found once a frame, are on average over the substeps that they serve [s].
@@ -64,6 +71,7 @@ void detect_obstacles(World& w, Stopwatch& watch) {
     find_obstacles({w.nodes, w.colliders, w.shapes, w.softs, w.elements, w.def.time_step, Vec3(g.x, g.y, g.z)},
                    obstacles);
     wake_met(w, w.def.time_step, obstacles);
+    list_active(w);
     tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();
 }
@@ -81,6 +89,7 @@ void detect(World& w, Stopwatch& watch) {
     find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     find_touches(w, lead);
     if (wake_touched(w)) {
+        list_active(w);
         recall_pairs(w);
         find_touches(w, lead);
     }
@@ -126,6 +135,7 @@ void solve(World& w, Stopwatch& watch) {
     const SchemeType& scheme = w.relaxation ? kImplicitEuler : *scheme_types()[w.def.scheme];
     w.system.scheme = scheme.times({w.def.newmark_beta, w.def.newmark_gamma});
     age_yields(w.elements, w.def.time_step, w.least_substeps());
+    list_reached(w.nodes, w.joints, w.pairs, w.partition.held(), w.system.reached);
     begin_frame(w.team, w.system, w.partition, w.nodes, w.joints.ids.count() > 0 || w.elements.ids.count() > 0);
     make_room_for_scheme(w.system, w.nodes);
     w.profile.predict_us += watch.lap();
@@ -177,6 +187,7 @@ void step(World& w) {
     w.frozen.clear();
     begin_events(w);
     reel_cables(w);
+    list_active(w);
     remember_poses(w.team, w.nodes);
     w.last_step = w.def.time_step;
     detect(w, watch);

@@ -74,7 +74,7 @@ struct World {
     Array<taut_tear_event> torn;
     Array<taut_yield_event> yielded;
     Array<taut_sleep_event> fell_asleep, woke;
-    Array<uint8_t> moved_before;  // by node, scratch; publish_motion()
+    Array<uint32_t> moved_before;  // nodes, scratch; publish_motion()
 
     // results of the last step
     Array<uint32_t> frozen;  // nodes quarantined by the last step

@@ -15,7 +15,7 @@ bool carries(const Nodes& nodes, uint32_t node) {
 }
 
 bool any_carries(const Nodes& nodes) {
-    for (uint32_t node = 0; node < nodes.slots(); ++node)
+    for (const uint32_t node : nodes.active)
         if (carries(nodes, node)) return true;
     return false;
 }

@@ -93,7 +93,7 @@ private:
 
 void Mechanism::close_joints() {
     all_.open.clear();
-    for (uint32_t i = all_.first_tie[root_]; i < all_.first_tie[root_ + 1]; ++i)
+    for (uint32_t i = all_.ties_of[root_].begin; i < all_.ties_of[root_].end; ++i)
         if (!is_led(nodes_, view_of(joints_, elements_, all_.tie[i]))) all_.open.push_back(all_.tie[i]);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         bool any = false;

@@ -243,14 +243,13 @@ collision::Box contact_box(const Nodes& nodes, const Shapes& shapes, const Colli
 
 void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, Shapes& shapes, Pairs& pairs,
                    collision::Broadphase& broadphase, double time_step) {
-    const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
-    pairs.make_room(slots);
-    pairs.picked.resize(slots);  // nothing may fail between a new box and the broadphase's
-    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t c = begin; c < end; ++c) {
+    const std::span<const uint32_t> active = colliders.active;
+    pairs.make_room(colliders.record.size());
+    pairs.picked.resize(active.size());  // nothing may fail between a new box and the broadphase's
+    team.for_ranges(static_cast<uint32_t>(active.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (const uint32_t c : active.subspan(begin, end - begin)) {
             const Collider& collider = colliders.record[c];
             pairs.reach[c].left = false;
-            if (collider.node == kNone) continue;
             pairs.pace[c] = pace_of(nodes, collider, shapes[collider.shape], time_step);
             if (nodes.rest[collider.node] != Rest::asleep) place_collider(nodes, shapes, collider, 0, pairs, c);
             look_ahead(nodes, shapes, collider, pairs.pace[c], pairs.stance[c], time_step, pairs.travel[c]);
@@ -259,22 +258,22 @@ void update_bounds(Team& team, const Nodes& nodes, const Colliders& colliders, S
             pairs.reach[c].left = !broadphase.holds(c, pairs.reach[c].box);
         }
     });
-    gather(team, slots, pairs.picked, [&](uint32_t c) { return pairs.reach[c].left; });
+    gather(team, active, pairs.picked, [&](uint32_t c) { return pairs.reach[c].left; });
     for (const uint32_t c : pairs.picked) broadphase.update(c, pairs.reach[c].box, pairs.reach[c].ahead);
 }
 
 void note_strays(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
                  std::span<const uint32_t> frozen, Pairs& pairs, collision::Broadphase& broadphase) {
-    const uint32_t slots = static_cast<uint32_t>(colliders.record.size());
-    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t c = begin; c < end; ++c) {
+    const std::span<const uint32_t> active = colliders.active;
+    team.for_ranges(static_cast<uint32_t>(active.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (const uint32_t c : active.subspan(begin, end - begin)) {
             const Collider& collider = colliders.record[c];
             pairs.reach[c].left =
                 moves(nodes, collider) && !keep_in_leaf(nodes, collider, shapes, c, broadphase, pairs.reach[c]);
         }
     });
     broadphase.clear_strays();
-    gather(team, slots, pairs.picked, [&](uint32_t c) { return pairs.reach[c].left; });
+    gather(team, active, pairs.picked, [&](uint32_t c) { return pairs.reach[c].left; });
     for (const uint32_t c : pairs.picked) broadphase.note_stray(c);
     for (const uint32_t node : frozen)
         for_colliders(nodes, colliders, node, [&](uint32_t c) {

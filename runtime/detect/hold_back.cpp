@@ -17,9 +17,8 @@ constexpr uint8_t kMostRounds = 6;  // where one drives another, that may have p
 constexpr uint32_t kColliderGrain = 64, kCastGrain = 16;  // colliders and pairs that a thread takes at a time
 
 // Of a collider: put back by the last round, or this is the first; moved otherwise than its speed told before the step;
-// spans two nodes; may be ignored by the host's function or a one-way direction: what goes through on purpose is not
-// held back; is followed within the step.
-enum Mark : uint8_t { kMoved = 1, kAstray = 2, kSpans = 4, kIgnorable = 8, kFollowed = 16 };
+// is followed within the step. Of those that are not active none.
+enum Mark : uint8_t { kMoved = 1, kAstray = 2, kFollowed = 4 };
 
 // Whether a collider between two nodes was put back by either.
 bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8_t round) {
@@ -29,6 +28,12 @@ bool span_put_back(const Mechanisms& mechanisms, const Collider& collider, uint8
 
 bool solved(const Nodes& nodes, const Collider& collider) {
     return nodes.solved(collider.node) || (collider.node_b != kNone && nodes.solved(collider.node_b));
+}
+
+// Whether the host's function or a one-way direction may ignore a contact: what goes through on purpose is not held
+// back.
+bool ignorable(const Colliders& colliders, uint32_t a, uint32_t b) {
+    return ((colliders.record[a].asks | colliders.record[b].asks) & (kAsksOneWay | kAsksPreSolve)) != 0;
 }
 
 // Whether a collider's middle went elsewhere than its speed told before the step, further from there than a part of its
@@ -48,7 +53,7 @@ const Course& find_course(const Nodes& nodes, const Colliders& colliders, const 
     return pairs.courses[c] = course_of(nodes, colliders.record[c], shapes, pairs.pace[c]);
 }
 
-// Of all colliders, after the first round of what the last one put back; with their courses, if these are asked for.
+// Of active colliders, after the first round of what the last one put back; with their courses, if these are asked for.
 // Whether any went astray.
 Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
                   std::span<const uint8_t> followed, uint8_t round, bool with_courses, Pairs& pairs) {
@@ -56,17 +61,16 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
     std::atomic<bool> any = false, newly = false;
     pairs.marks.resize(colliders.record.size());
     if (with_courses) pairs.courses.resize(colliders.record.size());
-    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kColliderGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t c = begin; c < end; ++c) {
+    const std::span<const uint32_t> active = colliders.active;
+    team.for_ranges(static_cast<uint32_t>(active.size()), kColliderGrain, [&](uint32_t begin, uint32_t end) {
+        for (const uint32_t c : active.subspan(begin, end - begin)) {
             const Collider& collider = colliders.record[c];
             uint8_t& mark = pairs.marks[c];
-            if (round == 1) mark = collider.node == kNone ? 0 : kMoved;
+            if (round == 1) mark = kMoved;
             if (round > 1 && span_put_back(pairs.mechanisms, collider, round - 1)) mark |= kMoved;
             if (!(mark & kMoved)) continue;
             const bool was_astray = mark & kAstray;
-            mark = collider.node_b == kNone ? kMoved : kMoved | kSpans;
-            if (collider.asks & (kAsksOneWay | kAsksPreSolve)) mark |= kIgnorable;
-            if (is_followed(collider)) mark |= kFollowed;
+            mark = is_followed(collider) ? kMoved | kFollowed : kMoved;
             const Course* const course = with_courses ? &find_course(nodes, colliders, shapes, c, pairs) : nullptr;
             if (!solved(nodes, collider)) continue;
             const Vec3 along = course ? course->along : way_along(nodes, collider, shapes);
@@ -81,24 +85,26 @@ Astray find_marks(Team& team, const Nodes& nodes, const Colliders& colliders, co
 
 void find_courses(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     pairs.courses.resize(colliders.record.size());
-    team.for_ranges(static_cast<uint32_t>(colliders.record.size()), kColliderGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t c = begin; c < end; ++c)
+    const std::span<const uint32_t> active = colliders.active;
+    team.for_ranges(static_cast<uint32_t>(active.size()), kColliderGrain, [&](uint32_t begin, uint32_t end) {
+        for (const uint32_t c : active.subspan(begin, end - begin))
             if (pairs.marks[c] & kMoved) find_course(nodes, colliders, shapes, c, pairs);
     });
 }
 
-// Whether a pair is looked after: two that were fast, or of which one went astray.
-bool is_asked(const Pairs& pairs, uint32_t a, uint32_t b, bool fast) {
-    const unsigned marks = pairs.marks[a] | pairs.marks[b];
-    return (fast | ((marks & kAstray) != 0)) & ((marks & kIgnorable) == 0);
+bool any_astray(const Pairs& pairs, uint32_t a, uint32_t b) {
+    return ((pairs.marks[a] | pairs.marks[b]) & kAstray) != 0;
 }
-bool is_asked(const Pairs& pairs, const NearPair& near) {
-    return is_asked(pairs, near.collider_a(), near.collider_b(), near.fast) & !near.filtered;
+
+// Whether a pair is looked after: two that were fast, or of which one went astray.
+bool is_asked(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
+    const uint32_t a = near.collider_a(), b = near.collider_b();
+    return (near.fast | any_astray(pairs, a, b)) && !near.filtered && !ignorable(colliders, a, b);
 }
 
 // Whether it moved further against each other than a part of its thickness.
 bool strides(const Pairs& pairs, const AskedPair& pair) {
-    if (!is_asked(pairs, pair.a, pair.b, pair.fast)) return false;
+    if (!pair.fast && !any_astray(pairs, pair.a, pair.b)) return false;
     const Course &one = pairs.courses[pair.a], &other = pairs.courses[pair.b];
     const float thin = std::min(one.thickness, other.thickness), thick = std::max(one.thickness, other.thickness);
     if (thick == std::numeric_limits<float>::infinity()) return false;
@@ -112,14 +118,21 @@ bool may_pass(const Pairs& pairs, const AskedPair& pair) {
     return may_pass(pairs.courses[pair.a], pairs.courses[pair.b]);
 }
 
+// What stands has one only where it is asked for.
+const Course& course_at(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c,
+                        Pairs& pairs) {
+    const bool stands = nodes.rest[colliders.record[c].node] == Rest::asleep;
+    return stands ? find_course(nodes, colliders, shapes, c, pairs) : pairs.courses[c];
+}
+
 // Adds a collider's pairs with what its box meets and it may have passed, but for those that are near.
-void add_late(const Nodes& nodes, const Colliders& colliders, const collision::Broadphase& broadphase, uint32_t c,
-              Pairs& pairs) {
+void add_late(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
+              const collision::Broadphase& broadphase, uint32_t c, Pairs& pairs) {
     struct Found final : collision::Visitor {
-        Found(const Nodes& n, const Colliders& all, uint32_t one, Pairs& to)
-            : nodes(n), colliders(all), c(one), pairs(to) {}
+        Found(const Nodes& n, const Colliders& all, const Shapes& its, uint32_t one, Pairs& to)
+            : nodes(n), colliders(all), shapes(its), c(one), pairs(to) {}
         void visit(uint32_t other, collision::Probe&) override {
-            if (other == c || !may_pass(pairs.courses[c], pairs.courses[other])) return;
+            if (other == c || !may_pass(pairs.courses[c], course_at(nodes, colliders, shapes, other, pairs))) return;
             const uint64_t key = pair_key(c, other);
             if (find_pair(pairs.near, key) || find_pair(pairs.late, key)) return;
             reserve_more(pairs.late, 1);
@@ -128,12 +141,13 @@ void add_late(const Nodes& nodes, const Colliders& colliders, const collision::B
         }
         const Nodes& nodes;
         const Colliders& colliders;
+        const Shapes& shapes;
         uint32_t c;
         Pairs& pairs;
     };
     const collision::Box& box = pairs.reach[c].box;
     const Vec3 middle = 0.5 * (box.lo + box.hi).cast<double>();
-    Found found(nodes, colliders, c, pairs);
+    Found found(nodes, colliders, shapes, c, pairs);
     broadphase.visit({middle, Vec3::Zero(), box.lo.cast<double>() - middle, box.hi.cast<double>() - middle}, found);
 }
 
@@ -141,7 +155,7 @@ void add_late(const Nodes& nodes, const Colliders& colliders, const collision::B
 // and its pairs with what is there go into Pairs::late.
 void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs,
                collision::Broadphase& broadphase) {
-    gather(team, static_cast<uint32_t>(colliders.record.size()), pairs.picked, [&](uint32_t c) {
+    gather(team, std::span<const uint32_t>(colliders.active), pairs.picked, [&](uint32_t c) {
         const Collider& collider = colliders.record[c];
         return (pairs.marks[c] & kMoved) && (pairs.marks[c] & kAstray) &&
                !broadphase.holds(c, bounds_of(nodes, collider, shapes));
@@ -153,25 +167,27 @@ void find_late(Team& team, const Nodes& nodes, const Colliders& colliders, const
         reach.made = std::numeric_limits<double>::infinity();
         broadphase.update(c, reach.box, Vec3f::Zero());
     }
-    for (const uint32_t c : pairs.picked) add_late(nodes, colliders, broadphase, c, pairs);
+    for (const uint32_t c : pairs.picked) add_late(nodes, colliders, shapes, broadphase, c, pairs);
 }
 
 // All pairs that are looked after, in the order of their keys.
-void ask_pairs(Team& team, Pairs& pairs) {
+void ask_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     gather(team, static_cast<uint32_t>(pairs.near.size()), pairs.picked,
-           [&](uint32_t i) { return is_asked(pairs, pairs.near[i]); });
+           [&](uint32_t i) { return is_asked(colliders, pairs, pairs.near[i]); });
     pairs.asked.clear();
     reserve_more(pairs.asked, pairs.picked.size() + pairs.late.size());
     auto late = pairs.late.begin();
     const auto add_late_before = [&](uint64_t key) {
         for (; late != pairs.late.end() && late->key < key; ++late)
-            if (!late->filtered) pairs.asked.emplace_back(*late);
+            if (is_asked(colliders, pairs, *late)) pairs.asked.emplace_back(*late);
     };
     for (const uint32_t i : pairs.picked) {
         add_late_before(pairs.near[i].key);
         pairs.asked.emplace_back(pairs.near[i]);
     }
     add_late_before(std::numeric_limits<uint64_t>::max());
+    for (const AskedPair& pair : pairs.asked)
+        for (const uint32_t c : {pair.a, pair.b}) course_at(nodes, colliders, shapes, c, pairs);
 }
 
 // Those of them that stride into picked.
@@ -214,7 +230,7 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
           const Joints& joints, const Elements& elements, uint8_t round, Pairs& pairs, Nodes& nodes) {
     if (!(excess.share > 0)) return false;
     Mechanisms& mechanisms = pairs.mechanisms;
-    if (mechanisms.root.empty()) find_mechanisms(nodes, joints, elements, mechanisms);
+    if (!mechanisms.found) find_mechanisms(nodes, joints, elements, mechanisms);
     const uint32_t a = pair.a.collider.node, b = pair.b.collider.node;
     Mechanism of_a(nodes, joints, elements, mechanisms, a), of_b(nodes, joints, elements, mechanisms, b);
     if (of_a.has(b)) return false;
@@ -238,7 +254,7 @@ bool part(const Couple& pair, const Excess& excess, const Colliders& colliders, 
 // Whether a collider was put back in this round; its course follows.
 bool anew(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, uint32_t c, uint8_t round,
           Pairs& pairs) {
-    if (!(pairs.marks[c] & kSpans)) return pairs.marks[c] & kMoved;
+    if (colliders.record[c].node_b == kNone) return pairs.marks[c] & kMoved;
     if (!span_put_back(pairs.mechanisms, colliders.record[c], round)) return false;
     find_course(nodes, colliders, shapes, c, pairs);
     return true;
@@ -247,7 +263,7 @@ bool anew(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, 
 // Puts back what passed, one after the other; what was put back already is asked again. Whether anything was.
 bool part_passed(const Colliders& colliders, const Shapes& shapes, const Joints& joints, const Elements& elements,
                  uint8_t round, Pairs& pairs, Nodes& nodes) {
-    for (uint8_t& mark : pairs.marks) mark &= static_cast<uint8_t>(~kMoved);
+    for (const uint32_t c : colliders.active) pairs.marks[c] &= static_cast<uint8_t>(~kMoved);
     bool any = false;
     for (const uint32_t i : pairs.picked) {
         const AskedPair& asked = pairs.asked[i];
@@ -284,7 +300,6 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
                const Elements& elements, std::span<const uint8_t> followed, Pairs& pairs,
                collision::Broadphase& broadphase, Nodes& nodes) {
     Mechanisms& mechanisms = pairs.mechanisms;
-    mechanisms.root.clear();
     mechanisms.any_drives = false;
     bool again = true;
     for (uint8_t round = 1; again && round <= (mechanisms.any_drives ? kMostRounds : kRounds); ++round) {
@@ -298,13 +313,14 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
         if (!asks_some) find_courses(team, nodes, colliders, shapes, pairs);
         const size_t late = pairs.late.size();
         if (astray.any) find_late(team, nodes, colliders, shapes, pairs, broadphase);
-        if (round == 1 || astray.newly || pairs.late.size() > late) ask_pairs(team, pairs);
+        if (round == 1 || astray.newly || pairs.late.size() > late) ask_pairs(team, nodes, colliders, shapes, pairs);
         pick_striding(team, pairs);
         find_passed(team, nodes, colliders, shapes, pairs);
         again = part_passed(colliders, shapes, joints, elements, round, pairs, nodes);
     }
+    for (const uint32_t c : colliders.active) pairs.marks[c] = 0;
     let_go(pairs.late);
-    end_stays(mechanisms);
+    end_mechanisms(nodes, mechanisms);
 }
 
 }  // namespace taut

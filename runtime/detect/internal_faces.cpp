@@ -207,11 +207,6 @@ private:
 };
 
 // Whether any body has several colliders.
-bool any_compound(const Detection& of) {
-    const Array<Collider>& colliders = of.colliders.record;
-    return std::any_of(colliders.begin(), colliders.end(), [](const Collider& each) { return each.next != kNone; });
-}
-
 // Calls act(bearing) for the sides of a contact that may bear on several colliders that move as one. Balls of vertices
 // make up no solid, though held: what is within their surface detect/surface_cone.h knows.
 template <class Act>
@@ -255,12 +250,14 @@ bool open_runs(const Detection& of) {
 void open_internal_faces(const Detection& of) {
     Pairs& pairs = of.pairs;
     const auto count = static_cast<uint32_t>(pairs.active.size());
-    pairs.marks.assign(of.colliders.record.size(), 0);  // how many contacts each collider has, up to two
-    const bool compounds = any_compound(of);
+    pairs.bearings.resize(of.colliders.record.size());  // how many contacts each collider has, up to two
+    const bool compounds = of.colliders.chained > 0;
+    for (uint32_t i = 0; i < count; ++i)
+        for_bearings(of, compounds, i, [&](const Bearing& bearing) { pairs.bearings[bearing.collider(pairs)] = 0; });
     bool any = false;
     for (uint32_t i = 0; i < count; ++i)
         for_bearings(of, compounds, i, [&](const Bearing& bearing) {
-            uint8_t& mark = pairs.marks[bearing.collider(pairs)];
+            uint8_t& mark = pairs.bearings[bearing.collider(pairs)];
             any = any || mark == 1;
             if (mark < 2) ++mark;
         });
@@ -268,7 +265,7 @@ void open_internal_faces(const Detection& of) {
     pairs.picked.clear();
     for (uint32_t i = 0; i < count; ++i)
         for_bearings(of, compounds, i, [&](const Bearing& bearing) {
-            if (pairs.marks[bearing.collider(pairs)] < 2) return;
+            if (pairs.bearings[bearing.collider(pairs)] < 2) return;
             reserve_more(pairs.picked, 1);
             pairs.picked.push_back(bearing.word());
         });

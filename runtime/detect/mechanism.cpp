@@ -1,7 +1,6 @@
 #include "detect/mechanism.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace taut {
@@ -32,24 +31,28 @@ void for_each_hold(const Joints& joints, const Elements& elements, Act&& act) {
 
 // Into Mechanisms::tie, by the root that root_of(ends) says, in the order of these; kNone is left out.
 template <class RootOf>
-void list_ties(const Joints& joints, const Elements& elements, Mechanisms& of, RootOf&& root_of) {
+void list_ties(const Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& of, RootOf&& root_of) {
     const auto for_refs = [&](auto&& act) {
         for (uint32_t j = 0; j < joints.record.size(); ++j) act(joints.record[j].nodes(), ConstraintRef{kNone, j});
         for (uint32_t s = 0; s < elements.set.size(); ++s)
             for (uint32_t e = 0; holds(elements.set[s]) && e < elements.set[s].size(); ++e)
                 if (elements.set[s].lives(e)) act(elements.set[s].nodes_of(e), ConstraintRef{s, e});
     };
-    // Counts two places on, so that what is filled below ends as where each begins.
-    of.first_tie.assign(of.root.size() + 2, 0);
+    of.ties_of.resize(nodes.slots());
+    for (const uint32_t node : nodes.active) of.ties_of[node] = {};
     for_refs([&](std::span<const uint32_t> ends, ConstraintRef) {
-        if (const uint32_t root = root_of(ends); root != kNone) ++of.first_tie[root + 2];
+        if (const uint32_t root = root_of(ends); root != kNone) ++of.ties_of[root].end;
     });
-    std::partial_sum(of.first_tie.begin(), of.first_tie.end(), of.first_tie.begin());
+    uint32_t all = 0;
+    for (const uint32_t node : nodes.active) {
+        const uint32_t begin = std::exchange(all, all + of.ties_of[node].end);
+        of.ties_of[node] = {begin, begin};
+    }
     of.open.clear();
-    reserve_more(of.open, of.first_tie.back());
-    of.tie.resize(of.first_tie.back());
+    reserve_more(of.open, all);
+    of.tie.resize(all);
     for_refs([&](std::span<const uint32_t> ends, ConstraintRef ref) {
-        if (const uint32_t root = root_of(ends); root != kNone) of.tie[of.first_tie[root + 1]++] = ref;
+        if (const uint32_t root = root_of(ends); root != kNone) of.tie[of.ties_of[root].end++] = ref;
     });
 }
 
@@ -64,16 +67,22 @@ bool Mechanism::may_stay() {
     return stay->frames <= kMostStays;
 }
 
-void end_stays(Mechanisms& of) {
+void end_mechanisms(const Nodes& nodes, Mechanisms& of) {
+    if (std::exchange(of.found, false))
+        for (const uint32_t node : nodes.active) of.put_back[node] = 0;
     std::erase_if(of.stays, [](const Stay& s) { return !s.now || s.frames > kMostStays; });
     for (Stay& stay : of.stays) stay.now = false;
 }
 
 void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& of) {
-    const uint32_t slots = nodes.slots();
+    const auto begin = [&](auto& by_node, auto&& value_of) {
+        by_node.resize(nodes.slots());
+        for (const uint32_t node : nodes.active) by_node[node] = value_of(node);
+    };
+    const auto itself = [](uint32_t node) { return node; };
+    const auto none = [](uint32_t) { return uint8_t{0}; };
     Array<uint32_t>& root = of.root;
-    root.resize(slots);
-    std::iota(root.begin(), root.end(), 0u);
+    begin(root, itself);
     const auto find = [&](uint32_t node) {
         while (root[node] != node) node = root[node] = root[root[node]];
         return node;
@@ -88,28 +97,28 @@ void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& e
             last = node;
         }
     });
-    of.next.resize(slots);
-    std::iota(of.next.begin(), of.next.end(), 0u);
-    for (uint32_t node = 0; node < slots; ++node) {
+    begin(of.next, itself);
+    for (const uint32_t node : nodes.active) {
         root[node] = find(node);
         if (root[node] != node) of.next[node] = std::exchange(of.next[root[node]], node);
     }
-    of.drive.assign(slots, 0);
-    for (uint32_t node = 0; node < slots; ++node) {
+    begin(of.drive, none);
+    for (const uint32_t node : nodes.active) {
         if (!held(node)) of.drive[root[node]] += static_cast<float>(nodes.mass[node].mass);
         of.any_drives = of.any_drives || drives(nodes, node);
     }
-    of.ties.assign(slots, 0);
+    begin(of.ties, none);
     for_each_hold(joints, elements, [&](std::span<const uint32_t> ends) {
         const bool anchored = std::any_of(ends.begin(), ends.end(), held);
         for (const uint32_t node : ends)
             if (!held(node)) of.ties[root[node]] |= anchored ? kJointed | kAnchored : kJointed;
     });
-    list_ties(joints, elements, of, [&](std::span<const uint32_t> ends) {
+    list_ties(nodes, joints, elements, of, [&](std::span<const uint32_t> ends) {
         const auto end = std::find_if_not(ends.begin(), ends.end(), held);
         return end == ends.end() ? kNone : root[*end];
     });
-    of.put_back.assign(slots, 0);
+    begin(of.put_back, none);
+    of.found = true;
 }
 
 }  // namespace taut

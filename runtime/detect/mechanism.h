@@ -20,8 +20,9 @@ constexpr uint8_t kRounds = 3;   // where a mechanism was put back, other parts 
 
 void find_mechanisms(const Nodes& nodes, const Joints& joints, const Elements& elements, Mechanisms& of);
 
-// After all rounds: forgets the stays of mechanisms that did not stay in this frame, and those that lasted too long.
-void end_stays(Mechanisms& of);
+// After all rounds: forgets what was found, and of stays those of mechanisms that did not stay in this frame, and those
+// that lasted too long.
+void end_mechanisms(const Nodes& nodes, Mechanisms& of);
 
 // A body and what joints and rigid elements tie to it, which stay as they are against each other.
 class Mechanism {
@@ -31,8 +32,8 @@ public:
           joints_(joints),
           elements_(elements),
           all_(all),
-          root_(all.root[node]),
           moves_(nodes.solved(node)),
+          root_(moves_ ? all.root[node] : node),
           kinematic_(nodes.info[node].kind == NodeKind::kinematic) {}
 
     bool has(uint32_t node) const { return node != kNone && nodes_.solved(node) && all_.root[node] == root_; }
@@ -50,6 +51,7 @@ public:
     // A share of the way. One body along it, which is free; more of them only as far as they must; what is anchored
     // each along its own, and in the last rounds all of it. Nobody does all of it for good.
     void go_back(double share, const Vec3& way, const Vec3& normal, uint8_t round) {
+        if (!moves_) return;
         if (all_.ties[root_] & kAnchored) {
             if (round >= kRounds) share = 1;
             if (share > kWhole && !may_stay()) return;
@@ -111,8 +113,9 @@ private:
     const Joints& joints_;
     const Elements& elements_;
     Mechanisms& all_;
+    bool moves_;
     uint32_t root_;
-    bool moves_, kinematic_;
+    bool kinematic_;
 };
 
 }  // namespace taut

@@ -10,6 +10,7 @@
 #include "integrate/motion_kernels.h"
 #include "state/levers.h"
 #include "state/sane.h"
+#include "system/reached.h"
 
 namespace taut {
 namespace {
@@ -142,26 +143,27 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     set_sweep_velocity(system.sweep[at].velocity, {m.v, m.w});
 }
 
-// Nodes of groups first, in their order, then all others. Those long asleep are only touched where their seat changes.
+// Unless it has one.
+void take_seat(System& system, uint32_t node) {
+    uint32_t& seat = system.seat[node + 1];
+    if (seat != 0) return;
+    seat = static_cast<uint32_t>(system.node_at.size());
+    reserve_more(system.node_at, 1);
+    system.node_at.push_back(node);
+}
+
+// Nodes of groups first, in their order, then others that the step goes through, then what is reached.
 void take_seats(System& system, const Partition& partition, const Nodes& nodes) {
-    system.seat.resize(nodes.slots() + 1, kNone);
+    grow_to(system.seat, nodes.slots() + 1);
+    for (const uint32_t node : system.node_at) system.seat[node + 1] = 0;
     system.node_at.clear();
-    const auto take = [&](uint32_t node) {
-        const auto at = static_cast<uint32_t>(system.node_at.size());
-        const bool moved = std::exchange(system.seat[node + 1], at) != at;
-        system.node_at.push_back(node);
-        if (moved && node != kNone && nodes.rest[node] == Rest::asleep) begin_node(system, nodes, node, at);
-    };
-    const auto is_seated = [&](uint32_t node) {
-        const uint32_t at = system.seat[node + 1];
-        return at < system.node_at.size() && system.node_at[at] == node;
-    };
-    take(kNone);
+    system.node_at.push_back(kNone);
     for (uint32_t g = 0; g < partition.group_count; ++g)
-        for (const uint32_t node : partition.groups[g].nodes) take(node);
+        for (const uint32_t node : partition.groups[g].nodes) take_seat(system, node);
     system.movers = static_cast<uint32_t>(system.node_at.size()) - 1;
-    for (uint32_t node = 0; node < nodes.slots(); ++node)
-        if (!is_seated(node)) take(node);
+    for (const uint32_t node : nodes.active)
+        if (!stands_by(nodes, node)) take_seat(system, node);
+    for (const uint32_t node : system.reached) take_seat(system, node);
 }
 
 // A dynamic node with a spin of its own: not one whose inertia is the same about all axes.
@@ -209,27 +211,42 @@ void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     set_sweep_velocity(system.sweep[at].velocity, u);
 }
 
+void make_room_by_seat(System& system, bool tied) {
+    grow_to(system.start, system.pose.size());
+    if (tied) grow_to(system.sweep_pose, system.pose.size());
+}
+
 }  // namespace
 
 void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, bool tied) {
-    const uint32_t slots = nodes.slots();
-    system.make_room(slots);
-    grow_to(system.start, system.pose.size());
-    system.sweep_pose.resize(tied ? slots + 1 : 0);
     take_seats(system, partition, nodes);
+    const auto others = static_cast<uint32_t>(system.node_at.size()) - 1;  // than the world
+    system.make_room(nodes.slots(), others);
+    if (!tied) system.sweep_pose.clear();
+    make_room_by_seat(system, tied);
     system.kinematic.clear();
-    for (uint32_t node = 0; node < slots; ++node)
+    for (const uint32_t node : nodes.active)
         if (nodes.info[node].kind == NodeKind::kinematic && nodes.rest[node] != Rest::asleep)
             system.kinematic.push_back(node);
     forget(system, 0);
-    team.for_ranges(slots, kGrain, [&](uint32_t begin, uint32_t end) {
+    team.for_ranges(others, kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t at = begin + 1; at <= end; ++at) {
-            const uint32_t node = system.node_at[at];
             forget(system, at);
-            if (nodes.info[node].kind != NodeKind::dead && nodes.rest[node] != Rest::asleep)
-                begin_node(system, nodes, node, at);
+            begin_node(system, nodes, system.node_at[at], at);
         }
     });
+}
+
+void seat_reached(System& system, const Nodes& nodes) {
+    const auto seated = static_cast<uint32_t>(system.node_at.size());
+    for (const uint32_t node : system.reached) take_seat(system, node);
+    const auto all = static_cast<uint32_t>(system.node_at.size());
+    system.make_room(nodes.slots(), all);
+    make_room_by_seat(system, !system.sweep_pose.empty());
+    for (uint32_t at = seated; at < all; ++at) {
+        forget(system, at);
+        begin_node(system, nodes, system.node_at[at], at);
+    }
 }
 
 void MotionLoan::begin() {

@@ -7,9 +7,11 @@
 
 namespace taut {
 
-// Once a frame: seats, poses of all nodes but those long asleep, which keep theirs, still shifts, inverse masses of
+// Once a frame: seats of what it goes through and of System::reached, their poses, still shifts, inverse masses of
 // nodes that do not turn theirs.
 void begin_frame(Team& team, System& system, const Partition& partition, const Nodes& nodes, bool tied);
+// Within it, of what is reached since.
+void seat_reached(System& system, const Nodes& nodes);
 
 // While it lasts, the motions of a group are not in the state but where threads do not meet: System::motion. Blocks and
 // loads need them in the state.

@@ -26,9 +26,10 @@ uint32_t& link_to(World& world, uint32_t node, uint32_t collider) {
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                   std::span<const ColliderPlan> colliders) {
     Nodes& nodes = world.nodes;
-    world.system.make_room(nodes.slots() + 1);
+    world.system.make_room(nodes.slots() + 1, nodes.movable + 1);
     const uint32_t node = nodes.add();
     nodes.info[node] = info;
+    nodes.movable += info.kind != NodeKind::fixed;
     nodes.info[node].collider = kNone;
     nodes.motion[node] = motion;
     nodes.mass.set(node, mass);
@@ -81,6 +82,7 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
         world.colliders.remove(index);
         throw;
     }
+    world.colliders.chained += world.nodes.info[record.node].collider != kNone;
     link_to(world, record.node, kNone) = index;
     world.pairs.forget_place(index);
     ++world.shapes[record.shape].users;
@@ -96,6 +98,7 @@ void remove_collider(World& world, uint32_t collider) {
     if (record.grain) world.pairs.grains.gone.push_back(record.node);
     if (!world.pairs.surfaces.contact.empty()) world.pairs.surfaces.gone.push_back(record.node);
     link_to(world, record.node, collider) = record.next;
+    world.colliders.chained -= world.nodes.info[record.node].collider != kNone;
     world.broadphase.remove(collider);
     --world.shapes[record.shape].users;
     world.colliders.remove(collider);

@@ -1,6 +1,7 @@
 // Which joints are solved directly, together with which contacts.
 #include <algorithm>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include "detect/approach.h"
@@ -116,22 +117,20 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
 // first solve.
 void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs,
                              const PartitionRules& rules) {
-    const uint32_t slots = nodes.slots();
-    for (uint32_t i = 0; i < slots; ++i) parent_[i] = i;
+    for (const uint32_t node : graph_.movers) parent_[node] = node;
     for (size_t j = 0; j < joints.record.size(); ++j)
         if (joints.record[j].solve != JointSolve::swept) unite(graph_.ties[j]);
     for (uint32_t e = 0; e < element_.size(); ++e)
         if (elements.set[element_[e].set].solve != JointSolve::swept) unite(movers_of(e));
-    core_.assign(slots, 0);
-    component_.assign(slots, Component{});
+    clear_movers(core_);
+    clear_movers(component_);
     pair_in_block_.assign(pairs.active.size(), 0);
-    for (uint32_t i = 0; i < slots; ++i) component_[i].nodes = 0;
-    for (uint32_t i = 0; i < slots; ++i) {
-        Component& component = component_[find(i)];
+    for (const uint32_t node : graph_.movers) component_[node].nodes = 0;
+    for (const uint32_t node : graph_.movers) {
+        Component& component = component_[find(node)];
         ++component.nodes;
-        if (!moving(nodes, i)) continue;
-        component.least = std::min(component.least, nodes.mass[i].mass);
-        component.most = std::max(component.most, nodes.mass[i].mass);
+        component.least = std::min(component.least, nodes.mass[node].mass);
+        component.most = std::max(component.most, nodes.mass[node].mass);
     }
     choose_direct(nodes, joints, elements);
     find_hit(nodes, pairs, rules);
@@ -218,11 +217,11 @@ void Partition::choose_direct(const Nodes& nodes, const Joints& joints, const El
     element_in_block_.resize(element_.size());
     for (uint32_t e = 0; e < element_.size(); ++e)
         element_in_block_[e] = take(movers_of(e), elements.set[element_[e].set].solve);
-    for (uint32_t i = 0; i < nodes.slots(); ++i) parent_[i] = find(i);
-    for (uint32_t i = nodes.slots(); i-- > 0;) {  // other nodes stand alone; their root is smallest, so last
-        if (is_block(component_[parent_[i]])) continue;
-        parent_[i] = i;
-        component_[i] = {};
+    for (const uint32_t node : graph_.movers) parent_[node] = find(node);
+    for (const uint32_t node : std::views::reverse(graph_.movers)) {  // others stand alone; their root comes last
+        if (is_block(component_[parent_[node]])) continue;
+        parent_[node] = node;
+        component_[node] = {};
     }
 }
 
@@ -318,8 +317,8 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         block.surfaces.push_back(k);
         if (block.elastic.empty()) add_links(nodes, ends, block);
     }
-    for (uint32_t i = 0; i < nodes.slots(); ++i)
-        if (moving(nodes, i) && component_[find(i)].block != kNone) block_at(i).nodes.push_back(i);
+    for (const uint32_t node : graph_.movers)
+        if (component_[find(node)].block != kNone) block_at(node).nodes.push_back(node);
     while (spare_.size() > filled_) spare_.pop_back();
     for (Block& block : spare_) {
         double least = 1e300, most = 0;
@@ -373,12 +372,17 @@ void Partition::recall_blocks(const Nodes& nodes, const Joints& joints) {
         else if (left > 0)
             --left;
     }
+    unmark(blocks);
     blocks.swap(spare_);
-    find_block_of(nodes.slots());
+    mark_blocks();
 }
 
-void Partition::find_block_of(uint32_t nodes) {
-    block_of_.assign(nodes, kNone);
+void Partition::unmark(const Array<Block>& of_last) {
+    for (const Block& block : of_last)
+        for (const uint32_t node : block.nodes) block_of_[node] = kNone;
+}
+
+void Partition::mark_blocks() {
     for (uint32_t b = 0; b < blocks.size(); ++b)
         for (uint32_t node : blocks[b].nodes) block_of_[node] = b;
 }

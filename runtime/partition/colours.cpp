@@ -78,7 +78,7 @@ uint8_t Partition::take_colour(std::span<const uint32_t> nodes) {
 
 // As if no block took any.
 void Partition::colour_touches(const Nodes&) {
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     for (size_t p = 0; p < graph_.touches.size(); ++p) {
         const auto& [a, b] = graph_.touches[p];
         pair_colour_[p] = take_colour(std::array{a, b});
@@ -90,7 +90,7 @@ void Partition::colour_touches(const Nodes&) {
 void Partition::colour_pairs(const Pairs& pairs) {
     const bool all = graph_.spans.empty() && std::ranges::find(pair_in_block_, 1) == pair_in_block_.end();
     if (all && all_coloured_) return;
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     for (size_t p = 0; p < graph_.touches.size(); ++p) {
         const auto& [a, b] = graph_.touches[p];
         const bool swept = !pair_in_block_[p] && !pairs.active[p].spans();
@@ -100,7 +100,7 @@ void Partition::colour_pairs(const Pairs& pairs) {
 }
 
 void Partition::colour_joints() {
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     joint_colour_.resize(graph_.ties.size());
     for (size_t j = 0; j < graph_.ties.size(); ++j)
         joint_colour_[j] = joint_in_block_[j] ? kUncoloured : take_colour(graph_.ties[j]);
@@ -108,7 +108,7 @@ void Partition::colour_joints() {
 
 // As if no block took any.
 void Partition::colour_elements() {
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     element_colour_.resize(element_.size());
     for (uint32_t e = 0; e < element_.size(); ++e) element_colour_[e] = take_colour(movers_of(e));
 }
@@ -121,14 +121,14 @@ void Partition::colour_fused(const Elements& elements) {
         for (uint32_t e = 0; e < element_.size(); ++e) {
             const ElementSet& set = elements.set[element_[e].set];
             if (!set.fused || set.stage != stage) continue;
-            if (!std::exchange(any, true)) std::fill(used_.begin(), used_.end(), 0);
+            if (!std::exchange(any, true)) clear_movers(used_);
             element_pass_[e] = stage * kMaxColours + take_colour(movers_of(e));
         }
     }
 }
 
 void Partition::colour_grains(const Grains& grains) {
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     grain_colour_.clear();
     reserve_more(grain_colour_, grains.contact.size());
     for (const GrainContact& contact : grains.contact) {
@@ -140,7 +140,7 @@ void Partition::colour_grains(const Grains& grains) {
 
 // As if no block took any.
 void Partition::colour_surfaces(const SurfaceContacts& surfaces) {
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     surface_colour_.clear();
     reserve_more(surface_colour_, surfaces.contact.size());
     for (const SurfaceContact& contact : surfaces.contact) {
@@ -309,7 +309,7 @@ void Partition::renew_surfaces(uint32_t g, const SurfaceContacts& surfaces, std:
         follow(groups[other].direct_surfaces);
     }
     for (Block& block : blocks) follow(block.surfaces);
-    std::fill(used_.begin(), used_.end(), 0);
+    clear_movers(used_);
     surface_colour_.clear();
     reserve_more(surface_colour_, surfaces.contact.size());
     for (const SurfaceContact& contact : surfaces.contact) {

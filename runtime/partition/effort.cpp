@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "partition/partition.h"
 
@@ -28,22 +29,24 @@ uint32_t halves_for(float stiffness) {
 
 // Levels: bodies on the shortest way down to a fixed or kinematic support, by breadth-first search over contacts.
 void Partition::find_levels(const Nodes&) {
-    std::fill(level_.begin(), level_.end(), 0);
-    std::fill(adjacency_begin_.begin(), adjacency_begin_.end(), 0);
     uint32_t reached = 0;  // in queue_
     for (const auto& [a, b] : graph_.touches) {
         for (const uint32_t node : {a, b})
-            if (node != kNone) ++adjacency_begin_[node + 2];
+            if (node != kNone) ++adjacent_[node].end;
         if (a != b && (a == kNone || b == kNone)) {
             const uint32_t node = std::min(a, b);
             if (level_[node] == 0) queue_[reached++] = node;
             level_[node] = 1;
         }
     }
-    for (size_t i = 2; i < adjacency_begin_.size(); ++i) adjacency_begin_[i] += adjacency_begin_[i - 1];
+    uint32_t all = 0;
+    for (const uint32_t node : graph_.movers) {
+        const uint32_t begin = std::exchange(all, all + adjacent_[node].end);
+        adjacent_[node] = {begin, begin};
+    }
     for (uint32_t p = 0; p < graph_.touches.size(); ++p)
         for (const uint32_t node : {graph_.touches[p].a, graph_.touches[p].b})
-            if (node != kNone) adjacency_[adjacency_begin_[node + 1]++] = p;
+            if (node != kNone) adjacency_[adjacent_[node].end++] = p;
     for (uint32_t head = 0; head < reached; ++head) {
         const uint32_t node = queue_[head], above = level_[node] + 1;
         for (const uint32_t p : touches_of(node)) {

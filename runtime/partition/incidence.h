@@ -18,16 +18,16 @@ public:
     };
 
     explicit Incidence(Memory& memory)
-        : begin_(memory), ends_(memory), colour_(memory), colour_begin_(memory), by_colour_(memory) {}
+        : range_(memory), ends_(memory), colour_(memory), colour_begin_(memory), by_colour_(memory) {}
 
     // nodes: of all elements one after the other, kNone in place of those that do not count; element e has those from
-    // element_begin[e] on. slots: of nodes.
-    void build(uint32_t slots, std::span<const uint32_t> element_begin, std::span<const uint32_t> nodes);
+    // element_begin[e] on. all: nodes that may count, ascending.
+    void build(std::span<const uint32_t> all, std::span<const uint32_t> element_begin, std::span<const uint32_t> nodes);
 
     // In the order of elements.
     std::span<const End> of(uint32_t node) const {
-        if (begin_.empty()) return {};
-        return {ends_.data() + begin_[node], begin_[node + 1] - begin_[node]};
+        if (range_.empty()) return {};
+        return {ends_.data() + range_[node].begin, range_[node].end - range_[node].begin};
     }
     // No two nodes of a colour share an element; nodes on no element have none. Ascending within a colour.
     uint32_t colours() const { return colour_begin_.empty() ? 0 : static_cast<uint32_t>(colour_begin_.size()) - 1; }
@@ -36,10 +36,16 @@ public:
     }
 
 private:
-    void find_ends(uint32_t slots, std::span<const uint32_t> element_begin, std::span<const uint32_t> nodes);
-    void find_colours(uint32_t slots, std::span<const uint32_t> element_begin, std::span<const uint32_t> nodes);
+    struct Range {
+        uint32_t begin = 0, end = 0;
+    };
 
-    Array<uint32_t> begin_;  // by node, and one past the last
+    void find_ends(std::span<const uint32_t> all, std::span<const uint32_t> element_begin,
+                   std::span<const uint32_t> nodes);
+    void find_colours(std::span<const uint32_t> all, std::span<const uint32_t> element_begin,
+                      std::span<const uint32_t> nodes);
+
+    Array<Range> range_;  // by node: in ends_
     Array<End> ends_;
     Array<uint32_t> colour_;  // by node
     Array<uint32_t> colour_begin_, by_colour_;

@@ -20,6 +20,7 @@ Partition::Partition(Memory& memory)
       element_(memory),
       element_begin_(memory),
       element_node_(memory),
+      held_(memory),
       element_colour_(memory),
       element_pass_(memory),
       incidence_(memory),
@@ -47,7 +48,7 @@ Partition::Partition(Memory& memory)
       queue_(memory),
       weak_(memory),
       standing_(memory),
-      adjacency_begin_(memory),
+      adjacent_(memory),
       adjacency_(memory) {}
 
 uint32_t Partition::find(uint32_t node) {
@@ -67,12 +68,6 @@ void Partition::unite(std::span<const uint32_t> all) {
         if (first != kNone) unite(first, node);
         first = node;
     }
-}
-
-// After this no graph is as it was: nodes move or do not, and 2 is neither. Takes no memory; a list that never had any
-// is of a world in which nothing was built.
-static void forget(TouchGraph& graph) {
-    if (graph.moves.capacity() > 0) graph.moves.assign(1, uint8_t{2});
 }
 
 void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements, Pairs& pairs,
@@ -99,7 +94,7 @@ void Partition::build(Team& team, const Nodes& nodes, const Joints& joints, cons
             run(team, kOfFrame, nodes);
         }
     } catch (...) {  // out of memory: what follows from the graph may not be there
-        forget(graph_);
+        graph_.forget();
         throw;
     }
     folds_ = rules.folds;
@@ -141,12 +136,13 @@ void Partition::make_room() {
         reserve_more(array, size);
         array.resize(size);
     };
-    const size_t slots = graph_.moves.size(), touches = graph_.touches.size();
-    for (auto* by_slot : {&parent_, &level_, &queue_}) fit(*by_slot, slots);
-    fit(place_, slots);
-    fit(tied_, slots);
-    fit(used_, slots);
-    fit(adjacency_begin_, slots + 2);
+    const size_t touches = graph_.touches.size();
+    for (auto* by_slot : {&parent_, &level_, &island_of_}) clear_movers(*by_slot);
+    clear_movers(place_);
+    clear_movers(tied_);
+    clear_movers(used_);
+    clear_movers(adjacent_);
+    fit(queue_, graph_.movers.size());
     fit(adjacency_, 2 * touches);
     fit(pair_colour_, touches);
     fit(pressed_, touches);
@@ -165,6 +161,7 @@ void Partition::list_elements(const Elements& elements) {
     element_.clear();
     element_node_.clear();
     element_begin_.assign(1, 0);
+    held_.clear();
     for (uint32_t s = 0; s < elements.set.size(); ++s) {
         const ElementSet& set = elements.set[s];
         for (uint32_t e = 0; set.type && e < set.size(); ++e) {
@@ -172,16 +169,19 @@ void Partition::list_elements(const Elements& elements) {
             const auto moves = [&](uint32_t node) { return graph_.mover(node) != kNone; };
             if (std::ranges::none_of(nodes, moves)) continue;
             element_.push_back({s, e});
-            for (const uint32_t node : nodes) element_node_.push_back(graph_.mover(node));
+            for (const uint32_t node : nodes) {
+                element_node_.push_back(graph_.mover(node));
+                if (node != kNone && graph_.mover(node) == kNone) held_.push_back(node);
+            }
             element_begin_.push_back(static_cast<uint32_t>(element_node_.size()));
         }
     }
-    incidence_.build(static_cast<uint32_t>(graph_.moves.size()), element_begin_, element_node_);
+    incidence_.build(graph_.movers, element_begin_, element_node_);
 }
 
 // Union-find over all that ties and touches.
 void Partition::unite_touching(const Nodes&) {
-    for (uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
+    for (const uint32_t node : graph_.movers) parent_[node] = node;
     for (const TouchGraph::Tie& tie : graph_.ties) unite(tie);
     for (uint32_t e = 0; e < element_.size(); ++e) unite(movers_of(e));
     for (const TouchGraph::Tie& span : graph_.spans) unite(span);
@@ -210,7 +210,6 @@ void Partition::unite_surfaces(const SurfaceContacts& surfaces) {
 void Partition::number_islands() {
     if (island_.capacity() > 4 * island_.size()) let_go(island_);  // of a time when fewer touched
     island_.clear();
-    island_of_.assign(graph_.moves.size(), kNone);
     for (const uint32_t node : graph_.movers) {  // roots are smallest, so each is met before its members
         const uint32_t root = find(node);
         if (root == node) {
@@ -244,14 +243,15 @@ void Partition::list_small() {
 }
 
 void Partition::forget_frame(uint32_t nodes) {
-    forget(graph_);
+    graph_.forget();
     group_count = 0;
-    find_block_of(nodes);
+    block_of_.assign(nodes, kNone);
+    mark_blocks();
 }
 
 void Partition::forget_blocks(const Joints& joints, const Pairs& pairs) {
+    unmark(blocks);
     blocks.clear();
-    block_of_.clear();
     pair_in_block_.assign(graph_.touches.size(), 0);
     joint_in_block_.assign(joints.record.size(), 0);
     element_in_block_.assign(element_.size(), 0);

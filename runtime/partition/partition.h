@@ -233,13 +233,15 @@ public:
                const PartitionRules& rules);
 
     // Of a node, in this frame; kNone where forces do not move it.
-    uint32_t island_of(uint32_t node) const { return island_of_[node]; }
+    uint32_t island_of(uint32_t node) const { return graph_.mover(node) == kNone ? kNone : island_of_[node]; }
     // Within a frame, after the contacts of surfaces of a group without blocks were found anew: successor: of each
     // before its index now.
     void renew_surfaces(uint32_t group, const SurfaceContacts& surfaces, std::span<const uint32_t> successor);
     uint32_t group_of(uint32_t node) const { return island_[island_of_[node]].group; }  // of one that forces move
     // Elements on something that moves, in the order of incidence(); valid after build().
     std::span<const ElementRef> elements() const { return element_; }
+    // Nodes of these that do not move, some of them more than once; likewise.
+    std::span<const uint32_t> held() const { return held_; }
     const Incidence& incidence() const { return incidence_; }
     // By island, after build().
     void find_reasons(const Joints& joints, const Elements& elements, Array<uint8_t>& out) const;
@@ -323,6 +325,11 @@ private:
     void weigh(const Nodes& nodes);
 
     void make_room();
+    template <class T>
+    void clear_movers(Array<T>& by_slot, const T& value = {}) {
+        by_slot.resize(graph_.moves.size());
+        for (const uint32_t node : graph_.movers) by_slot[node] = value;
+    }
     void note_ties();
     void list_elements(const Elements& elements);
     void colour_elements();
@@ -361,7 +368,8 @@ private:
     void fill_elements(const Elements& elements);
     void fill_blocks(const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs);
     void recall_blocks(const Nodes& nodes, const Joints& joints);
-    void find_block_of(uint32_t nodes);
+    void mark_blocks();
+    void unmark(const Array<Block>& of_last);
     void forget_blocks(const Joints& joints, const Pairs& pairs);
     void choose_substeps(const PartitionRules& rules);
     void find_strains(const Elements& elements);
@@ -388,7 +396,7 @@ private:
     uint32_t rank(uint8_t colour, uint32_t kind, std::span<const uint32_t> nodes) const;
     bool is_in(uint32_t group, std::span<const uint32_t> nodes) const;
 
-    Adjacency adjacent() const { return {adjacency_begin_, adjacency_}; }
+    Adjacency adjacent() const { return {adjacent_, adjacency_}; }
     std::span<const uint32_t> touches_of(uint32_t node) const { return adjacent().of(node); }
     uint32_t find(uint32_t node);
     void unite(uint32_t a, uint32_t b);
@@ -400,8 +408,9 @@ private:
 
     TouchGraph graph_;
     Walls walls_;
+    // By slot, of what moves alone: of others entries mean nothing; clear_movers().
     Array<uint32_t> parent_;     // union-find over slots; roots are the smallest slot
-    Array<uint32_t> island_of_;  // by slot, kNone if not moved by forces
+    Array<uint32_t> island_of_;  // by slot of what moves
     Array<uint32_t> level_;      // by slot: bodies between it and a support
     Array<Island> island_;
     Array<Component> component_;     // by slot of a root
@@ -411,6 +420,7 @@ private:
     // Elements on something that moves, set by set; made where the graph changes.
     Array<ElementRef> element_;
     Array<uint32_t> element_begin_, element_node_;  // of each its nodes, kNone in place of those that do not move
+    Array<uint32_t> held_;
     Array<uint8_t> element_colour_;
     Array<uint32_t> element_pass_;  // of sets with a fused sweep: stage * kMaxColours + colour within it; else kNone
     Incidence incidence_;
@@ -435,17 +445,18 @@ private:
     // Of each island, by which fused sweeps would yield in substeps of one second, over what they may, or the square of
     // how often in a second features of surfaces pass their own size; or empty.
     Array<double> strain_;
-    Array<double> grain_strain_;                   // likewise, of contacts between grains
-    Array<uint32_t> efforts_;                      // scratch: that occur
-    Array<Press> presses_;                         // scratch: what presses others before those
-    Array<Squeeze> squeezes_;                      // scratch: in the order of reach
-    bool softened_ = false;                        // in the last frame: some pairs have less stiffness
-    Array<uint32_t> small_;                        // scratch: touches of small islands, by index in Pairs::active
-    Array<uint8_t> pressed_;                       // scratch: by index in Pairs::active
-    Array<uint8_t> tied_;                          // by slot: has a joint
-    Array<uint32_t> queue_;                        // scratch: nodes in the order of their levels
-    Array<uint32_t> weak_, standing_;              // scratch: nodes that may buckle, and all of their islands
-    Array<uint32_t> adjacency_begin_, adjacency_;  // by slot: its touches, by index in Pairs::active
+    Array<double> grain_strain_;        // likewise, of contacts between grains
+    Array<uint32_t> efforts_;           // scratch: that occur
+    Array<Press> presses_;              // scratch: what presses others before those
+    Array<Squeeze> squeezes_;           // scratch: in the order of reach
+    bool softened_ = false;             // in the last frame: some pairs have less stiffness
+    Array<uint32_t> small_;             // scratch: touches of small islands, by index in Pairs::active
+    Array<uint8_t> pressed_;            // scratch: by index in Pairs::active
+    Array<uint8_t> tied_;               // by slot: has a joint
+    Array<uint32_t> queue_;             // scratch: nodes in the order of their levels
+    Array<uint32_t> weak_, standing_;   // scratch: nodes that may buckle, and all of their islands
+    Array<Adjacency::Range> adjacent_;  // by slot: in adjacency_
+    Array<uint32_t> adjacency_;         // touches of nodes, by index in Pairs::active
 };
 
 }  // namespace taut

@@ -105,7 +105,7 @@ void Partition::find_squeezed(const Nodes& nodes, Pairs& pairs, double weight) {
 void Partition::push_on(const Nodes& nodes, const Pairs& pairs) {
     const size_t by_heavy = presses_.size();
     auto& meets_hard = core_;  // until blocks are built
-    meets_hard.assign(nodes.slots(), 0);
+    clear_movers(meets_hard);
     for (size_t i = 0; i < presses_.size(); ++i) {  // grows
         const uint32_t light = presses_[i].light;
         const Vec3f along = presses_[i].along;

@@ -100,7 +100,7 @@ void Partition::soften_squeezed(const Nodes& nodes, Pairs& pairs, const Partitio
     const double yield = yield_to_weight(terms, rules);
     const auto furthest = static_cast<double>(terms.push / terms.bias_rate);  // overlap that pushes as more does [m]
     auto& reached = core_;                                                    // until blocks are built
-    reached.assign(nodes.slots(), 0);
+    clear_movers(reached);
     for (uint32_t i = 0; i < squeezes_.size(); ++i) {  // grows
         const Squeeze of = squeezes_[i];
         for (const uint32_t p : touches_of(of.node)) {

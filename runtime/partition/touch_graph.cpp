@@ -4,6 +4,8 @@
 #include <atomic>
 #include <utility>
 
+#include "threads/gather.h"
+
 namespace taut {
 namespace {
 
@@ -31,10 +33,13 @@ bool renew(Team& team, Array<T>& list, size_t count, Now&& now) {
 }  // namespace
 
 bool TouchGraph::update_moves(Team& team, const Nodes& nodes) {
-    if (!renew(team, moves, nodes.slots(), [&](uint32_t node) -> uint8_t { return nodes.solved(node); })) return false;
-    movers.clear();
-    for (uint32_t node = 0; node < moves.size(); ++node)
-        if (moves[node]) movers.push_back(node);
+    gather(team, std::span<const uint32_t>(nodes.active), now_, [&](uint32_t node) { return nodes.solved(node); });
+    const bool same = !moves.empty() && std::ranges::equal(movers, now_);
+    moves.resize(nodes.slots());
+    if (same) return false;
+    for (const uint32_t node : movers) moves[node] = 0;
+    std::swap(movers, now_);
+    for (const uint32_t node : movers) moves[node] = 1;
     return true;
 }
 
@@ -60,6 +65,11 @@ bool TouchGraph::update_ties(Team& team, const Joints& joints) {
         std::ranges::transform(joints.record[j].nodes(), tie.begin(), [&](uint32_t node) { return mover(node); });
         return tie;
     });
+}
+
+void TouchGraph::forget() {
+    moves.clear();
+    movers.clear();
 }
 
 bool TouchGraph::update(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements,

@@ -11,21 +11,29 @@
 
 namespace taut {
 
-// Touches of each node, by slot: index in TouchGraph::touches, as in Pairs::active.
+// Touches of each node that moves, by slot: index in TouchGraph::touches, as in Pairs::active.
 struct Adjacency {
-    std::span<const uint32_t> begin, touches;
+    struct Range {
+        uint32_t begin = 0, end = 0;
+    };
+    std::span<const Range> range;
+    std::span<const uint32_t> touches;
 
     std::span<const uint32_t> of(uint32_t node) const {
-        return touches.subspan(begin[node], begin[node + 1] - begin[node]);
+        return touches.subspan(range[node].begin, range[node].end - range[node].begin);
     }
 };
 
 class TouchGraph {
 public:
-    explicit TouchGraph(Memory& memory) : moves(memory), movers(memory), touches(memory), spans(memory), ties(memory) {}
+    explicit TouchGraph(Memory& memory)
+        : moves(memory), movers(memory), touches(memory), spans(memory), ties(memory), now_(memory) {}
 
     // As it is in this frame. False: just as in the last one.
     bool update(Team& team, const Nodes& nodes, const Joints& joints, const Elements& elements, const Pairs& pairs);
+
+    // The next frame is not as any before.
+    void forget();
 
     // Ends that forces move; kNone in place of all others.
     struct Touch {
@@ -48,6 +56,7 @@ private:
     bool update_touches(Team& team, const Pairs& pairs);
     bool update_ties(Team& team, const Joints& joints);
 
+    Array<uint32_t> now_;  // scratch: movers before
     uint64_t elements_version_ = 0, grains_version_ = 0, surfaces_version_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "state/constraint_view.h"
 #include "threads/gather.h"
@@ -64,7 +65,7 @@ Tally tally(World& world) {
         ++t.points;
         t.penetration = std::max(t.penetration, -contact.gap);
     };
-    const auto add_node = [](Tally& t, const NodeInfo& info) { t.bodies += moves_by_forces(info.kind); };
+    const auto add_node = [&](Tally& t, uint32_t node) { t.bodies += world.nodes.solved(node); };
     const auto add_joint = [&](Tally& t, const Joint& joint) {
         if (!joint.type) return;
         ++t.joints;
@@ -88,7 +89,7 @@ Tally tally(World& world) {
     const Tally of_pairs = tally(world.team, world.pairs.active, add_pair);
     const Tally of_others = Tally::sum(tally(world.team, world.pairs.grains.contact, add_grains),
                                        tally(world.team, world.pairs.surfaces.contact, add_surfaces));
-    const Tally of_nodes = tally(world.team, world.nodes.info, add_node);
+    const Tally of_nodes = tally(world.team, world.nodes.active, add_node);
     const Tally of_ties =
         Tally::sum(tally(world.team, world.joints.record, add_joint), tally(world.team, world.elements.set, add_set));
     return Tally::sum(Tally::sum(of_pairs, of_others), Tally::sum(of_nodes, of_ties));
@@ -101,25 +102,37 @@ bool has_moved(const Nodes& nodes, uint32_t node) {
     return nodes.motion[node].q.coeffs() != before.rotation.coeffs() || nodes.origin(node) != before.position;
 }
 
-// By node: 1 where a move of an earlier step waits to be read.
-const uint8_t* mark_moved(World& world) {
-    if (world.moved.empty()) return nullptr;
-    world.moved_before.assign(world.nodes.slots(), 0);
+// Nodes whose move of an earlier step waits to be read, ascending.
+void list_moved_before(World& world) {
+    world.moved_before.clear();
+    reserve_more(world.moved_before, world.moved.size());
     for (const taut_moved_event& event : world.moved) {
         HandleBits bits{};
         if (unpack_handle(event.body.bits, bits) && world.nodes.ids.live(bits.index, bits.generation))
-            world.moved_before[bits.index] = 1;
+            world.moved_before.push_back(bits.index);
     }
-    return world.moved_before.data();
+}
+
+// In the order of nodes, with those whose move waits to be read.
+void list_moved(World& world) {
+    Array<uint32_t>& moved = world.pairs.picked;
+    gather(world.team, std::span<const uint32_t>(world.nodes.active), moved,
+           [&](uint32_t node) { return has_moved(world.nodes, node); });
+    list_moved_before(world);
+    if (world.moved_before.empty()) return;
+    const size_t now = moved.size();
+    reserve_more(moved, world.moved_before.size());
+    std::ranges::copy_if(world.moved_before, std::back_inserter(moved), [&](uint32_t node) {
+        return !std::binary_search(moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(now), node);
+    });
+    std::ranges::sort(moved);
 }
 
 }  // namespace
 
 void publish_motion(World& world, const Array<uint32_t>& frozen) {
     const Nodes& nodes = world.nodes;
-    const uint8_t* const before = mark_moved(world);
-    gather(world.team, nodes.slots(), world.pairs.picked,
-           [&](uint32_t node) { return (before && before[node]) || has_moved(nodes, node); });
+    list_moved(world);
     write_list(
         world.team, static_cast<uint32_t>(world.pairs.picked.size()), world.moved, [](uint32_t) { return 1u; },
         [&](uint32_t i, taut_moved_event* to) {
@@ -138,7 +151,7 @@ void publish_profile(World& world) {
     p.touching = static_cast<uint32_t>(world.pairs.active.size()) + counts.others;
     p.points = counts.points;
     p.penetration = counts.penetration;
-    p.bodies = counts.bodies;
+    p.bodies = counts.bodies + world.sleep.bodies;
     p.joints = counts.joints;
     p.elements = counts.elements;
     p.joint_error = counts.joint_error;

@@ -42,8 +42,9 @@ double speed_of(const World& world, uint32_t node) {
 
 void measure_quiet(World& world) {
     Nodes& nodes = world.nodes;
-    world.team.for_ranges(nodes.slots(), kGrain, [&](uint32_t begin, uint32_t end) {
-        for (uint32_t node = begin; node < end; ++node) {
+    const std::span<const uint32_t> active = nodes.active;
+    world.team.for_ranges(static_cast<uint32_t>(active.size()), kGrain, [&](uint32_t begin, uint32_t end) {
+        for (const uint32_t node : active.subspan(begin, end - begin)) {
             if (!nodes.solved(node)) continue;
             NodeSleep& sleep = nodes.sleep[node];
             const bool quiet = speed_of(world, node) <= static_cast<double>(world.def.sleep_speed);
@@ -74,7 +75,7 @@ void disturb(World& world) {
 bool rest_kinematic(World& world) {
     Nodes& nodes = world.nodes;
     bool moving = false;
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+    for (const uint32_t node : nodes.active) {
         if (nodes.info[node].kind != NodeKind::kinematic || nodes.rest[node] != Rest::awake) continue;
         NodeMotion& m = nodes.motion[node];
         if (!stands_still(m.v, m.w)) {
@@ -82,7 +83,7 @@ bool rest_kinematic(World& world) {
             continue;
         }
         m.v = m.w = m.slow_v = m.slow_w = Vec3::Zero();
-        nodes.rest[node] = Rest::settling;
+        nodes.set_rest(node, Rest::settling);
     }
     return moving;
 }
@@ -110,7 +111,7 @@ void unite(World& world, std::span<const uint32_t> ends) {
 void find_islands(World& world) {
     Array<uint32_t>& root = world.sleep.root;
     root.resize(world.nodes.slots());
-    for (uint32_t node = 0; node < root.size(); ++node) root[node] = node;
+    for (const uint32_t node : world.nodes.active) root[node] = node;
     for_each_tie(world.joints, world.elements, [&](std::span<const uint32_t> ends) { unite(world, ends); });
     for (const Pair& pair : world.pairs.list) {
         const uint32_t sides[] = {pair.a, pair.b, pair.a2, pair.b2};
@@ -128,7 +129,7 @@ void settle(World& world, uint32_t node, uint32_t root) {
     NodeMotion& m = nodes.motion[node];
     m.v = m.w = m.slow_v = m.slow_w = Vec3::Zero();
     nodes.clear_load(node);
-    nodes.rest[node] = Rest::settling;
+    nodes.set_rest(node, Rest::settling);
     nodes.sleep[node].next = node == root ? node : nodes.sleep[root].next;
     nodes.sleep[root].next = node;
     world.sleep.islands += node == root;
@@ -143,13 +144,14 @@ void settle_quiet_islands(World& world) {
         return nodes.sleep[node].can_sleep && nodes.sleep[node].quiet >= static_cast<double>(world.def.sleep_time);
     };
     bool any = false;
-    for (uint32_t node = 0; node < nodes.slots(); ++node) any = any || (nodes.solved(node) && ready(node));
+    for (const uint32_t node : nodes.active) any = any || (nodes.solved(node) && ready(node));
     if (!any) return;
     find_islands(world);
-    sleep.restless.assign(nodes.slots(), 0);
-    for (uint32_t node = 0; node < nodes.slots(); ++node)
+    sleep.restless.resize(nodes.slots());
+    for (const uint32_t node : nodes.active) sleep.restless[node] = 0;
+    for (const uint32_t node : nodes.active)
         if (nodes.solved(node) && !ready(node)) sleep.restless[find(sleep.root, node)] = 1;
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+    for (const uint32_t node : nodes.active) {
         if (!nodes.solved(node)) continue;
         const uint32_t root = find(sleep.root, node);
         if (!sleep.restless[root]) settle(world, node, root);
@@ -158,10 +160,18 @@ void settle_quiet_islands(World& world) {
 
 // ---------------------------------------------------------------- around the step
 
-// Those that fell asleep before this step are all done with now.
-void finish_settling(Nodes& nodes) {
-    for (Rest& rest : nodes.rest)
-        if (rest == Rest::settling) rest = Rest::asleep;
+// Those that fell asleep before this step are all done with now, and so is what cannot move.
+void finish_settling(Nodes& nodes, Array<uint32_t>& settled) {
+    settled.clear();
+    settled.reserve(nodes.active.size());
+    for (const uint32_t node : nodes.active) {
+        if (nodes.rest[node] == Rest::settling) {
+            nodes.set_rest(node, Rest::asleep);
+            settled.push_back(node);
+        } else if (nodes.info[node].kind == NodeKind::fixed) {
+            nodes.set_rest(node, Rest::settling);
+        }
+    }
 }
 
 // What an awake node pushed against all expectation wakes after all.
@@ -186,32 +196,42 @@ void wake_pushed(World& world) {
     }
 }
 
+// Of what this step went through or woke.
 void publish_sleep(World& world) {
     if (!world.sleep.changed) return;
     Nodes& nodes = world.nodes;
-    for (uint32_t node = 0; node < nodes.slots(); ++node) {
+    nodes.list_active();
+    const auto tell = [&](uint32_t node) {
         const bool now = nodes.sleeps(node);
-        if (now == nodes.sleep[node].told_asleep) continue;
+        if (now == nodes.sleep[node].told_asleep) return;
         (now ? world.fell_asleep : world.woke)
             .push_back({world.body_handle(node), nodes.info[node].user_data, world.window.steps, 0});
         nodes.sleep[node].told_asleep = now;
+    };
+    auto settled = world.sleep.settled.begin();
+    for (const uint32_t node : nodes.active) {
+        while (settled != world.sleep.settled.end() && *settled < node) tell(*settled++);
+        tell(node);
     }
+    std::for_each(settled, world.sleep.settled.end(), tell);
     world.sleep.changed = false;
 }
 
 }  // namespace
 
 void put_to_sleep(World& world, uint32_t node) {
+    world.nodes.list_active();
     find_islands(world);
     const uint32_t root = find(world.sleep.root, node);
-    for (uint32_t other = root; other < world.nodes.slots(); ++other)
+    for (const uint32_t other : world.nodes.active)
         if (world.nodes.solved(other) && find(world.sleep.root, other) == root) settle(world, other, root);
 }
 
 void update_sleep(World& world) {
+    finish_settling(world.nodes, world.sleep.settled);
     if (world.def.sleeping) {
-        finish_settling(world.nodes);
         wake_pushed(world);
+        world.nodes.list_active();
         measure_quiet(world);
         if (rest_kinematic(world)) disturb(world);
         settle_quiet_islands(world);

@@ -9,7 +9,7 @@ namespace taut {
 namespace {
 
 void wake_node(World& world, uint32_t node) {
-    world.nodes.rest[node] = Rest::awake;
+    world.nodes.set_rest(node, Rest::awake);
     world.nodes.sleep[node].quiet = 0;
     world.nodes.sleep[node].next = kNone;
     world.sleep.recall = true;
@@ -54,8 +54,11 @@ bool overlap(const collision::Box& a, const collision::Box& b) {
 }  // namespace
 
 void wake(World& world, uint32_t node) {
-    if (!world.def.sleeping || node == kNone) return;
-    if (moves_by_forces(world.nodes.info[node].kind)) {
+    if (node == kNone) return;
+    const NodeKind kind = world.nodes.info[node].kind;
+    if (kind == NodeKind::fixed) world.nodes.set_rest(node, Rest::awake);
+    if (!world.def.sleeping) return;
+    if (moves_by_forces(kind)) {
         wake_island(world, node);
         return;
     }

@@ -298,7 +298,7 @@ private:
 
 // What follows from the state: room for it, and, once the state is there, it.
 void reserve_derived(World& world, uint32_t nodes, uint32_t colliders) {
-    world.system.make_room(nodes);
+    world.system.make_room(nodes, 0);
     world.pairs.make_room(colliders);
     reserve_more(world.pairs.grains.gone, colliders);
     reserve_more(world.pairs.surfaces.gone, colliders);
@@ -310,12 +310,21 @@ void derive(World& world) {
     const auto lives = [&](uint32_t collider) { return world.colliders.ids.live(collider); };
     for (Array<ShapeRecord>* shapes : {&world.shapes.record, &world.shapes.inner.record})
         for (ShapeRecord& shape : *shapes) shape.users = 0;
-    for (uint32_t collider = 0; collider < world.colliders.record.size(); ++collider)
-        if (lives(collider)) ++world.shapes[world.colliders.record[collider].shape].users;
+    world.colliders.chained = 0;
+    for (uint32_t collider = 0; collider < world.colliders.record.size(); ++collider) {
+        if (!lives(collider)) continue;
+        const Collider& record = world.colliders.record[collider];
+        ++world.shapes[record.shape].users;
+        world.colliders.chained += record.next != kNone;
+    }
     world.broadphase.rebuild(lives);
     link_records(world.pairs);
     world.partition.forget_frame(world.nodes.slots());
     world.nodes.load.clear();
+    world.nodes.forget_active();
+    world.nodes.movable = 0;
+    for (const NodeInfo& info : world.nodes.info)
+        world.nodes.movable += info.kind != NodeKind::dead && info.kind != NodeKind::fixed;
     for (SurfaceMesh& mesh : world.softs.mesh) mesh.version = 0;  // of other triangles, maybe
     world.frozen.clear();
     forget_events(world);

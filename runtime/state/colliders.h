@@ -110,13 +110,14 @@ inline void ask_for(Collider& collider, uint32_t which, uint32_t bits) {
 
 struct Colliders {
     explicit Colliders(Memory& memory)
-        : ids(memory), record(memory), traits(memory), sensors(memory), grains(memory) {}
+        : ids(memory), record(memory), traits(memory), sensors(memory), grains(memory), active(memory) {}
 
     // Throws std::bad_alloc before anything changes.
     void reserve_one() {
         ids.reserve_one();
         reserve_more(record, 1);
         traits.reserve(record.capacity());
+        active.reserve(record.capacity());
         reserve_sensor();
         if (grains.capacity() == grains.size()) grains.reserve(2 * grains.size() + 16);
     }
@@ -134,6 +135,7 @@ struct Colliders {
         traits.set(index, collider.traits);
         list_sensor(index, collider.sensor);
         list(grains, index, collider.grain);
+        listed_ = 0;
         return index;
     }
     void remove(uint32_t index) {
@@ -142,12 +144,14 @@ struct Colliders {
         record[index] = {};
         traits.set(index, {});
         ids.destroy(index);
+        listed_ = 0;
     }
 
+    // Brings `active` up to date, after Nodes::active.
+    void list_active(const Nodes& nodes);
+
     // Brings the list of sensors up to date; reserve_sensor() went before.
-    void list_sensor(uint32_t index, bool sensor) {
-        list(sensors, index, sensor);
-    }
+    void list_sensor(uint32_t index, bool sensor) { list(sensors, index, sensor); }
 
     // For a change of asks: pairs ask again.
     Collider& change(uint32_t index) {
@@ -171,9 +175,16 @@ struct Colliders {
     SharedValues<ColliderTraits> traits;
     Array<uint32_t> sensors;  // slots, sorted
     Array<uint32_t> grains;   // likewise
+    Array<uint32_t> active;   // slots of those of active nodes, ascending; list_active()
     uint64_t version = 0;     // counts changes
+    uint32_t chained = 0;     // how many come after another of their node
 
 private:
+    uint64_t listed_ = 0;  // Nodes::lists that `active` is of; 0: of none
+
+    template <class Visitor, Like<Colliders> Of>
+    friend void describe(Visitor& visitor, Of& of);
+
     // In a sorted list, or not.
     static void list(Array<uint32_t>& slots, uint32_t index, bool listed) {
         const auto at = std::lower_bound(slots.begin(), slots.end(), index);
@@ -184,7 +195,7 @@ private:
 };
 template <class Visitor, Like<Colliders> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, record, traits, sensors, grains, version] = of;
+    auto& [ids, record, traits, sensors, grains, active, version, chained, listed] = of;  // some follow
     TAUT_ASIDE(visitor, ids, version);
     TAUT_ROWS(visitor, ids, record, traits);
     TAUT_FIELDS(visitor, sensors, grains);
@@ -199,6 +210,15 @@ inline bool filters_agree(const taut_filter& a, const taut_filter& b) {
 template <class Act>
 void for_colliders(const Nodes& nodes, const Colliders& colliders, uint32_t node, Act&& act) {
     for (uint32_t c = nodes.info[node].collider; c != kNone; c = colliders.record[c].next) act(c);
+}
+
+inline void Colliders::list_active(const Nodes& nodes) {
+    if (listed_ == nodes.lists) return;
+    active.clear();
+    for (const uint32_t node : nodes.active)
+        for_colliders(nodes, *this, node, [&](uint32_t c) { active.push_back(c); });
+    if (!std::ranges::is_sorted(active)) std::ranges::sort(active);
+    listed_ = nodes.lists;
 }
 
 }  // namespace taut

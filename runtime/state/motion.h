@@ -94,12 +94,17 @@ struct ConstraintRef {
     uint32_t set = kNone, index = kNone;
 };
 
+// Of Mechanisms::tie.
+struct TieRange {
+    uint32_t begin = 0, end = 0;
+};
+
 // Nodes that joints and elements tie together, by node; hold_back().
 struct Mechanisms {
     explicit Mechanisms(Memory& memory)
         : root(memory),
           next(memory),
-          first_tie(memory),
+          ties_of(memory),
           tie(memory),
           open(memory),
           ties(memory),
@@ -107,9 +112,10 @@ struct Mechanisms {
           put_back(memory),
           stays(memory) {}
 
-    Array<uint32_t> root;       // the least of them; empty: not found yet
+    bool found = false;         // in this step; what follows is of nodes that are active
+    Array<uint32_t> root;       // the least of them
     Array<uint32_t> next;       // of the ring of them
-    Array<uint32_t> first_tie;  // by node, of a root: its first in tie; the next node's is where they end
+    Array<TieRange> ties_of;    // by node, of a root
     Array<ConstraintRef> tie;   // root by root, joints before elements
     Array<ConstraintRef> open;  // scratch: to be closed
     Array<uint8_t> ties;        // of a root; detect/mechanism.h
@@ -120,7 +126,7 @@ struct Mechanisms {
 };
 template <class Visitor, Like<Mechanisms> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [root, next, first_tie, tie, open, ties, drive, any_drives, put_back, stays] = of;
+    auto& [found, root, next, ties_of, tie, open, ties, drive, any_drives, put_back, stays] = of;
     TAUT_FIELDS(visitor, stays);  // all else is found by each step
 }
 

@@ -1,5 +1,8 @@
 #include "state/nodes.h"
 
+#include <cstring>
+#include <utility>
+
 namespace taut {
 
 const NodeLoad Nodes::kNoLoad;
@@ -15,6 +18,7 @@ uint32_t Nodes::add() {
         before.reserve(room);
         rest.reserve(room);
         sleep.reserve(room);
+        active.reserve(room);
         info.reserve(room);
     }
     mass.reserve_values(1);
@@ -39,14 +43,16 @@ uint32_t Nodes::add() {
         rest[node] = {};
         sleep[node] = {};
     }
+    listed_ = false;
     return node;
 }
 
 void Nodes::remove(uint32_t node) {
     clear_load(node);
+    movable -= info[node].kind != NodeKind::fixed;
     info[node] = {};
     mass.set(node, {});
-    rest[node] = {};
+    set_rest(node, Rest::asleep);
     sleep[node] = {};
     if (const KinematicPath* path = find_path(node)) paths.erase(paths.begin() + (path - paths.data()));
     ids.destroy(node);
@@ -56,6 +62,24 @@ void Nodes::add_load(uint32_t node, const Vec3& force, const Vec3& torque) {
     if (applied.empty()) applied.resize(slots());
     applied[node].force += force;
     applied[node].torque += torque;
+}
+
+// Those that sleep, of which there may be many, are passed over eight at a time.
+void Nodes::list_active() {
+    if (listed_ && !all_) return;
+    constexpr uint32_t kMany = 8;
+    constexpr std::array<Rest, kMany> kAllAsleep = {Rest::asleep, Rest::asleep, Rest::asleep, Rest::asleep,
+                                                    Rest::asleep, Rest::asleep, Rest::asleep, Rest::asleep};
+    active.clear();
+    active.reserve(slots());
+    for (uint32_t node = 0; node < slots(); ++node) {
+        if (!all_ && node + kMany <= slots() && std::memcmp(&rest[node], kAllAsleep.data(), kMany) == 0)
+            node += kMany - 1;
+        else if (rest[node] != Rest::asleep || (all_ && info[node].kind != NodeKind::dead))
+            active.push_back(node);
+    }
+    listed_ = !std::exchange(all_, false);
+    ++lists;
 }
 
 KinematicPath* Nodes::find_path(uint32_t node) {

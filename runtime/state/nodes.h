@@ -20,8 +20,8 @@ enum class NodeKind : uint8_t { fixed, kinematic, dynamic, particle, dead };
 inline bool moves_by_forces(NodeKind kind) { return kind == NodeKind::dynamic || kind == NodeKind::particle; }
 
 // Whether a step goes through a node. One that settles fell asleep in the last step, and the next one brings its boxes
-// and what solvers see of it up to date for the last time. A kinematic node sleeps while it stands still. In worlds
-// without sleeping, and where fixed or dead, nodes count as awake.
+// and what solvers see of it up to date for the last time. A kinematic node sleeps while it stands still, in worlds
+// with sleeping; a fixed one after the step that sees it first or anew; what is dead sleeps.
 enum class Rest : uint8_t { awake, settling, asleep };
 
 struct NodeMotion {
@@ -176,7 +176,8 @@ struct Nodes {
           before(memory),
           history(memory),
           rest(memory),
-          sleep(memory) {}
+          sleep(memory),
+          active(memory) {}
 
     // Adds a dead-to-live slot with default contents; throws std::bad_alloc before anything changes.
     uint32_t add();
@@ -200,6 +201,14 @@ struct Nodes {
     // Moved by forces, and not asleep.
     bool solved(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] == Rest::awake; }
     bool sleeps(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] != Rest::awake; }
+    void set_rest(uint32_t node, Rest to) {
+        listed_ = listed_ && (rest[node] == Rest::asleep) == (to == Rest::asleep);
+        rest[node] = to;
+    }
+    // Brings `active` up to date.
+    void list_active();
+    // All of them for the next step, as where what it found of those that sleep is not there.
+    void forget_active() { all_ = true; }
     Vec3 origin(uint32_t node) const { return motion[node].x - motion[node].q * mass[node].centre; }
 
     IdPool ids;
@@ -213,18 +222,28 @@ struct Nodes {
     Array<KinematicPath> paths;  // sorted by node
     Array<NodePose> before;      // origin pose before the last step
     Array<NodeHistory> history;  // of all, or of none in worlds whose scheme has one step
-    Array<Rest> rest;
+    Array<Rest> rest;            // set_rest()
     Array<NodeSleep> sleep;
+    Array<uint32_t> active;  // slots of those that do not sleep, ascending; list_active()
+    uint64_t lists = 0;      // counts changes of it
+    uint32_t movable = 0;    // how many live that were not fixed when they came
 
 private:
     std::array<Array<NodeLoad>*, 3> loads() { return {&applied, &owed, &load}; }
 
     static const NodeLoad kNoLoad;
+
+    bool listed_ = false;  // active is up to date
+    bool all_ = false;     // forget_active()
+
+    template <class Visitor, Like<Nodes> Of>
+    friend void describe(Visitor& visitor, Of& of);
 };
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [ids, info, motion, mass, applied, owed, load, paths, before, history, rest, sleep] =
-        of;  // load: within a step
+    // load: within a step; the list of active ones follows.
+    auto& [ids, info, motion, mass, applied, owed, load, paths, before, history, rest, sleep, active, lists, movable,
+           listed, all] = of;
     OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
     TAUT_ASIDE(visitor, ids);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);

@@ -285,6 +285,7 @@ struct Pairs {
           courses(memory),
           asked(memory),
           marks(memory),
+          bearings(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -335,6 +336,7 @@ struct Pairs {
     Array<Course> courses;            // by collider, scratch; hold_back()
     Array<AskedPair> asked;           // of near and late, in the order of their keys; scratch of hold_back()
     Array<uint8_t> marks;             // by collider, scratch: bits of hold_back()
+    Array<uint8_t> bearings;          // by collider, scratch of open_internal_faces()
     bool any_fast = false;            // of near, in this frame; find_contacts()
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
@@ -416,9 +418,9 @@ void for_pairs(SomePairs& pairs, Act&& act) {
 template <class Visitor, Like<Pairs> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world,
-           asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, any_fast, mechanisms,
-           placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before, parts,
-           grains, surfaces] = of;
+           asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, bearings, any_fast,
+           mechanisms, placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before,
+           parts, grains, surfaces] = of;
     TAUT_FIELDS(visitor, near, resting, mechanisms, carried, grains, surfaces);
     TAUT_ASIDE(visitor, complete, ended, asks, colliders_version);
     visitor.ordered(list, [&](auto&& act) {

@@ -9,8 +9,9 @@
 // the end of the substep (Frâncu 2016, eq. 6.44):
 //   c = C / (h (h + d)),  target = -error / (h + d),  d = C * damping [s]; a rigid row has C = d = 0.
 //
-// Arrays by seat: of each node System::at(node); 0 is the world, which never moves. Seats follow the order in which
-// threads take the nodes of groups, so that what a thread writes lies together.
+// Arrays by seat: of each node System::at(node); 0 is the world, which never moves. Only what the step goes through or
+// ends on has one. Seats follow the order in which threads take the nodes of groups, so that what a thread writes lies
+// together.
 #pragma once
 
 #include "base/memory.h"
@@ -171,6 +172,7 @@ struct System {
     explicit System(Memory& memory)
         : seat(memory),
           node_at(memory),
+          reached(memory),
           motion(memory),
           pose(memory),
           foreseen(memory),
@@ -201,16 +203,18 @@ struct System {
           surfaces(memory),
           contacts(memory) {}
 
-    // In what begin_frame() fills, for so many nodes: as they come, not in the step that sees them first.
-    void make_room(size_t nodes) {
-        const size_t size = nodes + 1;
-        grow_to(seat, size), grow_to(node_at, size);
+    // In what begin_frame() fills, for so many slots of nodes and so many nodes with a seat: as they come, not in the
+    // step that sees them first.
+    void make_room(size_t slots, size_t seated) {
+        grow_to(seat, slots + 1);
+        const size_t size = seated + 1;
+        node_at.reserve(size);
         grow_to(pose, size), grow_to(exact, size), grow_to(found, size), grow_to(turned, size);
         grow_to(in_block, size), grow_to(filtered, size), grow_to(place, size);
         grow_to(sweep, size), grow_to(shift, size);
     }
 
-    uint32_t at(uint32_t node) const { return seat[node + 1]; }  // kNone: the world
+    uint32_t at(uint32_t node) const { return seat[node + 1]; }  // of kNone, and without a seat: that of the world
 
     Scheme scheme;          // of this substep
     double frame_left = 0;  // share of the frame after this substep; evaluate_rows()
@@ -218,6 +222,7 @@ struct System {
 
     Array<uint32_t> seat;     // by node + 1; begin_frame()
     Array<uint32_t> node_at;  // by seat
+    Array<uint32_t> reached;  // nodes that are seated because something ends on them; list_reached()
     uint32_t movers = 0;      // nodes of groups, in seats 1 to this
     // By seat, of a group while its motions are lent: as nodes lie in the order in which a host made them, threads that
     // move some each would write to the same cache lines.

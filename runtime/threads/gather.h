@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -63,6 +64,13 @@ void gather(Team& team, uint32_t count, Array<uint32_t>& picked, Picks&& picks, 
     for (uint32_t block = 0; block < blocks.number(); ++block)
         kept = std::copy_n(picked.begin() + blocks.begin(block), found[block], kept);
     picked.erase(kept, picked.end());
+}
+
+// Likewise those of a list for which picks(item) holds, in its order.
+template <class Picks>
+void gather(Team& team, std::span<const uint32_t> list, Array<uint32_t>& picked, Picks&& picks) {
+    gather(team, static_cast<uint32_t>(list.size()), picked, [&](uint32_t i) { return picks(list[i]); });
+    for (uint32_t& item : picked) item = list[item];
 }
 
 // Into list, in ascending order of the indices below count, length_of(index) elements for each, which write(index, to)

@@ -14,6 +14,7 @@
 #include "integrate/integrate.h"
 #include "solvers/solver.h"
 #include "system/assemble.h"
+#include "system/reached.h"
 #include "world.h"
 
 namespace taut::test {
@@ -102,6 +103,7 @@ public:
         solver = with;
         w.partition.build(w.team, w.nodes, w.joints, w.elements, w.pairs,
                           {1, true, solver.direct, 1.0 / 60, Vec3::Zero(), false});
+        list_reached(w.nodes, w.joints, w.pairs, w.partition.held(), w.system.reached);
         begin_frame(w.team, w.system, w.partition, w.nodes, true);
         ASSERT_EQ(w.partition.group_count, 1u);
         w.system.scheme.set_length(h);
@@ -174,6 +176,7 @@ private:
         m.isotropic = inertia.x() == inertia.y() && inertia.y() == inertia.z();
         w.nodes.mass.reserve_values(1);
         w.nodes.mass.set(node, m);
+        w.nodes.list_active();
         return node;
     }
 };

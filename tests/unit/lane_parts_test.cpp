@@ -8,6 +8,7 @@
 #include <set>
 
 #include "integrate/integrate.h"
+#include "system/reached.h"
 #include "unit/partition_graph.h"
 
 namespace taut::test {
@@ -32,6 +33,7 @@ protected:
         find_active();
         for (ActivePair& pair : pairs.active) pair.points = 1 + engine() % 4;
         partition.build(threads_, nodes, joints, elements, pairs, rules);
+        list_reached(nodes, joints, pairs, partition.held(), system_.reached);
         begin_frame(threads_, system_, partition, nodes, true);
         share_out(threads_, system_, pairs, partition.groups[0]);
     }

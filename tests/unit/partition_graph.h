@@ -23,6 +23,7 @@ struct Graph {
     uint32_t add(NodeKind kind, double mass = 1) {
         const uint32_t node = nodes.add();
         nodes.info[node].kind = kind;
+        nodes.list_active();
         if (!moves_by_forces(kind)) mass = 0;
         set_mass(node, mass);
         return node;
