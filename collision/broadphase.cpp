@@ -1,16 +1,16 @@
-// Bullet's dynamic tree of boxes under a pair list of our own: only leaves that left their fat box are moved and
-// asked again, and pairs are sorted, so that nothing depends on the tree's shape. The tree's nodes are Bullet's memory.
+// Bullet's dynamic trees of boxes under a pair list of our own: only leaves that left their fat box are moved and asked
+// again, and pairs are sorted, so that nothing depends on a tree's shape. What stands has a tree of its own, which what
+// stands does not ask.
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <numeric>
 #include <utility>
 
-#include <BulletCollision/BroadphaseCollision/btDbvt.h>
-
 #include "base/exchange.h"
 #include "collision/collide.h"
 #include "collision/descent.h"
+#include "collision/leaf_tree.h"
 #include "collision/probing.h"
 
 namespace taut::collision {
@@ -54,14 +54,6 @@ bool may_stay(const btDbvtNode& leaf, const btDbvtVolume& volume) {
     Merge(volume, sibling, both);
     return length_of(both) <= length_of(volume) + length_of(sibling);
 }
-void set_in_place(btDbvtNode& leaf, const btDbvtVolume& volume) {
-    leaf.volume = volume;
-    for (btDbvtNode* above = leaf.parent; above; above = above->parent) {
-        const btDbvtVolume before = above->volume;
-        Merge(above->childs[0]->volume, above->childs[1]->volume, above->volume);
-        if (!NotEqual(before, above->volume)) return;
-    }
-}
 
 Box box_of(const btDbvtVolume& volume) {
     return {{volume.Mins().x(), volume.Mins().y(), volume.Mins().z()},
@@ -75,9 +67,10 @@ uint64_t pair_key(uint32_t i, uint32_t j) { return uint64_t(std::min(i, j)) << 3
 struct Broadphase::State {
     explicit State(Memory& memory)
         : boxes(memory),
+          trees{LeafTree(memory), LeafTree(memory), LeafTree(memory)},
           leaves(memory),
           stays(memory),
-          in_grains(memory),
+          in_tree(memory),
           partners(memory),
           found_of(memory),
           strays(memory),
@@ -105,14 +98,17 @@ struct Broadphase::State {
     void gather_gone();
     bool find_changes();
     template <class Asks>
-    void walk(const btDbvt& of, const Asks& asks, Probe& probe, Visitor& visitor) const;
+    void walk(const btDbvtNode* root, const Asks& asks, Probe& probe, Visitor& visitor) const;
 
     Boxes boxes;
-    btDbvt tree, grains;  // of all others; of grains, which do not pair with each other
-    btDbvt& tree_of(uint32_t id) { return in_grains[id] ? grains : tree; }
+    // Of what moves; of what does not, which does not pair with itself, and neither do grains.
+    enum Kind : uint8_t { kMoving, kStanding, kGrains };
+    static Kind kind_of(const FatBox& box) { return box.grain ? kGrains : box.moves ? kMoving : kStanding; }
+    LeafTree trees[3];
+    LeafTree& tree_of(uint32_t id) { return trees[in_tree[id]]; }
     Array<btDbvtNode*> leaves;  // by id, or null; their boxes stand in boxes as well: these lie somewhere else
     Array<uint8_t> stays;       // by id: how often its box changed since it got its place in the tree
-    Array<uint8_t> in_grains;   // by id: which tree its leaf is in
+    Array<uint8_t> in_tree;     // by id: which one its leaf is in, a Kind
     static constexpr size_t kTogether = 256;     // keys
     static constexpr uint32_t kAtOnce = kLanes;  // leaves whose boxes go down the tree together
     static constexpr uint32_t kRoom = 8, kMostRoom = 64;
@@ -161,11 +157,11 @@ void Broadphase::State::order_stale() {
 template <class Report>
 void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& report) const {
     BoxLanes lanes;
-    unsigned asking = 0, of_grains = 0;
+    unsigned asking = 0, of_kind[3] = {};
     for (size_t k = 0; k < kAtOnce; ++k) {
         const btDbvtNode* const leaf = k < ids.size() ? leaves[ids[k]] : nullptr;
         asking |= unsigned(leaf != nullptr) << k;
-        of_grains |= unsigned(leaf && boxes.of[ids[k]].grain) << k;
+        if (leaf) of_kind[in_tree[ids[k]]] |= 1u << k;
         for (int i = 0; i < 3; ++i) {
             lanes.lo[i][k] = leaf ? leaf->volume.Mins()[i] : std::numeric_limits<float>::infinity();
             lanes.hi[i][k] = leaf ? leaf->volume.Maxs()[i] : -std::numeric_limits<float>::infinity();
@@ -179,8 +175,10 @@ void Broadphase::State::for_partners(std::span<const uint32_t> ids, Report&& rep
         }
     };
     Descent descent(lanes, found);
-    if (asking != 0 && tree.m_root) descent.begin_at(tree.m_root, asking);
-    if (asking != of_grains && grains.m_root) descent.begin_at(grains.m_root, asking & ~of_grains);
+    for (const Kind kind : {kMoving, kStanding, kGrains}) {
+        const unsigned others = kind == kMoving ? asking : asking & ~of_kind[kind];
+        if (others != 0 && trees[kind].root()) descent.begin_at(trees[kind].root(), others);
+    }
     descent.run();
 }
 
@@ -281,7 +279,7 @@ Broadphase::~Broadphase() {
 void Broadphase::add(uint32_t id, const Box& tight, bool moves, bool grain) {
     State& s = *state_;
     if (s.stays.size() <= id) s.stays.resize(size_t(id) + 1);
-    if (s.in_grains.size() <= id) s.in_grains.resize(size_t(id) + 1);
+    if (s.in_tree.size() <= id) s.in_tree.resize(size_t(id) + 1);
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
     if (s.boxes.of.size() <= id) s.boxes.of.resize(size_t(id) + 1);
     reserve_tree();
@@ -302,11 +300,10 @@ void Broadphase::remove(uint32_t id) {
 void Broadphase::State::change(uint32_t id, const btDbvtVolume& volume) {
     if (stays[id] < kMostStays && may_stay(*leaves[id], volume)) {
         ++stays[id];
-        return set_in_place(*leaves[id], volume);
+        return tree_of(id).change_in_place(*leaves[id], volume);
     }
     stays[id] = 0;
-    btDbvtVolume place = volume;
-    tree_of(id).update(leaves[id], place);
+    tree_of(id).change(leaves[id], volume);
 }
 
 void Broadphase::update(uint32_t id, const Box& tight, const Vec3f& displacement) {
@@ -326,13 +323,6 @@ bool Broadphase::holds(uint32_t id, const Box& tight) const {
     return inside != 0;
 }
 
-void Broadphase::set_moves(uint32_t id, bool moves) {
-    State& s = *state_;
-    if (s.boxes.of[id].moves == moves) return;
-    s.mark(id);
-    s.boxes.of[id].moves = moves;
-}
-
 // ---------------------------------------------------------------- state
 
 Broadphase::Boxes& Broadphase::boxes() { return state_->boxes; }
@@ -344,7 +334,7 @@ void Broadphase::reserve_tree() {
     const size_t ids = s.boxes.of.capacity();
     s.leaves.reserve(ids);
     s.stays.reserve(ids);
-    s.in_grains.reserve(ids);
+    s.in_tree.reserve(ids);
     s.strays.reserve(ids);
     s.boxes.stale.reserve(ids);
 }
@@ -354,7 +344,7 @@ void Broadphase::start_rebuild() {
     for (size_t id = s.boxes.of.size(); id < s.leaves.size(); ++id) set_leaf(uint32_t(id), false);
     s.leaves.resize(s.boxes.of.size());
     s.stays.resize(s.boxes.of.size());
-    s.in_grains.resize(s.boxes.of.size());
+    s.in_tree.resize(s.boxes.of.size());
     for (FatBox& box : s.boxes.of) box.stale = false;
     for (const uint32_t id : s.boxes.stale) s.boxes.of[id].stale = true;
     s.strays.clear();
@@ -367,7 +357,7 @@ void Broadphase::set_leaf(uint32_t id, bool lives) {
     State& s = *state_;
     btDbvtNode*& leaf = s.leaves[id];
     if (!lives || !leaf) s.stays[id] = 0;
-    if (!lives || (leaf && s.in_grains[id] != s.boxes.of[id].grain)) {
+    if (!lives || (leaf && s.in_tree[id] != State::kind_of(s.boxes.of[id]))) {
         if (leaf) s.tree_of(id).remove(leaf);
         leaf = nullptr;
     }
@@ -375,9 +365,8 @@ void Broadphase::set_leaf(uint32_t id, bool lives) {
     const FatBox& fat = s.boxes.of[id];
     const btDbvtVolume volume = tight_volume(fat.box);
     if (!leaf) {
-        s.in_grains[id] = fat.grain;
-        leaf = s.tree_of(id).insert(volume, nullptr);
-        leaf->dataAsInt = int(id);
+        s.in_tree[id] = State::kind_of(fat);
+        leaf = s.tree_of(id).add(volume, id);
     } else if (NotEqual(leaf->volume, volume)) {
         s.change(id, volume);
     }
@@ -388,6 +377,7 @@ void Broadphase::set_leaf(uint32_t id, bool lives) {
 
 uint32_t Broadphase::start_refresh() {
     State& s = *state_;
+    for (LeafTree& tree : s.trees) tree.settle();
     const size_t wanted = s.found_before < State::kMany ? 0 : 3 * s.found_before / (2 * s.boxes.stale.size() + 1);
     s.room = uint32_t(std::clamp(wanted, size_t(State::kRoom), size_t(State::kMostRoom)));
     s.partners.resize(s.boxes.stale.size() * s.room);
@@ -448,10 +438,9 @@ void Broadphase::note_stray(uint32_t id) {
     state_->strays.push_back(id);
 }
 
-// Down the tree and up again by the parents: it may be of any depth, and a query has no memory of its own.
+// Down a tree and up again by the parents: a query has no memory of its own.
 template <class Asks>
-void Broadphase::State::walk(const btDbvt& of, const Asks& asks, Probe& probe, Visitor& visitor) const {
-    const btDbvtNode* root = of.m_root;
+void Broadphase::State::walk(const btDbvtNode* root, const Asks& asks, Probe& probe, Visitor& visitor) const {
     const btDbvtNode* node = root;
     while (node) {
         if (asks.meets(probe, node->volume)) {
@@ -472,12 +461,14 @@ void Broadphase::visit(Probe probe, Visitor& visitor, bool grains) const {
     const State& s = *state_;
     for (const uint32_t id : s.strays)
         if (s.boxes.of[id].stray && (grains || !s.boxes.of[id].grain)) visitor.visit(id, probe);
-    for (const btDbvt* tree : {&s.tree, &s.grains}) {
-        if (tree == &s.grains && !grains) continue;
-        if (probe.along == Vec3::Zero() && probe.reach == 0)
-            s.walk(*tree, Overlap(probe), probe, visitor);
-        else
-            s.walk(*tree, Slabs(probe), probe, visitor);
+    for (const State::Kind kind : {State::kMoving, State::kStanding, State::kGrains}) {
+        if (kind == State::kGrains && !grains) continue;
+        s.trees[kind].for_roots([&](const btDbvtNode* root) {
+            if (probe.along == Vec3::Zero() && probe.reach == 0)
+                s.walk(root, Overlap(probe), probe, visitor);
+            else
+                s.walk(root, Slabs(probe), probe, visitor);
+        });
     }
 }
 

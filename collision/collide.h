@@ -140,8 +140,8 @@ public:
     Broadphase(const Broadphase&) = delete;
     Broadphase& operator=(const Broadphase&) = delete;
 
-    // moves: false for static bodies; two ids that both do not move never pair, nor do two grains, which have a tree of
-    // their own.
+    // moves: false for static bodies. Two ids that both do not move never pair, nor do two grains: each of these kinds
+    // has a tree of its own.
     void add(uint32_t id, const Box& tight, bool moves, bool grain = false);
     void remove(uint32_t id);
     // Re-inserts the leaf if the tight box (already grown by the contact margin) left its fat box; displacement [m]
@@ -149,7 +149,6 @@ public:
     void update(uint32_t id, const Box& tight, const Vec3f& displacement);
     // Whether its fat box still holds a tight one.
     bool holds(uint32_t id, const Box& tight) const;
-    void set_moves(uint32_t id, bool moves);
 
     // Brings the pair list up to date: find_pairs() for ranges that cover [0, start_refresh()), any number at once,
     // which takes no memory, then finish_refresh(). Returns true if the list changed.

@@ -2,8 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <random>
+#include <set>
 
+#include "collision/leaf_tree.h"
 #include "collision_oracle.h"
 
 namespace taut::collision {
@@ -173,7 +177,7 @@ TEST(CollisionBroadphase, OneMayMeetAny) {
     EXPECT_EQ(broadphase.pairs().size(), 100u);
 }
 
-TEST(CollisionBroadphase, StaticBodiesNeverPairUntilTheyMove) {
+TEST(CollisionBroadphase, StaticBodiesPairWithWhatMovesAlone) {
     Memory memory(taut_hooks{});
     Broadphase broadphase(memory);
     const Box box{Vec3f::Constant(-1), Vec3f::Constant(1)};
@@ -181,13 +185,82 @@ TEST(CollisionBroadphase, StaticBodiesNeverPairUntilTheyMove) {
     broadphase.add(1, box, false);
     EXPECT_FALSE(broadphase.refresh_pairs());
     EXPECT_TRUE(broadphase.pairs().empty());
-    broadphase.set_moves(3, true);
+    broadphase.remove(3);
+    broadphase.add(3, box, true);
     EXPECT_TRUE(broadphase.refresh_pairs());
     EXPECT_EQ(copy(broadphase), std::vector<uint64_t>{key(1, 3)});
     EXPECT_FALSE(broadphase.refresh_pairs());
-    broadphase.set_moves(3, false);
+    broadphase.remove(3);
+    broadphase.add(3, box, false);
     EXPECT_TRUE(broadphase.refresh_pairs());
     EXPECT_TRUE(broadphase.pairs().empty());
+}
+
+// Boxes in a row, of which each comes next to the last one: a tree that puts them there is as deep as the row.
+TEST(CollisionBroadphase, TreesStayShallow) {
+    constexpr uint32_t kMany = 4096;
+    Memory memory(taut_hooks{});
+    for (const uint32_t at_once : {1u, 50u, kMany}) {
+        LeafTree tree(memory);
+        for (uint32_t i = 0; i < kMany; ++i) {
+            const auto x = static_cast<float>(i);
+            tree.add(btDbvtVolume::FromMM({x, 0, 0}, {x + 1, 1, 1}), i);
+            if ((i + 1) % at_once == 0) tree.settle();
+        }
+        tree.settle();
+        uint32_t leaves = 0, deepest = 0;
+        const auto visit = [&](auto&& self, const btDbvtNode* node, uint32_t depth) -> void {
+            if (node->isleaf()) {
+                ++leaves;
+                deepest = std::max(deepest, depth);
+                return;
+            }
+            for (const btDbvtNode* child : node->childs) {
+                EXPECT_EQ(child->parent, node);
+                EXPECT_TRUE(node->volume.Contain(child->volume));
+                self(self, child, depth + 1);
+            }
+        };
+        visit(visit, tree.root(), 0);
+        EXPECT_EQ(leaves, kMany);
+        EXPECT_LE(deepest, 26u) << at_once << " at once";  // 2 log2 of as many
+    }
+}
+
+// What waits is seen, moves and goes as what has its place does.
+TEST(CollisionBroadphase, ProbesSeeWhatCameSinceTheLastStep) {
+    Memory memory(taut_hooks{});
+    Broadphase broadphase(memory);
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<float> place(-20, 20);
+    std::map<uint32_t, Box> boxes;
+    const auto random_box = [&] {
+        const Vec3f middle(place(engine), place(engine), place(engine));
+        return Box{middle - Vec3f::Constant(0.5f), middle + Vec3f::Constant(0.5f)};
+    };
+    for (uint32_t round = 0; round < 400; ++round) {
+        const uint32_t id = engine() % 200;
+        if (boxes.contains(id) && engine() % 3 == 0) {
+            broadphase.remove(id);
+            boxes.erase(id);
+        } else if (boxes.contains(id)) {
+            broadphase.update(id, boxes[id] = random_box(), Vec3f::Zero());
+        } else {
+            broadphase.add(id, boxes[id] = random_box(), id % 3 == 0, id % 3 == 1);
+        }
+        if (round % 37 == 36) broadphase.refresh_pairs();
+        const Box probe = random_box();
+        struct Seen final : Visitor {
+            std::set<uint32_t> ids;
+            void visit(uint32_t one, Probe&) override { EXPECT_TRUE(ids.insert(one).second); }
+        } seen;
+        const Vec3 middle = (0.5f * (probe.lo + probe.hi)).cast<double>(), half = Vec3::Constant(0.5);
+        broadphase.visit({middle, Vec3::Zero(), -half, half}, seen);
+        for (const auto& [other, box] : boxes)
+            if ((probe.lo.array() <= box.hi.array()).all() && (box.lo.array() <= probe.hi.array()).all())
+                EXPECT_TRUE(seen.ids.contains(other)) << "round " << round;
+        for (const uint32_t other : seen.ids) EXPECT_TRUE(boxes.contains(other));
+    }
 }
 
 // What one leaf that meets thousands was given in a step is not given to thousands in the next.
