@@ -93,12 +93,24 @@ constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_m
                                                         convex_meeting, convex_meeting, convex_meeting,
                                                         convex_meeting, convex_meeting, surface_meeting};
 
-// When the centres are nearest to each other, from one moment to another [s].
-double nearest_moment(const Motion& a, const Motion& b, double from, double to) {
-    const Vec3 apart = b.centre - a.centre, velocity = b.velocity - a.velocity;
-    const double squared = velocity.squaredNorm();
-    return squared > 0 ? std::clamp(-apart.dot(velocity) / squared, from, to) : from;
-}
+// Of two shapes' origins until a time: the chord of the way from one's to the other's, which they leave by no more than
+// |w|^2 l t^2 / 8 each, l the lever about which one turns.
+struct Chord {
+    Vec3 apart, velocity;  // now [m]; [m/s]
+    double bend;           // [m]
+
+    Chord(const Motion& a, const Motion& b, double time)
+        : apart(b.at.position - a.at.position),
+          velocity((b.place_after(time) - a.place_after(time) - apart) / time),
+          bend(a.bend(time) + b.bend(time)) {}
+
+    // When they are nearest to each other, from one moment to another [s].
+    double nearest_moment(double from, double to) const {
+        const double squared = velocity.squaredNorm();
+        return squared > 0 ? std::clamp(-apart.dot(velocity) / squared, from, to) : from;
+    }
+    Vec3 at(double moment) const { return apart + moment * velocity; }
+};
 
 // How fast points of two shapes come nearer to each other at most [m/s].
 double fastest(const Motion& a, const Motion& b) {
@@ -128,7 +140,7 @@ Depth depth_at(const Shape& a, const Motion& motion_a, const Shape& b, const Mot
 bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
                  double depth, double until) {
     const auto look_at = [&](double t) { return depth_at(a, motion_a, b, motion_b, t, depth, until); };
-    if (is_convex(b) && look_at(nearest_moment(motion_a, motion_b, met, until)).deep) return true;
+    if (is_convex(b) && look_at(Chord(motion_a, motion_b, until).nearest_moment(met, until)).deep) return true;
     const double least = 0.5 * depth / fastest(motion_a, motion_b);  // from look to look [s]
     double t = met;
     for (int look = 0; look < kMaxLooks && t < until; ++look) {
@@ -139,18 +151,21 @@ bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const M
     return t < until;
 }
 
-// From one centre to the other where they are nearest.
-Vec3 nearest_way(const Motion& a, const Motion& b, double limit) {
-    return b.centre - a.centre + nearest_moment(a, b, 0, limit) * (b.velocity - a.velocity);
-}
-
-// Whether balls about the centres, which hold the shapes however they turn, come as near as reach by the limit.
+// Whether balls about the origins, which hold the shapes however they turn, come as near as reach.
 bool balls_meet(const Vec3& nearest, const Motion& a, const Motion& b, double radii, double reach) {
-    const double touch = a.reach + b.reach + radii + reach;
+    const double touch = a.own_reach() + b.own_reach() + radii + reach;
     return nearest.squaredNorm() <= touch * touch;
 }
 
 }  // namespace
+
+Vec3 Motion::place_after(double time) const {
+    const Vec3 lever = at.position - centre;
+    if (lever == Vec3::Zero() || spin == Vec3::Zero()) return at.position + time * velocity;
+    return centre + time * velocity + rotation_from_vector(time * spin) * lever;
+}
+
+double Motion::bend(double time) const { return spin.squaredNorm() * (at.position - centre).norm() * time * time / 8; }
 
 Placement Motion::after(double time) const {
     if (time == 0) return at;
@@ -191,10 +206,12 @@ double spin_radius(const Shape& shape, double lever) {
 
 double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                       double limit) {
-    const Vec3 nearest = nearest_way(motion_a, motion_b, limit);
-    if (!balls_meet(nearest, motion_a, motion_b, core_radius(a) + core_radius(b), reach)) return limit;
+    const Chord chord(motion_a, motion_b, limit);
+    const Vec3 nearest = chord.at(chord.nearest_moment(0, limit));
+    const double radii = core_radius(a) + core_radius(b);
+    if (!balls_meet(nearest, motion_a, motion_b, radii, reach + chord.bend)) return limit;
     double t = 0;
-    // Most that do not meet pass by each other: along the way between the centres where they are nearest, these hardly
+    // Most that do not meet pass by each other: along the way between the origins where they are nearest, these hardly
     // come nearer.
     Vec3 normal = nearest.norm() > 0 ? nearest.normalized() : Vec3::UnitY();  // then of the step before
     const Moment end(a, motion_a, b, motion_b, limit);

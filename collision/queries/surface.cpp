@@ -163,6 +163,21 @@ Room room_of(const Triangles& triangles, const Shape& a, const Placement& at_a, 
     return {place + box.lo.cast<double>(), place + box.hi.cast<double>()};
 }
 
+// What a covers of the frame of b until a time: between where it is then and now each point stays within A t^2 / 8 of
+// the chord of its way, A the most that it is accelerated by as seen from b, which turns:
+//   A = |w_a|^2 r_a + 2 |w_b| |z'| + |w_b|^2 |z|,  z from the centre of b
+Room way_through(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double time) {
+    const Placement at_b = motion_b.after(time);
+    const Room now = room_of(Triangles(b, motion_b.at), a, motion_a.at, motion_b.at),
+               then = room_of(Triangles(b, at_b), a, motion_a.after(time), at_b);
+    const double spin_a = motion_a.spin.norm(), spin_b = motion_b.spin.norm();
+    const double reach = motion_a.reach + core_radius(a);
+    const double speed = (motion_a.velocity - motion_b.velocity).norm() + spin_a * reach;
+    const double furthest = (motion_a.centre - motion_b.centre).norm() + time * speed + reach;
+    const double most = spin_a * spin_a * reach + 2 * spin_b * speed + spin_b * spin_b * furthest;
+    return Room{now.lo.cwiseMin(then.lo), now.hi.cwiseMax(then.hi)}.grown(most * time * time / 8);
+}
+
 }  // namespace
 
 bool cast_ray_at_surface(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit,
@@ -210,15 +225,9 @@ bool cast_at_surface(const Shape& moving, const Placement& from, const Vec3& alo
 double surface_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                        double limit) {
     const Triangles triangles(b, motion_b.at);
-    const Vec3 start = triangles.place(motion_a.centre);
-    const Vec3 end = triangles.place(motion_a.centre + limit * (motion_a.velocity - motion_b.velocity));
-    const double radius = motion_a.reach + core_radius(a) + reach;
-    // A surface that turns carries its triangles round.
-    const double lever = (motion_b.centre - motion_a.centre).norm() + (end - start).norm() + radius;
-    const double turned = limit * motion_b.spin.norm() * lever;
-    const Room way = {start.cwiseMin(end), start.cwiseMax(end)};
     double first = limit;
-    triangles.find(way.grown(radius + turned), [&](uint32_t number) {
+    triangles.find(way_through(a, motion_a, b, motion_b, limit).grown(reach), [&](uint32_t number) {
+        if (first == 0) return;
         const TriangleShape triangle(triangles, motion_b.at, number, inner_radius(a));
         Motion motion = motion_b;
         motion.at = triangle.at();

@@ -81,16 +81,22 @@ bool is_fast(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, doubl
 bool stay_apart(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time) {
     if (pair.a2 != kNone || pair.b2 != kNone) return false;
     double touch = kReach;
-    for (const auto& [node, collider] : {std::pair(pair.a, pair.collider_a()), std::pair(pair.b, pair.collider_b())}) {
-        if (nodes.info[node].kind == NodeKind::kinematic) return false;  // may be placed ahead of its centre
-        const Vec3 lever = pairs.placement[collider].position - nodes.motion[node].x;
-        touch += lever.norm() + static_cast<double>(pairs.stance[collider].size);
+    Vec3 velocity[2];
+    const uint32_t node[] = {pair.a, pair.b}, collider[] = {pair.collider_a(), pair.collider_b()};
+    for (int i = 0; i < 2; ++i) {
+        if (nodes.info[node[i]].kind == NodeKind::kinematic) return false;  // may be placed ahead of its centre
+        // A point on a lever l leaves the tangent of its way by no more than |w|^2 l t^2 / 2.
+        const NodeMotion& m = nodes.motion[node[i]];
+        const Vec3 lever = pairs.placement[collider[i]].position - m.x;
+        const double angle = kAhead * time * m.w.norm();
+        velocity[i] = m.v + m.w.cross(lever);
+        touch += 0.5 * angle * angle * lever.norm() + static_cast<double>(pairs.stance[collider[i]].size);
     }
-    const NodeMotion &a = nodes.motion[pair.a], &b = nodes.motion[pair.b];
-    const Vec3 apart = b.x - a.x, velocity = b.v - a.v;
-    const double squared = velocity.squaredNorm();
-    const double nearest = squared > 0 ? std::clamp(-apart.dot(velocity) / squared, 0.0, kAhead * time) : 0.0;
-    return (apart + nearest * velocity).squaredNorm() > touch * touch;
+    const Vec3 apart = pairs.placement[collider[1]].position - pairs.placement[collider[0]].position,
+               way = velocity[1] - velocity[0];
+    const double squared = way.squaredNorm();
+    const double nearest = squared > 0 ? std::clamp(-apart.dot(way) / squared, 0.0, kAhead * time) : 0.0;
+    return (apart + nearest * way).squaredNorm() > touch * touch;
 }
 
 Encounter::Encounter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,

@@ -37,8 +37,8 @@ void hold_back(Team& team, const Colliders& colliders, const Shapes& shapes, con
                const Elements& elements, std::span<const uint8_t> followed, Pairs& pairs,
                collision::Broadphase& broadphase, Nodes& nodes);
 
-// Whether balls about the centres that two colliders turn about, each as large as to hold its shape, stay apart on
-// their ways: such two do not meet, which costs less to know than when they do. False in doubt.
+// Whether balls about two colliders' origins, each as large as to hold its shape, stay apart on their ways: such two do
+// not meet, which costs less to know than when they do. False in doubt.
 bool stay_apart(const Nodes& nodes, const Pairs& pairs, const PairEnds& pair, double time);
 
 // Two colliders under way.
