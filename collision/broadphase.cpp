@@ -102,7 +102,7 @@ struct Broadphase::State {
 
     Boxes boxes;
     // Of what moves; of what does not, which does not pair with itself, and neither do grains.
-    enum Kind : uint8_t { kMoving, kStanding, kGrains };
+    enum Kind : uint8_t { kMoving, kStanding, kGrains };  // number of its bit in those of visit()
     static Kind kind_of(const FatBox& box) { return box.grain ? kGrains : box.moves ? kMoving : kStanding; }
     LeafTree trees[3];
     LeafTree& tree_of(uint32_t id) { return trees[in_tree[id]]; }
@@ -457,12 +457,13 @@ void Broadphase::State::walk(const btDbvtNode* root, const Asks& asks, Probe& pr
     }
 }
 
-void Broadphase::visit(Probe probe, Visitor& visitor, bool grains) const {
+void Broadphase::visit(Probe probe, Visitor& visitor, uint8_t kinds) const {
     const State& s = *state_;
+    const auto asked = [&](State::Kind kind) { return (kinds >> kind & 1) != 0; };
     for (const uint32_t id : s.strays)
-        if (s.boxes.of[id].stray && (grains || !s.boxes.of[id].grain)) visitor.visit(id, probe);
+        if (s.boxes.of[id].stray && asked(State::kind_of(s.boxes.of[id]))) visitor.visit(id, probe);
     for (const State::Kind kind : {State::kMoving, State::kStanding, State::kGrains}) {
-        if (kind == State::kGrains && !grains) continue;
+        if (!asked(kind)) continue;
         s.trees[kind].for_roots([&](const btDbvtNode* root) {
             if (probe.along == Vec3::Zero() && probe.reach == 0)
                 s.walk(root, Overlap(probe), probe, visitor);

@@ -196,8 +196,9 @@ public:
     void clear_strays();
     void note_stray(uint32_t id);
     // Visits each id whose box the probe may meet, roughly the nearest first; in an order that depends on the tree's
-    // history. Any number of threads at once. Without grains: but for those.
-    void visit(Probe probe, Visitor& visitor, bool grains = true) const;
+    // history. Any number of threads at once. Of all kinds, or some: bits.
+    static constexpr uint8_t kMoving = 1, kStanding = 2, kGrains = 4, kAll = 7;
+    void visit(Probe probe, Visitor& visitor, uint8_t kinds = kAll) const;
 
 private:
     struct State;
@@ -337,6 +338,11 @@ struct Motion {
     double reach;         // no point of the shape's core is further from the centre: spin_radius() [m]
 
     Placement after(double time) const;
+    Vec3 place_after(double time) const;  // of the shape's origin
+    // By how much the way of that leaves its chord until a time [m].
+    double bend(double time) const;
+    // No point of the core is further from the shape's origin [m].
+    double own_reach() const { return reach - (at.position - centre).norm(); }
 };
 
 // How far a point of the shape's core (which a ball grows to the shape) can be from a point that is as far as lever [m]

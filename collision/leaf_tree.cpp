@@ -127,32 +127,32 @@ void LeafTree::settle() {
     const uint32_t waiting = leaves_ - settled_;
     if (waiting == 0) return;
     const bool together = waiting >= settled_;
-    built_.clear();
-    built_.reserve(together ? leaves_ : waiting);
+    put_.clear();
+    put_.reserve(together ? leaves_ : waiting);
     for (btDbvtNode*& root : waiting_)
-        if (root) list(std::exchange(root, nullptr));
+        if (root) list(std::exchange(root, nullptr), put_);
     settled_ = leaves_;
     if (together) {
-        if (tree_.m_root) list(tree_.m_root);
-        tree_.m_root = build(built_);
+        if (tree_.m_root) list(tree_.m_root, put_);
+        tree_.m_root = build(put_);
         tree_.m_root->parent = nullptr;
     } else {
-        for (const Middle& each : built_) put(each.leaf);
+        for (const Middle& each : put_) put(each.leaf);
     }
-    let_go(built_);
+    let_go(put_);
 }
 
 // ---------------------------------------------------------------- balance
 
 // The leaves below a node, which goes with all inner ones.
-void LeafTree::list(btDbvtNode* node) {
+void LeafTree::list(btDbvtNode* node, Array<Middle>& to) {
     if (node->isleaf()) {
         const btVector3 middle = node->volume.Mins() + node->volume.Maxs();
-        built_.push_back({{middle.x(), middle.y(), middle.z()}, node});
+        to.push_back({{middle.x(), middle.y(), middle.z()}, node});
         return;
     }
-    list(node->childs[0]);
-    list(node->childs[1]);
+    list(node->childs[0], to);
+    list(node->childs[1], to);
     give(node);
 }
 
@@ -178,7 +178,7 @@ void LeafTree::rebuild(btDbvtNode* below) {
     btDbvtNode* const above = below->parent;
     btDbvtNode*& slot = above ? slot_of(below) : tree_.m_root;
     built_.clear();
-    list(below);
+    list(below, built_);
     btDbvtNode* const anew = build(built_);
     anew->parent = above;
     slot = anew;

@@ -17,7 +17,7 @@ namespace taut::collision {
 
 class LeafTree {
 public:
-    explicit LeafTree(Memory& memory) : pool_(memory), built_(memory) {}
+    explicit LeafTree(Memory& memory) : pool_(memory), put_(memory), built_(memory) {}
     ~LeafTree() { tree_.m_root = nullptr; }  // its nodes are not Bullet's
     LeafTree(const LeafTree&) = delete;
     LeafTree& operator=(const LeafTree&) = delete;
@@ -56,7 +56,7 @@ private:
     bool waits(const btDbvtNode* leaf) const;
     void put(btDbvtNode* leaf);
     void rebuild(btDbvtNode* below);
-    void list(btDbvtNode* node);
+    void list(btDbvtNode* node, Array<Middle>& to);
     btDbvtNode* build(std::span<Middle> leaves);
     void bound_depth(btDbvtNode* leaf);
 
@@ -67,7 +67,7 @@ private:
     SegmentedArray<btDbvtNode> pool_;             // two for each leaf
     btDbvtNode* free_ = nullptr;                  // a list by parent
     uint32_t leaves_ = 0, settled_ = 0;           // in all, and in the tree
-    Array<Middle> built_;                         // scratch
+    Array<Middle> put_, built_;                   // scratch: leaves that get a place one by one; that are built anew
 };
 
 }  // namespace taut::collision

@@ -66,6 +66,13 @@ struct Doll {
         hinge(upper, fore, elbow, {1, 0, 0}, degrees(145));
         return fore;
     }
+    void all() const {
+        const auto [pelvis, chest] = trunk();
+        for (double side : {-1.0, 1.0}) {
+            leg(pelvis, side);
+            arm(chest, side, at(0.55 * side, 0.05, 0.1));
+        }
+    }
 };
 
 }  // namespace
@@ -84,11 +91,7 @@ Scene build_ragdolls(double n, double, const Options& options) {
         const Doll doll{scene, plus({(column - middle) * kSpacing, 1.2 + layer * kLayer, (row - middle) * kSpacing},
                                     shift.x, shift.y, shift.z)};
         const size_t first = scene.bodies.size(), first_joint = scene.joints.size();
-        const auto [pelvis, chest] = doll.trunk();
-        for (double side : {-1.0, 1.0}) {
-            doll.leg(pelvis, side);
-            doll.arm(chest, side, doll.at(0.55 * side, 0.05, 0.1));
-        }
+        doll.all();
         for (size_t joint = first_joint; joint < scene.joints.size(); ++joint)
             scene.joints[joint].solve = TAUT_JOINT_SOLVE_BY_LOAD;
         for (size_t body = first; body < scene.bodies.size(); ++body)
@@ -98,6 +101,33 @@ Scene build_ragdolls(double n, double, const Options& options) {
     perturb(scene, options.seed);
     scene.camera = {{5.5, 5.0, 7.5}, {0, 1.2, 0}, 42};
     scene.stage = {{-4, 0, -4}, {4, 12, 4}};
+    return scene;
+}
+
+// As a game makes them: joints as they are by default.
+Scene build_rain(double n, double, const Options& options) {
+    constexpr int kRow = 10, kBeams = 21;
+    constexpr double kApart = 1.6, kLayer = 2.2, kBeam = 0.15, kGap = 1, kHeight = 3;  // [m]
+    Scene scene = empty_scene();
+    add_ground(scene);
+    for (int i = 0; i < kBeams; ++i)
+        for (int k = 0; k < kBeams; ++k)
+            add_static_box(scene, {kGap * (i - 0.5 * (kBeams - 1)), kHeight, kGap * (k - 0.5 * (kBeams - 1))}, kBeam,
+                           kBeam, kBeam, Look::stone);
+    Random random(1);
+    for (int i = 0; i < static_cast<int>(n); ++i) {
+        const auto at = [&](int k) { return kApart * (k - 0.5 * (kRow - 1)); };
+        const taut_vec3 shift = random.in_cube(0.2);
+        const Doll doll{scene, plus({at(i % kRow), kHeight + 2 + kLayer * (i / (kRow * kRow)), at(i / kRow % kRow)},
+                                    shift.x, shift.y, shift.z)};
+        const size_t first = scene.bodies.size();
+        doll.all();
+        for (size_t body = first; body < scene.bodies.size(); ++body)
+            scene.roles.pile.push_back(static_cast<int>(body));
+    }
+    perturb(scene, options.seed);
+    scene.camera = {{18, 12, 24}, {0, 3, 0}, 42};
+    scene.stage = {{-12, 0, -12}, {12, 16, 12}};
     return scene;
 }
 

@@ -502,7 +502,11 @@ void find_surface_shapes(SurfaceFinder& finder) {
         const SurfaceBox box = mesh.node.front().box.swept(static_cast<float>(scene.time) * mesh.drift);
         collision::Probe probe{mesh.origin, Vec3::Zero(), box.lo.cast<double>(), box.hi.cast<double>()};
         NearShapes near(scene, mesh);
-        scene.broadphase.visit(probe, near, !scene.colliders.grains.empty());  // vertices are among those
+        // Vertices are among grains.
+        const bool grains = !scene.colliders.grains.empty();
+        scene.broadphase.visit(
+            probe, near,
+            grains ? collision::Broadphase::kAll : collision::Broadphase::kMoving | collision::Broadphase::kStanding);
         std::ranges::sort(colliders);
         for (const uint32_t collider : colliders) SurfaceShape(finder, s, collider).find();
     }

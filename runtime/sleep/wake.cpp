@@ -100,7 +100,8 @@ void wake_box(World& world, const collision::Box& box) {
     Found found(world, box);
     const Vec3 lo = box.lo.cast<double>(), hi = box.hi.cast<double>();
     const Vec3 middle = 0.5 * (lo + hi);
-    world.broadphase.visit({middle, Vec3::Zero(), lo - middle, hi - middle}, found);
+    world.broadphase.visit({middle, Vec3::Zero(), lo - middle, hi - middle}, found,
+                           collision::Broadphase::kMoving | collision::Broadphase::kGrains);
 }
 
 }  // namespace taut

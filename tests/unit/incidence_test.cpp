@@ -1,6 +1,7 @@
 // Incidence and colours of nodes against searches through all elements, on random ones.
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -23,7 +24,9 @@ TEST(Incidence, NamesEachEndOnceAndColoursApart) {
             for (const uint32_t node : own) nodes.push_back(random() % 6 == 0 ? kNone : node);
             begin.push_back(static_cast<uint32_t>(nodes.size()));
         }
-        incidence.build(slots, begin, nodes);
+        std::vector<uint32_t> all(slots);
+        std::iota(all.begin(), all.end(), 0u);
+        incidence.build(all, begin, nodes);
         std::vector<uint32_t> colour(slots, kNone);
         for (uint32_t c = 0; c < incidence.colours(); ++c) {
             EXPECT_FALSE(incidence.nodes_of(c).empty());
