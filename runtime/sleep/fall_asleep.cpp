@@ -168,7 +168,7 @@ void finish_settling(Nodes& nodes, Array<uint32_t>& settled) {
         if (nodes.rest[node] == Rest::settling) {
             nodes.set_rest(node, Rest::asleep);
             settled.push_back(node);
-        } else if (nodes.info[node].kind == NodeKind::fixed) {
+        } else if (nodes.info[node].kind == NodeKind::fixed && nodes.rest[node] == Rest::awake) {
             nodes.set_rest(node, Rest::settling);
         }
     }
