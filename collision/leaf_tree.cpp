@@ -34,7 +34,8 @@ btDbvtNode*& slot_of(btDbvtNode* child) { return child->parent->childs[child->pa
 
 btDbvtNode* LeafTree::take() {
     btDbvtNode* const node = std::exchange(free_, free_->parent);
-    *node = {};
+    node->parent = nullptr;
+    node->childs[0] = node->childs[1] = nullptr;
     return node;
 }
 
