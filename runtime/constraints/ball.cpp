@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "constraints/constraint.h"
+#include "constraints/frame_lanes.h"
 #include "constraints/lever.h"
 #include "constraints/random.h"
 
@@ -20,6 +21,12 @@ void evaluate_ball(const void* data, const Pose* x, double* error, double* jacob
     set_block(jacobian, 3, 0, 3, hat(ra));
     set_block(jacobian, 3, 1, 0, Mat3::Identity());
     set_block(jacobian, 3, 1, 3, -hat(rb));
+}
+
+void evaluate_ball_lanes(const LaneFrames& anchors, const float* const (&pose)[2][kLanes], LaneScalar* error,
+                         LaneScalar* jacobian) {
+    const FramePairLanes<BaseLanes> f(anchors, pose);
+    LaneRowWriter<BaseLanes>(f, 3, error, jacobian).anchors();
 }
 
 void stiffness_of_ball(const void* data, const Pose* x, const double* lambda, Curvature part, double* k) {
@@ -40,6 +47,7 @@ void sample_ball(uint64_t seed, void* data, Pose* x) {
 }  // namespace
 
 const ConstraintType kBall{
-    "ball", 3, 2, sizeof(BallData), Bound::free, false, 0, evaluate_ball, stiffness_of_ball, nullptr, sample_ball};
+    "ball",  3,           2,       sizeof(BallData),   Bound::free, false, 0, evaluate_ball, stiffness_of_ball,
+    nullptr, sample_ball, nullptr, evaluate_ball_lanes};
 
 }  // namespace taut

@@ -67,8 +67,8 @@ struct ConstraintType {
     void (*sample)(uint64_t seed, void* data, Pose* x);
     // Where K resists the turning of a line between its nodes, which their own rotations do not describe; else null.
     Line (*line)(const void* data, const Pose* x) = nullptr;
-    // Of types whose data are JointFrames and whose angles, the last rows, turn their nodes against each other alone:
-    // J_b = -J_a = (0, g). C and J of kLanes instances at once, in floats; else null. pose: of both ends in each lane,
+    // Of types whose data are JointFrames, or BallData where they have no angles, and whose angles, the last rows, turn
+    // their nodes against each other alone: J_b = -J_a = (0, g). C and J of kLanes instances at once, in floats; else null. pose: of both ends in each lane,
     // a SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn are not written.
     void (*evaluate_lanes)(const LaneFrames& frames, const float* const (&pose)[2][kLanes], LaneScalar* error,
                            LaneScalar* jacobian) = nullptr;

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <utility>
 
+#include "constraints/ball.h"
 #include "constraints/joint_frames.h"
 #include "constraints/soft_contact.h"
 #include "system/assemble.h"
@@ -72,7 +74,7 @@ void add_group(System& system, std::span<const uint32_t> blocks) {
     g.rows = g.first_turn = static_cast<uint32_t>(type.rows);
     g.held = 0;
     for (uint32_t b : blocks) g.held = std::max(g.held, static_cast<uint32_t>(all[b].held()));
-    if (type.evaluate_lanes) g.first_turn = static_cast<uint32_t>(std::countr_zero(type.angular));
+    if (type.evaluate_lanes) g.first_turn = std::min(g.rows, static_cast<uint32_t>(std::countr_zero(type.angular)));
     g.first_row = lanes.row.take(g.rows);
     lanes.coordinate.take(g.rows);
     g.first_jacobian = lanes.jacobian.take(kDof * g.nodes * g.rows);
@@ -227,16 +229,22 @@ bool stays(const System& system, uint32_t node) {
 }
 
 void fill_frames(const System& system, LaneFrames& out, int lane, const RowBlock& block) {
-    const auto& joint = *static_cast<const JointFrames*>(block.data);
+    static_assert(offsetof(BallData, anchor_b) == offsetof(JointFrames, anchor_b));
+    const auto& joint = *static_cast<const BallData*>(block.data);  // frames begin as it does
     Vec3 apart = Vec3::Zero();
     for (int end = 0; end < 2; ++end) {
         const Vec3& x = system.found[block.node[end]].x;  // poses of kinematic nodes are of another substep
         const Vec3& anchor = end == 0 ? joint.anchor_a : joint.anchor_b;
-        const Quat& frame = end == 0 ? joint.frame_a : joint.frame_b;
         const bool still = stays(system, block.node[end]);
         apart += (end == 0 ? -1 : 1) * Vec3(still ? x + system.pose[block.node[end]].R * anchor : x);
         for (int k = 0; k < 3; ++k) out.anchor[end][k][lane] = still ? 0 : static_cast<float>(anchor[k]);
-        for (int k = 0; k < 4; ++k) out.frame[end][k][lane] = static_cast<float>(frame.coeffs()[k]);
+    }
+    if (block.type->angular != 0) {
+        const auto& frames = *static_cast<const JointFrames*>(block.data);
+        for (int k = 0; k < 4; ++k) {
+            out.frame[0][k][lane] = static_cast<float>(frames.frame_a.coeffs()[k]);
+            out.frame[1][k][lane] = static_cast<float>(frames.frame_b.coeffs()[k]);
+        }
     }
     for (int k = 0; k < 3; ++k) out.apart[k][lane] = static_cast<float>(apart[k]);
 }
