@@ -28,7 +28,8 @@ int freedoms_of(const Unknown& node) { return node.size == 6 ? 5 : 3; }
 
 }  // namespace
 
-EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unknowns, std::span<const uint64_t> links)
+EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unknowns, std::span<const uint64_t> links,
+                                   double most)
     : order(memory),
       unknowns_(unknowns),
       graph_(unknowns.size(), Array<uint32_t>(memory), memory),
@@ -36,6 +37,7 @@ EliminationOrder::EliminationOrder(Memory& memory, std::span<const Unknown> unkn
       done_(unknowns.size(), 0, memory),
       freedoms_(unknowns.size(), 0, memory),
       ties_(memory),
+      most_(most),
       neighbours_(memory),
       merged_(memory) {
     read_links(links);
@@ -84,7 +86,7 @@ void EliminationOrder::run_greedily() {
     std::priority_queue<uint64_t, Array<uint64_t>, std::greater<>> queue(std::greater<>{}, Array<uint64_t>(memory));
     for (uint32_t i = 0; i < unknowns_.size(); ++i)
         if (!unknowns_[i].multiplier) queue.push(key(i));
-    while (!queue.empty()) {  // entries whose degree has changed since are out of date
+    while (!queue.empty() && is_found()) {  // entries whose degree has changed since are out of date
         const uint64_t next = queue.top();
         queue.pop();
         const auto i = static_cast<uint32_t>(next);
@@ -123,6 +125,10 @@ void EliminationOrder::take(uint32_t i) {
 void EliminationOrder::eliminate(uint32_t i) {
     take(i);
     neighbours_.swap(graph_[i]);
+    double below = 0;
+    for (const uint32_t j : neighbours_) below += unknowns_[j].size;
+    cost_ += elimination_cost(unknowns_[i].size, below);
+    if (!is_found()) return;
     for (uint32_t j : neighbours_) {
         merged_.clear();
         std::set_union(graph_[j].begin(), graph_[j].end(), neighbours_.begin(), neighbours_.end(),
@@ -182,7 +188,7 @@ void EliminationOrder::dissect() {
     for (uint32_t i = 0; i < unknowns_.size(); ++i)
         if (!unknowns_[i].multiplier) nodes.push_back(i);
     const Dissection halves(*order.get_allocator().memory, static_cast<uint32_t>(unknowns_.size()), nodes, ties_);
-    couplings_ * kCouplingShare > nodes.size() ? cut_at_nodes(halves) : cut_at_multipliers(halves);
+    couplings_* kCouplingShare > nodes.size() ? cut_at_nodes(halves) : cut_at_multipliers(halves);
 }
 
 // A node of the second half with a neighbour in the first lies on the cut. Multipliers come as soon as they may.

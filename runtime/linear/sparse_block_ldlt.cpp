@@ -48,20 +48,31 @@ void SparseBlockLdlt::link(uint32_t i, uint32_t j) {
 
 void SparseBlockLdlt::analyse(std::span<const uint32_t> order) {
     if (order.empty()) {
-        EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
-        order_.assign(elimination.order.begin(), elimination.order.end());
+        const EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_);
+        order_by_tree(elimination.order);
     } else {
-        order_.assign(order.begin(), order.end());
+        order_by_tree(order);
     }
-    position_.resize(unknowns());
-    for (uint32_t k = 0; k < unknowns(); ++k) position_[order_[k]] = k;
-    find_parents();
-    sort_by_tree();
     find_columns();
     find_panels();
     find_updates();
     find_entries();
     analysed_ = true;
+}
+
+double SparseBlockLdlt::cost(double most) {
+    const EliminationOrder elimination(*unknown_.get_allocator().memory, unknown_, links_, most);
+    if (!elimination.is_found()) return std::numeric_limits<double>::infinity();
+    order_by_tree(elimination.order);
+    return find_columns(most);
+}
+
+void SparseBlockLdlt::order_by_tree(std::span<const uint32_t> order) {
+    order_.assign(order.begin(), order.end());
+    position_.resize(unknowns());
+    for (uint32_t k = 0; k < unknowns(); ++k) position_[order_[k]] = k;
+    find_parents();
+    sort_by_tree();
 }
 
 // Links by the later of their two ends, and from them the elimination tree (Liu 1990).
@@ -107,8 +118,9 @@ void SparseBlockLdlt::sort_by_tree() {
     for (uint32_t i = 0; i < n; ++i) order_[position_[i]] = i;
 }
 
-// Each column: its links and the columns of its children.
-void SparseBlockLdlt::find_columns() {
+// Each column: its links and the columns of its children. What a factor costs; infinite, and not all of them, where
+// that is more than so much.
+double SparseBlockLdlt::find_columns(double most) {
     const uint32_t n = unknowns();
     Array<uint64_t> earlier(links_.get_allocator());
     for (uint64_t link : links_) {
@@ -121,10 +133,13 @@ void SparseBlockLdlt::find_columns() {
     column_.clear();
     pivot_.assign(1, 0);
     auto link = earlier.begin();
-    for (uint32_t k = 0; k < n; ++k) {
+    double cost = 0;
+    for (uint32_t k = 0; k < n && cost <= most; ++k) {
+        double below = 0;
         auto take = [&](uint32_t row) {
             if (row == k || seen[row] == k) return;
             seen[row] = k;
+            below += unknown_[order_[row]].size;
             column_.push_back(row);
         };
         for (; link != earlier.end() && *link >> 32 == k; ++link) take(static_cast<uint32_t>(*link));
@@ -133,11 +148,13 @@ void SparseBlockLdlt::find_columns() {
         std::sort(column_.begin() + column_begin_[k], column_.end());
         column_begin_.push_back(static_cast<uint32_t>(column_.size()));
         pivot_.push_back(pivot_.back() + triples(order_[k]));
+        cost += elimination_cost(unknown_[order_[k]].size, below);
         if (parent_[k] == kNoParent) continue;
         sibling[k] = child[parent_[k]];
         child[parent_[k]] = k;
     }
     blocks_ = static_cast<uint32_t>(column_.size());
+    return cost <= most ? cost : std::numeric_limits<double>::infinity();
 }
 
 // A column's rows are among its parent and the parent's rows: as many are the same ones.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "base/memory.h"
 #include "linear/elimination_order.h"
@@ -41,6 +42,8 @@ public:
     void link(uint32_t i, uint32_t j);
     // In this order of elimination, or without one as EliminationOrder finds it.
     void analyse(std::span<const uint32_t> order = {});
+    // In place of that: how many multiplications a factor would take; infinite where they are more than so many.
+    double cost(double most);
     // As it is eliminated: with it and the same links all comes out the same bit by bit.
     std::span<const uint32_t> order() const { return order_; }
     bool analysed() const { return analysed_; }
@@ -74,7 +77,8 @@ private:
     uint32_t triples(uint32_t i) const { return unknown_[i].size / 3u; }
     void find_parents();
     void sort_by_tree();
-    void find_columns();
+    void order_by_tree(std::span<const uint32_t> order);
+    double find_columns(double most = std::numeric_limits<double>::infinity());
     void find_panels();
     void find_updates();
     void find_entries();
