@@ -18,6 +18,7 @@
 #include "models/cable.h"
 #include "models/cloth_tearing.h"
 #include "models/plastic.h"
+#include "partition/needs.h"
 #include "publish/publish.h"
 #include "sleep/sleep.h"
 #include "solvers/minimisation.h"
@@ -195,6 +196,7 @@ void step(World& w) {
     watch_surfaces(w.team, w.nodes, w.colliders, w.pairs);
     const Solver& solver = *solvers()[w.def.solver];
     note_loads(w.joints, w.elements, w.nodes);
+    note_needs(w.joints, w.elements, w.nodes, w.def.time_step / w.least_substeps(), w.def.time_step);
     const taut_vec3 g = w.def.gravity;
     const bool one_step = !scheme_types()[w.def.scheme]->start;
     w.partition.build(w.team, w.nodes, w.joints, w.elements, w.pairs,

@@ -90,10 +90,8 @@ Scene build_ragdolls(double n, double, const Options& options) {
         const taut_vec3 shift = random.in_cube(0.1);
         const Doll doll{scene, plus({(column - middle) * kSpacing, 1.2 + layer * kLayer, (row - middle) * kSpacing},
                                     shift.x, shift.y, shift.z)};
-        const size_t first = scene.bodies.size(), first_joint = scene.joints.size();
+        const size_t first = scene.bodies.size();
         doll.all();
-        for (size_t joint = first_joint; joint < scene.joints.size(); ++joint)
-            scene.joints[joint].solve = TAUT_JOINT_SOLVE_BY_LOAD;
         for (size_t body = first; body < scene.bodies.size(); ++body)
             scene.roles.pile.push_back(static_cast<int>(body));
     }
@@ -104,7 +102,6 @@ Scene build_ragdolls(double n, double, const Options& options) {
     return scene;
 }
 
-// As a game makes them: joints as they are by default.
 Scene build_rain(double n, double, const Options& options) {
     constexpr int kRow = 10, kBeams = 21;
     constexpr double kApart = 1.6, kLayer = 2.2, kBeam = 0.15, kGap = 1, kHeight = 3;  // [m]

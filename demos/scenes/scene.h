@@ -108,7 +108,7 @@ struct Joint {
     float angular_compliance = 0;             // of locked angles [rad/(N m)]
     float damping = 0;                        // of positions, a rod or a rope [N s/m]
     float break_force = 0, break_torque = 0;  // 0: never [N, N m]
-    taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT;
+    taut_joint_solve solve = TAUT_JOINT_SOLVE_BY_LOAD;
     double until = 0;                      // taken away at that time [s]; 0: never
     std::optional<double> drawn_radius{};  // of the line or ball that it is drawn as, 0: it is not [m]
 };

@@ -56,14 +56,19 @@ typedef enum taut_joint_kind {
 
 /** How a joint is solved. */
 typedef enum taut_joint_solve {
-    TAUT_JOINT_SOLVE_DIRECT = 0,  /**< with all joints it hangs together with, at once; where the world's solver can */
-    TAUT_JOINT_SOLVE_SOFT = 1,    /**< by sweeps: cheap, yields under loads far heavier than the bodies it holds. A
-                                     drive's stiffness K, damping with it, is at most half of the inertia I of its ends'
-                                     own turning over the substep h squared, I / (2 h^2): some 13 Hz for limbs */
-    TAUT_JOINT_SOLVE_BY_LOAD = 2, /**< for crowds: by sweeps, but directly while the bodies that such joints connect
-                                     differ by 20 times or more in mass, or one of the joints bears over 1000 N per kg
-                                     of its lighter body: from the tenth step on, to 15 steps after. With a direct
-                                     joint among them: directly */
+    /** With all joints it hangs together with, at once: exact whatever they carry. Where their factor takes more than
+        64000 multiplications for each of them, as of dense graphs and of a thousand joints between two bodies, all are
+        swept. Where the world's solver has no direct solve, as that solver has it. */
+    TAUT_JOINT_SOLVE_DIRECT = 0,
+    /** By sweeps: cheap, gives way under loads far heavier than the bodies it holds, by .0253 h^2 |f| (1/m_a + 1/m_b)
+       in substeps of h. A drive's stiffness K, damping with it, is at most half of the inertia I of its ends' own
+       turning over h^2, I / (2 h^2): some 13 Hz for limbs. */
+    TAUT_JOINT_SOLVE_SOFT = 1,
+    /** As it needs: by sweeps while they give way by less than 1/500 of the size of the joint's smaller body, else
+        directly with all that it hangs together with, until sweeps would have held it for a quarter of a second.
+        Directly from the start where sweeps would not hold the weight of the heaviest of these bodies by the lightest,
+        where a body has no size (a particle), and together with a direct joint. */
+    TAUT_JOINT_SOLVE_BY_LOAD = 2,
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;
 
@@ -125,7 +130,7 @@ typedef struct taut_ball_joint_def {
     float compliance;  /**< [m/N], [0, 1e6]. Default 0 */
     float damping;     /**< [N s/m], [0, 1e12]. Default 0 */
     float break_force; /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
-    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_DIRECT */
+    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
     uint64_t user_data;
 } taut_ball_joint_def;
 
@@ -153,7 +158,7 @@ typedef struct taut_distance_joint_def {
     float break_force;      /**< as for the ball joint */
     taut_drive drive;       /**< of a range: target is distance - length */
     float friction;         /**< of a range [N], [0, 1e24]. Default 0 */
-    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_DIRECT */
+    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
     uint32_t reserved;      /**< zero */
     uint64_t user_data;
 } taut_distance_joint_def;
@@ -172,7 +177,7 @@ typedef struct taut_fixed_joint_def {
     float angular_damping;    /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
     float break_force;        /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
     float break_torque;       /**< the same of the torque about the anchor of end b [N m] */
-    taut_joint_solve solve;   /**< default TAUT_JOINT_SOLVE_DIRECT */
+    taut_joint_solve solve;   /**< default TAUT_JOINT_SOLVE_BY_LOAD */
     uint32_t reserved;        /**< zero */
     uint64_t user_data;
 } taut_fixed_joint_def;

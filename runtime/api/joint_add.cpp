@@ -58,6 +58,7 @@ void init(Def* def, taut_axis_mode mode = TAUT_AXIS_FREE) {
     if (!def) return;
     *def = {};
     def->struct_size = sizeof *def;
+    def->solve = TAUT_JOINT_SOLVE_BY_LOAD;
     if constexpr (kFramed<Def>) {
         def->frame_a.rotation = def->frame_b.rotation = kUnturned;
         for (const NamedAxis& axis : axes_of(*def)) {
@@ -262,6 +263,7 @@ void taut_distance_joint_def_init(taut_distance_joint_def* def) {
     if (!def) return;
     *def = {};
     def->struct_size = sizeof *def;
+    def->solve = TAUT_JOINT_SOLVE_BY_LOAD;
     def->damping_ratio = 1;
     def->drive.damping_ratio = 1;
     def->drive.max_force = INFINITY;

@@ -27,6 +27,8 @@ inline SweepTerms soft_terms(double h, double cycles) {
 }
 // By which a contact yields to a force that stays, in parts of h^2 w |f|: 1 / (om h)^2.
 constexpr float kContactYield = 0.405f;
+// By which a swept joint does; see joint_terms().
+constexpr double kJointYield = 0.0253;
 // Time in which it is forgotten by how much swept rows were found to yield, e-fold [s]: where substeps follow at once,
 // they swing with what swings by them.
 constexpr double kYieldMemory = 0.5;

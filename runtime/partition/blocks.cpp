@@ -6,7 +6,9 @@
 
 #include "detect/approach.h"
 #include "partition/movers.h"
+#include "partition/needs.h"
 #include "partition/partition.h"
+#include "partition/weights.h"
 
 namespace taut {
 namespace {
@@ -22,19 +24,6 @@ constexpr double kHit = 0.5;  // that a contact would give a body that nothing h
 constexpr double kSunk = 0.005;  // [m]
 // Until the impulse of the hit is none that sweeps start from.
 constexpr uint8_t kHitFor = 3;  // frames
-
-// Beyond these, mechanisms of joints solved by load are blocks. Their contacts stay swept.
-constexpr double kSweptLoad = 1000;     // likewise [m/s^2]: such a joint yields by .4 mm at 240 substeps a second
-constexpr double kSweptMassRatio = 20;  // heaviest over lightest body
-// From the tenth frame of such a load on, and for so many after. Hits in a heap last less: of 670 in a fall of 100
-// ragdolls 44 loaded a joint for three frames, two for six. From the third on, a sixth of the heap was in blocks as it
-// landed, mostly after the hit was over; from the sixth on, six dolls. Their joints opened as far as without.
-constexpr uint8_t kSweptAfter = 10, kSweptFor = 15;
-
-constexpr uint32_t kMostLoops = 2000;  // joints beyond a tree's: a net with more is swept, its direct solve would stall
-
-bool by_load(JointSolve solve) { return solve == JointSolve::by_load; }
-uint8_t loaded_after(JointSolve solve) { return by_load(solve) ? kSweptAfter : kLoadedAfter; }
 
 // By how much a contact that closes within a frame changes the velocities of its two sides, times their masses [N s];
 // infinite where it sank in or carries what sweeps do not hold.
@@ -56,16 +45,25 @@ double hit_of(const Nodes& nodes, const Pair& pair, double borne, double time_st
 
 // Frames under or since a load, after one more of them.
 uint8_t note_load(const Nodes& nodes, const ConstraintType& type, std::span<const uint32_t> ends, const double* lambda,
-                  JointSolve solve, uint8_t loaded) {
+                  uint8_t loaded) {
     double squared = 0, lighter = 1e300;
     for (int r = 0; r < type.rows; ++r)
         if (!(type.angular >> r & 1)) squared += lambda[r] * lambda[r];
     for (uint32_t node : ends)
         if (moving(nodes, node)) lighter = std::min(lighter, nodes.mass[node].mass);
-    const double most = (by_load(solve) ? kSweptLoad : kLoad) * lighter;
-    const int after = loaded_after(solve), then = after + (by_load(solve) ? kSweptFor : kLoadedFor);
-    if (squared > most * most) return static_cast<uint8_t>(loaded + 1 < after ? loaded + 1 : then);
-    return loaded > after ? loaded - 1 : 0;
+    const double most = kLoad * lighter;
+    if (squared > most * most)
+        return static_cast<uint8_t>(loaded + 1 < kLoadedAfter ? loaded + 1 : kLoadedAfter + kLoadedFor);
+    return loaded > kLoadedAfter ? loaded - 1 : 0;
+}
+
+uint32_t bounded_rows(const Joint& joint) {
+    uint32_t count = 0;
+    for (int r = 0; joint.type && !joint.plain && r < joint.type->rows; ++r) {
+        const Axis& axis = joint.axis[r];
+        count += static_cast<uint32_t>(axis.mode == AxisMode::limited) + (axis.max_force > 0) + (axis.friction > 0);
+    }
+    return count;
 }
 
 // The nodes of a contact of a block.
@@ -86,10 +84,10 @@ void keep_once(Array<uint64_t>& links) {
 void note_loads(Joints& joints, Elements& elements, const Nodes& nodes) {
     for (Joint& joint : joints.record)
         if (joint.type && !asleep(nodes, joint))
-            joint.loaded = note_load(nodes, *joint.type, joint.nodes(), joint.lambda, joint.solve, joint.loaded);
+            joint.loaded = note_load(nodes, *joint.type, joint.nodes(), joint.lambda, joint.loaded);
     for_each_element(elements, [&](ElementSet& set, uint32_t e, std::span<const uint32_t> ends) {
         if (!asleep(nodes, ends))
-            set.loaded[e] = note_load(nodes, set.type->row, ends, set.lambda_of(e), set.solve, set.loaded[e]);
+            set.loaded[e] = note_load(nodes, set.type->row, ends, set.lambda_of(e), set.loaded[e]);
     });
 }
 
@@ -129,10 +127,13 @@ void Partition::build_blocks(const Nodes& nodes, const Joints& joints, const Ele
     for (const uint32_t node : graph_.movers) {
         Component& component = component_[find(node)];
         ++component.nodes;
-        component.least = std::min(component.least, nodes.mass[node].mass);
+        if (nodes.mass[node].mass < component.least) {
+            component.least = nodes.mass[node].mass;
+            component.lightest = node;
+        }
         component.most = std::max(component.most, nodes.mass[node].mass);
     }
-    choose_direct(nodes, joints, elements);
+    choose_direct(nodes, joints, elements, rules);
     find_hit(nodes, pairs, rules);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
         const auto ends = pairs.active[p].nodes();
@@ -177,21 +178,32 @@ void Partition::take_surfaces(const SurfaceContacts& surfaces) {
 }
 
 // What ties of each component ask for.
-void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements) {
-    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, bool multiplies) {
+void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements,
+                           const PartitionRules& rules) {
+    const double h = rules.time_step / rules.substeps, gravity = least_gravity(rules);
+    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, float need, uint32_t bounded,
+                           bool multiplies) {
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
+        const bool loaded = frames_loaded >= kLoadedAfter, direct = solve == JointSolve::direct;
+        if (c.ties == 0) {
+            c.loaded = c.most >= kLoadedMassRatio * c.least;
+            c.uneven = strain_of_weights(nodes.mass[c.lightest], c.most / c.least, h, gravity) > 1;
+        }
         c.ties += multiplies;
-        const bool loaded = frames_loaded >= loaded_after(solve), direct = solve == JointSolve::direct;
         c.elastic = c.elastic || (direct && !multiplies);
-        c.loaded = c.loaded || (direct && (loaded || !multiplies)) || c.most >= kLoadedMassRatio * c.least;
-        c.direct = c.direct || direct || loaded || c.most >= kSweptMassRatio * c.least;
+        c.loaded = c.loaded || (direct && !multiplies);
+        c.bears = c.bears || loaded;
+        c.direct = c.direct || c.uneven || is_needed(need);
         c.always = c.always || direct;
+        c.bounded += bounded;
     };
-    for (const Joint& joint : joints.record) weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, true);
+    for (const Joint& joint : joints.record)
+        weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, joint.need, bounded_rows(joint), true);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[element_[e].element], multiplies(set));
+        const uint32_t at = element_[e].element;
+        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[at], set.need[at], set.pulls ? 1 : 0, multiplies(set));
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
@@ -200,10 +212,18 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
         }
 }
 
-// Ties that blocks own, but for nets with too many loops and for mechanisms that sweeps hold as well.
-void Partition::choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements) {
-    weigh_ties(nodes, joints, elements);
-    auto is_block = [](const Component& c) { return c.direct && c.ties <= c.nodes + kMostLoops; };
+// Ties that blocks own, but for mechanisms whose factor is too dear and for those that sweeps hold as well.
+void Partition::choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements,
+                              const PartitionRules& rules) {
+    weigh_ties(nodes, joints, elements, rules);
+    find_prices(nodes, joints, elements);
+    for (const uint32_t node : graph_.movers) {
+        Component& c = component_[node];
+        c.always = c.always || (c.exact && c.ties > 0);
+        c.direct = c.direct || c.always;
+        c.loaded = c.loaded || (c.always && c.bears);
+    }
+    auto is_block = [](const Component& c) { return c.direct && !c.dear; };
     const auto take = [&](std::span<const uint32_t> ends, JointSolve solve) -> uint8_t {
         const uint32_t end = mover(nodes, ends);
         if (solve == JointSolve::swept || end == kNone || !is_block(component_[find(end)])) return 0;
@@ -270,7 +290,6 @@ Block& Partition::block_at(uint32_t node) {
         fresh.identity.clear();
         fresh.order.clear();
         fresh.matrix.forget();
-        fresh.passing = true;
         fresh.memory = {};
     }
     return spare_[block];
@@ -285,7 +304,6 @@ void Partition::fill_elements(const Elements& elements) {
         const uint32_t node = *std::ranges::find_if(ends, [](uint32_t end) { return end != kNone; });
         Block& block = block_at(node);
         (multiplies(set) ? block.elements : block.elastic).push_back(element_[e]);
-        block.passing = block.passing && by_load(set.solve);
         if (std::exchange(component_[find(node)].set, element_[e].set) != element_[e].set)
             block.identity.push_back(set.serial << 32 | (set.version & UINT32_MAX));
     }
@@ -300,7 +318,6 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         Block& block = block_at(mover(nodes, joint.nodes()));
         block.joints.push_back(j);
         block.identity.push_back(joint.mark());
-        block.passing = block.passing && by_load(joint.solve);
     }
     fill_elements(elements);
     for (uint32_t p = 0; p < pairs.active.size(); ++p) {
@@ -331,7 +348,8 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());
         block.mass_ratio = most / least;
         block.tower = block.joints.empty() && block.elements.empty() && block.elastic.empty();
-        block.passing = block.passing && !block.tower && block.mass_ratio < kSweptMassRatio;
+        const Component& component = component_[find(block.nodes[0])];
+        block.passing = !block.tower && !component.always && !component.uneven;
     }
 }
 

@@ -14,6 +14,8 @@ Partition::Partition(Memory& memory)
       level_(memory),
       island_(memory),
       component_(memory),
+      prices_(memory),
+      known_prices_(memory),
       core_(memory),
       pair_in_block_(memory),
       joint_in_block_(memory),

@@ -283,10 +283,19 @@ private:
     struct Component {  // of the graph of blocks, by root
         uint32_t nodes = 1, ties = 0, grown = 0, block = UINT32_MAX;
         uint32_t set = UINT32_MAX;       // of elements, the last that its block was marked with
+        uint32_t lightest = UINT32_MAX;  // of its nodes
         double least = 1e300, most = 0;  // mass of its nodes [kg]
+        uint64_t graph = 0;              // of its nodes and ties; see price.cpp
         bool loaded = false;             // takes in its contacts
         bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
+        bool uneven = false;             // sweeps would not hold its heaviest node by its lightest
+        bool bears = false;              // more than contacts in sweeps could stand
+        uint32_t bounded = 0;            // rows of stops, drives and friction
+        double flops = 0;                // multiplications of its factor; infinite where they are more than matters
+        bool priced = false;             // this is known from the last frame
+        bool exact = false;              // a direct solve costs little more than sweeps
+        bool dear = false;               // it costs more than it may
         bool hit = false;                // in this frame
         bool elastic = false;            // has elements without multipliers: its matrix sees no contact
     };
@@ -296,6 +305,11 @@ private:
     static constexpr uint32_t kMostGrown = 64;
     // Of nodes in blocks: with a joint that is solved directly, or in a tower; or taken in with a contact.
     static constexpr uint8_t kHeld = 1, kTaken = 2;
+
+    struct Price {
+        uint64_t graph;  // Component::graph
+        double flops;
+    };
 
     // By a heavy body, by a load, or by what these press.
     struct Press {
@@ -357,8 +371,11 @@ private:
     void soften(const Nodes& nodes, const Squeeze& last, double most, double furthest, Pairs& pairs);
     void find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void push_on(const Nodes& nodes, const Pairs& pairs);
-    void weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements);
-    void choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements);
+    void weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements, const PartitionRules& rules);
+    void choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements, const PartitionRules& rules);
+    void mark_graphs(const Nodes& nodes, const Joints& joints, const Elements& elements);
+    void find_prices(const Nodes& nodes, const Joints& joints, const Elements& elements);
+    void price_new(const Nodes& nodes, const Joints& joints, const Elements& elements);
     void take_pressed();
     void take_between(const Nodes& nodes, const Pairs& pairs);
     void find_hit(const Nodes& nodes, const Pairs& pairs, const PartitionRules& rules);
@@ -414,6 +431,8 @@ private:
     Array<uint32_t> level_;      // by slot: bodies between it and a support
     Array<Island> island_;
     Array<Component> component_;     // by slot of a root
+    Array<Price> prices_;            // of mechanisms in this frame, by graph
+    Array<Price> known_prices_;      // and in the last
     Array<uint8_t> core_;            // by slot: whether and how it is in a block
     Array<uint8_t> pair_in_block_;   // by index in Pairs::active
     Array<uint8_t> joint_in_block_;  // by slot

@@ -21,6 +21,7 @@ void for_columns(ElementSet& of, Act&& act) {
     act(of.drift, rows);
     act(of.slow_turn, row.line ? 1u : 0u);
     act(of.loaded, 1u);
+    act(of.need, 1u);
     act(of.fresh, 1u);
     act(of.memory, of.pulls ? 1u : 0u);
 }

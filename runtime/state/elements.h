@@ -27,7 +27,7 @@ constexpr uint32_t kMostStages = 16;
 
 struct ElementSet {
     explicit ElementSet(Memory& m)
-        : node(m), data(m), softness(m), lambda(m), drift(m), slow_turn(m), loaded(m), fresh(m), memory(m) {}
+        : node(m), data(m), softness(m), lambda(m), drift(m), slow_turn(m), loaded(m), need(m), fresh(m), memory(m) {}
 
     const ElementType* type = nullptr;  // null: dead slot
     ElementForm form = ElementForm::rows;
@@ -57,7 +57,8 @@ struct ElementSet {
     Array<double> lambda;      // [rows], force of the last substep [N, N m]
     Array<double> drift;       // [rows], of C since the last step, by a change of length; see Joint
     Array<Vec3> slow_turn;     // low-passed angular velocity of the line [rad/s]; of types with one, else empty
-    Array<uint8_t> loaded;     // frames under or since a load beyond what sweeps hold; partition/partition.h
+    Array<uint8_t> loaded;     // frames under or since a load beyond what contacts in sweeps hold; partition.h
+    Array<float> need;         // of a direct solve [s]; partition/needs.h
     Array<uint8_t> fresh;      // not solved yet: lambda means nothing
     Array<AxisMemory> memory;  // of a set that pulls, else empty
 
@@ -80,10 +81,10 @@ template <class Visitor, Like<ElementSet> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected, pulls,
            coupled, compliance, stiffness, relaxation, rayleigh, stop, serial, version, node, data, softness, lambda,
-           drift, slow_turn, loaded, fresh, memory] = of;
+           drift, slow_turn, loaded, need, fresh, memory] = of;
     TAUT_FIELDS(visitor, type, form, solve, fused, stage, tolerance, yield, least_yield, most_yield, collide_connected,
                 pulls, coupled, compliance, stiffness, relaxation, rayleigh, stop, node, data, softness, lambda, drift,
-                slow_turn, loaded, fresh, memory);
+                slow_turn, loaded, need, fresh, memory);
     TAUT_ASIDE(visitor, serial, version);
 }
 

@@ -15,7 +15,7 @@ namespace taut {
 enum class JointSolve : uint8_t {
     direct,   // part of a block
     swept,    // never
-    by_load,  // part of a block while something in its mechanism is more than sweeps hold
+    by_load,  // part of a block while something in its mechanism needs it and that is not too dear
 };
 
 struct Joint {
@@ -36,7 +36,8 @@ struct Joint {
     JointSolve solve = JointSolve::direct;
     bool collide_connected = false;
     bool inner = false;             // of something that the host knows as a whole: no handle leads to it
-    uint8_t loaded = 0;             // frames under or since a load beyond what sweeps hold; partition/partition.h
+    uint8_t loaded = 0;             // frames under or since a load beyond what contacts in sweeps hold; partition.h
+    float need = 0;                 // of a direct solve [s]; partition/needs.h
     bool fresh = true;              // not solved yet: lambda means nothing
     Vec3 slow_turn = Vec3::Zero();  // low-passed angular velocity of its line [rad/s]; see ConstraintType::line
     uint64_t user_data = 0;
@@ -59,15 +60,15 @@ struct Joint {
 template <class Visitor, Like<Joint> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [type, node, lambda, drift, compliance, damping, angular_compliance, angular_damping, break_force,
-           break_torque, plain, solve, collide_connected, inner, loaded, fresh, slow_turn, user_data, serial, axis,
-           memory, data] = of;
+           break_torque, plain, solve, collide_connected, inner, loaded, need, fresh, slow_turn, user_data, serial,
+           axis, memory, data] = of;
     TAUT_FIELDS(visitor, type, plain);
     const int nodes = type ? type->nodes : 0, rows = type ? type->rows : 0;
     for (int n = 0; n < nodes; ++n) TAUT_FIELDS(visitor, node[n]);
     for (int r = 0; r < rows; ++r) TAUT_FIELDS(visitor, lambda[r], drift[r]);
     for (int r = 0; r < rows && !plain; ++r) TAUT_FIELDS(visitor, axis[r], memory[r]);
     TAUT_FIELDS(visitor, compliance, damping, angular_compliance, angular_damping, break_force, break_torque, solve,
-                collide_connected, inner, loaded, fresh, slow_turn);
+                collide_connected, inner, loaded, need, fresh, slow_turn);
     Bytes own{data, type ? type->data_size : 0};
     TAUT_FIELDS(visitor, own);
     TAUT_ASIDE(visitor, user_data, serial);

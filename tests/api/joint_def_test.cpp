@@ -232,7 +232,7 @@ TEST(JointInit, TakesNullAndWritesDefaults) {
     taut_hinge_joint_def hinge;
     taut_hinge_joint_def_init(&hinge);
     EXPECT_EQ(hinge.angle.mode, TAUT_AXIS_FREE);
-    EXPECT_EQ(hinge.solve, TAUT_JOINT_SOLVE_DIRECT);
+    EXPECT_EQ(hinge.solve, TAUT_JOINT_SOLVE_BY_LOAD);
     taut_six_dof_joint_def six;
     taut_six_dof_joint_def_init(&six);
     EXPECT_EQ(six.axes[5].mode, TAUT_AXIS_LOCKED);

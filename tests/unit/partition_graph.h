@@ -35,6 +35,13 @@ struct Graph {
         nodes.mass.reserve_values(1);
         nodes.mass.set(node, of);
     }
+    uint32_t add_cube(double mass, double side) {
+        const uint32_t node = add(NodeKind::dynamic, mass);
+        NodeMass of = nodes.mass[node];
+        of.inertia.xx = of.inertia.yy = of.inertia.zz = mass * side * side / 6;
+        nodes.mass.set(node, of);
+        return node;
+    }
     uint32_t join(uint32_t a, uint32_t b, const ConstraintType& type = kBall) {
         Joint joint;
         joint.type = &type;

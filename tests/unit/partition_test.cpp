@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include "constraints/soft_contact.h"
+#include "partition/needs.h"
 #include "starts.h"
 #include "unit/partition_graph.h"
 
@@ -437,41 +441,67 @@ TEST_F(PartitionTest, SoftJointsAreSwept) {
     ASSERT_EQ(partition.groups[0].joints.size(), 1u);
 }
 
-TEST_F(PartitionTest, JointsSolvedByLoadAreABlockOnlyWhileTheyNeedIt) {
-    const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic), c = add(NodeKind::dynamic, 19);
-    const uint32_t one = join(a, b), other = join(b, c), box = add(NodeKind::dynamic);
-    touch(a, box);
-    for (uint32_t j : {one, other}) {
-        joints.record[j].solve = JointSolve::by_load;
-        joints.record[j].loaded = 0;
+// At a strain of 3 a quarter of a second of what is beyond 1 takes an eighth, at any length of frames and substeps; a
+// quarter of a second after, sweeps have it back.
+TEST_F(PartitionTest, JointsAreABlockOnlyWhileTheyNeedIt) {
+    constexpr double kSide = 0.5;  // [m]
+    for (const auto& [rate, substeps] : {std::pair{30, 8u}, {60, 4u}, {120, 2u}, {240, 1u}, {240, 16u}}) {
+        SCOPED_TRACE(testing::Message() << rate << " Hz, " << substeps << " substeps");
+        rules.time_step = 1.0 / rate;
+        rules.substeps = substeps;
+        rules.spring_substep = rules.time_step / substeps;
+        const double h = rules.spring_substep;
+        const uint32_t a = add_cube(1, kSide), b = add_cube(1, kSide), box = add_cube(1, kSide);
+        const uint32_t joint = join(a, b);
+        touch(a, box);
+        joints.record[joint].solve = JointSolve::by_load;
+        joints.record[joint].loaded = 0;
+        const auto blocks_after = [&](double seconds, double strain) {
+            const double yield = kSeen * extent(nodes.mass[a]);  // [m] at a strain of 1, of 2/m |f|
+            joints.record[joint].lambda[1] = strain * yield / (kJointYield * h * h * 2);
+            const long frames = std::lround(seconds * rate);
+            for (long i = 0; i < frames; ++i) note_needs(joints, elements, nodes, h, rules.time_step);
+            build();
+            EXPECT_EQ(partition.groups[0].pairs.size(), 1u) << "contacts stay swept";
+            return partition.blocks.size();
+        };
+        EXPECT_EQ(blocks_after(1, 0.99), 0u);
+        EXPECT_EQ(blocks_after(0.1, 3), 0u);
+        EXPECT_EQ(blocks_after(0.3, 0), 0u);
+        EXPECT_EQ(blocks_after(0.1, 3), 0u) << "starts again";
+        EXPECT_EQ(blocks_after(0.0667, 3), 1u);
+        EXPECT_EQ(blocks_after(0.2, 0.99), 1u);
+        EXPECT_EQ(blocks_after(0.1, 0.99), 0u);
+        EXPECT_EQ(blocks_after(1.0 / rate, 1000), 1u) << "one frame of a great one is enough";
+        EXPECT_EQ(blocks_after(0.3, 0), 0u);
+        joints.record[joint].solve = JointSolve::direct;
+        EXPECT_EQ(blocks_after(0, 0), 1u);
+        joints.remove(joint);
+        touching.clear();
+        for (const uint32_t node : {a, b, box}) nodes.remove(node);
     }
-    auto expect = [&](size_t blocks, size_t swept) {
-        build();
-        EXPECT_EQ(partition.blocks.size(), blocks);
-        EXPECT_EQ(partition.groups[0].joints.size(), swept);
-        EXPECT_EQ(partition.groups[0].pairs.size(), 1u) << "contacts stay swept";
-    };
-    auto expect_after = [&](int frames, double force, size_t blocks, size_t swept) {
-        joints.record[other].lambda[0] = force;
-        for (int i = 0; i < frames; ++i) note_loads(joints, elements, nodes);
-        expect(blocks, swept);
-    };
-    expect_after(9, 1001, 0, 2);
-    expect_after(1, 999, 0, 2);
-    expect_after(9, 1001, 0, 2);
-    expect_after(1, 1001, 1, 0);
-    expect_after(15, 999, 1, 0);
-    expect_after(1, 999, 0, 2);
-    set_mass(c, 20);
-    expect(1, 0);
-    set_mass(c, 19);
-    joints.record[one].solve = JointSolve::direct;
-    expect(1, 0);
 }
 
-// A net of n x n has (n - 1)^2 loops: 45 x 45 is solved directly, 46 x 46 is swept.
-TEST_F(PartitionTest, NetsBeyondTwoThousandLoopsAreSwept) {
-    auto net = [&](uint32_t side) {
+// What would give way by more than is seen under the weight of its heaviest body by its lightest is direct from the
+// start: at short substeps sweeps hold more.
+TEST_F(PartitionTest, UnevenMechanismsAreBlocksFromTheStart) {
+    const uint32_t light = add_cube(1, 0.1), heavy = add_cube(75, 0.5);
+    joints.record[join(light, heavy)].solve = JointSolve::by_load;
+    EXPECT_LT(strain_of_weights(nodes.mass[light], 75, 1.0 / 240, 9.81), 1);
+    build();
+    EXPECT_EQ(partition.blocks.size(), 0u);
+    set_mass(heavy, 150);
+    build();
+    EXPECT_EQ(partition.blocks.size(), 1u);
+    rules.substeps = 16;
+    build();
+    EXPECT_EQ(partition.blocks.size(), 0u);
+}
+
+// Nets of particles, whose joints have no size to yield by, are direct while that costs less than sweeps of the most
+// substeps would; of each tied to each, few. What is not is swept, and its contacts with blocks are theirs.
+TEST_F(PartitionTest, WhatADirectSolveCostsTooMuchForIsSwept) {
+    const auto net = [&](uint32_t side) {
         const uint32_t first = nodes.slots();
         for (uint32_t i = 0; i < side * side; ++i) add(NodeKind::particle);
         for (uint32_t i = 0; i < side; ++i)
@@ -481,16 +511,40 @@ TEST_F(PartitionTest, NetsBeyondTwoThousandLoopsAreSwept) {
             }
         return first;
     };
-    const uint32_t direct = net(45), swept = net(46), link = add(NodeKind::dynamic);
+    const auto clique = [&](uint32_t count) {
+        const uint32_t first = nodes.slots();
+        for (uint32_t i = 0; i < count; ++i) add(NodeKind::dynamic);
+        for (uint32_t i = 0; i < count; ++i)
+            for (uint32_t k = 0; k < i; ++k) join(first + i, first + k);
+        return first;
+    };
+    const uint32_t direct = net(20), swept = clique(40), few = clique(6), link = add(NodeKind::dynamic);
     join(link, kNone);
     touch(link, swept + 7);
     build();
-    ASSERT_EQ(partition.blocks.size(), 2u);
-    EXPECT_EQ(partition.blocks[0].nodes.size(), 45u * 45u);
+    ASSERT_EQ(partition.blocks.size(), 3u);
     EXPECT_EQ(partition.blocks[0].nodes[0], direct);
-    EXPECT_EQ(partition.blocks[1].nodes.size(), 2u) << "a link and what it touches of the net";
+    EXPECT_EQ(partition.blocks[0].nodes.size(), 400u);
+    EXPECT_EQ(partition.blocks[1].nodes[0], few);
+    EXPECT_EQ(partition.blocks[2].nodes.size(), 2u) << "a link and what it touches";
     ASSERT_EQ(partition.group_count, 1u);
-    EXPECT_EQ(partition.groups[0].joints.size(), 2u * 46u * 45u);
+    EXPECT_EQ(partition.groups[0].joints.size(), 780u);
+    build();
+    const uint64_t calls = memory.calls();
+    build();
+    EXPECT_EQ(memory.calls(), calls) << "prices are known: nothing is analysed again";
+}
+
+// Joints that two bodies share are rows of one column: a few are direct, a thousand swept.
+TEST_F(PartitionTest, ManyJointsBetweenTwoBodiesAreSwept) {
+    for (const uint32_t count : {20u, 1000u}) {
+        const uint32_t a = add(NodeKind::dynamic), b = add(NodeKind::dynamic);
+        for (uint32_t i = 0; i < count; ++i) join(a, b);
+    }
+    build();
+    ASSERT_EQ(partition.blocks.size(), 1u);
+    EXPECT_EQ(partition.blocks[0].joints.size(), 20u);
+    EXPECT_EQ(partition.groups[0].joints.size(), 1000u);
 }
 
 // A joint's slot is used again at once, by a joint between other nodes of the same block or of another type: the

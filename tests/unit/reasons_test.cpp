@@ -1,6 +1,7 @@
 // By which rules an island has rows that are solved directly.
 #include <gtest/gtest.h>
 
+#include "partition/needs.h"
 #include "unit/partition_graph.h"
 
 namespace taut::test {
@@ -35,7 +36,7 @@ TEST_F(Reasons, JointsAreDirectByTheirDefOrTheirLoad) {
     build();
     EXPECT_EQ(of(a), kByJoint);
     joints.record[joint].solve = JointSolve::by_load;
-    joints.record[joint].loaded = 255;
+    joints.record[joint].need = 2 * kPatience;
     build();
     EXPECT_EQ(of(a), kByLoad);
 }

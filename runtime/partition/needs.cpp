@@ -1,0 +1,59 @@
+#include "partition/needs.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "constraints/soft_contact.h"
+#include "partition/movers.h"
+
+namespace taut {
+namespace {
+
+// y / (kSeen d) of an acceleration a = w |f| [m/s^2] and a size d [m].
+double strain(double acceleration, double size, double h) {
+    if (acceleration == 0) return 0;
+    return size > 0 ? kJointYield * h * h * acceleration / (kSeen * size) : std::numeric_limits<double>::infinity();
+}
+
+double strain_of(const Nodes& nodes, const ConstraintType& type, std::span<const uint32_t> ends, const double* lambda,
+                 double h) {
+    double squared = 0, inverse = 0, size = std::numeric_limits<double>::infinity();
+    for (int r = 0; r < type.rows; ++r)
+        if (!(type.angular >> r & 1)) squared += lambda[r] * lambda[r];
+    for (const uint32_t node : ends) {
+        if (!moving(nodes, node)) continue;
+        inverse += nodes.mass[node].inv_mass;
+        size = std::min(size, extent(nodes.mass[node]));
+    }
+    return strain(inverse * std::sqrt(squared), size, h);
+}
+
+// Seconds of strain beyond what may be seen; once it is needed, of time until it is not.
+float follow(float need, double strain, double frame) {
+    const auto past = static_cast<float>(frame);
+    if (is_needed(need)) {
+        need = strain > 1 ? 2 * kPatience : need - past;
+        return is_needed(need) ? need : 0;
+    }
+    const double grown = static_cast<double>(need) + (strain - 1) * frame;
+    return grown > static_cast<double>(kPatience) ? 2 * kPatience : std::max(0.0f, static_cast<float>(grown));
+}
+
+}  // namespace
+
+double strain_of_weights(const NodeMass& body, double weights, double h, double gravity) {
+    return strain(weights * gravity, extent(body), h);
+}
+
+void note_needs(Joints& joints, Elements& elements, const Nodes& nodes, double h, double frame) {
+    for (Joint& joint : joints.record) {
+        if (!joint.type || joint.solve != JointSolve::by_load || asleep(nodes, joint)) continue;
+        joint.need = follow(joint.need, strain_of(nodes, *joint.type, joint.nodes(), joint.lambda, h), frame);
+    }
+    for_each_element(elements, [&](ElementSet& set, uint32_t e, std::span<const uint32_t> ends) {
+        if (set.solve != JointSolve::by_load || asleep(nodes, ends)) return;
+        set.need[e] = follow(set.need[e], strain_of(nodes, set.type->row, ends, set.lambda_of(e), h), frame);
+    });
+}
+
+}  // namespace taut
