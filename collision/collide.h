@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "base/math.h"
 #include "base/memory.h"
@@ -51,18 +50,29 @@ struct MassProperties {
     Sym3 inertia;                // about the centre, body axes [kg m^2]
 };
 
+// What is built holds memory of the one it is built with, which outlives it, and so does what the work takes meanwhile.
 // Builds the hull of points [m]: at most max_vertices of them (never more than 64), coplanar faces merged as long as
 // they stay convex, vertices and faces in an order that depends on the points alone. Faces may lie off the points by
 // 2e-4 of their extent. Returns null and a reason (static text) for fewer than 4 points, non-finite points, or points
 // thinner than thickness [m].
 std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> points, int max_vertices, float thickness,
-                                       const char** reason);
+                                       const char** reason, Memory& memory);
 // The hull with its points multiplied, axis by axis; negative factors mirror it. Faces and their corners stay the same.
 // Null and a reason if it came out thinner than thickness [m].
-std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason);
+std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason,
+                                       Memory& memory);
 std::span<const Vec3f> hull_vertices(const Hull& hull);
-// Vertex indices, three a triangle, outward counter-clockwise.
-void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices);
+uint32_t hull_triangle_count(const Hull& hull);
+
+// Takes the corners of triangles, three a triangle, outward counter-clockwise.
+class PointSink {
+public:
+    virtual void take(const Vec3f& point) = 0;
+
+protected:
+    ~PointSink() = default;
+};
+void hull_triangles(const Hull& hull, PointSink& points);
 
 struct SurfaceCounts {
     uint32_t triangles = 0, facets = 0;
@@ -73,7 +83,7 @@ struct SurfaceCounts {
 // same place but for rounding become one; triangles thinner than 1e-5 of their longest edge and second copies are left
 // out. Null if none remains. two_sided: bodies meet triangles from behind as well.
 std::shared_ptr<const Surface> build_mesh(std::span<const Vec3f> vertices, std::span<const uint32_t> indices,
-                                          bool two_sided);
+                                          bool two_sided, Memory& memory);
 
 struct HeightGrid {
     uint32_t rows, columns;          // at least 2 each
@@ -82,11 +92,11 @@ struct HeightGrid {
 };
 
 // Builds a height field, which looks along +y. Null if no cell has three heights.
-std::shared_ptr<const Surface> build_height_field(const HeightGrid& grid);
+std::shared_ptr<const Surface> build_height_field(const HeightGrid& grid, Memory& memory);
 
 SurfaceCounts surface_counts(const Shape& shape);
-// Three points a triangle, outward counter-clockwise, in the frame of a shape that is a surface.
-void surface_triangles(const Shape& shape, std::vector<Vec3f>& points);
+// In the frame of a shape that is a surface.
+void surface_triangles(const Shape& shape, PointSink& points);
 
 // Exact for each kind, by polyhedral integration for hulls. A plane and a surface have no mass.
 MassProperties mass_properties(const Shape& shape, double density);

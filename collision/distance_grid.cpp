@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "collision/box_tree.h"
+#include "collision/sorting.h"
 #include "collision/surface.h"
 #include "constraints/point_penalty.h"
 
@@ -17,10 +18,17 @@ struct Crossing {
     int turn;  // 1: into it, -1: out of it
 };
 
+struct CornerList final : PointSink {
+    explicit CornerList(Memory& memory) : list(memory) {}
+    void take(const Vec3f& point) override { list.push_back(point); }
+
+    Array<Vec3f> list;
+};
+
 class Sampling {
 public:
     Sampling(std::span<const Vec3f> corners, DistanceGrid& out, Memory& memory)
-        : corners_(corners), out_(out), tree_(memory) {}
+        : corners_(corners), out_(out), tree_(memory), first_(memory), crossing_(memory) {}
 
     void run() {
         tree_.build(static_cast<uint32_t>(corners_.size() / 3), [&](uint32_t t) {
@@ -40,35 +48,41 @@ private:
     double line(int axis, uint32_t i) const {
         return place(axis, i) + out_.cell * (axis == 1 ? 1.234567e-5 : 2.345678e-5);
     }
-    size_t line_of(uint32_t j, uint32_t k) const { return size_t{k} * out_.nodes[1] + j; }
+    uint32_t line_of(uint32_t j, uint32_t k) const { return k * out_.nodes[1] + j; }
 
+    // Those of each line, from first_[line] to first_[line + 1].
     void find_crossings() {
-        crossing_.resize(size_t{out_.nodes[1]} * out_.nodes[2]);
-        for (uint32_t t = 0; t < corners_.size() / 3; ++t) {
-            const Vec3 a = corner(t, 0), u = corner(t, 1) - a, v = corner(t, 2) - a;
-            const double area = u.y() * v.z() - u.z() * v.y();  // of its shadow along x, twice
-            if (area == 0) continue;
-            ItemBox box;
-            for (int k = 0; k < 3; ++k) box.add(corner(t, k));
-            uint32_t first[2], last[2];
-            for (int axis = 1; axis < 3; ++axis) {
-                first[axis - 1] =
-                    static_cast<uint32_t>(std::max(0.0, std::floor((box.lo[axis] - out_.corner[axis]) / out_.cell)));
-                last[axis - 1] = static_cast<uint32_t>(std::ceil((box.hi[axis] - out_.corner[axis]) / out_.cell));
-            }
-            for (uint32_t k = first[1]; k <= std::min(last[1], out_.nodes[2] - 1); ++k)
-                for (uint32_t j = first[0]; j <= std::min(last[0], out_.nodes[1] - 1); ++j) {
-                    const double y = line(1, j) - a.y(), z = line(2, k) - a.z();
-                    const double b = (y * v.z() - z * v.y()) / area, c = (u.y() * z - u.z() * y) / area;
-                    if (b >= 0 && c >= 0 && b + c < 1)
-                        crossing_[line_of(j, k)].push_back({a.x() + b * u.x() + c * v.x(), area < 0 ? 1 : -1});
-                }
+        put_in_groups<Crossing>(out_.nodes[1] * out_.nodes[2], first_, crossing_, [&](const auto& put) {
+            for (uint32_t t = 0; t < corners_.size() / 3; ++t) cross(t, put);
+        });
+    }
+
+    template <class Put>
+    void cross(uint32_t t, const Put& put) {
+        const Vec3 a = corner(t, 0), u = corner(t, 1) - a, v = corner(t, 2) - a;
+        const double area = u.y() * v.z() - u.z() * v.y();  // of its shadow along x, twice
+        if (area == 0) return;
+        ItemBox box;
+        for (int k = 0; k < 3; ++k) box.add(corner(t, k));
+        uint32_t first[2], last[2];
+        for (int axis = 1; axis < 3; ++axis) {
+            first[axis - 1] =
+                static_cast<uint32_t>(std::max(0.0, std::floor((box.lo[axis] - out_.corner[axis]) / out_.cell)));
+            last[axis - 1] = static_cast<uint32_t>(std::ceil((box.hi[axis] - out_.corner[axis]) / out_.cell));
         }
+        for (uint32_t k = first[1]; k <= std::min(last[1], out_.nodes[2] - 1); ++k)
+            for (uint32_t j = first[0]; j <= std::min(last[0], out_.nodes[1] - 1); ++j) {
+                const double y = line(1, j) - a.y(), z = line(2, k) - a.z();
+                const double b = (y * v.z() - z * v.y()) / area, c = (u.y() * z - u.z() * y) / area;
+                if (b >= 0 && c >= 0 && b + c < 1)
+                    put(line_of(j, k), Crossing{a.x() + b * u.x() + c * v.x(), area < 0 ? 1 : -1});
+            }
     }
 
     void sample_line(uint32_t j, uint32_t k) {
-        std::vector<Crossing>& crossings = crossing_[line_of(j, k)];
-        std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+        const uint32_t at = line_of(j, k);
+        const std::span<Crossing> crossings = std::span(crossing_).subspan(first_[at], first_[at + 1] - first_[at]);
+        std::ranges::sort(crossings, {}, &Crossing::x);
         size_t next = 0;
         int winding = 0;
         for (uint32_t i = 0; i < out_.nodes[0]; ++i) {
@@ -91,7 +105,8 @@ private:
     std::span<const Vec3f> corners_;
     DistanceGrid& out_;
     BoxTree tree_;
-    std::vector<std::vector<Crossing>> crossing_;  // of each line
+    Array<uint32_t> first_;
+    Array<Crossing> crossing_;
 };
 
 // Six times the volume within [m^3]: negative where it looks inward.
@@ -149,20 +164,22 @@ LevelSet DistanceGrid::at(const Vec3& point) const {
     return out;
 }
 
-std::shared_ptr<const DistanceGrid> sample_distance(const Shape& shape, double cell, const char** reason) {
+std::shared_ptr<const DistanceGrid> sample_distance(const Shape& shape, double cell, const char** reason,
+                                                    Memory& memory) {
     if (is_open(*shape.surface)) {
         *reason = "an open surface has no inside";
         return nullptr;
     }
-    std::vector<Vec3f> corners;
+    CornerList corners(memory);
+    corners.list.reserve(3 * size_t{surface_counts(shape).triangles});
     surface_triangles(shape, corners);
-    if (!(volume_of(corners) > 0)) {
+    if (!(volume_of(corners.list) > 0)) {
         *reason = "its triangles look inward";
         return nullptr;
     }
-    auto out = std::make_shared<DistanceGrid>();
+    auto out = std::allocate_shared<DistanceGrid>(HostAllocator<DistanceGrid>(memory), memory);
     ItemBox box;
-    for (const Vec3f& each : corners) box.add(each.cast<double>());
+    for (const Vec3f& each : corners.list) box.add(each.cast<double>());
     out->cell = cell;
     out->corner = box.lo - Vec3::Constant(2 * cell);
     double samples = 1;
@@ -176,9 +193,7 @@ std::shared_ptr<const DistanceGrid> sample_distance(const Shape& shape, double c
         return nullptr;
     }
     out->distance.resize(static_cast<size_t>(samples));
-    const taut_hooks hooks{};
-    Memory memory(hooks);
-    Sampling(corners, *out, memory).run();
+    Sampling(corners.list, *out, memory).run();
     return out;
 }
 

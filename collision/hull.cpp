@@ -21,7 +21,7 @@ bool corner_before(const Vec3f& a, const Vec3f& b) {
 
 // The point where measure is largest, the first of equals.
 template <class Measure>
-int furthest(const std::vector<Vec3f>& points, Measure measure) {
+int furthest(std::span<const Vec3f> points, Measure measure) {
     int best = 0;
     double most = -1;
     for (size_t i = 0; i < points.size(); ++i) {
@@ -40,7 +40,7 @@ struct Simplex {
 };
 
 // Four points that span as much as greedily possible; a reason if they are thinner than thickness.
-const char* find_simplex(const std::vector<Vec3f>& points, double thickness, Simplex& simplex) {
+const char* find_simplex(std::span<const Vec3f> points, double thickness, Simplex& simplex) {
     const auto at = [&](int i) { return Vec3(points[size_t(i)].cast<double>()); };
     const Vec3 a = at(0);
     const int second = furthest(points, [&](const Vec3& p) { return (p - a).norm(); });
@@ -61,8 +61,8 @@ const char* find_simplex(const std::vector<Vec3f>& points, double thickness, Sim
 }
 
 // The points that are corners, in their order; the loops name those from then on.
-std::vector<Vec3f> keep_corners(const std::vector<Vec3f>& points, Loops& loops) {
-    std::vector<int> corners;
+Array<Vec3f> keep_corners(std::span<const Vec3f> points, Loops& loops, Memory& memory) {
+    Array<int> corners(memory);
     for (const auto& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
     std::sort(corners.begin(), corners.end());
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
@@ -70,7 +70,8 @@ std::vector<Vec3f> keep_corners(const std::vector<Vec3f>& points, Loops& loops) 
         for (int& corner : loop)
             corner = int(std::lower_bound(corners.begin(), corners.end(), corner) - corners.begin());
     }
-    std::vector<Vec3f> kept;
+    Array<Vec3f> kept(memory);
+    kept.reserve(corners.size());
     for (const int corner : corners) kept.push_back(points[size_t(corner)]);
     return kept;
 }
@@ -85,7 +86,7 @@ bool is_thick(const Hull& hull, float thickness) {
 }  // namespace
 
 std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_vertices, float thickness,
-                                       const char** reason) {
+                                       const char** reason, Memory& memory) {
     const auto refuse = [&](const char* why) {
         if (reason) *reason = why;
         return nullptr;
@@ -95,7 +96,7 @@ std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_ver
     for (const Vec3f& p : given) {
         if (!p.allFinite()) return refuse("a point is not finite");
     }
-    std::vector<Vec3f> points(given.begin(), given.end());
+    Array<Vec3f> points(given.begin(), given.end(), memory);
     for (Vec3f& p : points) p += Vec3f::Zero();  // -0 becomes 0, so that equal points are one
     std::sort(points.begin(), points.end(), corner_before);
     points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -113,12 +114,12 @@ std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_ver
     const double extent = double((hi - lo).maxCoeff());
     const double tolerance = std::min(kRelativeTolerance * extent, 0.02 * simplex.height);
     const size_t most = size_t(std::min(max_vertices, kMaxVertices));
-    Loops surface = quickhull(points, simplex.corners, most, 0.5 * tolerance);
-    const std::vector<Vec3f> corners = keep_corners(points, surface);
+    Loops surface = quickhull(points, simplex.corners, most, 0.5 * tolerance, memory);
+    const Array<Vec3f> corners = keep_corners(points, surface, memory);
     std::shared_ptr<const Hull> hull;
     // A merge that does not close is undone: every triangle is a face then.
     for (const double merge : {tolerance, -1.0}) {
-        hull = hull_of_surface(corners, surface, merge);
+        hull = hull_of_surface(corners, surface, merge, memory);
         if (hull) break;
     }
     if (!hull) return refuse("points are too close to one another for their size");
@@ -126,36 +127,37 @@ std::shared_ptr<const Hull> build_hull(std::span<const Vec3f> given, int max_ver
     return hull;
 }
 
-std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason) {
+std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, float thickness, const char** reason,
+                                       Memory& memory) {
     const auto refuse = [&](const char* why) {
         if (reason) *reason = why;
         return nullptr;
     };
     // Sorted again: factors below zero turn the order around.
-    std::vector<Vec3f> points;
+    Array<Vec3f> points(memory);
     for (const Vec3f& v : hull.vertices) points.push_back(v.cwiseProduct(factors) + Vec3f::Zero());
-    std::vector<int> order(points.size());
+    Array<int> order(points.size(), 0, memory);
     for (size_t i = 0; i < order.size(); ++i) order[i] = int(i);
     std::sort(order.begin(), order.end(),
               [&](int i, int j) { return corner_before(points[size_t(i)], points[size_t(j)]); });
-    std::vector<int> place(points.size());
-    std::vector<Vec3f> sorted;
+    Array<int> place(points.size(), 0, memory);
+    Array<Vec3f> sorted(memory);
     for (size_t i = 0; i < order.size(); ++i) {
         place[size_t(order[i])] = int(i);
         sorted.push_back(points[size_t(order[i])]);
     }
     // An odd number of mirrors turns counter-clockwise loops around.
     const bool mirrored = factors.prod() < 0;
-    Loops loops;
+    Loops loops(memory);
     for (const Face& face : hull.faces) {
-        std::vector<int> loop;
+        Loop loop(memory);
         for (const uint8_t corner : hull.view().loop_of(face)) loop.push_back(place[corner]);
         if (mirrored) std::reverse(loop.begin(), loop.end());
         std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
         loops.push_back(std::move(loop));
     }
     std::sort(loops.begin(), loops.end());
-    auto scaled = hull_of_surface(sorted, loops, -1.0);  // no merging: flat faces stay flat
+    auto scaled = hull_of_surface(sorted, loops, -1.0, memory);  // no merging: flat faces stay flat
     if (!scaled) return refuse("points are too close to one another for their size");
     if (!is_thick(*scaled, thickness)) return refuse("hull is thinner than allowed");
     return scaled;
@@ -163,12 +165,15 @@ std::shared_ptr<const Hull> scale_hull(const Hull& hull, const Vec3f& factors, f
 
 std::span<const Vec3f> hull_vertices(const Hull& hull) { return hull.vertices; }
 
-void hull_triangles(const Hull& hull, std::vector<uint32_t>& indices) {
-    indices.clear();
-    const Polytope& polytope = hull.view();
-    for (const Face& face : polytope.faces) {
-        const auto loop = polytope.loop_of(face);
-        for (size_t i = 2; i < loop.size(); ++i) indices.insert(indices.end(), {loop[0], loop[i - 1], loop[i]});
+uint32_t hull_triangle_count(const Hull& hull) {
+    return uint32_t(hull.loops.size() - 2 * hull.faces.size());  // corners of a face less two
+}
+
+void hull_triangles(const Hull& hull, PointSink& points) {
+    for (const Face& face : hull.faces) {
+        const auto loop = hull.loop_of(face);
+        for (size_t i = 2; i < loop.size(); ++i)
+            for (const uint8_t corner : {loop[0], loop[i - 1], loop[i]}) points.take(hull.vertices[corner]);
     }
 }
 

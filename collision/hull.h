@@ -2,36 +2,38 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "base/memory.h"
 #include "collision/polytope.h"
 
 namespace taut::collision {
 
-struct Hull {
-    std::vector<Vec3f> vertices;  // sorted by x, then y, then z [m]
-    std::vector<Face> faces;      // sorted by their loops, each loop from its smallest vertex on
-    std::vector<uint8_t> loops;
-    std::vector<Side> sides;
-    std::vector<Edge> edges;  // sorted by (from, to), from < to
-    std::vector<Fan> fans;
-    std::vector<uint8_t> around;
-    std::vector<FloatLanes> corners, planes;  // columns of the vertices and faces
-    Vec3f centre = Vec3f::Zero();             // mean of the vertices [m]
-    float inner_radius = 0;
-    float outer_radius = 0;
-
-    Polytope polytope;  // all of the above in one view, as it was when last laid out
-
-    void lay_out();
-    const Polytope& view() const { return polytope; }
+// Vertices are sorted by x, then y, then z; faces by their loops, each loop from its smallest vertex on; edges by
+// (from, to), from < to. The centre is the mean of the vertices.
+struct Hull : Polytope {
+    const Polytope& view() const { return *this; }
 };
 
+// So many numbers of each thing, which number(thing, column) tells, into as many columns of lanes.
+template <class Number>
+Columns fill_columns(size_t things, uint32_t numbers, std::span<FloatLanes> lanes, Number&& number) {
+    const uint32_t length = column_length(things), blocks = length / kLanes;
+    for (uint32_t c = 0; c < numbers; ++c) {
+        for (uint32_t i = 0; i < length; ++i) {
+            const size_t thing = std::min(size_t(i), things - 1);
+            lanes[c * blocks + i / kLanes].of[i % kLanes] = number(thing, int(c));
+        }
+    }
+    return {lanes[0].of, length};
+}
+
 // Corner loops of a closed convex surface, counter-clockwise from outside; indices into some list of points.
-using Loops = std::vector<std::vector<int>>;
+using Loop = Array<int>;
+using Loops = Array<Loop>;
 
 // Merges faces within tolerance [m] of one plane and drops points that no longer lie on an edge's end. Null
 // where the merged surface would not be closed. Points must be sorted; at most kMaxVertices of them are used.
-std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, const Loops& surface, double tolerance);
+std::shared_ptr<const Hull> hull_of_surface(std::span<const Vec3f> points, const Loops& surface, double tolerance,
+                                            Memory& memory);
 
 }  // namespace taut::collision

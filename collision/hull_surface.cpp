@@ -15,7 +15,7 @@ struct Plane {
 };
 
 // Newell's method: half the sum of cross products about the first corner is the area vector.
-Plane plane_of(const std::vector<Vec3f>& points, const std::vector<int>& loop) {
+Plane plane_of(std::span<const Vec3f> points, const Loop& loop) {
     const Vec3 first = points[size_t(loop[0])].cast<double>();
     Vec3 area = Vec3::Zero();
     Vec3 mean = first;
@@ -35,7 +35,7 @@ Plane plane_of(const std::vector<Vec3f>& points, const std::vector<int>& loop) {
 // Which face has the edge i -> j; -1 for none.
 class Adjacency {
 public:
-    Adjacency(size_t points, const Loops& loops) : points_(points), face_(points * points, -1) {
+    Adjacency(size_t points, const Loops& loops, Memory& memory) : points_(points), face_(points * points, -1, memory) {
         for (size_t f = 0; f < loops.size(); ++f) {
             for (size_t i = 0; i < loops[f].size(); ++i) {
                 face_[size_t(loops[f][i]) * points_ + size_t(loops[f][(i + 1) % loops[f].size()])] = int(f);
@@ -46,13 +46,15 @@ public:
 
 private:
     size_t points_;
-    std::vector<int> face_;
+    Array<int> face_;
 };
 
 // Polygons that become one face.
 struct Group {
-    std::vector<int> members;
-    std::vector<int> outline;
+    explicit Group(Memory& memory) : members(memory), outline(memory) {}
+
+    Array<int> members;
+    Loop outline;
     double flatness = 0;  // furthest corner off the first polygon's plane [m]
 };
 
@@ -61,30 +63,37 @@ struct Group {
 // convex, within the tolerance that its polygons lie in its plane: what would make it otherwise stays out.
 class Merging {
 public:
-    Merging(const std::vector<Vec3f>& points, const Loops& loops, double tolerance)
-        : points_(points), loops_(loops), adjacency_(points.size(), loops), tolerance_(tolerance) {
+    Merging(std::span<const Vec3f> points, const Loops& loops, double tolerance, Memory& memory)
+        : points_(points),
+          loops_(loops),
+          adjacency_(points.size(), loops, memory),
+          tolerance_(tolerance),
+          memory_(memory),
+          planes_(memory),
+          taken_(memory) {
         for (const auto& loop : loops) planes_.push_back(plane_of(points, loop));
     }
     // The outline of each face; false if one is not a single ring or the surface is not closed.
     bool run(Loops& outlines);
 
 private:
-    std::vector<int> largest_first() const;
+    Array<int> largest_first() const;
     double off(int polygon, const Plane& plane) const;
     Group grow(int seed, double tolerance) const;
     bool find_outline(Group& group) const;
     bool is_convex(const Group& group) const;
 
-    const std::vector<Vec3f>& points_;
+    const std::span<const Vec3f> points_;
     const Loops& loops_;
     const Adjacency adjacency_;
     const double tolerance_;
-    std::vector<Plane> planes_;
-    std::vector<char> taken_;
+    Memory& memory_;
+    Array<Plane> planes_;
+    Array<char> taken_;
 };
 
-std::vector<int> Merging::largest_first() const {
-    std::vector<int> order(loops_.size());
+Array<int> Merging::largest_first() const {
+    Array<int> order(loops_.size(), 0, memory_);
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](int i, int j) {
         const double a = planes_[size_t(i)].area;
@@ -104,8 +113,8 @@ double Merging::off(int polygon, const Plane& plane) const {
 
 // Of polygons that are free, those around the seed that lie off its plane by less than tolerance [m].
 Group Merging::grow(int seed, double tolerance) const {
-    Group group;
-    group.members = {seed};
+    Group group(memory_);
+    group.members.push_back(seed);
     for (size_t next = 0; next < group.members.size(); ++next) {
         const auto& loop = loops_[size_t(group.members[next])];
         for (size_t i = 0; i < loop.size(); ++i) {
@@ -123,7 +132,7 @@ Group Merging::grow(int seed, double tolerance) const {
 
 // False if it is not a single ring.
 bool Merging::find_outline(Group& group) const {
-    std::vector<std::pair<int, int>> border;  // edges from -> to
+    Array<std::pair<int, int>> border(memory_);  // edges from -> to
     for (const int member : group.members) {
         const auto& loop = loops_[size_t(member)];
         for (size_t i = 0; i < loop.size(); ++i) {
@@ -175,7 +184,7 @@ bool Merging::run(Loops& outlines) {
         for (const int member : group.members) taken_[size_t(member)] = 1;
         outlines.push_back(group.outline);
     }
-    std::vector<int> faces_at(points_.size(), 0);
+    Array<int> faces_at(points_.size(), 0, memory_);
     for (const auto& loop : outlines)
         for (const int corner : loop) ++faces_at[size_t(corner)];
     // A corner of two faces only lies on the straight edge between them.
@@ -188,120 +197,124 @@ bool Merging::run(Loops& outlines) {
     return true;
 }
 
-void add_vertices(const std::vector<Vec3f>& points, Loops& loops, Hull& hull) {
-    std::vector<int> index(points.size(), -1);
+// A hull with the memory that its view is of.
+struct StoredHull : Hull {
+    explicit StoredHull(Memory& memory)
+        : vertex(memory),
+          face(memory),
+          corner(memory),
+          side(memory),
+          edge(memory),
+          fan(memory),
+          face_around(memory),
+          corner_lanes(memory),
+          plane_lanes(memory) {}
+
+    void lay_out();
+
+    Array<Vec3f> vertex;
+    Array<Face> face;
+    Array<uint8_t> corner;
+    Array<Side> side;
+    Array<Edge> edge;
+    Array<Fan> fan;
+    Array<uint8_t> face_around;
+    Array<FloatLanes> corner_lanes, plane_lanes;
+};
+
+void StoredHull::lay_out() {
+    static_cast<Polytope&>(*this) = {vertex,      face, corner, side,   edge,         fan,
+                                     face_around, {},   {},     centre, inner_radius, outer_radius};
+    corner_lanes.resize(3 * column_length(vertex.size()) / kLanes);
+    plane_lanes.resize(4 * column_length(face.size()) / kLanes);
+    corners = fill_columns(vertex.size(), 3, corner_lanes, [&](size_t v, int i) { return vertex[v][i]; });
+    planes = fill_columns(face.size(), 4, plane_lanes,
+                          [&](size_t f, int i) { return i < 3 ? face[f].normal[i] : face[f].offset; });
+}
+
+void add_vertices(std::span<const Vec3f> points, Loops& loops, StoredHull& hull, Memory& memory) {
+    Array<int> index(points.size(), -1, memory);
     for (const auto& loop : loops) {
         for (const int corner : loop) index[size_t(corner)] = 0;
     }
     for (size_t i = 0; i < points.size(); ++i) {
         if (index[i] < 0) continue;
-        index[i] = int(hull.vertices.size());
-        hull.vertices.push_back(points[i]);
+        index[i] = int(hull.vertex.size());
+        hull.vertex.push_back(points[i]);
     }
     for (auto& loop : loops) {
         for (int& corner : loop) corner = index[size_t(corner)];
     }
     Vec3 sum = Vec3::Zero();
-    for (const Vec3f& v : hull.vertices) sum += v.cast<double>();
-    hull.centre = (sum / double(hull.vertices.size())).cast<float>();
+    for (const Vec3f& v : hull.vertex) sum += v.cast<double>();
+    hull.centre = (sum / double(hull.vertex.size())).cast<float>();
 }
 
 // The plane touches the hull's highest vertex, so that no vertex is ever outside a face.
-void add_face(const std::vector<int>& loop, Hull& hull) {
-    const Plane plane = plane_of(hull.vertices, loop);
+void add_face(const Loop& loop, StoredHull& hull) {
+    const Plane plane = plane_of(hull.vertex, loop);
     Face face;
     face.normal = plane.normal.cast<float>().normalized();
     face.offset = -1e30f;
-    for (const Vec3f& v : hull.vertices) face.offset = std::max(face.offset, face.normal.dot(v));
-    const Vec3f along = hull.vertices[size_t(loop[1])] - hull.vertices[size_t(loop[0])];
+    for (const Vec3f& v : hull.vertex) face.offset = std::max(face.offset, face.normal.dot(v));
+    const Vec3f along = hull.vertex[size_t(loop[1])] - hull.vertex[size_t(loop[0])];
     face.u = (along - face.normal * face.normal.dot(along)).normalized();
     face.v = face.normal.cross(face.u);
-    face.first = uint16_t(hull.loops.size());
+    face.first = uint16_t(hull.corner.size());
     face.count = uint16_t(loop.size());
     for (size_t i = 0; i < loop.size(); ++i) {
-        const Vec3f& from = hull.vertices[size_t(loop[i])];
-        const Vec3f step = hull.vertices[size_t(loop[(i + 1) % loop.size()])] - from;
+        const Vec3f& from = hull.vertex[size_t(loop[i])];
+        const Vec3f step = hull.vertex[size_t(loop[(i + 1) % loop.size()])] - from;
         // Counter-clockwise: the outward side of the step (x, y) is (y, -x).
         const Eigen::Vector2f out = Eigen::Vector2f(face.v.dot(step), -face.u.dot(step)).normalized();
-        hull.loops.push_back(uint8_t(loop[i]));
-        hull.sides.push_back({out.x(), out.y(), out.x() * face.u.dot(from) + out.y() * face.v.dot(from)});
+        hull.corner.push_back(uint8_t(loop[i]));
+        hull.side.push_back({out.x(), out.y(), out.x() * face.u.dot(from) + out.y() * face.v.dot(from)});
     }
-    hull.faces.push_back(face);
-}
-
-// So many numbers of each thing, which number(thing, column) tells.
-template <class Number>
-Columns fill_columns(size_t things, uint32_t numbers, std::vector<FloatLanes>& lanes, Number&& number) {
-    if (things == 0) return {};
-    const uint32_t length = column_length(things), blocks = length / kLanes;
-    lanes.resize(numbers * blocks);
-    for (uint32_t c = 0; c < numbers; ++c) {
-        for (uint32_t i = 0; i < length; ++i) {
-            const size_t thing = std::min(size_t(i), things - 1);
-            lanes[c * blocks + i / kLanes].of[i % kLanes] = number(thing, int(c));
-        }
-    }
-    return {lanes[0].of, length};
+    hull.face.push_back(face);
 }
 
 // Whether each face looks away from the middle.
-bool looks_outward(const Loops& loops, const Hull& hull) {
-    return std::all_of(loops.begin(), loops.end(), [&](const std::vector<int>& loop) {
-        const Plane plane = plane_of(hull.vertices, loop);
+bool looks_outward(const Loops& loops, const StoredHull& hull) {
+    return std::all_of(loops.begin(), loops.end(), [&](const Loop& loop) {
+        const Plane plane = plane_of(hull.vertex, loop);
         return plane.offset > plane.normal.dot(hull.centre.cast<double>());
     });
 }
 
-bool add_edges(const Loops& loops, Hull& hull) {
-    const Adjacency adjacency(hull.vertices.size(), loops);
-    const int count = int(hull.vertices.size());
+bool add_edges(const Loops& loops, StoredHull& hull, Memory& memory) {
+    const Adjacency adjacency(hull.vertex.size(), loops, memory);
+    const int count = int(hull.vertex.size());
     for (int from = 0; from < count; ++from) {
         for (int to = from + 1; to < count; ++to) {
             const int left = adjacency.face(from, to);
             const int right = adjacency.face(to, from);
             if ((left < 0) != (right < 0)) return false;
-            if (left >= 0) hull.edges.push_back({uint8_t(from), uint8_t(to), uint8_t(left), uint8_t(right)});
+            if (left >= 0) hull.edge.push_back({uint8_t(from), uint8_t(to), uint8_t(left), uint8_t(right)});
         }
     }
-    return hull.vertices.size() + hull.faces.size() == hull.edges.size() + 2;  // Euler
+    return hull.vertex.size() + hull.face.size() == hull.edge.size() + 2;  // Euler
 }
 
 }  // namespace
 
-void Hull::lay_out() {
-    const auto coordinate = [&](size_t vertex, int i) { return vertices[vertex][i]; };
-    const auto of_plane = [&](size_t face, int i) { return i < 3 ? faces[face].normal[i] : faces[face].offset; };
-    polytope = {vertices,
-                faces,
-                loops,
-                sides,
-                edges,
-                fans,
-                around,
-                fill_columns(vertices.size(), 3, corners, coordinate),
-                fill_columns(faces.size(), 4, planes, of_plane),
-                centre,
-                inner_radius,
-                outer_radius};
-}
-
-std::shared_ptr<const Hull> hull_of_surface(const std::vector<Vec3f>& points, const Loops& surface, double tolerance) {
-    Loops loops;
-    if (!Merging(points, surface, tolerance).run(loops)) return nullptr;
-    auto hull = std::make_shared<Hull>();
-    add_vertices(points, loops, *hull);
+std::shared_ptr<const Hull> hull_of_surface(std::span<const Vec3f> points, const Loops& surface, double tolerance,
+                                            Memory& memory) {
+    Loops loops(memory);
+    if (!Merging(points, surface, tolerance, memory).run(loops)) return nullptr;
+    auto hull = std::allocate_shared<StoredHull>(HostAllocator<StoredHull>(memory), memory);
+    add_vertices(points, loops, *hull, memory);
     if (!looks_outward(loops, *hull)) return nullptr;
     for (const auto& loop : loops) add_face(loop, *hull);
-    if (!add_edges(loops, *hull)) return nullptr;
-    hull->fans.resize(hull->vertices.size());
-    hull->around.resize(2 * hull->edges.size());
-    find_fans(hull->edges, hull->fans, hull->around);
+    if (!add_edges(loops, *hull, memory)) return nullptr;
+    hull->fan.resize(hull->vertex.size());
+    hull->face_around.resize(2 * hull->edge.size());
+    find_fans(hull->edge, hull->fan, hull->face_around);
     hull->inner_radius = 1e30f;
-    for (const Face& face : hull->faces) {
+    for (const Face& face : hull->face) {
         if (!(std::fabs(face.normal.squaredNorm() - 1) < 1e-3f)) return nullptr;
         hull->inner_radius = std::min(hull->inner_radius, face.offset - face.normal.dot(hull->centre));
     }
-    for (const Vec3f& v : hull->vertices) hull->outer_radius = std::max(hull->outer_radius, (v - hull->centre).norm());
+    for (const Vec3f& v : hull->vertex) hull->outer_radius = std::max(hull->outer_radius, (v - hull->centre).norm());
     hull->lay_out();
     return hull;
 }

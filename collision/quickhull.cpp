@@ -18,9 +18,9 @@ struct Triangle {
     std::array<int, 3> beside;  // across the edge from each corner to the next
     Vec3 at, normal;            // its first corner, and unit, outward; 0 without area
     double slack;               // a point above by no more lies in its plane [m]
+    Array<int> outside;         // points that wait
     bool gone = false;
-    std::vector<int> outside = {};  // points that wait
-    int furthest = -1;              // of them, and by how much [m]
+    int furthest = -1;  // of them, and by how much [m]
     double most = 0;
 
     double height(const Vec3& p) const { return normal.dot(p - at); }
@@ -34,7 +34,8 @@ struct Rim {
 
 class Quickhull {
 public:
-    Quickhull(const std::vector<Vec3f>& points, double near) : points_(points), near_(near) {
+    Quickhull(std::span<const Vec3f> points, double near, Memory& memory)
+        : points_(points), near_(near), memory_(memory), triangles_(memory), seen_(memory), horizon_(memory) {
         Vec3f lo = points[0], hi = points[0];
         for (const Vec3f& p : points) lo = lo.cwiseMin(p), hi = hi.cwiseMax(p);
         extent_ = double((hi - lo).maxCoeff());
@@ -49,21 +50,27 @@ private:
     Triangle& triangle(int i) { return triangles_[size_t(i)]; }
     Triangle make(int a, int b, int c) const;
     void wait(int point, size_t first);
-    bool find_horizon(int seen_first, const Vec3& p, std::vector<int>& seen, std::vector<Rim>& horizon);
-    static bool put_in_order(std::vector<Rim>& horizon);
-    bool replace(int point, const std::vector<int>& seen, const std::vector<Rim>& horizon);
+    bool find_horizon(int seen_first, const Vec3& p);
+    bool put_horizon_in_order();
+    bool replace(int point);
 
-    const std::vector<Vec3f>& points_;
+    std::span<const Vec3f> points_;
     double near_, extent_;
-    std::vector<Triangle> triangles_;
+    Memory& memory_;
+    Array<Triangle> triangles_;
+    Array<int> seen_;  // triangles, by the point that is taken
+    Array<Rim> horizon_;
 };
 
 Triangle Quickhull::make(int a, int b, int c) const {
     const Vec3 ab = at(b) - at(a), ac = at(c) - at(a);
     const Vec3 cross = ab.cross(ac);
     const double area = cross.norm();
-    if (!(area > 0)) return {{a, b, c}, {-1, -1, -1}, at(a), Vec3::Zero(), 0};
-    return {{a, b, c}, {-1, -1, -1}, at(a), cross / area, kNormalRounding * extent_ * ab.norm() * ac.norm() / area};
+    Triangle out{{a, b, c}, {-1, -1, -1}, at(a), Vec3::Zero(), 0, Array<int>(memory_)};
+    if (!(area > 0)) return out;
+    out.normal = cross / area;
+    out.slack = kNormalRounding * extent_ * ab.norm() * ac.norm() / area;
+    return out;
 }
 
 // At the triangle, from the first on, that it is highest above.
@@ -83,7 +90,8 @@ void Quickhull::wait(int point, size_t first) {
 void Quickhull::start(const std::array<int, 4>& simplex) {
     auto [a, b, c, d] = simplex;
     if (make(a, b, c).height(at(d)) > 0) std::swap(b, c);
-    triangles_ = {make(a, b, c), make(a, d, b), make(b, d, c), make(c, d, a)};
+    for (const auto& [p, q, r] : {std::array{a, b, c}, {a, d, b}, {b, d, c}, {c, d, a}})
+        triangles_.push_back(make(p, q, r));
     triangles_[0].beside = {1, 2, 3};
     triangles_[1].beside = {3, 2, 0};
     triangles_[2].beside = {1, 3, 0};
@@ -92,57 +100,58 @@ void Quickhull::start(const std::array<int, 4>& simplex) {
 }
 
 // The triangles that a point sees, which hang together, and their rim; false if it is not one ring, by rounding.
-bool Quickhull::find_horizon(int first, const Vec3& p, std::vector<int>& seen, std::vector<Rim>& horizon) {
-    seen = {first};
-    for (size_t next = 0; next < seen.size(); ++next) {
-        const Triangle& here = triangle(seen[next]);
+bool Quickhull::find_horizon(int first, const Vec3& p) {
+    seen_.assign(1, first);
+    horizon_.clear();
+    for (size_t next = 0; next < seen_.size(); ++next) {
+        const Triangle& here = triangle(seen_[next]);
         for (size_t e = 0; e < 3; ++e) {
             const int other = here.beside[e];
-            if (std::find(seen.begin(), seen.end(), other) != seen.end()) continue;
+            if (std::find(seen_.begin(), seen_.end(), other) != seen_.end()) continue;
             if (triangle(other).height(p) > triangle(other).slack) {
-                seen.push_back(other);
+                seen_.push_back(other);
             } else {
-                horizon.push_back({here.corner[e], here.corner[(e + 1) % 3], other});
+                horizon_.push_back({here.corner[e], here.corner[(e + 1) % 3], other});
             }
         }
     }
-    return put_in_order(horizon);
+    return put_horizon_in_order();
 }
 
-bool Quickhull::put_in_order(std::vector<Rim>& horizon) {
-    for (size_t i = 1; i < horizon.size(); ++i) {
-        const auto next = std::find_if(horizon.begin() + std::ptrdiff_t(i), horizon.end(),
-                                       [&](const Rim& rim) { return rim.from == horizon[i - 1].to; });
-        if (next == horizon.end()) return false;
-        std::swap(horizon[i], *next);
+bool Quickhull::put_horizon_in_order() {
+    for (size_t i = 1; i < horizon_.size(); ++i) {
+        const auto next = std::find_if(horizon_.begin() + std::ptrdiff_t(i), horizon_.end(),
+                                       [&](const Rim& rim) { return rim.from == horizon_[i - 1].to; });
+        if (next == horizon_.end()) return false;
+        std::swap(horizon_[i], *next);
     }
     // A ring that meets itself at a corner passes it twice.
-    std::vector<int> corners;
-    for (const Rim& rim : horizon) corners.push_back(rim.from);
+    Array<int> corners(memory_);
+    for (const Rim& rim : horizon_) corners.push_back(rim.from);
     std::sort(corners.begin(), corners.end());
-    return horizon.size() >= 3 && horizon.back().to == horizon.front().from &&
+    return horizon_.size() >= 3 && horizon_.back().to == horizon_.front().from &&
            std::adjacent_find(corners.begin(), corners.end()) == corners.end();
 }
 
 // By a fan; false, and nothing done, if one of its triangles has no area.
-bool Quickhull::replace(int point, const std::vector<int>& seen, const std::vector<Rim>& horizon) {
-    const int first = int(triangles_.size()), count = int(horizon.size());
-    std::vector<Triangle> fan;
+bool Quickhull::replace(int point) {
+    const int first = int(triangles_.size()), count = int(horizon_.size());
+    Array<Triangle> fan(memory_);
     for (int i = 0; i < count; ++i) {
-        const Rim& rim = horizon[size_t(i)];
+        const Rim& rim = horizon_[size_t(i)];
         fan.push_back(make(rim.from, rim.to, point));
         if (fan.back().normal == Vec3::Zero()) return false;
         fan.back().beside = {rim.beyond, first + (i + 1) % count, first + (i + count - 1) % count};
     }
     for (int i = 0; i < count; ++i) {
-        Triangle& beyond = triangle(horizon[size_t(i)].beyond);
-        const auto corner = std::find(beyond.corner.begin(), beyond.corner.end(), horizon[size_t(i)].to);
+        Triangle& beyond = triangle(horizon_[size_t(i)].beyond);
+        const auto corner = std::find(beyond.corner.begin(), beyond.corner.end(), horizon_[size_t(i)].to);
         beyond.beside[size_t(corner - beyond.corner.begin())] = first + i;
     }
-    triangles_.insert(triangles_.end(), fan.begin(), fan.end());
-    for (const int i : seen) {
+    for (Triangle& each : fan) triangles_.push_back(std::move(each));
+    for (const int i : seen_) {
         triangle(i).gone = true;
-        std::vector<int> orphans;
+        Array<int> orphans(memory_);
         orphans.swap(triangle(i).outside);
         for (const int orphan : orphans)
             if (orphan != point) wait(orphan, size_t(first));
@@ -157,9 +166,7 @@ bool Quickhull::grow() {
     const int best = int(std::max_element(triangles_.begin(), triangles_.end(), nearer) - triangles_.begin());
     const int point = triangle(best).furthest;
     if (triangle(best).gone || point < 0) return false;
-    std::vector<int> seen;
-    std::vector<Rim> horizon;
-    if (find_horizon(best, at(point), seen, horizon) && replace(point, seen, horizon)) return true;
+    if (find_horizon(best, at(point)) && replace(point)) return true;
     // Left out: it is outside of what rounding cannot tell from a plane.
     Triangle& left = triangle(best);
     std::erase(left.outside, point);
@@ -170,10 +177,10 @@ bool Quickhull::grow() {
 }
 
 Loops Quickhull::loops() const {
-    Loops loops;
+    Loops loops(memory_);
     for (const Triangle& each : triangles_) {
         if (each.gone) continue;
-        std::vector<int> loop(each.corner.begin(), each.corner.end());
+        Loop loop(each.corner.begin(), each.corner.end(), memory_);
         std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
         loops.push_back(std::move(loop));
     }
@@ -183,8 +190,9 @@ Loops Quickhull::loops() const {
 
 }  // namespace
 
-Loops quickhull(const std::vector<Vec3f>& points, const std::array<int, 4>& simplex, size_t most, double near) {
-    Quickhull hull(points, near);
+Loops quickhull(std::span<const Vec3f> points, const std::array<int, 4>& simplex, size_t most, double near,
+                Memory& memory) {
+    Quickhull hull(points, near, memory);
     hull.start(simplex);
     for (size_t corners = 4; corners < most && hull.grow();) ++corners;
     return hull.loops();

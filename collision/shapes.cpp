@@ -82,20 +82,20 @@ MassProperties tapered_capsule_mass(const Shape& shape, double density) {
 MassProperties hull_mass(const Shape& shape, double density) {
     const Hull& hull = *shape.hull;
     const Vec3 from = hull.centre.cast<double>();
-    std::vector<uint32_t> indices;
-    hull_triangles(hull, indices);
     double volume = 0;
     Vec3 first = Vec3::Zero();
     Mat3 second = Mat3::Zero();
-    for (size_t i = 0; i < indices.size(); i += 3) {
-        const Vec3 a = hull.vertices[indices[i]].cast<double>() - from;
-        const Vec3 b = hull.vertices[indices[i + 1]].cast<double>() - from;
-        const Vec3 c = hull.vertices[indices[i + 2]].cast<double>() - from;
-        const Vec3 s = a + b + c;
-        const double v = a.dot(b.cross(c)) / 6;
-        volume += v;
-        first += v / 4 * s;
-        second += v / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
+    for (const Face& face : hull.faces) {
+        const auto loop = hull.loop_of(face);
+        const auto at = [&](size_t i) { return Vec3(hull.vertices[loop[i]].cast<double>() - from); };
+        for (size_t i = 2; i < loop.size(); ++i) {
+            const Vec3 a = at(0), b = at(i - 1), c = at(i);
+            const Vec3 s = a + b + c;
+            const double v = a.dot(b.cross(c)) / 6;
+            volume += v;
+            first += v / 4 * s;
+            second += v / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
+        }
     }
     const Vec3 centre = first / volume;
     second -= volume * centre * centre.transpose();

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "collision/collide.h"
 
@@ -23,7 +22,10 @@ protected:
 };
 
 struct Surface {
+    explicit Surface(Memory& memory) : facet_of(memory), seed_of(memory), sharp(memory) {}
     virtual ~Surface() = default;
+    Surface(const Surface&) = delete;
+    Surface& operator=(const Surface&) = delete;
 
     virtual uint32_t slots() const = 0;                    // of triangle numbers, holes included
     virtual bool has(uint32_t triangle) const = 0;         // false: a hole
@@ -39,11 +41,12 @@ struct Surface {
     SurfaceCounts counts;
     Box box;                 // of all triangles
     bool two_sided = false;  // else bodies behind a triangle do not meet it
-    // Triangles of one plane that hang together are one facet, whose plane is that of its largest triangle, its seed.
-    std::vector<uint32_t> facet_of;  // by triangle
-    std::vector<uint32_t> seed_of;   // by facet
+    // Triangles of one plane that hang together are one facet, whose plane is that of its largest triangle, its seed;
+    // see facets.h.
+    Array<uint32_t> facet_of;  // by triangle
+    Array<uint32_t> seed_of;   // by facet
     // Bit e: across edge e the surface falls away, or ends. Other edges touch nothing that a face does not.
-    std::vector<uint8_t> sharp;  // by triangle
+    Array<uint8_t> sharp;  // by triangle
 };
 
 // Corner numbers of the edge: from, to, opposite.
@@ -56,8 +59,5 @@ inline uint32_t third_corner(const Corners& corners, uint32_t one, uint32_t othe
     }
     return corners[0];
 }
-
-// Fills counts of what is there, box, facet_of, seed_of and sharp of a surface that answers the rest.
-void find_facets(Surface& surface);
 
 }  // namespace taut::collision

@@ -4,8 +4,9 @@
 
 namespace taut::collision {
 
-void TriangleTree::build(const Surface& surface) {
-    std::vector<Leaf> leaves;
+void TriangleTree::build(const Surface& surface, Memory& memory) {
+    Array<Leaf> leaves(memory);
+    leaves.reserve(surface.counts.triangles);
     for (uint32_t t = 0; t < surface.slots(); ++t) {
         if (!surface.has(t)) continue;
         const Corners c = surface.corners(t);
@@ -14,30 +15,29 @@ void TriangleTree::build(const Surface& surface) {
     }
     nodes_.clear();
     nodes_.reserve(2 * leaves.size());
-    split(leaves, 0, leaves.size());
+    split(leaves);
 }
 
 // Halves by the boxes' middles along the longest side, the number breaking ties: the same tree from every library.
-void TriangleTree::split(std::vector<Leaf>& leaves, size_t begin, size_t end) {
+void TriangleTree::split(std::span<Leaf> leaves) {
     const size_t place = nodes_.size();
-    Node node{leaves[begin].lo, leaves[begin].hi, 0, leaves[begin].triangle};
-    for (size_t i = begin; i < end; ++i) {
-        node.lo = node.lo.cwiseMin(leaves[i].lo);
-        node.hi = node.hi.cwiseMax(leaves[i].hi);
+    Node node{leaves[0].lo, leaves[0].hi, 0, leaves[0].triangle};
+    for (const Leaf& leaf : leaves) {
+        node.lo = node.lo.cwiseMin(leaf.lo);
+        node.hi = node.hi.cwiseMax(leaf.hi);
     }
     nodes_.push_back(node);
-    if (end - begin > 1) {
+    if (leaves.size() > 1) {
         nodes_[place].triangle = kNoTriangle;
         int axis = 0;
         (node.hi - node.lo).maxCoeff(&axis);
-        const size_t middle = begin + (end - begin) / 2;
-        std::nth_element(leaves.begin() + long(begin), leaves.begin() + long(middle), leaves.begin() + long(end),
-                         [axis](const Leaf& a, const Leaf& b) {
-                             const float p = a.lo[axis] + a.hi[axis], q = b.lo[axis] + b.hi[axis];
-                             return p != q ? p < q : a.triangle < b.triangle;
-                         });
-        split(leaves, begin, middle);
-        split(leaves, middle, end);
+        const size_t middle = leaves.size() / 2;
+        std::ranges::nth_element(leaves, leaves.begin() + std::ptrdiff_t(middle), [axis](const Leaf& a, const Leaf& b) {
+            const float p = a.lo[axis] + a.hi[axis], q = b.lo[axis] + b.hi[axis];
+            return p != q ? p < q : a.triangle < b.triangle;
+        });
+        split(leaves.first(middle));
+        split(leaves.subspan(middle));
     }
     nodes_[place].after = uint32_t(nodes_.size());
 }

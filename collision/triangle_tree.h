@@ -2,15 +2,15 @@
 // after its subtree, so that a search is one loop without a stack.
 #pragma once
 
-#include <vector>
-
 #include "collision/surface.h"
 
 namespace taut::collision {
 
 class TriangleTree {
 public:
-    void build(const Surface& surface);
+    explicit TriangleTree(Memory& memory) : nodes_(memory) {}
+
+    void build(const Surface& surface, Memory& memory);
     // Hands over the triangles whose boxes meet this one.
     void find(const Box& box, TriangleSink& triangles) const;
 
@@ -24,9 +24,9 @@ private:
         Vec3f lo, hi;
         uint32_t triangle;
     };
-    void split(std::vector<Leaf>& leaves, size_t begin, size_t end);
+    void split(std::span<Leaf> leaves);
 
-    std::vector<Node> nodes_;
+    Array<Node> nodes_;
 };
 
 inline bool meet(const Vec3f& lo, const Vec3f& hi, const Box& box) {

@@ -115,37 +115,38 @@ double crossing(const std::array<Vec3, 3>& corner, const Vec3& o, const Vec3& d,
 
 // ---------------------------------------------------------------- triangles as shapes
 
-// A triangle as a hull without faces about its middle, whose inner radius is that of the shape it is held against. Two
-// a thread, so that a query takes memory once in a thread's life: of what is asked about, and of what asks.
+// A triangle as a hull without faces about its middle, whose inner radius is that of the shape it is held against.
 class TriangleShape {
 public:
     TriangleShape(const Triangles& triangles, const Placement& at, uint32_t number, float inner) {
-        thread_local Hull hull;
-        const std::array<Vec3, 3> corner = triangles.corners(number);
-        const Vec3 middle = lay_out(corner, inner, hull);
+        const Vec3 middle = lay_out(triangles.corners(number), inner);
         at_ = {at.position + triangles.to_world(middle), at.rotation};
     }
     // Corners from an origin, along world axes.
     TriangleShape(const std::array<Vec3, 3>& corner, const Vec3& origin, float inner) {
-        thread_local Hull hull;
-        const Vec3 middle = lay_out(corner, inner, hull);
+        const Vec3 middle = lay_out(corner, inner);
         at_ = {origin + middle, Mat3f::Identity()};
     }
+    TriangleShape(const TriangleShape&) = delete;
+    TriangleShape& operator=(const TriangleShape&) = delete;
     const Shape& shape() const { return shape_; }
     const Placement& at() const { return at_; }
 
 private:
-    Vec3 lay_out(const std::array<Vec3, 3>& corner, float inner, Hull& hull) {
+    Vec3 lay_out(const std::array<Vec3, 3>& corner, float inner) {
         const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3;
-        hull.vertices.resize(3);
-        for (size_t i = 0; i < 3; ++i) hull.vertices[i] = (corner[i] - middle).cast<float>();
-        hull.inner_radius = inner;
-        hull.lay_out();
+        for (size_t i = 0; i < 3; ++i) corner_[i] = (corner[i] - middle).cast<float>();
+        hull_.vertices = corner_;
+        hull_.corners = fill_columns(3, 3, lanes_, [&](size_t vertex, int i) { return corner_[vertex][i]; });
+        hull_.inner_radius = inner;
         shape_.kind = ShapeKind::hull;
-        shape_.hull = std::shared_ptr<const Hull>(std::shared_ptr<const Hull>(), &hull);  // not owned
+        shape_.hull = std::shared_ptr<const Hull>(std::shared_ptr<const Hull>(), &hull_);  // not owned
         return middle;
     }
 
+    std::array<Vec3f, 3> corner_;
+    FloatLanes lanes_[3];
+    Hull hull_;
     Shape shape_;
     Placement at_;
 };

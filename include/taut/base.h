@@ -44,8 +44,8 @@ typedef enum taut_result {
     TAUT_LOCKED = 6,           /**< the world is inside a step (or a second thread is using it) */
     TAUT_TOO_SMALL = 7,        /**< the array is too small; *count holds the number needed */
     TAUT_OUT_OF_MEMORY = 8,
-    TAUT_IN_USE = 9,       /**< a shape that bodies still use, or a body of a cable, cloth or solid, cannot be removed */
-    TAUT_LIMIT = 10,       /**< a stated limit is reached (worlds, their contents, vertices of a hull) */
+    TAUT_IN_USE = 9, /**< a shape that bodies still use, or a body of a cable, cloth or solid, cannot be removed */
+    TAUT_LIMIT = 10, /**< a stated limit is reached (worlds, their contents, vertices of a hull) */
     TAUT_UNSUPPORTED = 11, /**< this machine or build lacks what is needed; the text says what */
     TAUT_RESULT_MAX = 0x7fffffff
 } taut_result;
@@ -75,6 +75,10 @@ typedef struct taut_body {
 typedef struct taut_shape {
     uint64_t bits;
 } taut_shape;
+/** A shape built ahead, which any number of worlds share. Zero is null. */
+typedef struct taut_baked {
+    uint64_t bits;
+} taut_baked;
 /** A shape on a body, at a place of its own: what collides. Zero is null. */
 typedef struct taut_collider {
     uint64_t bits;

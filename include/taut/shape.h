@@ -1,7 +1,7 @@
 /**
  * @file shape.h
  * Collision shapes. A shape belongs to a world and may be used by any number of its bodies.
- * Each function here: thread safety: one thread at a time per world, not inside a step.
+ * Each function here, where nothing else is said: thread safety: one thread at a time per world, not inside a step.
  */
 #ifndef TAUT_SHAPE_H
 #define TAUT_SHAPE_H
@@ -145,6 +145,13 @@ typedef struct taut_height_field_def {
     const float* heights;   /**< rows * columns of them [m], row by row; NaN: a hole up to the next samples; copied */
 } taut_height_field_def;
 
+/** Where the memory of what is baked comes from. Both null: the C runtime. */
+typedef struct taut_allocator {
+    taut_allocate_fn allocate; /**< allocate and free: both or neither */
+    taut_free_fn free;
+    void* user_data;
+} taut_allocator;
+
 /** What became of the triangles of a mesh or height field. */
 typedef struct taut_mesh_info {
     uint32_t triangles;    /**< that are there */
@@ -190,6 +197,36 @@ TAUT_API taut_result taut_world_add_tapered_capsule(taut_world world, const taut
 TAUT_API taut_result taut_world_add_scaled_hull(taut_world world, const taut_scaled_hull_def* def, taut_shape* out);
 TAUT_API taut_result taut_world_add_mesh(taut_world world, const taut_mesh_def* def, taut_shape* out);
 TAUT_API taut_result taut_world_add_height_field(taut_world world, const taut_height_field_def* def, taut_shape* out);
+
+/**
+ * Builds a hull, mesh or height field ahead, without a world: in a loader's thread, while worlds step. Adding it to a
+ * world then takes no time, and any number of worlds share the data. What is baked is the same, to the bit, as what the
+ * world's call makes of the def.
+ * Thread safety: any threads, the allocator permitting.
+ * @param allocator copied; null: the C runtime. Its memory is taken within this call, and given back within the one, on
+ *        whatever thread, that lets go of the last: taut_baked_release, taut_shape_remove or taut_world_destroy.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT as the world's call; TAUT_LIMIT (65535
+ * are there), TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_bake_hull(const taut_hull_def* def, const taut_allocator* allocator, taut_baked* out);
+TAUT_API taut_result taut_bake_mesh(const taut_mesh_def* def, const taut_allocator* allocator, taut_baked* out);
+TAUT_API taut_result taut_bake_height_field(const taut_height_field_def* def, const taut_allocator* allocator,
+                                            taut_baked* out);
+/**
+ * Adds a shape of what is baked to a world. The data stay where they are and are not among the world's bytes.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE (also of what is baked), TAUT_LOCKED, TAUT_LIMIT,
+ *         TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_world_add_baked(taut_world world, taut_baked baked, taut_shape* out);
+/**
+ * Lets go of what is baked: the handle becomes stale, and the data go with the last shape that a world has of them.
+ * Thread safety: any thread. @return TAUT_OK; TAUT_STALE_HANDLE.
+ */
+TAUT_API taut_result taut_baked_release(taut_baked baked);
+/** 1 if the handle names what is baked, else 0. Thread safety: any thread. */
+TAUT_API int32_t taut_baked_is_valid(taut_baked baked);
+/** Bytes from its allocator. Thread safety: any thread. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE. */
+TAUT_API taut_result taut_baked_get_bytes(taut_baked baked, uint64_t* out);
 
 /**
  * Adds a shape that is a mesh or height field scaled along its axes, on top of the scale that it has; the data are

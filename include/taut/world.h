@@ -248,7 +248,8 @@ TAUT_API taut_result taut_world_set_hit_speed(taut_world world, float hit_speed)
 TAUT_API taut_result taut_world_set_restitution_threshold(taut_world world, float restitution_threshold);
 /** Live bodies and particles, shapes and joints; any pointer may be null. */
 TAUT_API taut_result taut_world_get_counts(taut_world world, uint32_t* bodies, uint32_t* shapes, uint32_t* joints);
-/** Bytes that the world holds from its allocator. */
+/** Bytes that the world holds from its allocator, those of meshes, height fields and hulls included, but not of baked
+ *  ones: see taut_baked_get_bytes. */
 TAUT_API taut_result taut_world_get_bytes(taut_world world, uint64_t* out);
 /** Hash of the whole simulation state (poses, velocities, carried impulses); equal hashes: equal continuation. */
 TAUT_API taut_result taut_world_get_state_hash(taut_world world, uint64_t* out);

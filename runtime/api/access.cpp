@@ -14,11 +14,24 @@ Check& Check::pointer(const char* name, const void* value) {
     return *this;
 }
 
-Check& Check::struct_size(uint32_t value, size_t known) {
-    if (*this && value != known) {
-        result_ = refuse(TAUT_STRUCT_SIZE, "%s: %sstruct_size is %u, expected %zu; call the _init function", call_,
-                         scope_, value, known);
+Check& Check::struct_size(uint32_t value, size_t known, size_t alignment) {
+    if (!*this) return *this;
+    if (value > known) {
+        result_ = refuse(TAUT_STRUCT_SIZE,
+                         "%s: %sstruct_size is %u, this library (%d.%d.%d) knows up to %zu: call the _init function; "
+                         "the program may be built with a newer header",
+                         call_, scope_, value, TAUT_VERSION_MAJOR, TAUT_VERSION_MINOR, TAUT_VERSION_PATCH, known);
+    } else if (value == 0 || value % alignment != 0) {
+        result_ = refuse(TAUT_STRUCT_SIZE, "%s: %sstruct_size is %u, expected at most %zu; call the _init function",
+                         call_, scope_, value, known);
     }
+    return *this;
+}
+
+Check& Check::nested(uint32_t struct_size, size_t known) {
+    if (*this && struct_size != known)
+        result_ = refuse(TAUT_STRUCT_SIZE, "%s: %sstruct_size is %u, expected %zu; call the _init function", call_,
+                         scope_, struct_size, known);
     return *this;
 }
 
@@ -123,6 +136,11 @@ Check& Check::pose(const char* position, const char* rotation_field, const taut_
 
 Check& Check::require(bool condition, const char* text, taut_result code) {
     if (*this && !condition) result_ = refuse(code, "%s: %s%s", call_, scope_, text);
+    return *this;
+}
+
+Check& Check::refuse_with(const char* text, const char* reason) {
+    if (*this) result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s: %s", call_, scope_, text, reason);
     return *this;
 }
 

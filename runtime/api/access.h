@@ -69,8 +69,10 @@ public:
         return *this;
     }
     Check& pointer(const char* name, const void* value);
-    // The first field of every def.
-    Check& struct_size(uint32_t value, size_t known);
+    // The first field of every def: that of an older header is shorter, of a newer one longer.
+    Check& struct_size(uint32_t value, size_t known, size_t alignment);
+    // Of a def inside another, which does not grow.
+    Check& nested(uint32_t struct_size, size_t known);
     Check& zero(const char* field, uint64_t value);
     Check& boolean(const char* field, uint32_t value);
     Check& count(const char* field, uint32_t value, uint32_t lo, uint32_t hi);
@@ -97,6 +99,8 @@ public:
     Check& pose(const char* position, const char* rotation_field, const taut_pose& value);
     // Any other condition: "<call>: <text>".
     Check& require(bool condition, const char* text, taut_result code = TAUT_INVALID_ARGUMENT);
+    // "<call>: <text>: <reason>".
+    Check& refuse_with(const char* text, const char* reason);
 
     explicit operator bool() const { return result_ == TAUT_OK; }
     taut_result result() const { return result_; }

@@ -5,6 +5,7 @@
 
 #include "api/copy_out.h"
 #include "api/joint_parts.h"
+#include "api/sized.h"
 #include "models/attachments.h"
 #include "models/soft_points.h"
 
@@ -112,7 +113,7 @@ Check& check_break(Check& check, bool fixed, float force, float torque) {
 }
 
 bool check_def(Check& check, const taut_attachment_def& def) {
-    check.struct_size(def.struct_size, sizeof def).choice("kind", def.kind, TAUT_ATTACHMENT_FIXED);
+    check.choice("kind", def.kind, TAUT_ATTACHMENT_FIXED);
     if (!check || !check_anchor(check, "a.", def.a) || !check_anchor(check, "b.", def.b)) return false;
     check.zero_or("length", def.length, kJointLength);
     check_law(check, def.compliance, def.damping);
@@ -307,10 +308,13 @@ taut_result taut_solid_find_anchor(taut_solid solid, taut_pos point, taut_anchor
     return anchor_near(check, solid, point, out, cell);
 }
 
-taut_result taut_world_add_attachment(taut_world handle, const taut_attachment_def* def, taut_attachment* out) {
+taut_result taut_world_add_attachment(taut_world handle, const taut_attachment_def* given, taut_attachment* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out) || !check_def(check, *def)) return check.result();
-    return with_world(check.call(), handle, Use::write, [&](World& world) { return add(check, world, *def, out); });
+    taut_attachment_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_attachment_def_init, def))
+        return check.result();
+    if (!check_def(check, def)) return check.result();
+    return with_world(check.call(), handle, Use::write, [&](World& world) { return add(check, world, def, out); });
 }
 
 taut_result taut_attachment_remove(taut_attachment handle) {

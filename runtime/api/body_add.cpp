@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "api/access.h"
 #include "api/body_mass.h"
 #include "api/collider_def.h"
+#include "api/sized.h"
 #include "models/bodies.h"
 
 using namespace taut;
@@ -24,8 +24,15 @@ Check& check_inertia(Check& check, const taut_sym3& m) {
         .number("inertia.yz", m.yz, kInertia);
 }
 
+// One of a body's, which lie as far apart as the first of them says that it is long.
+bool take_collider(Check& check, const taut_body_def& def, uint32_t i, taut_collider_def& out) {
+    const size_t stride = def.colliders[0].struct_size;
+    const auto* const at = reinterpret_cast<const std::byte*>(def.colliders) + i * stride;
+    return take_def(check, reinterpret_cast<const taut_collider_def*>(at), taut_collider_def_init, out);
+}
+
 Check& check_def(Check& check, const taut_body_def& def) {
-    check.struct_size(def.struct_size, sizeof def)
+    check
         .choice("kind", def.kind, TAUT_BODY_DYNAMIC)  // a particle has its own def
         .bounded("position", def.position, kPosition)
         .rotation("rotation", def.rotation)
@@ -47,8 +54,8 @@ Check& check_def(Check& check, const taut_body_def& def) {
     char scope[32];
     for (uint32_t i = 0; i < def.collider_count; ++i) {
         std::snprintf(scope, sizeof scope, "colliders[%u].", i);
-        check_collider_def(check.within(scope), def.colliders[i]);
-        if (!check) return check;
+        taut_collider_def collider;
+        if (!take_collider(check.within(scope), def, i, collider) || !check_collider_def(check, collider)) return check;
     }
     return check.within("");
 }
@@ -87,7 +94,9 @@ taut_result make_colliders(Check& check, const World& world, NodeKind kind, cons
         if (made != TAUT_OK) return made;
     }
     for (uint32_t i = 0; i < def.collider_count; ++i) {
-        const taut_result made = make_collider(check, world, kind, def.colliders[i], out.emplace_back());
+        taut_collider_def collider;
+        if (!take_collider(check, def, i, collider)) return check.result();
+        const taut_result made = make_collider(check, world, kind, collider, out.emplace_back());
         if (made != TAUT_OK) return made;
     }
     return TAUT_OK;
@@ -117,60 +126,63 @@ void taut_particle_def_init(taut_particle_def* def) {
     def->filter = kDefaultFilter;
 }
 
-taut_result taut_world_add_body(taut_world handle, const taut_body_def* def, taut_body* out) {
+taut_result taut_world_add_body(taut_world handle, const taut_body_def* given, taut_body* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    if (!check_def(check, *def)) return check.result();
+    taut_body_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_body_def_init, def))
+        return check.result();
+    if (!check_def(check, def)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         NodeInfo info;
-        info.kind = kNodeKind[def->kind];
-        info.user_data = def->user_data;
+        info.kind = kNodeKind[def.kind];
+        info.user_data = def.user_data;
         std::vector<ColliderPlan> colliders;
-        const taut_result made = make_colliders(check, world, info.kind, *def, colliders);
+        const taut_result made = make_colliders(check, world, info.kind, def, colliders);
         if (made != TAUT_OK) return made;
         NodeMass mass;
-        mass.gravity_scale = def->gravity_scale;
+        mass.gravity_scale = def.gravity_scale;
         if (info.kind == NodeKind::dynamic) {
-            set_body_mass(check, *def, world.shapes, colliders, mass);
+            set_body_mass(check, def, world.shapes, colliders, mass);
             if (!check) return check.result();
         }
         NodeMotion motion;
-        motion.q = to_quat(def->rotation);
-        motion.x = to_vec(def->position) + motion.q * mass.centre;
-        set_velocity(motion, to_vec(def->linear_velocity), to_vec(def->angular_velocity));
+        motion.q = to_quat(def.rotation);
+        motion.x = to_vec(def.position) + motion.q * mass.centre;
+        set_velocity(motion, to_vec(def.linear_velocity), to_vec(def.angular_velocity));
         return add_body(check, world, info, motion, mass, colliders, out);
     });
 }
 
-taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* def, taut_body* out) {
+taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* given, taut_body* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    check.struct_size(def->struct_size, sizeof *def)
-        .number("mass", def->mass, kParticleMass)
-        .bounded("position", def->position, kPosition)
-        .bounded("velocity", def->velocity, kSpeed)
-        .number("gravity_scale", def->gravity_scale, kGravityScale);
-    check_material(check, kMaterialInDef, def->material).zero("filter.reserved", def->filter.reserved);
-    check_asks(check, "collider_flags", def->collider_flags, def->contact_events);
+    taut_particle_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_particle_def_init, def))
+        return check.result();
+    check.number("mass", def.mass, kParticleMass)
+        .bounded("position", def.position, kPosition)
+        .bounded("velocity", def.velocity, kSpeed)
+        .number("gravity_scale", def.gravity_scale, kGravityScale);
+    check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
+    check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        const bool has_shape = def->shape.bits != 0;
+        const bool has_shape = def.shape.bits != 0;
         ColliderPlan collider;
         if (has_shape) {
-            const taut_result made = make_collider(check, world, NodeKind::particle, own_collider(*def, 0), collider);
+            const taut_result made = make_collider(check, world, NodeKind::particle, own_collider(def, 0), collider);
             if (made != TAUT_OK) return made;
         }
         NodeMass mass;
-        mass.mass = def->mass;
+        mass.mass = def.mass;
         mass.inv_mass = 1 / mass.mass;
-        mass.gravity_scale = def->gravity_scale;
+        mass.gravity_scale = def.gravity_scale;
         mass.isotropic = true;
         NodeMotion motion;
-        motion.x = to_vec(def->position);
-        set_velocity(motion, to_vec(def->velocity), Vec3::Zero());
+        motion.x = to_vec(def.position);
+        set_velocity(motion, to_vec(def.velocity), Vec3::Zero());
         NodeInfo info;
         info.kind = NodeKind::particle;
-        info.user_data = def->user_data;
+        info.user_data = def.user_data;
         return add_body(check, world, info, motion, mass, {&collider, has_shape ? 1u : 0u}, out);
     });
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "api/access.h"
 #include "api/collider_def.h"
 #include "api/copy_out.h"
+#include "api/sized.h"
 #include "models/cable.h"
 #include "models/cable_path.h"
 
@@ -65,8 +65,7 @@ bool check_path(Check& check, const taut_cable_def& def) {
 }
 
 bool check_def(Check& check, const taut_cable_def& def) {
-    check.struct_size(def.struct_size, sizeof def)
-        .choice("kind", def.kind, TAUT_CABLE_LINKS)
+    check.choice("kind", def.kind, TAUT_CABLE_LINKS)
         .number("diameter", def.diameter, kDiameter)
         .number("mass_per_metre", def.mass_per_metre, kMassPerMetre)
         .number("stretch_compliance", def.stretch_compliance, kStretch)
@@ -179,26 +178,28 @@ void taut_cable_def_init(taut_cable_def* def) {
     def->gravity_scale = 1;
 }
 
-taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* def, taut_cable* out) {
+taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* given, taut_cable* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    if (!check_def(check, *def)) return check.result();
+    taut_cable_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_cable_def_init, def))
+        return check.result();
+    if (!check_def(check, def)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         CableTie tie[2];
         Vec3 at[2];
         for (int e = 0; e < 2; ++e) {
-            const taut_result found = find_end(check, world, def->end[e], kCableEndNames[e], tie[e], at[e]);
+            const taut_result found = find_end(check, world, def.end[e], kCableEndNames[e], tie[e], at[e]);
             if (found != TAUT_OK) return found;
         }
         Array<Vec3> path(world.memory), points(world.memory);
-        path.resize(std::max(def->point_count, 2u));
-        for (uint32_t i = 0; i < def->point_count; ++i) path[i] = to_vec(def->points[i]);
+        path.resize(std::max(def.point_count, 2u));
+        for (uint32_t i = 0; i < def.point_count; ++i) path[i] = to_vec(def.points[i]);
         if (tie[0].attached) path.front() = at[0];
         if (tie[1].attached) path.back() = at[1];
-        lay(check, world, *def, path, points);
+        lay(check, world, def, path, points);
         if (!check) return check.result();
 
-        Cable plan = plan_of(world, *def);
+        Cable plan = plan_of(world, def);
         const CableParts parts = parts_of(plan, static_cast<uint32_t>(points.size()) - 1, tie);
         taut_result room = room_for_bodies(check.call(), world, parts.nodes);
         if (room == TAUT_OK) room = room_for_colliders(check.call(), world, parts.colliders);

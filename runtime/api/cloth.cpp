@@ -1,6 +1,7 @@
 #include <taut/cloth.h>
 
 #include "api/deformable.h"
+#include "api/sized.h"
 #include "models/cloth.h"
 #include "models/gas.h"
 #include "sleep/wake.h"
@@ -37,8 +38,7 @@ bool check_kind(Check& check, const taut_cloth_def& def) {
 }
 
 bool check_def(Check& check, const taut_cloth_def& def) {
-    check.struct_size(def.struct_size, sizeof def)
-        .choice("kind", def.kind, TAUT_CLOTH_QUADS)
+    check.choice("kind", def.kind, TAUT_CLOTH_QUADS)
         .number("area_density", def.area_density, kAreaDensity)
         .number("stretch_stiffness[0]", def.stretch_stiffness[0], kSheetStiffness)
         .number("stretch_stiffness[1]", def.stretch_stiffness[1], kSheetStiffness)
@@ -157,7 +157,8 @@ void taut_cloth_def_init(taut_cloth_def* def) {
 taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric) {
     Check check(__func__);
     if (!check.pointer("def", def)) return check.result();
-    check.struct_size(def->struct_size, sizeof *def).choice("fabric", fabric, TAUT_FABRIC_LEATHER);
+    check.struct_size(def->struct_size, sizeof *def, alignof(taut_cloth_def))
+        .choice("fabric", fabric, TAUT_FABRIC_LEATHER);
     if (!check) return check.result();
     const FabricFigures& of = kFabrics[fabric];
     def->area_density = of.area_density;
@@ -169,27 +170,29 @@ taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric) {
     return TAUT_OK;
 }
 
-taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* def, taut_cloth* out) {
+taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* given, taut_cloth* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    if (!check_def(check, *def)) return check.result();
+    taut_cloth_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_cloth_def_init, def))
+        return check.result();
+    if (!check_def(check, def)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        const Array<Vec3> at = positions_of(world, def->points, def->point_count);
-        const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
-        const std::span<const float> uv(def->uv, def->uv ? 2 * size_t{def->point_count} : 0);
-        const Array<uint32_t> triangles = triangles_of(world, *def);
+        const Array<Vec3> at = positions_of(world, def.points, def.point_count);
+        const Array<Vec3> rest = positions_of(world, def.rest ? def.rest : def.points, def.point_count);
+        const std::span<const float> uv(def.uv, def.uv ? 2 * size_t{def.point_count} : 0);
+        const Array<uint32_t> triangles = triangles_of(world, def);
         const ClothMesh mesh{at, rest, triangles, uv};
-        const auto kind = static_cast<ClothKind>(def->kind);
+        const auto kind = static_cast<ClothKind>(def.kind);
         SoftPlan plan(world.memory);
-        plan.soft.mass_damping = def->mass_damping;
-        plan.soft.self = def->self_collision != 0;
-        plan.soft.gravity_scale = def->gravity_scale;
-        plan.soft.user_data = def->user_data;
-        plan_spheres(plan, def->thickness, def->material, def->filter);
-        Fabric fabric = fabric_of(*def);
+        plan.soft.mass_damping = def.mass_damping;
+        plan.soft.self = def.self_collision != 0;
+        plan.soft.gravity_scale = def.gravity_scale;
+        plan.soft.user_data = def.user_data;
+        plan_spheres(plan, def.thickness, def.material, def.filter);
+        Fabric fabric = fabric_of(def);
         fabric.shortest_substep = static_cast<double>(world.def.time_step) / kMostElasticSubsteps;
-        const AirTraits air{def->air_drag, def->air_lift, def->pressure, def->gas != 0};
-        taut_deformable_solve solve = def->solve;
+        const AirTraits air{def.air_drag, def.air_lift, def.pressure, def.gas != 0};
+        taut_deformable_solve solve = def.solve;
         const auto plan_as = [&](JointSolve as, SoftPlan& to) { return plan_cloth(mesh, kind, fabric, as, to); };
         const char* fault = plan_soft(world, air.pressure != 0 || air.gas, plan_as, solve, plan);
         if (!check.require(!fault, fault)) return check.result();

@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "api/access.h"
 #include "api/body_mass.h"
 #include "api/collider_def.h"
+#include "api/sized.h"
 #include "detect/detect.h"
 #include "models/bodies.h"
 #include "sleep/wake.h"
@@ -40,8 +40,7 @@ Check& check_asks(Check& check, const char* flags_field, uint32_t flags, uint32_
 }
 
 Check& check_collider_def(Check& check, const taut_collider_def& def) {
-    check.struct_size(def.struct_size, sizeof def)
-        .zero_or("density", def.density, kDensity)
+    check.zero_or("density", def.density, kDensity)
         .vector("position", def.position, kShapeCoordinate)
         .rotation("rotation", def.rotation);
     check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
@@ -99,10 +98,9 @@ taut_collider_def def_of(const World& world, uint32_t index) {
     def.material = traits.material;
     def.filter = traits.filter;
     def.user_data = collider.user_data;
-    def.flags = (collider.sensor ? TAUT_COLLIDER_SENSOR : 0) |
-                (collider.senses_static ? TAUT_COLLIDER_SENSES_STATIC : 0) |
-                (collider.grain ? TAUT_COLLIDER_GRAIN : 0) |
-                (collider.asks & kAsksPreSolve ? TAUT_COLLIDER_PRE_SOLVE : 0);
+    def.flags =
+        (collider.sensor ? TAUT_COLLIDER_SENSOR : 0) | (collider.senses_static ? TAUT_COLLIDER_SENSES_STATIC : 0) |
+        (collider.grain ? TAUT_COLLIDER_GRAIN : 0) | (collider.asks & kAsksPreSolve ? TAUT_COLLIDER_PRE_SOLVE : 0);
     def.contact_events = collider.asks & TAUT_CONTACT_EVENTS_ALL;
     def.one_way = to_vec3(traits.one_way.cast<double>());
     return def;
@@ -131,17 +129,19 @@ void taut_collider_def_init(taut_collider_def* def) {
     def->filter = kDefaultFilter;
 }
 
-taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* def, taut_collider* out) {
+taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* given, taut_collider* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    if (!check_collider_def(check, *def)) return check.result();
+    taut_collider_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_collider_def_init, def))
+        return check.result();
+    if (!check_collider_def(check, def)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const NodeKind kind = world.nodes.info[node].kind;
         check.require(kind != NodeKind::particle, "body is a particle, whose shape comes with its def");
         if (!check_own(check, world, node)) return check.result();
         ColliderPlan collider;
         collider.node = node;
-        const taut_result made = make_collider(check, world, kind, *def, collider);
+        const taut_result made = make_collider(check, world, kind, def, collider);
         if (made != TAUT_OK) return made;
         const taut_result room = room_for_colliders(check.call(), world, 1);
         if (room != TAUT_OK) return room;

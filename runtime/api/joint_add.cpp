@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "api/joint_parts.h"
+#include "api/sized.h"
 
 using namespace taut;
 
@@ -69,10 +70,11 @@ void init(Def* def, taut_axis_mode mode = TAUT_AXIS_FREE) {
 
 // ---------------------------------------------------------------- check
 
+// def: as this library knows it.
 template <class Def>
-bool check_def(Check& check, const Def* def, const taut_joint* out) {
-    if (!check.pointer("def", def).pointer("out", out)) return false;
-    check.struct_size(def->struct_size, sizeof *def).boolean("collide_connected", def->collide_connected);
+bool check_def(Check& check, const Def* given, void (*init)(Def*), Def* def, const taut_joint* out) {
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, init, *def)) return false;
+    check.boolean("collide_connected", def->collide_connected);
     if constexpr (kFramed<Def>) {
         for (int end = 0; end < 2; ++end) {
             const taut_frame& frame = end == 0 ? def->frame_a : def->frame_b;
@@ -188,17 +190,19 @@ taut_result add_joint(Check& check, World& world, const Joint& joint, taut_joint
 }
 
 template <class Def>
-taut_result add(const char* call, taut_world handle, taut_joint_kind which, const Def* def, taut_joint* out) {
+taut_result add(const char* call, taut_world handle, taut_joint_kind which, const Def* given, void (*init)(Def*),
+                taut_joint* out) {
     Check check(call);
+    Def def;
     const JointKind& kind = joint_kind(which);
-    if (!check_def(check, def, out)) return check.result();
-    const NamedAxes axes = axes_of(*def);
+    if (!check_def(check, given, init, &def, out)) return check.result();
+    const NamedAxes axes = axes_of(def);
     if (!check_axes(check, kind, axes)) return check.result();
     return with_world(call, handle, Use::write, [&](World& world) {
         JointEnd ends[2];
-        const taut_result found = find_ends(check, world, kind, *def, ends);
+        const taut_result found = find_ends(check, world, kind, def, ends);
         if (found != TAUT_OK) return found;
-        Joint joint = make_joint(kind, *def, ends);
+        Joint joint = make_joint(kind, def, ends);
         set_axes(world, kind, axes, joint);
         return add_joint(check, world, joint, out);
     });
@@ -277,40 +281,42 @@ void taut_cone_twist_joint_def_init(taut_cone_twist_joint_def* def) { init(def);
 void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def) { init(def, TAUT_AXIS_LOCKED); }
 
 taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_BALL, def, out);
+    return add(__func__, world, TAUT_JOINT_BALL, def, taut_ball_joint_def_init, out);
 }
 taut_result taut_world_add_fixed_joint(taut_world world, const taut_fixed_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_FIXED, def, out);
+    return add(__func__, world, TAUT_JOINT_FIXED, def, taut_fixed_joint_def_init, out);
 }
 taut_result taut_world_add_hinge_joint(taut_world world, const taut_hinge_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_HINGE, def, out);
+    return add(__func__, world, TAUT_JOINT_HINGE, def, taut_hinge_joint_def_init, out);
 }
 taut_result taut_world_add_slider_joint(taut_world world, const taut_slider_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_SLIDER, def, out);
+    return add(__func__, world, TAUT_JOINT_SLIDER, def, taut_slider_joint_def_init, out);
 }
 taut_result taut_world_add_cylindrical_joint(taut_world world, const taut_cylindrical_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_CYLINDRICAL, def, out);
+    return add(__func__, world, TAUT_JOINT_CYLINDRICAL, def, taut_cylindrical_joint_def_init, out);
 }
 taut_result taut_world_add_universal_joint(taut_world world, const taut_universal_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_UNIVERSAL, def, out);
+    return add(__func__, world, TAUT_JOINT_UNIVERSAL, def, taut_universal_joint_def_init, out);
 }
 taut_result taut_world_add_cone_twist_joint(taut_world world, const taut_cone_twist_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_CONE_TWIST, def, out);
+    return add(__func__, world, TAUT_JOINT_CONE_TWIST, def, taut_cone_twist_joint_def_init, out);
 }
 taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_joint_def* def, taut_joint* out) {
-    return add(__func__, world, TAUT_JOINT_SIX_DOF, def, out);
+    return add(__func__, world, TAUT_JOINT_SIX_DOF, def, taut_six_dof_joint_def_init, out);
 }
 
-taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* def, taut_joint* out) {
+taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* given, taut_joint* out) {
     Check check(__func__);
-    if (!check_def(check, def, out) || !check_range(check, *def)) return check.result();
+    taut_distance_joint_def def;
+    if (!check_def(check, given, taut_distance_joint_def_init, &def, out) || !check_range(check, def))
+        return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         const JointKind& kind = joint_kind(TAUT_JOINT_DISTANCE);
         JointEnd ends[2];
-        const taut_result found = find_ends(check, world, kind, *def, ends);
+        const taut_result found = find_ends(check, world, kind, def, ends);
         if (found != TAUT_OK) return found;
-        Joint joint = make_joint(kind, *def, ends);
-        if (!check_distance(check, world, joint) || !set_distance(check, world, *def, joint)) return check.result();
+        Joint joint = make_joint(kind, def, ends);
+        if (!check_distance(check, world, joint) || !set_distance(check, world, def, joint)) return check.result();
         return add_joint(check, world, joint, out);
     });
 }

@@ -103,7 +103,7 @@ Check& check_stops(Check& check, const taut_axis_def& def, bool angular) {
 
 Check& check_axis(Check& check, const JointKind& kind, const JointAxis& place, const taut_axis_def& def) {
     const bool angular = kind.type->angular >> place.row & 1;
-    check.struct_size(def.struct_size, sizeof def).choice("mode", def.mode, TAUT_AXIS_LIMITED);
+    check.nested(def.struct_size, sizeof def).choice("mode", def.mode, TAUT_AXIS_LIMITED);
     if (check && def.mode == TAUT_AXIS_LIMITED) {
         if (place.swing)
             check.number_or("upper", def.upper, kSwing, INFINITY);

@@ -1,6 +1,5 @@
-// The part of shape.h about surfaces of triangles, and the triangles of shapes that have some.
-#include <cmath>
-
+// The part of shape.h about shapes that are built, and the triangles of those.
+#include "api/shape_build.h"
 #include "api/shape_def.h"
 #include "collision/distance_grid.h"
 
@@ -15,25 +14,40 @@ Check& check_surface(Check& check, const collision::Shape& shape) {
     return check.require(shape.kind == collision::ShapeKind::surface, "shape is neither a mesh nor a height field");
 }
 
-void triangles_of(const collision::Shape& shape, std::vector<Vec3f>& points) {
-    if (shape.kind == collision::ShapeKind::surface) return collision::surface_triangles(shape, points);
-    std::vector<uint32_t> corners;
-    collision::hull_triangles(*shape.hull, corners);
-    const std::span<const Vec3f> vertices = collision::hull_vertices(*shape.hull);
-    for (const uint32_t corner : corners) points.push_back(vertices[corner]);
-}
+class PointsOut final : public collision::PointSink {
+public:
+    explicit PointsOut(taut_vec3* out) : out_(out) {}
+    void take(const Vec3f& point) override { *out_++ = {point.x(), point.y(), point.z()}; }
+
+private:
+    taut_vec3* out_;
+};
 
 taut_result copy_triangles(Check& check, const collision::Shape& shape, taut_vec3* positions, uint32_t capacity,
                            uint32_t* count) {
-    std::vector<Vec3f> points;
-    triangles_of(shape, points);
-    *count = static_cast<uint32_t>(points.size());
-    if (!positions || capacity < points.size()) {
+    *count =
+        3 * (shape.hull ? collision::hull_triangle_count(*shape.hull) : collision::surface_counts(shape).triangles);
+    if (!positions || capacity < *count) {
         return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(),
                       positions ? capacity : 0, *count);
     }
-    for (const Vec3f& p : points) *positions++ = {p.x(), p.y(), p.z()};
+    PointsOut points(positions);
+    if (shape.hull)
+        collision::hull_triangles(*shape.hull, points);
+    else
+        collision::surface_triangles(shape, points);
     return TAUT_OK;
+}
+
+template <class Def>
+taut_result add_built(const char* call, taut_world handle, const Def* given, taut_shape* out) {
+    Check check(call);
+    Def def;
+    if (!take_shape_def(check, given, init_def, def, out) || !check_build(check, def)) return check.result();
+    return with_world(call, handle, Use::write, [&](World& world) {
+        collision::Shape shape = build_shape(check, def, world.memory);
+        return check ? insert_shape(check, world, std::move(shape), out) : check.result();
+    });
 }
 
 }  // namespace
@@ -41,51 +55,14 @@ taut_result copy_triangles(Check& check, const collision::Shape& shape, taut_vec
 void taut_mesh_def_init(taut_mesh_def* def) { init_shape_def(def, {}); }
 void taut_height_field_def_init(taut_height_field_def* def) { init_shape_def(def, {0, 0, 0, 1, 1, 0, nullptr}); }
 
-taut_result taut_world_add_mesh(taut_world world, const taut_mesh_def* def, taut_shape* out) {
-    Check check(__func__);
-    if (!check_shape_def(check, def, out)) return check.result();
-    check.count("vertex_count", def->vertex_count, 3, UINT32_MAX)
-        .count("triangle_count", def->triangle_count, 1, TAUT_MESH_MAX_TRIANGLES)
-        .pointer("vertices", def->vertices)
-        .pointer("indices", def->indices)
-        .boolean("two_sided", def->two_sided);
-    for (uint32_t i = 0; check && i < def->vertex_count; ++i)
-        check.vector("vertices", def->vertices[i], kShapeCoordinate);
-    for (uint32_t i = 0; check && i < 3 * def->triangle_count; ++i)
-        check.count("indices", def->indices[i], 0, def->vertex_count - 1);
-    if (!check) return check.result();
-    return contain(check.call(), [&] {
-        std::vector<Vec3f> vertices(def->vertex_count);
-        for (uint32_t i = 0; i < def->vertex_count; ++i) vertices[i] = to_vec(def->vertices[i]).cast<float>();
-        auto mesh = collision::build_mesh(vertices, {def->indices, 3 * size_t{def->triangle_count}}, def->two_sided);
-        if (!check.require(mesh != nullptr, "no triangle has an area")) return check.result();
-        return add_shape(check, world, {collision::ShapeKind::surface, Vec3f::Ones(), nullptr, std::move(mesh)}, out);
-    });
+taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {
+    return add_built(__func__, world, def, out);
 }
-
+taut_result taut_world_add_mesh(taut_world world, const taut_mesh_def* def, taut_shape* out) {
+    return add_built(__func__, world, def, out);
+}
 taut_result taut_world_add_height_field(taut_world world, const taut_height_field_def* def, taut_shape* out) {
-    Check check(__func__);
-    if (!check_shape_def(check, def, out)) return check.result();
-    check.count("rows", def->rows, 2, TAUT_HEIGHT_FIELD_MAX_SIDE)
-        .count("columns", def->columns, 2, TAUT_HEIGHT_FIELD_MAX_SIDE)
-        .number("row_spacing", def->row_spacing, kShapeSize)
-        .number("column_spacing", def->column_spacing, kShapeSize)
-        .zero("reserved", def->reserved)
-        .pointer("heights", def->heights);
-    if (!check) return check.result();
-    check.number("(rows - 1) * row_spacing", static_cast<float>(def->rows - 1) * def->row_spacing, kShapeSize)
-        .number("(columns - 1) * column_spacing", static_cast<float>(def->columns - 1) * def->column_spacing,
-                kShapeSize);
-    const size_t count = size_t{def->rows} * def->columns;
-    for (size_t i = 0; check && i < count; ++i)
-        if (!std::isnan(def->heights[i])) check.number("heights", def->heights[i], kShapeCoordinate);
-    if (!check) return check.result();
-    return contain(check.call(), [&] {
-        auto field = collision::build_height_field(
-            {def->rows, def->columns, def->column_spacing, def->row_spacing, {def->heights, count}});
-        if (!check.require(field != nullptr, "heights have holes everywhere")) return check.result();
-        return add_shape(check, world, {collision::ShapeKind::surface, Vec3f::Ones(), nullptr, std::move(field)}, out);
-    });
+    return add_built(__func__, world, def, out);
 }
 
 taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* out) {
@@ -141,7 +118,8 @@ taut_result taut_shape_sample_distance(taut_shape mesh, float cell_size) {
         const collision::Box& box = world.shapes[index].box;
         const char* reason = nullptr;
         auto grid = collision::sample_distance(
-            shape, cell_size > 0 ? double(cell_size) : double((box.hi - box.lo).maxCoeff()) / 64, &reason);
+            shape, cell_size > 0 ? double(cell_size) : double((box.hi - box.lo).maxCoeff()) / 64, &reason,
+            world.memory);
         if (!grid) return refuse(TAUT_UNSUPPORTED, "%s: %s", check.call(), reason);
         shape.distance = std::move(grid);
         return TAUT_OK;

@@ -1,17 +1,17 @@
 #include <taut/profile.h>
 
-#include "api/access.h"
+#include "api/sized.h"
 
 using namespace taut;
 
 taut_result taut_world_get_profile(taut_world handle, taut_profile* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
-    if (!check.struct_size(out->struct_size, sizeof *out)) return check.result();
+    if (!check.struct_size(out->struct_size, sizeof *out, alignof(taut_profile))) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
-        *out = world.profile;
-        out->struct_size = sizeof *out;
-        out->bytes = held_bytes(world);
+        taut_profile profile = world.profile;
+        profile.bytes = held_bytes(world);
+        give_def(profile, out);
         return TAUT_OK;
     });
 }

@@ -19,7 +19,6 @@ Check& check_ray(Check& check, const taut_ray& ray) {
 
 Check& check_filter(Check& check, const taut_query_filter& filter) {
     check.within("filter.")
-        .struct_size(filter.struct_size, sizeof filter)
         .count("kinds", filter.kinds, 0, TAUT_QUERY_ALL_KINDS | TAUT_QUERY_SENSOR)
         .count("ignored_body_count", filter.ignored_body_count, 0, TAUT_QUERY_MAX_IGNORED)
         .count("ignored_collider_count", filter.ignored_collider_count, 0, TAUT_QUERY_MAX_IGNORED);

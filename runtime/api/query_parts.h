@@ -3,7 +3,7 @@
 
 #include <taut/query.h>
 
-#include "api/access.h"
+#include "api/sized.h"
 #include "queries/queries.h"
 
 namespace taut {
@@ -19,9 +19,9 @@ collision::Placement to_placement(const taut_pose& pose);
 // act(Sight) with the arguments checked, the world held and the filter, null for all, resolved.
 template <class Act>
 taut_result ask(Check& check, taut_world handle, const taut_query_filter* filter, Act&& act) {
-    taut_query_filter all;
-    taut_query_filter_init(&all);
-    const taut_query_filter& used = filter ? *filter : all;
+    taut_query_filter used;
+    taut_query_filter_init(&used);
+    if (filter && !take_def(check.within("filter."), filter, taut_query_filter_init, used, "")) return check.result();
     if (!check_filter(check, used)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         const taut_result found = find_ignored(check.call(), world, used);

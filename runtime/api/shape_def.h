@@ -3,14 +3,14 @@
 
 #include <taut/shape.h>
 
-#include "api/access.h"
+#include "api/sized.h"
 
 namespace taut {
 
+// def: as this library knows it.
 template <class Def>
-bool check_shape_def(Check& check, const Def* def, taut_shape* out) {
-    if (!check.pointer("def", def).pointer("out", out)) return false;
-    return static_cast<bool>(check.struct_size(def->struct_size, sizeof *def));
+bool take_shape_def(Check& check, const Def* given, void (*init)(Def*), Def& def, taut_shape* out) {
+    return check.pointer("def", given).pointer("out", out) && take_def(check, given, init, def);
 }
 
 inline taut_result insert_shape(const Check& check, World& world, collision::Shape shape, taut_shape* out) {

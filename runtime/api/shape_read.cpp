@@ -1,7 +1,7 @@
 // Reading shapes back: kind, defs, bounds.
 #include <taut/shape.h>
 
-#include "api/access.h"
+#include "api/sized.h"
 
 using namespace taut;
 
@@ -15,11 +15,11 @@ template <class Def, class Fill>
 taut_result read_def(const char* call, ShapeKind kind, const char* refusal, taut_shape handle, Def* out, Fill&& fill) {
     Check check(call);
     if (!check.pointer("out", out)) return check.result();
-    if (!check.struct_size(out->struct_size, sizeof *out)) return check.result();
+    if (!check.struct_size(out->struct_size, sizeof *out, alignof(Def))) return check.result();
     return with(call, handle, Use::read, [&](const World& world, uint32_t index) {
         const Shape& shape = world.shapes[index].shape;
         if (!check.require(shape.kind == kind, refusal)) return check.result();
-        *out = fill(shape.size);
+        give_def(fill(shape.size), out);
         return TAUT_OK;
     });
 }

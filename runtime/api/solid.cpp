@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "api/deformable.h"
+#include "api/sized.h"
 #include "models/plastic.h"
 #include "models/solid.h"
 #include "recover.h"
@@ -93,8 +94,7 @@ bool check_points(Check& check, const taut_solid_def& def) {
 }
 
 bool check_def(Check& check, const taut_solid_def& def) {
-    check.struct_size(def.struct_size, sizeof def)
-        .choice("material", def.material, TAUT_SOLID_ORTHOTROPIC)
+    check.choice("material", def.material, TAUT_SOLID_ORTHOTROPIC)
         .boolean("self_collision", def.self_collision)
         .number("density", def.density, kSolidDensity)
         .number("young_modulus", def.young_modulus, kYoung)
@@ -185,7 +185,8 @@ void taut_solid_def_init(taut_solid_def* def) {
 taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_substance substance) {
     Check check(__func__);
     if (!check.pointer("def", def)) return check.result();
-    check.struct_size(def->struct_size, sizeof *def).choice("substance", substance, TAUT_SUBSTANCE_WOOD);
+    check.struct_size(def->struct_size, sizeof *def, alignof(taut_solid_def))
+        .choice("substance", substance, TAUT_SUBSTANCE_WOOD);
     if (!check) return check.result();
     const SubstanceFigures& of = kSubstances[substance];
     def->material = of.material;
@@ -195,44 +196,45 @@ taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_substance sub
     return TAUT_OK;
 }
 
-taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* def, taut_solid* out) {
+taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* given, taut_solid* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    if (!check_def(check, *def)) return check.result();
+    taut_solid_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_solid_def_init, def))
+        return check.result();
+    if (!check_def(check, def)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        const Array<Vec3> at = positions_of(world, def->points, def->point_count);
-        const Array<Vec3> rest = positions_of(world, def->rest ? def->rest : def->points, def->point_count);
-        const Array<Quat> axes = axes_of(world, *def);
-        const Array<Sample> samples = samples_of(world, *def);
-        const SolidMesh mesh{
-            at,   rest,    {def->cells, size_t{def->corners} * def->cell_count}, def->corners,
-            axes, samples, {def->triangles, 3 * size_t{def->triangle_count}},    def->neighbour_radius};
-        const Solid solid{static_cast<SolidMaterial>(def->material),
-                          {def->young_modulus, def->poisson_ratio},
-                          axial_of(def->orthotropic),
-                          def->density,
-                          def->damping,
-                          def->stiffness_damping,
-                          def->yield_stress,
-                          def->hardening,
-                          {0, def->creep, def->plastic_limit}};
+        const Array<Vec3> at = positions_of(world, def.points, def.point_count);
+        const Array<Vec3> rest = positions_of(world, def.rest ? def.rest : def.points, def.point_count);
+        const Array<Quat> axes = axes_of(world, def);
+        const Array<Sample> samples = samples_of(world, def);
+        const SolidMesh mesh{at,   rest,    {def.cells, size_t{def.corners} * def.cell_count}, def.corners,
+                             axes, samples, {def.triangles, 3 * size_t{def.triangle_count}},   def.neighbour_radius};
+        const Solid solid{static_cast<SolidMaterial>(def.material),
+                          {def.young_modulus, def.poisson_ratio},
+                          axial_of(def.orthotropic),
+                          def.density,
+                          def.damping,
+                          def.stiffness_damping,
+                          def.yield_stress,
+                          def.hardening,
+                          {0, def.creep, def.plastic_limit}};
         SoftPlan plan(world.memory);
-        plan.soft.gravity_scale = def->gravity_scale;
-        plan.soft.mass_damping = def->mass_damping;
-        plan.soft.self = def->self_collision != 0;
-        plan.soft.user_data = def->user_data;
-        plan_spheres(plan, def->thickness, def->surface, def->filter);
+        plan.soft.gravity_scale = def.gravity_scale;
+        plan.soft.mass_damping = def.mass_damping;
+        plan.soft.self = def.self_collision != 0;
+        plan.soft.user_data = def.user_data;
+        plan_spheres(plan, def.thickness, def.surface, def.filter);
         uint32_t cell;
-        taut_deformable_solve solve = def->solve;
+        taut_deformable_solve solve = def.solve;
         const auto plan_as = [&](JointSolve as, SoftPlan& to) { return plan_solid(mesh, solid, as, to, cell); };
         if (const char* fault = plan_soft(world, false, plan_as, solve, plan)) {
             char text[96];
-            const char* kind = def->corners == TAUT_SOLID_MESHLESS ? "samples" : "cells";
+            const char* kind = def.corners == TAUT_SOLID_MESHLESS ? "samples" : "cells";
             std::snprintf(text, sizeof text, "%s[%u] %s", kind, cell, fault);
             check.require(false, cell == kNone ? fault : text);
             return check.result();
         }
-        const AirTraits air{def->air_drag, def->air_lift};
+        const AirTraits air{def.air_drag, def.air_lift};
         if (plan.element[0].solve == JointSolve::direct) solve = TAUT_DEFORMABLE_DIRECT;
         if (!plan.soft.triangle.empty() && !plan_checked_air(check, world, air, solve, plan)) return check.result();
         uint32_t index;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "advance.h"
-#include "api/access.h"
+#include "api/sized.h"
 #include "check/minimised.h"
 #include "integrate/scheme.h"
 #include "sleep/wake.h"
@@ -60,8 +60,7 @@ Check& check_passes(Check& check, const taut_world_def& def) {
 }
 
 Check& check_def(Check& check, const taut_world_def& def) {
-    check.struct_size(def.struct_size, sizeof def)
-        .choice("solver", def.solver, static_cast<uint32_t>(solvers().size()) - 1)
+    check.choice("solver", def.solver, static_cast<uint32_t>(solvers().size()) - 1)
         .vector("gravity", def.gravity, kGravity)
         .number("time_step", def.time_step, kTimeStep)
         .count("substeps", def.substeps, 1, kMaxSubsteps)
@@ -138,16 +137,18 @@ const char* taut_solver_name(taut_solver solver) {
     return index < solvers().size() ? solvers()[index]->name : nullptr;
 }
 
-taut_result taut_world_create(const taut_world_def* def, taut_world* out) {
+taut_result taut_world_create(const taut_world_def* given, taut_world* out) {
     Check check(__func__);
-    if (!check.pointer("def", def).pointer("out", out)) return check.result();
-    if (!check_def(check, *def)) return check.result();
+    taut_world_def def;
+    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_world_def_init, def))
+        return check.result();
+    if (!check_def(check, def)) return check.result();
     return contain(check.call(), [&] {
         if (!collision::precision_matches()) {
             return refuse(TAUT_UNSUPPORTED, "%s: the Bullet collision library linked is not of single precision",
                           check.call());
         }
-        const uint32_t id = create_world(*def);
+        const uint32_t id = create_world(def);
         if (id == 0) return refuse(TAUT_LIMIT, "%s: 1023 worlds live already", check.call());
         *out = {id};
         return TAUT_OK;

@@ -23,6 +23,7 @@ public:
     void* allocate(size_t size, size_t alignment);  // throws std::bad_alloc
     void release(void* pointer, size_t size, size_t alignment) noexcept;
 
+    const taut_hooks& hooks() const { return hooks_; }
     uint64_t bytes() const { return bytes_; }  // held from the host
     uint64_t calls() const { return calls_; }  // to the host
     // Whether pieces let go stay; as long as this is true.

@@ -214,7 +214,7 @@ TEST_F(Attachments, BadAnchorsAreRefused) {
 TEST_F(Attachments, BadDefsAreRefused) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     taut_attachment_def def = good();
-    def.struct_size = 8;
+    def.struct_size = sizeof def + 8;
     refused(def, TAUT_STRUCT_SIZE, "struct_size");
     def = good();
     def.kind = static_cast<taut_attachment_kind>(3);

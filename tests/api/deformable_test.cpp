@@ -320,7 +320,7 @@ TEST_F(Deformable, BadNumbersAreRefused) {
     cloth.filter.group = 3;
     refused(cloth, TAUT_INVALID_ARGUMENT, "filter.group");
     cloth = cloth_def();
-    cloth.struct_size = 8;
+    cloth.struct_size = sizeof cloth + 8;
     refused(cloth, TAUT_STRUCT_SIZE, "struct_size");
     cloth = cloth_def();
     cloth.triangles = nullptr;

@@ -11,6 +11,23 @@
 
 namespace taut::collision::oracle {
 
+Memory& memory() {
+    static Memory all{taut_hooks{}};
+    return all;
+}
+
+std::vector<Vec3f> triangles_of(const Shape& shape) {
+    struct List final : PointSink {
+        void take(const Vec3f& point) override { points.push_back(point); }
+        std::vector<Vec3f> points;
+    } list;
+    if (shape.hull)
+        hull_triangles(*shape.hull, list);
+    else
+        surface_triangles(shape, list);
+    return std::move(list.points);
+}
+
 Vec3 Random::unit() {
     while (true) {
         const Vec3 v(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
@@ -75,7 +92,7 @@ Shape hull(const std::vector<Vec3f>& points) {
     Shape shape;
     shape.kind = ShapeKind::hull;
     const char* reason = nullptr;
-    shape.hull = build_hull(points, 64, 1e-3f, &reason);
+    shape.hull = build_hull(points, 64, 1e-3f, &reason, memory());
     return shape;
 }
 
@@ -163,15 +180,19 @@ Core core(const Shape& shape, const Placement& at) {
                 if (!(i >> k & 1)) out.edges.push_back({out.points[i], out.points[i | size_t(1) << k] - out.points[i]});
         }
     } else {
-        for (const Vec3f& v : hull_vertices(*shape.hull)) add(v.x(), v.y(), v.z());
-        std::vector<uint32_t> indices;
-        hull_triangles(*shape.hull, indices);
-        for (size_t i = 0; i < indices.size(); i += 3) {
-            const Vec3 p[3] = {out.points[indices[i]], out.points[indices[i + 1]], out.points[indices[i + 2]]};
+        const std::span<const Vec3f> vertices = hull_vertices(*shape.hull);
+        for (const Vec3f& v : vertices) add(v.x(), v.y(), v.z());
+        const std::vector<Vec3f> corners = triangles_of(shape);
+        for (size_t i = 0; i < corners.size(); i += 3) {
+            size_t index[3];
+            Vec3 p[3];
+            for (size_t k = 0; k < 3; ++k) {
+                index[k] = size_t(std::ranges::find(vertices, corners[i + k]) - vertices.begin());
+                p[k] = out.points[index[k]];
+            }
             out.normals.push_back((p[1] - p[0]).cross(p[2] - p[0]).normalized());
             for (int k = 0; k < 3; ++k) {
-                if (indices[i + size_t(k)] < indices[i + size_t((k + 1) % 3)])
-                    out.edges.push_back({p[k], p[(k + 1) % 3] - p[k]});
+                if (index[k] < index[(k + 1) % 3]) out.edges.push_back({p[k], p[(k + 1) % 3] - p[k]});
             }
         }
     }

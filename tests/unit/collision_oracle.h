@@ -6,9 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "base/memory.h"
 #include "collision/collide.h"
 
 namespace taut::collision::oracle {
+
+// What shapes of tests are built with.
+Memory& memory();
+// Corners of triangles, three a triangle.
+std::vector<Vec3f> triangles_of(const Shape& shape);
 
 class Random {
 public:

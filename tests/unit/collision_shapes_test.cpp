@@ -173,7 +173,7 @@ TEST(CollisionHull, ScaledHullKeepsItsFaces) {
         const char* reason = "";
         Shape scaled;
         scaled.kind = ShapeKind::hull;
-        scaled.hull = scale_hull(*source.hull, factors, 1e-3f, &reason);
+        scaled.hull = scale_hull(*source.hull, factors, 1e-3f, &reason, oracle::memory());
         ASSERT_TRUE(scaled.hull) << reason;
         EXPECT_EQ(scaled.hull->faces.size(), source.hull->faces.size());
         EXPECT_EQ(scaled.hull->edges.size(), source.hull->edges.size());
@@ -189,7 +189,7 @@ TEST(CollisionHull, ScaledHullKeepsItsFaces) {
     }
     const Shape cube = oracle::hull(cube_points(0.5f));
     const char* reason = "";
-    EXPECT_FALSE(scale_hull(*cube.hull, Vec3f(1, 1e-3f, 1), 2e-3f, &reason));
+    EXPECT_FALSE(scale_hull(*cube.hull, Vec3f(1, 1e-3f, 1), 2e-3f, &reason, oracle::memory()));
     EXPECT_STREQ(reason, "hull is thinner than allowed");
 }
 
@@ -244,7 +244,7 @@ TEST(CollisionHull, SpherePointsAreReducedWithLittleLoss) {
     EXPECT_GT(volume, 0.84 * 4.18879);
     EXPECT_LT(volume, 4.18879);
     for (const int most : {4, 8, 20}) {
-        const auto small = build_hull(points, most, 1e-3f, nullptr);
+        const auto small = build_hull(points, most, 1e-3f, nullptr, oracle::memory());
         ASSERT_TRUE(small);
         EXPECT_LE(int(small->vertices.size()), most);
         check_hull(*small, 1e-3);
@@ -259,7 +259,7 @@ TEST(CollisionHull, RandomHullsAreConvexAndOrderedByThePointsAlone) {
         const int count = int(random.uniform(5, 60));
         for (int i = 0; i < count; ++i) points.push_back(random.unit().cwiseProduct(stretch).cast<float>());
         const char* reason = "";
-        const auto hull = build_hull(points, 64, 1e-3f, &reason);
+        const auto hull = build_hull(points, 64, 1e-3f, &reason, oracle::memory());
         ASSERT_TRUE(hull) << run << ": " << reason;
         check_hull(*hull, 2e-3);
         for (const Vec3f& p : points) {
@@ -267,11 +267,46 @@ TEST(CollisionHull, RandomHullsAreConvexAndOrderedByThePointsAlone) {
         }
         std::vector<Vec3f> reversed(points.rbegin(), points.rend());
         reversed.push_back(points[0]);
-        const auto again = build_hull(reversed, 64, 1e-3f, nullptr);
+        const auto again = build_hull(reversed, 64, 1e-3f, nullptr, oracle::memory());
         ASSERT_TRUE(again);
-        EXPECT_EQ(hull->vertices, again->vertices);
-        EXPECT_EQ(hull->loops, again->loops);
+        EXPECT_TRUE(std::ranges::equal(hull->vertices, again->vertices));
+        EXPECT_TRUE(std::ranges::equal(hull->loops, again->loops));
     }
+}
+
+// Sheets 1 to 6 mm thick and up to 20 km wide, whose corners single precision leaves hardly room for.
+TEST(CollisionHull, FlatOnesAreNeverInsideOut) {
+    Random random(29);
+    std::vector<std::vector<Vec3f>> given = {
+        {{-10.6641645f, -33.2903099f, -11.9818182f},
+         {-17.7835293f, -24.3827572f, 11.1626091f},
+         {15.7900658f, 28.8209877f, -2.7204051f},
+         {2.77933121f, 23.8778515f, 18.3323898f}},
+        {{3566, 6986, -147}, {1352, 8, -2696}, {-1192, 312, 2695}, {-2594, -5573, -385}}};
+    for (int i = 0; i < starts(30000); ++i) {
+        const Mat3 rotation = random.rotation().cast<double>();
+        const double wide = std::pow(10, random.uniform(-1, 3.7)), thick = std::pow(10, random.uniform(-3.3, -2.5));
+        given.emplace_back();
+        const int count = 4 + int(random.uniform(0, 12));
+        for (int k = 0; k < count; ++k) {
+            const Vec3 p(random.uniform(-wide, wide), random.uniform(-wide, wide), random.uniform(-thick, thick));
+            given.back().push_back((rotation * p).cast<float>());
+        }
+    }
+    int built = 0;
+    for (const auto& points : given) {
+        Shape shape;
+        shape.kind = ShapeKind::hull;
+        shape.hull = build_hull(points, 64, 1e-3f, nullptr, oracle::memory());
+        if (!shape.hull) continue;
+        ++built;
+        const MassProperties mass = mass_properties(shape, 1000);
+        ASSERT_GT(mass.mass, 0);
+        ASSERT_GT(mass.inertia.matrix().determinant(), 0);
+        for (const Face& face : shape.hull->faces)
+            ASSERT_GT(face.offset, face.normal.dot(shape.hull->centre)) << points.size();
+    }
+    EXPECT_GT(built, 1000);
 }
 
 TEST(CollisionHull, PrismKeepsItsPolygons) {
@@ -331,7 +366,7 @@ TEST(CollisionHull, RefusesWhatHasNoVolume) {
     Random random(kSeed + 7);
     const auto refused = [](const std::vector<Vec3f>& points) {
         const char* reason = nullptr;
-        const auto hull = build_hull(points, 64, 1e-3f, &reason);
+        const auto hull = build_hull(points, 64, 1e-3f, &reason, oracle::memory());
         EXPECT_FALSE(hull);
         return std::string(reason ? reason : "no reason");
     };
@@ -353,7 +388,7 @@ TEST(CollisionHull, RefusesWhatHasNoVolume) {
         broken[3].y() = bad;
         EXPECT_EQ(refused(broken), "a point is not finite");
     }
-    EXPECT_TRUE(build_hull(cube_points(1), 64, 1e-3f, nullptr));
+    EXPECT_TRUE(build_hull(cube_points(1), 64, 1e-3f, nullptr, oracle::memory()));
 }
 
 TEST(CollisionLibrary, BulletIsSinglePrecision) { EXPECT_TRUE(precision_matches()); }

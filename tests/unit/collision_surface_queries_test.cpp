@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "starts.h"
 #include "collision_oracle.h"
+#include "starts.h"
 
 using namespace taut;
 using namespace taut::collision;
@@ -24,20 +24,19 @@ Shape ground(const Vec3f& scale = Vec3f::Ones()) {
     Shape shape;
     shape.kind = ShapeKind::surface;
     shape.size = scale;
-    shape.surface = build_height_field({kSide, kSide, 0.5f, 0.5f, heights});
+    shape.surface = build_height_field({kSide, kSide, 0.5f, 0.5f, heights}, oracle::memory());
     return shape;
 }
 
 // The same triangles as a mesh.
 Shape as_mesh(const Shape& field) {
-    std::vector<Vec3f> points;
-    surface_triangles(field, points);
+    const std::vector<Vec3f> points = oracle::triangles_of(field);
     std::vector<uint32_t> indices;
     for (uint32_t i = 0; i < points.size(); ++i) indices.push_back(i);
     Shape shape;
     shape.kind = ShapeKind::surface;
     shape.size = Vec3f::Ones();
-    shape.surface = build_mesh(points, indices, false);
+    shape.surface = build_mesh(points, indices, false, oracle::memory());
     return shape;
 }
 
@@ -96,8 +95,7 @@ TEST(SurfaceQueries, CastsEndInTouchAndTriangleNumbersSayWhere) {
             from.position += hit.fraction * along;
             const Gap gap = find_gap(shape, from, field, kAt);
             EXPECT_NEAR(gap.distance, 0, 1e-4) << name(kind) << " " << i;
-            std::vector<Vec3f> points;
-            surface_triangles(field, points);
+            const std::vector<Vec3f> points = oracle::triangles_of(field);
             ASSERT_LT(hit.feature, points.size() / 3);
             const Vec3f local = (kAt.rotation.cast<double>().transpose() * (hit.point - kAt.position)).cast<float>();
             const Vec3f a = points[3 * hit.feature], b = points[3 * hit.feature + 1], c = points[3 * hit.feature + 2];

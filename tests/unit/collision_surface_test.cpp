@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "starts.h"
 #include "base/memory.h"
 #include "collision/hull.h"
 #include "collision_oracle.h"
+#include "starts.h"
 
 namespace taut::collision {
 namespace {
@@ -29,7 +29,7 @@ struct Soup {
         add(a, c, d);
     }
     Shape shape(bool two_sided = false, const Vec3f& scale = Vec3f::Ones()) const {
-        return {ShapeKind::surface, scale, nullptr, build_mesh(vertices, indices, two_sided)};
+        return {ShapeKind::surface, scale, nullptr, build_mesh(vertices, indices, two_sided, oracle::memory())};
     }
 };
 
@@ -144,8 +144,7 @@ TEST_F(Surfaces, MeetRoundShapesAsABoxOfThatFormDoes) {
         if (expected.count == 0 || want < -0.004f) continue;
         float least = 1;
         for (const PartManifold& part : touch(body, at, surface, 0.02f, turn))
-            for (int k = 0; k < part.manifold.count; ++k)
-                least = std::min(least, part.manifold.points[k].separation);
+            for (int k = 0; k < part.manifold.count; ++k) least = std::min(least, part.manifold.points[k].separation);
         worst = std::max(worst, std::abs(double(least - want)));
         ++met;
     }
@@ -242,7 +241,8 @@ TEST_F(Surfaces, ScaledAndMirroredLookOutwardStill) {
 TEST_F(Surfaces, HeightFieldsHaveHolesAndTwoTrianglesACell) {
     std::vector<float> heights(5 * 4, 1.0f);
     heights[2 * 5 + 2] = NAN;
-    const Shape field = {ShapeKind::surface, Vec3f::Ones(), nullptr, build_height_field({4, 5, 1, 2, heights})};
+    const Shape field = {ShapeKind::surface, Vec3f::Ones(), nullptr,
+                         build_height_field({4, 5, 1, 2, heights}, oracle::memory())};
     EXPECT_EQ(surface_counts(field).triangles, 24u - 6u);
     EXPECT_EQ(surface_counts(field).facets, 1u);
     EXPECT_TRUE(touch(oracle::sphere(0.2f), {2, 1.1, 4}, field).empty());

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "collision/distance_grid.h"
+#include "collision_oracle.h"
 
 namespace taut::collision {
 namespace {
@@ -24,7 +25,7 @@ Shape round_hull() {
     for (int i = 0; i < 24; ++i) points.push_back(Vec3f(normal(random), normal(random), normal(random)).normalized());
     Shape shape = shape_of_size(ShapeKind::hull, Vec3f::Zero());
     const char* reason = nullptr;
-    shape.hull = build_hull(points, 32, 1e-3f, &reason);
+    shape.hull = build_hull(points, 32, 1e-3f, &reason, oracle::memory());
     return shape;
 }
 
@@ -121,7 +122,7 @@ Shape closed_box(const Vec3f& half, bool inward, bool open) {
     if (open) indices.resize(indices.size() - 3);
     for (size_t i = 0; inward && i < indices.size(); i += 3) std::swap(indices[i], indices[i + 1]);
     Shape shape = shape_of_size(ShapeKind::surface, Vec3f::Ones());
-    shape.surface = build_mesh(vertices, indices, false);
+    shape.surface = build_mesh(vertices, indices, false, oracle::memory());
     return shape;
 }
 
@@ -130,7 +131,7 @@ TEST(DistanceGrid, IsAsFarAsTheBox) {
     const Shape mesh = closed_box(half, false, false), box = shape_of_size(ShapeKind::box, half);
     const char* reason = "";
     constexpr double kCell = 0.05;
-    const auto grid = sample_distance(mesh, kCell, &reason);
+    const auto grid = sample_distance(mesh, kCell, &reason, oracle::memory());
     ASSERT_TRUE(grid) << reason;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -150,7 +151,7 @@ TEST(DistanceGrid, IsAsFarAsTheBox) {
 TEST(DistanceGrid, HasTheDerivativesOfDifferences) {
     constexpr double kStep = 1e-6;
     const char* reason = "";
-    const auto grid = sample_distance(closed_box({0.5f, 0.8f, 0.3f}, false, false), 0.1, &reason);
+    const auto grid = sample_distance(closed_box({0.5f, 0.8f, 0.3f}, false, false), 0.1, &reason, oracle::memory());
     ASSERT_TRUE(grid) << reason;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(0.02, 0.98);
@@ -168,11 +169,11 @@ TEST(DistanceGrid, HasTheDerivativesOfDifferences) {
 
 TEST(DistanceGrid, RefusesWhatHasNoInside) {
     const char* reason = nullptr;
-    EXPECT_FALSE(sample_distance(closed_box({1, 1, 1}, false, true), 0.1, &reason));
+    EXPECT_FALSE(sample_distance(closed_box({1, 1, 1}, false, true), 0.1, &reason, oracle::memory()));
     EXPECT_STREQ(reason, "an open surface has no inside");
-    EXPECT_FALSE(sample_distance(closed_box({1, 1, 1}, true, false), 0.1, &reason));
+    EXPECT_FALSE(sample_distance(closed_box({1, 1, 1}, true, false), 0.1, &reason, oracle::memory()));
     EXPECT_STREQ(reason, "its triangles look inward");
-    EXPECT_FALSE(sample_distance(closed_box({1, 1, 1}, false, false), 1e-3, &reason));
+    EXPECT_FALSE(sample_distance(closed_box({1, 1, 1}, false, false), 1e-3, &reason, oracle::memory()));
 }
 
 }  // namespace
