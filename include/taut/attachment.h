@@ -86,7 +86,10 @@ typedef struct taut_attachment_state {
     float error;     /**< [m], as taut_attachment_get_error */
 } taut_attachment_state;
 
-TAUT_API void taut_attachment_def_init(taut_attachment_def* def);
+TAUT_API void taut_attachment_def_init_sized(taut_attachment_def* def, uint32_t size);
+static inline void taut_attachment_def_init(taut_attachment_def* def) {
+    taut_attachment_def_init_sized(def, (uint32_t)sizeof(*def));
+}
 
 /**
  * The anchor on a body that is at a point of the world now; of a particle or vertex it is at the body itself.
@@ -136,7 +139,10 @@ TAUT_API taut_result taut_attachment_remove(taut_attachment attachment);
 TAUT_API int32_t taut_attachment_is_valid(taut_attachment attachment);
 
 /** The def as it is now: weights brought to 1, the length of a distance. */
-TAUT_API taut_result taut_attachment_get_def(taut_attachment attachment, taut_attachment_def* out);
+TAUT_API taut_result taut_attachment_get_def_sized(taut_attachment attachment, taut_attachment_def* out, uint32_t size);
+static inline taut_result taut_attachment_get_def(taut_attachment attachment, taut_attachment_def* out) {
+    return taut_attachment_get_def_sized(attachment, out, (uint32_t)sizeof(*out));
+}
 TAUT_API taut_result taut_attachment_get_user_data(taut_attachment attachment, uint64_t* out);
 TAUT_API taut_result taut_attachment_set_user_data(taut_attachment attachment, uint64_t value);
 /** World positions of the two anchors after the last step [m]. */
@@ -152,8 +158,12 @@ TAUT_API taut_result taut_attachment_get_error(taut_attachment attachment, float
  * All attachments of a world, in the order of their slots.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
-TAUT_API taut_result taut_world_get_attachments(taut_world world, taut_attachment_state* states, uint32_t capacity,
-                                                uint32_t* count);
+TAUT_API taut_result taut_world_get_attachments_sized(taut_world world, taut_attachment_state* states,
+                                                      uint32_t capacity, uint32_t* count, uint32_t size);
+static inline taut_result taut_world_get_attachments(taut_world world, taut_attachment_state* states, uint32_t capacity,
+                                                     uint32_t* count) {
+    return taut_world_get_attachments_sized(world, states, capacity, count, (uint32_t)sizeof(*states));
+}
 
 /** Changes compliance [m/N] and damping [N s/m]; ranges as in the def. May be TAUT_OUT_OF_MEMORY. */
 TAUT_API taut_result taut_attachment_set_compliance(taut_attachment attachment, float compliance, float damping);

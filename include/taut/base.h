@@ -8,6 +8,12 @@
  *  - A call that can fail returns taut_result and writes its results through its last pointers; a call
  *    that fails changes nothing. taut_last_error() then names function, field and value.
  *  - Every def starts with struct_size, which its _init function writes together with the defaults.
+ *  - Programs of older headers run on newer libraries. A struct that a call takes or gives gains fields at its end
+ *    alone: of a def with an older, smaller struct_size the rest takes its defaults, a larger one is refused; functions
+ *    that write structs have a form ..._sized, which takes the size of the caller's struct, and which the other one,
+ *    inline, calls with that of the header it stands in. What lies within other structs (poses, materials, filters,
+ *    frames, drives, hooks) and records of events keep their size: what they would gain comes at the end of the struct
+ *    that they lie in or are listed by.
  *  - No exception, abort or exit crosses this interface.
  *  - Calls round to nearest, keep denormals and do not trap, whatever floating-point environment their thread is in, so
  *    that results do not depend on it. Host functions that a call calls are in the same one; on return the thread has
@@ -40,9 +46,9 @@ typedef enum taut_result {
     TAUT_NULL_POINTER = 2,     /**< a required pointer is null */
     TAUT_STALE_HANDLE = 3,     /**< the handle is null, or what it named is gone */
     TAUT_FOREIGN_HANDLE = 4,   /**< the handle belongs to another world */
-    TAUT_STRUCT_SIZE = 5,      /**< struct_size is not one that this library knows: call the _init function */
-    TAUT_LOCKED = 6,           /**< the world is inside a step (or a second thread is using it) */
-    TAUT_TOO_SMALL = 7,        /**< the array is too small; *count holds the number needed */
+    TAUT_STRUCT_SIZE = 5, /**< struct_size is 0, or that of a header newer than the library: call the _init function */
+    TAUT_LOCKED = 6,      /**< the world is inside a step (or a second thread is using it) */
+    TAUT_TOO_SMALL = 7,   /**< the array is too small; *count holds the number needed */
     TAUT_OUT_OF_MEMORY = 8,
     TAUT_IN_USE = 9, /**< a shape that bodies still use, or a body of a cable, cloth or solid, cannot be removed */
     TAUT_LIMIT = 10, /**< a stated limit is reached (worlds, their contents, vertices of a hull) */

@@ -69,8 +69,12 @@ typedef struct taut_pose {
     uint32_t reserved[2]; /**< zero; keeps the size a multiple of 16 */
 } taut_pose;
 
-TAUT_API void taut_body_def_init(taut_body_def* def);
-TAUT_API void taut_particle_def_init(taut_particle_def* def);
+TAUT_API void taut_body_def_init_sized(taut_body_def* def, uint32_t size);
+static inline void taut_body_def_init(taut_body_def* def) { taut_body_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_particle_def_init_sized(taut_particle_def* def, uint32_t size);
+static inline void taut_particle_def_init(taut_particle_def* def) {
+    taut_particle_def_init_sized(def, (uint32_t)sizeof(*def));
+}
 
 /**
  * Adds a rigid body. Positions lie within 1e7 m of the origin, speeds within 1e4 m/s and 1e4 rad/s.
@@ -82,7 +86,8 @@ TAUT_API taut_result taut_world_add_body(taut_world world, const taut_body_def* 
 TAUT_API taut_result taut_world_add_particle(taut_world world, const taut_particle_def* def, taut_body* out);
 /**
  * Removes a body or particle and every joint and attachment on it. Its contacts end with the next step's events.
- * @return TAUT_OK; TAUT_IN_USE for a body of a cable, cloth or solid, TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ * @return TAUT_OK; TAUT_IN_USE for a body of a cable, cloth or solid, TAUT_STALE_HANDLE, TAUT_LOCKED,
+ * TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_body_remove(taut_body body);
 /** 1 if the handle names a live body or particle, else 0. */

@@ -74,7 +74,8 @@ typedef struct taut_cable_def {
     uint64_t user_data;      /**< of the cable and of each of its bodies */
 } taut_cable_def;
 
-TAUT_API void taut_cable_def_init(taut_cable_def* def);
+TAUT_API void taut_cable_def_init_sized(taut_cable_def* def, uint32_t size);
+static inline void taut_cable_def_init(taut_cable_def* def) { taut_cable_def_init_sized(def, (uint32_t)sizeof(*def)); }
 
 /**
  * Adds a cable at rest. Its segments are chords of the path, so it is a little shorter than a path with bends.

@@ -121,7 +121,8 @@ typedef struct taut_cloth_def {
     uint64_t user_data;      /**< of the cloth and of each of its vertices */
 } taut_cloth_def;
 
-TAUT_API void taut_cloth_def_init(taut_cloth_def* def);
+TAUT_API void taut_cloth_def_init_sized(taut_cloth_def* def, uint32_t size);
+static inline void taut_cloth_def_init(taut_cloth_def* def) { taut_cloth_def_init_sized(def, (uint32_t)sizeof(*def)); }
 /**
  * Writes density, thickness, stiffnesses and bending in the order of a common fabric's, to be tuned.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT.

@@ -99,7 +99,10 @@ typedef struct taut_collider_def {
     uint32_t reserved; /**< zero */
 } taut_collider_def;
 
-TAUT_API void taut_collider_def_init(taut_collider_def* def);
+TAUT_API void taut_collider_def_init_sized(taut_collider_def* def, uint32_t size);
+static inline void taut_collider_def_init(taut_collider_def* def) {
+    taut_collider_def_init_sized(def, (uint32_t)sizeof(*def));
+}
 
 /**
  * Adds a collider to a body. The body's mass stays as it is; see taut_body_set_mass_from_colliders.
@@ -132,7 +135,10 @@ TAUT_API taut_result taut_body_get_colliders(taut_body body, taut_collider* coll
 TAUT_API taut_result taut_body_set_mass_from_colliders(taut_body body);
 
 /** The collider as a def would make it anew, but for its surface velocity. */
-TAUT_API taut_result taut_collider_get_def(taut_collider collider, taut_collider_def* out);
+TAUT_API taut_result taut_collider_get_def_sized(taut_collider collider, taut_collider_def* out, uint32_t size);
+static inline taut_result taut_collider_get_def(taut_collider collider, taut_collider_def* out) {
+    return taut_collider_get_def_sized(collider, out, (uint32_t)sizeof(*out));
+}
 TAUT_API taut_result taut_collider_get_body(taut_collider collider, taut_body* out);
 TAUT_API taut_result taut_collider_get_user_data(taut_collider collider, uint64_t* out);
 TAUT_API taut_result taut_collider_set_user_data(taut_collider collider, uint64_t value);

@@ -206,13 +206,20 @@ typedef struct taut_contact {
  * The events of the steps since they were read last. The next taut_world_step or taut_world_advance forgets them.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
-TAUT_API taut_result taut_world_get_events(taut_world world, taut_events* out);
+TAUT_API taut_result taut_world_get_events_sized(taut_world world, taut_events* out, uint32_t size);
+static inline taut_result taut_world_get_events(taut_world world, taut_events* out) {
+    return taut_world_get_events_sized(world, out, (uint32_t)sizeof(*out));
+}
 /**
  * Copies the contact points of the last step, sorted by pair; after them those between grains, in the order of place.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
-TAUT_API taut_result taut_world_get_contacts(taut_world world, taut_contact* contacts, uint32_t capacity,
-                                             uint32_t* count);
+TAUT_API taut_result taut_world_get_contacts_sized(taut_world world, taut_contact* contacts, uint32_t capacity,
+                                                   uint32_t* count, uint32_t size);
+static inline taut_result taut_world_get_contacts(taut_world world, taut_contact* contacts, uint32_t capacity,
+                                                  uint32_t* count) {
+    return taut_world_get_contacts_sized(world, contacts, capacity, count, (uint32_t)sizeof(*contacts));
+}
 
 #ifdef __cplusplus
 }

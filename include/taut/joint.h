@@ -319,16 +319,44 @@ typedef struct taut_axis_forces {
 } taut_axis_forces;
 
 /** Writes the defaults of a free axis. */
-TAUT_API void taut_axis_def_init(taut_axis_def* def);
-TAUT_API void taut_ball_joint_def_init(taut_ball_joint_def* def);
-TAUT_API void taut_distance_joint_def_init(taut_distance_joint_def* def);
-TAUT_API void taut_fixed_joint_def_init(taut_fixed_joint_def* def);
-TAUT_API void taut_hinge_joint_def_init(taut_hinge_joint_def* def);
-TAUT_API void taut_slider_joint_def_init(taut_slider_joint_def* def);
-TAUT_API void taut_cylindrical_joint_def_init(taut_cylindrical_joint_def* def);
-TAUT_API void taut_universal_joint_def_init(taut_universal_joint_def* def);
-TAUT_API void taut_cone_twist_joint_def_init(taut_cone_twist_joint_def* def);
-TAUT_API void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def);
+TAUT_API void taut_axis_def_init_sized(taut_axis_def* def, uint32_t size);
+static inline void taut_axis_def_init(taut_axis_def* def) { taut_axis_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_ball_joint_def_init_sized(taut_ball_joint_def* def, uint32_t size);
+static inline void taut_ball_joint_def_init(taut_ball_joint_def* def) {
+    taut_ball_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_distance_joint_def_init_sized(taut_distance_joint_def* def, uint32_t size);
+static inline void taut_distance_joint_def_init(taut_distance_joint_def* def) {
+    taut_distance_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_fixed_joint_def_init_sized(taut_fixed_joint_def* def, uint32_t size);
+static inline void taut_fixed_joint_def_init(taut_fixed_joint_def* def) {
+    taut_fixed_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_hinge_joint_def_init_sized(taut_hinge_joint_def* def, uint32_t size);
+static inline void taut_hinge_joint_def_init(taut_hinge_joint_def* def) {
+    taut_hinge_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_slider_joint_def_init_sized(taut_slider_joint_def* def, uint32_t size);
+static inline void taut_slider_joint_def_init(taut_slider_joint_def* def) {
+    taut_slider_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_cylindrical_joint_def_init_sized(taut_cylindrical_joint_def* def, uint32_t size);
+static inline void taut_cylindrical_joint_def_init(taut_cylindrical_joint_def* def) {
+    taut_cylindrical_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_universal_joint_def_init_sized(taut_universal_joint_def* def, uint32_t size);
+static inline void taut_universal_joint_def_init(taut_universal_joint_def* def) {
+    taut_universal_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_cone_twist_joint_def_init_sized(taut_cone_twist_joint_def* def, uint32_t size);
+static inline void taut_cone_twist_joint_def_init(taut_cone_twist_joint_def* def) {
+    taut_cone_twist_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_six_dof_joint_def_init_sized(taut_six_dof_joint_def* def, uint32_t size);
+static inline void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def) {
+    taut_six_dof_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
 
 /**
  * The frames that a world point and direction have on two ends at their present poses: what a def's frame_a and frame_b
@@ -387,11 +415,18 @@ TAUT_API taut_result taut_joint_get_axis_count(taut_joint joint, uint32_t* out);
 /** Coordinate of an axis [m or rad] and its rate [m/s or rad/s] at the present poses; either pointer may be null.
  *  TAUT_INVALID_ARGUMENT for an axis that the joint has not, here and below. */
 TAUT_API taut_result taut_joint_get_coordinates(taut_joint joint, uint32_t axis, float* value, float* rate);
-TAUT_API taut_result taut_joint_get_axis_forces(taut_joint joint, uint32_t axis, taut_axis_forces* out);
+TAUT_API taut_result taut_joint_get_axis_forces_sized(taut_joint joint, uint32_t axis, taut_axis_forces* out,
+                                                      uint32_t size);
+static inline taut_result taut_joint_get_axis_forces(taut_joint joint, uint32_t axis, taut_axis_forces* out) {
+    return taut_joint_get_axis_forces_sized(joint, axis, out, (uint32_t)sizeof(*out));
+}
 
 /** The axis as it is: stiffness and damping are those in force, frequency 0. For a distance joint, lower and upper
  *  count from `length`. */
-TAUT_API taut_result taut_joint_get_axis(taut_joint joint, uint32_t axis, taut_axis_def* out);
+TAUT_API taut_result taut_joint_get_axis_sized(taut_joint joint, uint32_t axis, taut_axis_def* out, uint32_t size);
+static inline taut_result taut_joint_get_axis(taut_joint joint, uint32_t axis, taut_axis_def* out) {
+    return taut_joint_get_axis_sized(joint, axis, out, (uint32_t)sizeof(*out));
+}
 /**
  * Changes an axis. New mode or stops forget what the axis carries from the last step; a new drive or friction keeps it.
  * @return as for adding a joint.

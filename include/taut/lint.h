@@ -68,7 +68,12 @@ typedef struct taut_lint_entry {
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED,
  *         TAUT_OUT_OF_MEMORY. Thread safety: one thread at a time per world, not inside a step.
  */
-TAUT_API taut_result taut_world_lint(taut_world world, taut_lint_entry* entries, uint32_t capacity, uint32_t* count);
+TAUT_API taut_result taut_world_lint_sized(taut_world world, taut_lint_entry* entries, uint32_t capacity,
+                                           uint32_t* count, uint32_t size);
+static inline taut_result taut_world_lint(taut_world world, taut_lint_entry* entries, uint32_t capacity,
+                                          uint32_t* count) {
+    return taut_world_lint_sized(world, entries, capacity, count, (uint32_t)sizeof(*entries));
+}
 /** A sentence on what the kind means and what to do, "unknown" for other values. Thread safety: any thread. */
 TAUT_API const char* taut_lint_text(taut_lint_kind kind);
 

@@ -60,7 +60,10 @@ typedef struct taut_query_filter {
     void* user_data;                        /**< of accept */
 } taut_query_filter;
 
-TAUT_API void taut_query_filter_init(taut_query_filter* filter);
+TAUT_API void taut_query_filter_init_sized(taut_query_filter* filter, uint32_t size);
+static inline void taut_query_filter_init(taut_query_filter* filter) {
+    taut_query_filter_init_sized(filter, (uint32_t)sizeof(*filter));
+}
 
 /** From a point to another: the ray ends at origin + translation. */
 typedef struct taut_ray {
@@ -105,31 +108,58 @@ typedef struct taut_distance {
  * @return TAUT_OK, also when nothing is met; TAUT_INVALID_ARGUMENT, TAUT_STRUCT_SIZE, TAUT_NULL_POINTER,
  *         TAUT_STALE_HANDLE and TAUT_FOREIGN_HANDLE (of what is ignored too), TAUT_LOCKED. So do all below.
  */
-TAUT_API taut_result taut_world_cast_ray(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
-                                         taut_query_hit* out);
+TAUT_API taut_result taut_world_cast_ray_sized(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
+                                               taut_query_hit* out, uint32_t size);
+static inline taut_result taut_world_cast_ray(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
+                                              taut_query_hit* out) {
+    return taut_world_cast_ray_sized(world, ray, filter, out, (uint32_t)sizeof(*out));
+}
 /** All colliders that a ray meets, each once, sorted. @return also TAUT_TOO_SMALL with the number needed in *count. */
-TAUT_API taut_result taut_world_cast_ray_all(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
-                                             taut_query_hit* hits, uint32_t capacity, uint32_t* count);
+TAUT_API taut_result taut_world_cast_ray_all_sized(taut_world world, const taut_ray* ray,
+                                                   const taut_query_filter* filter, taut_query_hit* hits,
+                                                   uint32_t capacity, uint32_t* count, uint32_t size);
+static inline taut_result taut_world_cast_ray_all(taut_world world, const taut_ray* ray,
+                                                  const taut_query_filter* filter, taut_query_hit* hits,
+                                                  uint32_t capacity, uint32_t* count) {
+    return taut_world_cast_ray_all_sized(world, ray, filter, hits, capacity, count, (uint32_t)sizeof(*hits));
+}
 /** 1 if a ray meets anything, else 0: faster than the first. */
 TAUT_API taut_result taut_world_cast_ray_any(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
                                              int32_t* out);
 /** The first collider that each of count rays meets, hits[i] of rays[i], as taut_world_cast_ray says. */
-TAUT_API taut_result taut_world_cast_rays(taut_world world, const taut_ray* rays, uint32_t count,
-                                          const taut_query_filter* filter, taut_query_hit* hits);
+TAUT_API taut_result taut_world_cast_rays_sized(taut_world world, const taut_ray* rays, uint32_t count,
+                                                const taut_query_filter* filter, taut_query_hit* hits, uint32_t size);
+static inline taut_result taut_world_cast_rays(taut_world world, const taut_ray* rays, uint32_t count,
+                                               const taut_query_filter* filter, taut_query_hit* hits) {
+    return taut_world_cast_rays_sized(world, rays, count, filter, hits, (uint32_t)sizeof(*hits));
+}
 
 /**
  * The first collider that a shape meets on its way. It stops up to 1e-5 of its (or the collider's) inner radius short
  * of contact. What it touches and leaves is not met.
  */
-TAUT_API taut_result taut_world_cast_shape(taut_world world, const taut_shape_cast* cast,
-                                           const taut_query_filter* filter, taut_query_hit* out);
+TAUT_API taut_result taut_world_cast_shape_sized(taut_world world, const taut_shape_cast* cast,
+                                                 const taut_query_filter* filter, taut_query_hit* out, uint32_t size);
+static inline taut_result taut_world_cast_shape(taut_world world, const taut_shape_cast* cast,
+                                                const taut_query_filter* filter, taut_query_hit* out) {
+    return taut_world_cast_shape_sized(world, cast, filter, out, (uint32_t)sizeof(*out));
+}
 /** All colliders that a shape meets on its way, each once, sorted. @return also TAUT_TOO_SMALL as above. */
-TAUT_API taut_result taut_world_cast_shape_all(taut_world world, const taut_shape_cast* cast,
-                                               const taut_query_filter* filter, taut_query_hit* hits, uint32_t capacity,
-                                               uint32_t* count);
+TAUT_API taut_result taut_world_cast_shape_all_sized(taut_world world, const taut_shape_cast* cast,
+                                                     const taut_query_filter* filter, taut_query_hit* hits,
+                                                     uint32_t capacity, uint32_t* count, uint32_t size);
+static inline taut_result taut_world_cast_shape_all(taut_world world, const taut_shape_cast* cast,
+                                                    const taut_query_filter* filter, taut_query_hit* hits,
+                                                    uint32_t capacity, uint32_t* count) {
+    return taut_world_cast_shape_all_sized(world, cast, filter, hits, capacity, count, (uint32_t)sizeof(*hits));
+}
 /** The first collider that each of count shapes meets, hits[i] of casts[i], as taut_world_cast_shape says. */
-TAUT_API taut_result taut_world_cast_shapes(taut_world world, const taut_shape_cast* casts, uint32_t count,
-                                            const taut_query_filter* filter, taut_query_hit* hits);
+TAUT_API taut_result taut_world_cast_shapes_sized(taut_world world, const taut_shape_cast* casts, uint32_t count,
+                                                  const taut_query_filter* filter, taut_query_hit* hits, uint32_t size);
+static inline taut_result taut_world_cast_shapes(taut_world world, const taut_shape_cast* casts, uint32_t count,
+                                                 const taut_query_filter* filter, taut_query_hit* hits) {
+    return taut_world_cast_shapes_sized(world, casts, count, filter, hits, (uint32_t)sizeof(*hits));
+}
 
 /** The colliders that overlap or touch a shape (no plane, mesh or height field) at a pose. @return also TAUT_TOO_SMALL
  * as above. */
@@ -148,13 +178,25 @@ TAUT_API taut_result taut_world_overlap_box(taut_world world, taut_pos low, taut
                                             uint32_t capacity, uint32_t* count);
 
 /** The point of a collider's surface nearest to a point [m], which is a; the distance is negative inside. */
-TAUT_API taut_result taut_collider_closest_point(taut_collider collider, taut_pos point, taut_distance* out);
+TAUT_API taut_result taut_collider_closest_point_sized(taut_collider collider, taut_pos point, taut_distance* out,
+                                                       uint32_t size);
+static inline taut_result taut_collider_closest_point(taut_collider collider, taut_pos point, taut_distance* out) {
+    return taut_collider_closest_point_sized(collider, point, out, (uint32_t)sizeof(*out));
+}
 /** Two colliders of a world, not both planes, meshes or height fields, where they are nearest. */
-TAUT_API taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distance* out);
+TAUT_API taut_result taut_collider_distance_sized(taut_collider a, taut_collider b, taut_distance* out, uint32_t size);
+static inline taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distance* out) {
+    return taut_collider_distance_sized(a, b, out, (uint32_t)sizeof(*out));
+}
 /** The collider nearest to a shape (as above, a) at a pose, no further than max_distance [m], [0, 1e7]. */
-TAUT_API taut_result taut_world_nearest_collider(taut_world world, taut_shape shape, const taut_pose* pose,
-                                                 float max_distance, const taut_query_filter* filter,
-                                                 taut_distance* out);
+TAUT_API taut_result taut_world_nearest_collider_sized(taut_world world, taut_shape shape, const taut_pose* pose,
+                                                       float max_distance, const taut_query_filter* filter,
+                                                       taut_distance* out, uint32_t size);
+static inline taut_result taut_world_nearest_collider(taut_world world, taut_shape shape, const taut_pose* pose,
+                                                      float max_distance, const taut_query_filter* filter,
+                                                      taut_distance* out) {
+    return taut_world_nearest_collider_sized(world, shape, pose, max_distance, filter, out, (uint32_t)sizeof(*out));
+}
 
 // ---------------------------------------------------------------- triangles of cloths and solids
 
@@ -175,21 +217,37 @@ typedef struct taut_surface_hit {
  * vertices is: its collider, or where it has none, as it touches nothing, its kind alone.
  * @param filter null: all. @return as taut_world_cast_ray.
  */
-TAUT_API taut_result taut_world_cast_ray_surface(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
-                                                 taut_surface_hit* out);
+TAUT_API taut_result taut_world_cast_ray_surface_sized(taut_world world, const taut_ray* ray,
+                                                       const taut_query_filter* filter, taut_surface_hit* out,
+                                                       uint32_t size);
+static inline taut_result taut_world_cast_ray_surface(taut_world world, const taut_ray* ray,
+                                                      const taut_query_filter* filter, taut_surface_hit* out) {
+    return taut_world_cast_ray_surface_sized(world, ray, filter, out, (uint32_t)sizeof(*out));
+}
 /**
  * The point of all triangles that is nearest to a point, no further than max_distance, [0, 1e7]; ties and filter as
  * above.
  */
-TAUT_API taut_result taut_world_closest_surface(taut_world world, taut_pos point, float max_distance,
-                                                const taut_query_filter* filter, taut_surface_hit* out);
+TAUT_API taut_result taut_world_closest_surface_sized(taut_world world, taut_pos point, float max_distance,
+                                                      const taut_query_filter* filter, taut_surface_hit* out,
+                                                      uint32_t size);
+static inline taut_result taut_world_closest_surface(taut_world world, taut_pos point, float max_distance,
+                                                     const taut_query_filter* filter, taut_surface_hit* out) {
+    return taut_world_closest_surface_sized(world, point, max_distance, filter, out, (uint32_t)sizeof(*out));
+}
 /**
  * The triangles that come within radius [m], [0, 1e7], of a point, each with its point nearest to that, sorted by slots
  * and triangles; filter as above. @return also TAUT_TOO_SMALL with the number needed in *count.
  */
-TAUT_API taut_result taut_world_overlap_surfaces(taut_world world, taut_pos point, float radius,
-                                                 const taut_query_filter* filter, taut_surface_hit* hits,
-                                                 uint32_t capacity, uint32_t* count);
+TAUT_API taut_result taut_world_overlap_surfaces_sized(taut_world world, taut_pos point, float radius,
+                                                       const taut_query_filter* filter, taut_surface_hit* hits,
+                                                       uint32_t capacity, uint32_t* count, uint32_t size);
+static inline taut_result taut_world_overlap_surfaces(taut_world world, taut_pos point, float radius,
+                                                      const taut_query_filter* filter, taut_surface_hit* hits,
+                                                      uint32_t capacity, uint32_t* count) {
+    return taut_world_overlap_surfaces_sized(world, point, radius, filter, hits, capacity, count,
+                                             (uint32_t)sizeof(*hits));
+}
 
 #ifdef __cplusplus
 }

@@ -167,17 +167,40 @@ typedef struct taut_mass_properties {
     taut_sym3 inertia;        /**< about the centre of mass [kg m^2] */
 } taut_mass_properties;
 
-TAUT_API void taut_plane_def_init(taut_plane_def* def);
-TAUT_API void taut_box_def_init(taut_box_def* def);
-TAUT_API void taut_sphere_def_init(taut_sphere_def* def);
-TAUT_API void taut_capsule_def_init(taut_capsule_def* def);
-TAUT_API void taut_hull_def_init(taut_hull_def* def);
-TAUT_API void taut_cylinder_def_init(taut_cylinder_def* def);
-TAUT_API void taut_cone_def_init(taut_cone_def* def);
-TAUT_API void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def);
-TAUT_API void taut_scaled_hull_def_init(taut_scaled_hull_def* def);
-TAUT_API void taut_mesh_def_init(taut_mesh_def* def);
-TAUT_API void taut_height_field_def_init(taut_height_field_def* def);
+TAUT_API void taut_plane_def_init_sized(taut_plane_def* def, uint32_t size);
+static inline void taut_plane_def_init(taut_plane_def* def) { taut_plane_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_box_def_init_sized(taut_box_def* def, uint32_t size);
+static inline void taut_box_def_init(taut_box_def* def) { taut_box_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_sphere_def_init_sized(taut_sphere_def* def, uint32_t size);
+static inline void taut_sphere_def_init(taut_sphere_def* def) {
+    taut_sphere_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_capsule_def_init_sized(taut_capsule_def* def, uint32_t size);
+static inline void taut_capsule_def_init(taut_capsule_def* def) {
+    taut_capsule_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_hull_def_init_sized(taut_hull_def* def, uint32_t size);
+static inline void taut_hull_def_init(taut_hull_def* def) { taut_hull_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_cylinder_def_init_sized(taut_cylinder_def* def, uint32_t size);
+static inline void taut_cylinder_def_init(taut_cylinder_def* def) {
+    taut_cylinder_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_cone_def_init_sized(taut_cone_def* def, uint32_t size);
+static inline void taut_cone_def_init(taut_cone_def* def) { taut_cone_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_tapered_capsule_def_init_sized(taut_tapered_capsule_def* def, uint32_t size);
+static inline void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def) {
+    taut_tapered_capsule_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_scaled_hull_def_init_sized(taut_scaled_hull_def* def, uint32_t size);
+static inline void taut_scaled_hull_def_init(taut_scaled_hull_def* def) {
+    taut_scaled_hull_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_mesh_def_init_sized(taut_mesh_def* def, uint32_t size);
+static inline void taut_mesh_def_init(taut_mesh_def* def) { taut_mesh_def_init_sized(def, (uint32_t)sizeof(*def)); }
+TAUT_API void taut_height_field_def_init_sized(taut_height_field_def* def, uint32_t size);
+static inline void taut_height_field_def_init(taut_height_field_def* def) {
+    taut_height_field_def_init_sized(def, (uint32_t)sizeof(*def));
+}
 
 /**
  * Adds a shape to a world.
@@ -280,7 +303,11 @@ TAUT_API taut_result taut_shape_get_bounds(taut_shape shape, taut_vec3* low, tau
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT for a density out of range or a plane, mesh or height field (no volume);
  *         TAUT_STALE_HANDLE.
  */
-TAUT_API taut_result taut_shape_mass_properties(taut_shape shape, float density, taut_mass_properties* out);
+TAUT_API taut_result taut_shape_mass_properties_sized(taut_shape shape, float density, taut_mass_properties* out,
+                                                      uint32_t size);
+static inline taut_result taut_shape_mass_properties(taut_shape shape, float density, taut_mass_properties* out) {
+    return taut_shape_mass_properties_sized(shape, density, out, (uint32_t)sizeof(*out));
+}
 
 /**
  * Triangles of a hull shape for drawing, outward counter-clockwise: positions receives three points a
@@ -296,7 +323,10 @@ TAUT_API taut_result taut_shape_hull_triangles(taut_shape shape, taut_vec3* posi
  */
 TAUT_API taut_result taut_shape_triangles(taut_shape shape, taut_vec3* positions, uint32_t capacity, uint32_t* count);
 /** @return TAUT_OK; TAUT_INVALID_ARGUMENT if the shape is neither mesh nor height field; TAUT_STALE_HANDLE. */
-TAUT_API taut_result taut_shape_get_mesh_info(taut_shape shape, taut_mesh_info* out);
+TAUT_API taut_result taut_shape_get_mesh_info_sized(taut_shape shape, taut_mesh_info* out, uint32_t size);
+static inline taut_result taut_shape_get_mesh_info(taut_shape shape, taut_mesh_info* out) {
+    return taut_shape_get_mesh_info_sized(shape, out, (uint32_t)sizeof(*out));
+}
 
 #ifdef __cplusplus
 }

@@ -109,7 +109,8 @@ typedef struct taut_solid_def {
     uint64_t user_data; /**< of the solid and of each of its vertices */
 } taut_solid_def;
 
-TAUT_API void taut_solid_def_init(taut_solid_def* def);
+TAUT_API void taut_solid_def_init_sized(taut_solid_def* def, uint32_t size);
+static inline void taut_solid_def_init(taut_solid_def* def) { taut_solid_def_init_sized(def, (uint32_t)sizeof(*def)); }
 /**
  * Writes material, density and elastic constants of a substance, to be tuned.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT.

@@ -174,7 +174,8 @@ typedef struct taut_relaxation {
     float residual;     /**< largest acceleration left of an island, root mean square over its masses [m/s^2] */
 } taut_relaxation;
 
-TAUT_API void taut_world_def_init(taut_world_def* def);
+TAUT_API void taut_world_def_init_sized(taut_world_def* def, uint32_t size);
+static inline void taut_world_def_init(taut_world_def* def) { taut_world_def_init_sized(def, (uint32_t)sizeof(*def)); }
 /** Name of a solver, such as "block_ldlt"; null beyond the last one. Thread safety: any thread. */
 TAUT_API const char* taut_solver_name(taut_solver solver);
 
@@ -199,7 +200,10 @@ TAUT_API taut_result taut_world_step(taut_world world);
  * reach their targets at its end, events are those of all steps since they were read (event.h). out may be null.
  * @return as taut_world_step; TAUT_INVALID_ARGUMENT.
  */
-TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out);
+TAUT_API taut_result taut_world_advance_sized(taut_world world, double seconds, taut_advance* out, uint32_t size);
+static inline taut_result taut_world_advance(taut_world world, double seconds, taut_advance* out) {
+    return taut_world_advance_sized(world, seconds, out, (uint32_t)sizeof(*out));
+}
 
 /**
  * Brings all that moves to rest where its forces balance, in a world of TAUT_SOLVER_MINIMISATION: a minimum of elastic
@@ -212,10 +216,18 @@ TAUT_API taut_result taut_world_advance(taut_world world, double seconds, taut_a
  *         solver; what a step of this one refuses; gravity and an island that nothing holds), TAUT_STALE_HANDLE,
  *         TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
-TAUT_API taut_result taut_world_relax(taut_world world, float tolerance, uint32_t max_steps, taut_relaxation* out);
+TAUT_API taut_result taut_world_relax_sized(taut_world world, float tolerance, uint32_t max_steps, taut_relaxation* out,
+                                            uint32_t size);
+static inline taut_result taut_world_relax(taut_world world, float tolerance, uint32_t max_steps,
+                                           taut_relaxation* out) {
+    return taut_world_relax_sized(world, tolerance, max_steps, out, (uint32_t)sizeof(*out));
+}
 
 /** The def as checked at creation, with what was set since. */
-TAUT_API taut_result taut_world_get_def(taut_world world, taut_world_def* out);
+TAUT_API taut_result taut_world_get_def_sized(taut_world world, taut_world_def* out, uint32_t size);
+static inline taut_result taut_world_get_def(taut_world world, taut_world_def* out) {
+    return taut_world_get_def_sized(world, out, (uint32_t)sizeof(*out));
+}
 /**
  * Length of the steps from the next one on [s], [1e-4, 0.1]: for slow motion, or a display's own rate. What moves keeps
  * its velocity, what rests stays: forces of joints and contacts go on as they were. Time left over by

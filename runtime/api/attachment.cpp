@@ -248,10 +248,11 @@ taut_result anchor_near(Check& check, Handle handle, const taut_pos& point, taut
 
 }  // namespace
 
-void taut_attachment_def_init(taut_attachment_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
+void taut_attachment_def_init_sized(taut_attachment_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_attachment_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+    });
 }
 
 taut_result taut_world_get_anchor(taut_world handle, taut_body body, taut_pos point, taut_anchor* out) {
@@ -326,25 +327,28 @@ taut_result taut_attachment_remove(taut_attachment handle) {
 
 int32_t taut_attachment_is_valid(taut_attachment handle) { return is_valid(handle); }
 
-taut_result taut_attachment_get_def(taut_attachment handle, taut_attachment_def* out) {
-    Check check(__func__);
+taut_result taut_attachment_get_def_sized(taut_attachment handle, taut_attachment_def* first, uint32_t size) {
+    const RecordOut<taut_attachment_def> out(first, size);
+    Check check("taut_attachment_get_def");
     check.pointer("out", out);
     return reading(check, handle, [&](const World& world, const Attachment& of) {
-        taut_attachment_def_init(out);
-        out->kind = static_cast<taut_attachment_kind>(of.kind);
-        out->a = to_anchor(world, of.end[0]);
-        out->b = to_anchor(world, of.end[1]);
-        out->length = to_float(of.length);
-        out->compliance = static_cast<float>(of.compliance);
-        out->damping = static_cast<float>(of.damping);
-        out->break_force = breaks_at(of.break_force);
-        out->break_torque = breaks_at(of.break_torque);
-        out->collide_connected = of.collide_connected ? 1 : 0;
-        out->solve = static_cast<taut_joint_solve>(of.solve);
-        out->pulls = of.pulls ? 1 : 0;
-        out->limit = static_cast<float>(of.limit);
-        out->limit_compliance = static_cast<float>(of.limit_compliance);
-        out->user_data = of.user_data;
+        taut_attachment_def def;
+        taut_attachment_def_init(&def);
+        def.kind = static_cast<taut_attachment_kind>(of.kind);
+        def.a = to_anchor(world, of.end[0]);
+        def.b = to_anchor(world, of.end[1]);
+        def.length = to_float(of.length);
+        def.compliance = static_cast<float>(of.compliance);
+        def.damping = static_cast<float>(of.damping);
+        def.break_force = breaks_at(of.break_force);
+        def.break_torque = breaks_at(of.break_torque);
+        def.collide_connected = of.collide_connected ? 1 : 0;
+        def.solve = static_cast<taut_joint_solve>(of.solve);
+        def.pulls = of.pulls ? 1 : 0;
+        def.limit = static_cast<float>(of.limit);
+        def.limit_compliance = static_cast<float>(of.limit_compliance);
+        def.user_data = of.user_data;
+        *out = def;
     });
 }
 
@@ -394,9 +398,10 @@ taut_result taut_attachment_get_error(taut_attachment handle, float* out) {
     });
 }
 
-taut_result taut_world_get_attachments(taut_world handle, taut_attachment_state* states, uint32_t capacity,
-                                       uint32_t* count) {
-    Check check(__func__);
+taut_result taut_world_get_attachments_sized(taut_world handle, taut_attachment_state* first, uint32_t capacity,
+                                             uint32_t* count, uint32_t size) {
+    const RecordOut<taut_attachment_state> states(first, size);
+    Check check("taut_world_get_attachments");
     if (!check.pointer("count", count)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         uint32_t next = 0;

@@ -104,26 +104,28 @@ taut_result make_colliders(Check& check, const World& world, NodeKind kind, cons
 
 }  // namespace
 
-void taut_body_def_init(taut_body_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->kind = TAUT_BODY_DYNAMIC;
-    def->rotation = {0, 0, 0, 1};
-    def->material = kDefaultMaterial;
-    def->filter = kDefaultFilter;
-    def->density = 1000;
-    def->gravity_scale = 1;
+void taut_body_def_init_sized(taut_body_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_body_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.kind = TAUT_BODY_DYNAMIC;
+        own.rotation = {0, 0, 0, 1};
+        own.material = kDefaultMaterial;
+        own.filter = kDefaultFilter;
+        own.density = 1000;
+        own.gravity_scale = 1;
+    });
 }
 
-void taut_particle_def_init(taut_particle_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->mass = 1;
-    def->gravity_scale = 1;
-    def->material = kDefaultMaterial;
-    def->filter = kDefaultFilter;
+void taut_particle_def_init_sized(taut_particle_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_particle_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.mass = 1;
+        own.gravity_scale = 1;
+        own.material = kDefaultMaterial;
+        own.filter = kDefaultFilter;
+    });
 }
 
 taut_result taut_world_add_body(taut_world handle, const taut_body_def* given, taut_body* out) {

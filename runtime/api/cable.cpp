@@ -165,17 +165,18 @@ bool check_reel(Check& check, const World& world, const Cable& cable, uint32_t e
 
 }  // namespace
 
-void taut_cable_def_init(taut_cable_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->kind = TAUT_CABLE_LINKS;
-    def->diameter = 0.02f;
-    def->mass_per_metre = 1;
-    def->material.friction = 0.5f;
-    def->filter.category = 1;
-    def->filter.mask = UINT64_MAX;
-    def->gravity_scale = 1;
+void taut_cable_def_init_sized(taut_cable_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_cable_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.kind = TAUT_CABLE_LINKS;
+        own.diameter = 0.02f;
+        own.mass_per_metre = 1;
+        own.material.friction = 0.5f;
+        own.filter.category = 1;
+        own.filter.mask = UINT64_MAX;
+        own.gravity_scale = 1;
+    });
 }
 
 taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* given, taut_cable* out) {

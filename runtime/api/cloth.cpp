@@ -132,26 +132,27 @@ constexpr FabricFigures kFabrics[] = {
 
 }  // namespace
 
-void taut_cloth_def_init(taut_cloth_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->area_density = 0.2f;
-    def->thickness = 0.005f;
-    def->stretch_stiffness[0] = def->stretch_stiffness[1] = 5000;
-    def->shear_stiffness = 2000;
-    def->poisson_ratio = 0.3f;
-    def->stretch_compliance[0] = def->stretch_compliance[1] = 1e-6f;
-    def->shear_compliance = 1e-4f;
-    def->bend_compliance = kNoLinks;
-    def->stretch_tolerance = 0.2f;
-    def->compression = 1;
-    def->strain_limit = kNoLinks;
-    def->limit_compliance = 1e-6f;
-    def->tether_slack = 0.01f;
-    def->gravity_scale = 1;
-    def->material = kDefaultMaterial;
-    def->filter = kDefaultFilter;
+void taut_cloth_def_init_sized(taut_cloth_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_cloth_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.area_density = 0.2f;
+        own.thickness = 0.005f;
+        own.stretch_stiffness[0] = own.stretch_stiffness[1] = 5000;
+        own.shear_stiffness = 2000;
+        own.poisson_ratio = 0.3f;
+        own.stretch_compliance[0] = own.stretch_compliance[1] = 1e-6f;
+        own.shear_compliance = 1e-4f;
+        own.bend_compliance = kNoLinks;
+        own.stretch_tolerance = 0.2f;
+        own.compression = 1;
+        own.strain_limit = kNoLinks;
+        own.limit_compliance = 1e-6f;
+        own.tether_slack = 0.01f;
+        own.gravity_scale = 1;
+        own.material = kDefaultMaterial;
+        own.filter = kDefaultFilter;
+    });
 }
 
 taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric) {

@@ -119,14 +119,15 @@ void forget_parts(Pairs& pairs, NearPair& near) {
 
 }  // namespace
 
-void taut_collider_def_init(taut_collider_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->density = 1000;
-    def->rotation = {0, 0, 0, 1};
-    def->material = kDefaultMaterial;
-    def->filter = kDefaultFilter;
+void taut_collider_def_init_sized(taut_collider_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_collider_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.density = 1000;
+        own.rotation = {0, 0, 0, 1};
+        own.material = kDefaultMaterial;
+        own.filter = kDefaultFilter;
+    });
 }
 
 taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* given, taut_collider* out) {
@@ -198,8 +199,9 @@ taut_result taut_body_set_mass_from_colliders(taut_body handle) {
     });
 }
 
-taut_result taut_collider_get_def(taut_collider handle, taut_collider_def* out) {
-    Check check(__func__);
+taut_result taut_collider_get_def_sized(taut_collider handle, taut_collider_def* first, uint32_t size) {
+    const RecordOut<taut_collider_def> out(first, size);
+    Check check("taut_collider_get_def");
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
         *out = def_of(world, collider);

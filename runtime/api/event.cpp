@@ -2,49 +2,50 @@
 
 #include <cmath>
 
-#include "api/access.h"
+#include "api/sized.h"
 #include "detect/surface_point.h"
 
 using namespace taut;
 
-taut_result taut_world_get_events(taut_world handle, taut_events* out) {
-    Check check(__func__);
+taut_result taut_world_get_events_sized(taut_world handle, taut_events* first, uint32_t size) {
+    const RecordOut<taut_events> out(first, size);
+    Check check("taut_world_get_events");
     if (!check.pointer("out", out)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         world.window.read = true;
-        const auto size = [](const auto& array) { return static_cast<uint32_t>(array.size()); };
+        const auto length = [](const auto& array) { return static_cast<uint32_t>(array.size()); };
         *out = {world.contact_begin.data(),
                 world.contact_end.data(),
                 world.moved.data(),
                 world.quarantined.data(),
-                size(world.contact_begin),
-                size(world.contact_end),
-                size(world.moved),
-                size(world.quarantined),
+                length(world.contact_begin),
+                length(world.contact_end),
+                length(world.moved),
+                length(world.quarantined),
                 world.broken.data(),
-                size(world.broken),
+                length(world.broken),
                 world.window.steps,
                 world.contact_persist.data(),
                 world.hits.data(),
                 world.contact_points.data(),
                 world.sensors.enter.data(),
                 world.sensors.leave.data(),
-                size(world.contact_persist),
-                size(world.hits),
-                size(world.contact_points),
-                size(world.sensors.enter),
-                size(world.sensors.leave),
+                length(world.contact_persist),
+                length(world.hits),
+                length(world.contact_points),
+                length(world.sensors.enter),
+                length(world.sensors.leave),
                 world.window.dropped_steps,
                 world.fell_asleep.data(),
                 world.woke.data(),
-                size(world.fell_asleep),
-                size(world.woke),
+                length(world.fell_asleep),
+                length(world.woke),
                 world.window.dropped_contacts,
-                size(world.torn),
+                length(world.torn),
                 world.detached.data(),
                 world.torn.data(),
-                size(world.detached),
-                size(world.yielded),
+                length(world.detached),
+                length(world.yielded),
                 world.yielded.data()};
         return TAUT_OK;
     });
@@ -121,11 +122,13 @@ taut_contact public_contact(const World& world, const SurfaceContact& contact) {
 
 }  // namespace
 
-taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
+taut_result taut_world_get_contacts_sized(taut_world handle, taut_contact* first, uint32_t capacity, uint32_t* count,
+                                          uint32_t size) {
+    const RecordOut<taut_contact> contacts(first, size);
+    Check check("taut_world_get_contacts");
     if (!check.pointer("count", count)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
-        uint32_t needed = 0;
+        uint32_t needed = 0, next = 0;
         for_pairs(world.pairs, [&](const Pair& pair) {
             if (pair.touching) needed += static_cast<uint32_t>(pair.manifold.count);
         });
@@ -140,12 +143,13 @@ taut_result taut_world_get_contacts(taut_world handle, taut_contact* contacts, u
         if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
         *count = needed;
         for_pairs(world.pairs, [&](const Pair& pair) {
-            for (int i = 0; pair.touching && i < pair.manifold.count; ++i) *contacts++ = public_contact(world, pair, i);
+            for (int i = 0; pair.touching && i < pair.manifold.count; ++i)
+                contacts[next++] = public_contact(world, pair, i);
         });
         for (const GrainContact& contact : grains.contact)
-            if (touching(grains, contact)) *contacts++ = public_contact(world, contact);
+            if (touching(grains, contact)) contacts[next++] = public_contact(world, contact);
         for (const SurfaceContact& contact : surfaces.contact)
-            if (touching(surfaces, contact)) *contacts++ = public_contact(world, contact);
+            if (touching(surfaces, contact)) contacts[next++] = public_contact(world, contact);
         return TAUT_OK;
     });
 }

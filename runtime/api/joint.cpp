@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "api/joint_parts.h"
+#include "api/sized.h"
 
 using namespace taut;
 
@@ -100,23 +101,26 @@ taut_result taut_joint_get_axis_count(taut_joint handle, uint32_t* out) {
     });
 }
 
-taut_result taut_joint_get_axis(taut_joint handle, uint32_t axis, taut_axis_def* out) {
-    Check check(__func__);
+taut_result taut_joint_get_axis_sized(taut_joint handle, uint32_t axis, taut_axis_def* first, uint32_t size) {
+    const RecordOut<taut_axis_def> out(first, size);
+    Check check("taut_joint_get_axis");
     if (!check.pointer("out", out)) return check.result();
     return with_axis(check, handle, axis, Use::read, [&](const World&, const Joint& joint, const JointAxis& place) {
         const Axis& held = joint.axis[place.row];
-        taut_axis_def_init(out);
-        out->mode = static_cast<taut_axis_mode>(held.mode);
-        out->stop_compliance = held.limit_compliance;
-        out->stop_damping = held.limit_damping;
-        out->friction = held.friction;
+        taut_axis_def def;
+        taut_axis_def_init(&def);
+        def.mode = static_cast<taut_axis_mode>(held.mode);
+        def.stop_compliance = held.limit_compliance;
+        def.stop_damping = held.limit_damping;
+        def.friction = held.friction;
         if (held.mode == AxisMode::limited) {
-            out->lower = held.lower;
-            out->upper = held.upper;
+            def.lower = held.lower;
+            def.upper = held.upper;
         }
         if (has_drive(held)) {
-            out->drive = {held.target, held.speed, held.stiffness, held.damping, 0, 1, held.max_force};
+            def.drive = {held.target, held.speed, held.stiffness, held.damping, 0, 1, held.max_force};
         }
+        *out = def;
         return TAUT_OK;
     });
 }

@@ -259,26 +259,43 @@ taut_frame frame_on(const World& world, uint32_t node, const Vec3& pivot, const 
 
 }  // namespace
 
-void taut_axis_def_init(taut_axis_def* def) {
-    if (def) init_axis(*def, TAUT_AXIS_FREE);
+void taut_axis_def_init_sized(taut_axis_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_axis_def& own) { init_axis(own, TAUT_AXIS_FREE); });
 }
-void taut_ball_joint_def_init(taut_ball_joint_def* def) { init(def); }
-void taut_distance_joint_def_init(taut_distance_joint_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->solve = TAUT_JOINT_SOLVE_BY_LOAD;
-    def->damping_ratio = 1;
-    def->drive.damping_ratio = 1;
-    def->drive.max_force = INFINITY;
+void taut_ball_joint_def_init_sized(taut_ball_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_ball_joint_def& own) { init(&own); });
 }
-void taut_fixed_joint_def_init(taut_fixed_joint_def* def) { init(def); }
-void taut_hinge_joint_def_init(taut_hinge_joint_def* def) { init(def); }
-void taut_slider_joint_def_init(taut_slider_joint_def* def) { init(def); }
-void taut_cylindrical_joint_def_init(taut_cylindrical_joint_def* def) { init(def); }
-void taut_universal_joint_def_init(taut_universal_joint_def* def) { init(def); }
-void taut_cone_twist_joint_def_init(taut_cone_twist_joint_def* def) { init(def); }
-void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def) { init(def, TAUT_AXIS_LOCKED); }
+void taut_distance_joint_def_init_sized(taut_distance_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_distance_joint_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.solve = TAUT_JOINT_SOLVE_BY_LOAD;
+        own.damping_ratio = 1;
+        own.drive.damping_ratio = 1;
+        own.drive.max_force = INFINITY;
+    });
+}
+void taut_fixed_joint_def_init_sized(taut_fixed_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_fixed_joint_def& own) { init(&own); });
+}
+void taut_hinge_joint_def_init_sized(taut_hinge_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_hinge_joint_def& own) { init(&own); });
+}
+void taut_slider_joint_def_init_sized(taut_slider_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_slider_joint_def& own) { init(&own); });
+}
+void taut_cylindrical_joint_def_init_sized(taut_cylindrical_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_cylindrical_joint_def& own) { init(&own); });
+}
+void taut_universal_joint_def_init_sized(taut_universal_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_universal_joint_def& own) { init(&own); });
+}
+void taut_cone_twist_joint_def_init_sized(taut_cone_twist_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_cone_twist_joint_def& own) { init(&own); });
+}
+void taut_six_dof_joint_def_init_sized(taut_six_dof_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_six_dof_joint_def& own) { init(&own, TAUT_AXIS_LOCKED); });
+}
 
 taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out) {
     return add(__func__, world, TAUT_JOINT_BALL, def, taut_ball_joint_def_init, out);

@@ -2,6 +2,7 @@
 #include <taut/joint.h>
 
 #include "api/joint_parts.h"
+#include "api/sized.h"
 
 using namespace taut;
 
@@ -102,21 +103,24 @@ taut_result taut_joint_get_coordinates(taut_joint handle, uint32_t axis, float* 
     });
 }
 
-taut_result taut_joint_get_axis_forces(taut_joint handle, uint32_t axis, taut_axis_forces* out) {
-    Check check(__func__);
+taut_result taut_joint_get_axis_forces_sized(taut_joint handle, uint32_t axis, taut_axis_forces* first, uint32_t size) {
+    const RecordOut<taut_axis_forces> out(first, size);
+    Check check("taut_joint_get_axis_forces");
     check.pointer("out", out);
     return reading(check, handle, [&](const World&, const Joint& joint, const JointReading&) {
         JointAxis place;
         const taut_result found = find_axis(check.call(), joint, axis, place);
         if (found != TAUT_OK) return found;
-        *out = {};
+        taut_axis_forces forces{};
+        *out = forces;
         if (joint.fresh) return TAUT_OK;
         const AxisMemory& memory = joint.memory[place.row];
-        out->total = static_cast<float>(joint.lambda[place.row]);
-        out->stop = memory.lower - memory.upper;
-        out->drive = memory.drive;
-        out->friction = memory.friction;
-        out->active_stop = out->stop > 0 ? -1 : out->stop < 0 ? 1 : 0;
+        forces.total = static_cast<float>(joint.lambda[place.row]);
+        forces.stop = memory.lower - memory.upper;
+        forces.drive = memory.drive;
+        forces.friction = memory.friction;
+        forces.active_stop = forces.stop > 0 ? -1 : forces.stop < 0 ? 1 : 0;
+        *out = forces;
         return TAUT_OK;
     });
 }

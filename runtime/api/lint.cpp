@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/access.h"
+#include "api/sized.h"
 #include "check/lint.h"
 
 using namespace taut;
@@ -37,8 +37,10 @@ constexpr const char* kText[] = {
 
 }  // namespace
 
-taut_result taut_world_lint(taut_world handle, taut_lint_entry* entries, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
+taut_result taut_world_lint_sized(taut_world handle, taut_lint_entry* first, uint32_t capacity, uint32_t* count,
+                                  uint32_t size) {
+    const RecordOut<taut_lint_entry> entries(first, size);
+    Check check("taut_world_lint");
     if (!check.pointer("count", count)) return check.result();
     if (capacity > 0 && !check.pointer("entries", entries)) return check.result();
     // For writing: what it works with comes from the world's memory, which has one user at a time.
@@ -48,7 +50,7 @@ taut_result taut_world_lint(taut_world handle, taut_lint_entry* entries, uint32_
         if (found.size() > capacity) {
             return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, *count);
         }
-        std::copy(found.begin(), found.end(), entries);
+        for (uint32_t i = 0; i < *count; ++i) entries[i] = found[i];
         return TAUT_OK;
     });
 }

@@ -1,6 +1,7 @@
 // The part of shape.h about shapes that are built, and the triangles of those.
 #include "api/shape_build.h"
 #include "api/shape_def.h"
+#include "api/sized.h"
 #include "collision/distance_grid.h"
 
 using namespace taut;
@@ -52,8 +53,12 @@ taut_result add_built(const char* call, taut_world handle, const Def* given, tau
 
 }  // namespace
 
-void taut_mesh_def_init(taut_mesh_def* def) { init_shape_def(def, {}); }
-void taut_height_field_def_init(taut_height_field_def* def) { init_shape_def(def, {0, 0, 0, 1, 1, 0, nullptr}); }
+void taut_mesh_def_init_sized(taut_mesh_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_mesh_def& own) { init_shape_def(&own, {}); });
+}
+void taut_height_field_def_init_sized(taut_height_field_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_height_field_def& own) { init_shape_def(&own, {0, 0, 0, 1, 1, 0, nullptr}); });
+}
 
 taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {
     return add_built(__func__, world, def, out);
@@ -126,8 +131,9 @@ taut_result taut_shape_sample_distance(taut_shape mesh, float cell_size) {
     });
 }
 
-taut_result taut_shape_get_mesh_info(taut_shape handle, taut_mesh_info* out) {
-    Check check(__func__);
+taut_result taut_shape_get_mesh_info_sized(taut_shape handle, taut_mesh_info* first, uint32_t size) {
+    const RecordOut<taut_mesh_info> out(first, size);
+    Check check("taut_shape_get_mesh_info");
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const collision::Shape& shape = world.shapes[index].shape;

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "api/query_parts.h"
+#include "api/sized.h"
 
 using namespace taut;
 
@@ -30,8 +31,8 @@ CastQuery to_query(const taut_shape_cast& cast, const collision::Shape& shape) {
 }
 
 template <class Query>
-taut_result collect_hits(Check& check, const Sight& sight, const Query& query, taut_query_hit* hits, uint32_t capacity,
-                         uint32_t* count) {
+taut_result collect_hits(Check& check, const Sight& sight, const Query& query, const RecordOut<taut_query_hit>& hits,
+                         uint32_t capacity, uint32_t* count) {
     return collect(check, "hits", hits, capacity, count,
                    [&](Sink<taut_query_hit>& sink) { all_hits(sight, query, sink); });
 }
@@ -40,9 +41,10 @@ taut_result collect_hits(Check& check, const Sight& sight, const Query& query, t
 
 // ---------------------------------------------------------------- rays
 
-taut_result taut_world_cast_ray(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
-                                taut_query_hit* out) {
-    Check check(__func__);
+taut_result taut_world_cast_ray_sized(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
+                                      taut_query_hit* first, uint32_t size) {
+    const RecordOut<taut_query_hit> out(first, size);
+    Check check("taut_world_cast_ray");
     if (!check.pointer("ray", ray).pointer("out", out) || !check_ray(check, *ray)) return check.result();
     return ask(check, world, filter, [&](const Sight& sight) {
         *out = first_hit(sight, to_query(*ray));
@@ -50,9 +52,10 @@ taut_result taut_world_cast_ray(taut_world world, const taut_ray* ray, const tau
     });
 }
 
-taut_result taut_world_cast_ray_all(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
-                                    taut_query_hit* hits, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
+taut_result taut_world_cast_ray_all_sized(taut_world world, const taut_ray* ray, const taut_query_filter* filter,
+                                          taut_query_hit* first, uint32_t capacity, uint32_t* count, uint32_t size) {
+    const RecordOut<taut_query_hit> hits(first, size);
+    Check check("taut_world_cast_ray_all");
     if (!check.pointer("ray", ray).pointer("count", count) || !check_ray(check, *ray)) return check.result();
     return ask(check, world, filter,
                [&](const Sight& sight) { return collect_hits(check, sight, to_query(*ray), hits, capacity, count); });
@@ -68,9 +71,10 @@ taut_result taut_world_cast_ray_any(taut_world world, const taut_ray* ray, const
     });
 }
 
-taut_result taut_world_cast_rays(taut_world world, const taut_ray* rays, uint32_t count,
-                                 const taut_query_filter* filter, taut_query_hit* hits) {
-    Check check(__func__);
+taut_result taut_world_cast_rays_sized(taut_world world, const taut_ray* rays, uint32_t count,
+                                       const taut_query_filter* filter, taut_query_hit* first, uint32_t size) {
+    const RecordOut<taut_query_hit> hits(first, size);
+    Check check("taut_world_cast_rays");
     if (count > 0 && !check.pointer("rays", rays).pointer("hits", hits)) return check.result();
     if (!check_each(check, "rays", rays, count, check_ray)) return check.result();
     return ask(check, world, filter, [&](const Sight& sight) {
@@ -81,9 +85,10 @@ taut_result taut_world_cast_rays(taut_world world, const taut_ray* rays, uint32_
 
 // ---------------------------------------------------------------- shapes on their way
 
-taut_result taut_world_cast_shape(taut_world world, const taut_shape_cast* cast, const taut_query_filter* filter,
-                                  taut_query_hit* out) {
-    Check check(__func__);
+taut_result taut_world_cast_shape_sized(taut_world world, const taut_shape_cast* cast, const taut_query_filter* filter,
+                                        taut_query_hit* first, uint32_t size) {
+    const RecordOut<taut_query_hit> out(first, size);
+    Check check("taut_world_cast_shape");
     if (!check.pointer("cast", cast).pointer("out", out) || !check_cast(check, *cast)) return check.result();
     return ask(check, world, filter, [&](const Sight& sight) {
         const collision::Shape* shape = nullptr;
@@ -94,9 +99,11 @@ taut_result taut_world_cast_shape(taut_world world, const taut_shape_cast* cast,
     });
 }
 
-taut_result taut_world_cast_shape_all(taut_world world, const taut_shape_cast* cast, const taut_query_filter* filter,
-                                      taut_query_hit* hits, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
+taut_result taut_world_cast_shape_all_sized(taut_world world, const taut_shape_cast* cast,
+                                            const taut_query_filter* filter, taut_query_hit* first, uint32_t capacity,
+                                            uint32_t* count, uint32_t size) {
+    const RecordOut<taut_query_hit> hits(first, size);
+    Check check("taut_world_cast_shape_all");
     if (!check.pointer("cast", cast).pointer("count", count) || !check_cast(check, *cast)) return check.result();
     return ask(check, world, filter, [&](const Sight& sight) {
         const collision::Shape* shape = nullptr;
@@ -106,9 +113,10 @@ taut_result taut_world_cast_shape_all(taut_world world, const taut_shape_cast* c
     });
 }
 
-taut_result taut_world_cast_shapes(taut_world world, const taut_shape_cast* casts, uint32_t count,
-                                   const taut_query_filter* filter, taut_query_hit* hits) {
-    Check check(__func__);
+taut_result taut_world_cast_shapes_sized(taut_world world, const taut_shape_cast* casts, uint32_t count,
+                                         const taut_query_filter* filter, taut_query_hit* first, uint32_t size) {
+    const RecordOut<taut_query_hit> hits(first, size);
+    Check check("taut_world_cast_shapes");
     if (count > 0 && !check.pointer("casts", casts).pointer("hits", hits)) return check.result();
     if (!check_each(check, "casts", casts, count, check_cast)) return check.result();
     return ask(check, world, filter, [&](const Sight& sight) {

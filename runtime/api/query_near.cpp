@@ -1,5 +1,6 @@
 // What overlaps, and how far things are apart.
 #include "api/query_parts.h"
+#include "api/sized.h"
 
 using namespace taut;
 
@@ -8,7 +9,7 @@ namespace {
 template <class Query>
 taut_result collect_overlaps(Check& check, const Sight& sight, const Query& query, taut_collider* colliders,
                              uint32_t capacity, uint32_t* count) {
-    return collect(check, "colliders", colliders, capacity, count,
+    return collect(check, "colliders", RecordOut(colliders, sizeof *colliders), capacity, count,
                    [&](Sink<taut_collider>& sink) { all_overlaps(sight, query, sink); });
 }
 
@@ -53,8 +54,10 @@ taut_result taut_world_overlap_box(taut_world world, taut_pos low, taut_pos high
 
 // ---------------------------------------------------------------- distances
 
-taut_result taut_collider_closest_point(taut_collider collider, taut_pos point, taut_distance* out) {
-    Check check(__func__);
+taut_result taut_collider_closest_point_sized(taut_collider collider, taut_pos point, taut_distance* first,
+                                              uint32_t size) {
+    const RecordOut<taut_distance> out(first, size);
+    Check check("taut_collider_closest_point");
     if (!check.pointer("out", out).vector("point", point, kPosition)) return check.result();
     return with(check.call(), collider, Use::read, [&](const World& world, uint32_t index) {
         *out = distance_to_point(world, to_vec(point), index);
@@ -62,8 +65,9 @@ taut_result taut_collider_closest_point(taut_collider collider, taut_pos point, 
     });
 }
 
-taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distance* out) {
-    Check check(__func__);
+taut_result taut_collider_distance_sized(taut_collider a, taut_collider b, taut_distance* first, uint32_t size) {
+    const RecordOut<taut_distance> out(first, size);
+    Check check("taut_collider_distance");
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), a, Use::read, [&](const World& world, uint32_t index) {
         uint32_t other = 0;
@@ -80,9 +84,11 @@ taut_result taut_collider_distance(taut_collider a, taut_collider b, taut_distan
     });
 }
 
-taut_result taut_world_nearest_collider(taut_world world, taut_shape handle, const taut_pose* pose, float max_distance,
-                                        const taut_query_filter* filter, taut_distance* out) {
-    Check check(__func__);
+taut_result taut_world_nearest_collider_sized(taut_world world, taut_shape handle, const taut_pose* pose,
+                                              float max_distance, const taut_query_filter* filter, taut_distance* first,
+                                              uint32_t size) {
+    const RecordOut<taut_distance> out(first, size);
+    Check check("taut_world_nearest_collider");
     if (!check.pointer("pose", pose).pointer("out", out)) return check.result();
     check.pose("pose.position", "pose.rotation", *pose).number("max_distance", max_distance, kQueryDistance);
     if (!check) return check.result();

@@ -1,4 +1,5 @@
 #include "api/query_parts.h"
+#include "api/sized.h"
 
 namespace taut {
 namespace {
@@ -55,10 +56,11 @@ collision::Placement to_placement(const taut_pose& pose) {
 
 using namespace taut;
 
-void taut_query_filter_init(taut_query_filter* filter) {
-    if (!filter) return;
-    *filter = {};
-    filter->struct_size = sizeof *filter;
-    filter->kinds = TAUT_QUERY_ALL_KINDS;
-    filter->category = filter->mask = UINT64_MAX;
+void taut_query_filter_init_sized(taut_query_filter* filter, uint32_t size) {
+    give_defaults(filter, size, [](taut_query_filter& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.kinds = TAUT_QUERY_ALL_KINDS;
+        own.category = own.mask = UINT64_MAX;
+    });
 }

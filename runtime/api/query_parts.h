@@ -40,14 +40,14 @@ inline bool before(const taut_surface_hit& a, const taut_surface_hit& b) {
 }
 
 // Keeps as many as there is room for, and counts all.
-template <class Item>
+template <class Item, class Place>
 struct Shelf final : Sink<Item> {
-    Shelf(Item* array, uint32_t most) : items(array), room(most) {}
+    Shelf(const Place& array, uint32_t most) : items(array), room(most) {}
     void take(const Item& item) override {
         if (count < room) items[count] = item;
         ++count;
     }
-    Item* items;
+    Place items;
     uint32_t room;
     uint32_t count = 0;
 };
@@ -55,10 +55,12 @@ struct Shelf final : Sink<Item> {
 // The answers of gather(Sink&), sorted, into an array that is written only if it holds all. They wait on the stack; if
 // they are too many for that, gather runs again.
 template <class Item, class Gather>
-taut_result collect(Check& check, const char* field, Item* out, uint32_t capacity, uint32_t* count, Gather&& gather) {
+taut_result collect(Check& check, const char* field, const RecordOut<Item>& out, uint32_t capacity, uint32_t* count,
+                    Gather&& gather) {
     constexpr uint32_t kFew = 64;
+    const auto less = [](const Item& a, const Item& b) { return before(a, b); };
     Item few[kFew];
-    Shelf<Item> found(few, kFew);
+    Shelf<Item, Item*> found(few, kFew);
     gather(found);
     *count = found.count;
     if (found.count > capacity) {
@@ -67,13 +69,14 @@ taut_result collect(Check& check, const char* field, Item* out, uint32_t capacit
     if (found.count == 0) return TAUT_OK;
     if (!check.pointer(field, out)) return check.result();
     if (found.count <= kFew) {
-        std::copy(few, few + found.count, out);
+        std::sort(few, few + found.count, less);
+        for (uint32_t i = 0; i < found.count; ++i) out[i] = few[i];
     } else {
-        Shelf<Item> again(out, found.count);
+        Shelf<Item, RecordOut<Item>> again(out, found.count);
         gather(again);
         *count = std::min(found.count, again.count);  // a host's accept may have changed its mind
+        out.sort(*count, less);
     }
-    std::sort(out, out + *count, [](const Item& a, const Item& b) { return before(a, b); });
     return TAUT_OK;
 }
 

@@ -1,4 +1,5 @@
 #include "api/shape_def.h"
+#include "api/sized.h"
 
 #include <cmath>
 
@@ -23,15 +24,33 @@ taut_result add_round(const char* call, collision::ShapeKind kind, taut_world wo
 
 }  // namespace
 
-void taut_plane_def_init(taut_plane_def* def) { init_shape_def(def, {0, {0, 1, 0}}); }
-void taut_box_def_init(taut_box_def* def) { init_shape_def(def, {0, {0.5f, 0.5f, 0.5f}}); }
-void taut_sphere_def_init(taut_sphere_def* def) { init_shape_def(def, {0, 0.5f}); }
-void taut_capsule_def_init(taut_capsule_def* def) { init_shape_def(def, {0, 0.25f, 0.5f}); }
-void taut_hull_def_init(taut_hull_def* def) { init_shape_def(def, {0, 0, nullptr}); }
-void taut_cylinder_def_init(taut_cylinder_def* def) { init_shape_def(def, {0, 0.5f, 0.5f}); }
-void taut_cone_def_init(taut_cone_def* def) { init_shape_def(def, {0, 0.5f, 0.5f}); }
-void taut_tapered_capsule_def_init(taut_tapered_capsule_def* def) { init_shape_def(def, {0, 0.3f, 0.2f, 0.5f}); }
-void taut_scaled_hull_def_init(taut_scaled_hull_def* def) { init_shape_def(def, {0, 0, {0}, {1, 1, 1}}); }
+void taut_plane_def_init_sized(taut_plane_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_plane_def& own) { init_shape_def(&own, {0, {0, 1, 0}}); });
+}
+void taut_box_def_init_sized(taut_box_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_box_def& own) { init_shape_def(&own, {0, {0.5f, 0.5f, 0.5f}}); });
+}
+void taut_sphere_def_init_sized(taut_sphere_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_sphere_def& own) { init_shape_def(&own, {0, 0.5f}); });
+}
+void taut_capsule_def_init_sized(taut_capsule_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_capsule_def& own) { init_shape_def(&own, {0, 0.25f, 0.5f}); });
+}
+void taut_hull_def_init_sized(taut_hull_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_hull_def& own) { init_shape_def(&own, {0, 0, nullptr}); });
+}
+void taut_cylinder_def_init_sized(taut_cylinder_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_cylinder_def& own) { init_shape_def(&own, {0, 0.5f, 0.5f}); });
+}
+void taut_cone_def_init_sized(taut_cone_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_cone_def& own) { init_shape_def(&own, {0, 0.5f, 0.5f}); });
+}
+void taut_tapered_capsule_def_init_sized(taut_tapered_capsule_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_tapered_capsule_def& own) { init_shape_def(&own, {0, 0.3f, 0.2f, 0.5f}); });
+}
+void taut_scaled_hull_def_init_sized(taut_scaled_hull_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_scaled_hull_def& own) { init_shape_def(&own, {0, 0, {0}, {1, 1, 1}}); });
+}
 
 taut_result taut_world_add_plane(taut_world world, const taut_plane_def* given, taut_shape* out) {
     Check check(__func__);
@@ -124,8 +143,10 @@ taut_result taut_shape_remove(taut_shape handle) {
 
 int32_t taut_shape_is_valid(taut_shape handle) { return is_valid(handle); }
 
-taut_result taut_shape_mass_properties(taut_shape handle, float density, taut_mass_properties* out) {
-    Check check(__func__);
+taut_result taut_shape_mass_properties_sized(taut_shape handle, float density, taut_mass_properties* first,
+                                             uint32_t size) {
+    const RecordOut<taut_mass_properties> out(first, size);
+    Check check("taut_shape_mass_properties");
     if (!check.number("density", density, kDensity).pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const collision::Shape& shape = world.shapes[index].shape;

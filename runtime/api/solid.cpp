@@ -160,26 +160,27 @@ constexpr SubstanceFigures kSubstances[] = {
 
 }  // namespace
 
-void taut_solid_def_init(taut_solid_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->corners = 4;
-    def->density = 1000;
-    def->young_modulus = 1e6f;
-    def->poisson_ratio = 0.3f;
-    def->thickness = 0.01f;
-    for (int i = 0; i < 3; ++i) {
-        def->orthotropic.young_moduli[i] = 1e6f;
-        def->orthotropic.poisson_ratios[i] = 0.3f;
-        def->orthotropic.shear_moduli[i] = 384615;
-    }
-    def->orthotropic.axes = {0, 0, 0, 1};
-    def->yield_stress = def->creep = kNever;
-    def->plastic_limit = 1;
-    def->gravity_scale = 1;
-    def->surface = kDefaultMaterial;
-    def->filter = kDefaultFilter;
+void taut_solid_def_init_sized(taut_solid_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_solid_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.corners = 4;
+        own.density = 1000;
+        own.young_modulus = 1e6f;
+        own.poisson_ratio = 0.3f;
+        own.thickness = 0.01f;
+        for (int i = 0; i < 3; ++i) {
+            own.orthotropic.young_moduli[i] = 1e6f;
+            own.orthotropic.poisson_ratios[i] = 0.3f;
+            own.orthotropic.shear_moduli[i] = 384615;
+        }
+        own.orthotropic.axes = {0, 0, 0, 1};
+        own.yield_stress = own.creep = kNever;
+        own.plastic_limit = 1;
+        own.gravity_scale = 1;
+        own.surface = kDefaultMaterial;
+        own.filter = kDefaultFilter;
+    });
 }
 
 taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_substance substance) {

@@ -103,33 +103,34 @@ Check& check_def(Check& check, const taut_world_def& def) {
 
 }  // namespace
 
-void taut_world_def_init(taut_world_def* def) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->solver = TAUT_SOLVER_BLOCK_LDLT;
-    def->gravity = {0, -9.81f, 0};
-    def->time_step = 1.0f / 60;
-    def->substeps = 4;
-    def->sweeps = 0;
-    def->geometric_stiffness = 1;
-    def->velocity_filter = 0.25f;
-    def->max_catch_up = 4;
-    def->threads = 1;
-    def->sleep_speed = 0.03f;
-    def->sleep_time = 0.5f;
-    def->contact_events = TAUT_CONTACT_EVENTS_BEGIN_END;
-    def->hit_speed = 1;
-    def->continuous = 1;
-    def->stabilisation = 0.2f;
-    def->relaxation = 1;
-    def->newmark_beta = 0.25f;
-    def->newmark_gamma = 0.5f;
-    def->air_density = 1.2f;
-    def->air_pressure = 101325;
-    def->minimise_tolerance = 1e-6f;
-    def->line_search = 1;
-    def->velocity_gain = 1;
+void taut_world_def_init_sized(taut_world_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_world_def& own) {
+        own = {};
+        own.struct_size = sizeof own;
+        own.solver = TAUT_SOLVER_BLOCK_LDLT;
+        own.gravity = {0, -9.81f, 0};
+        own.time_step = 1.0f / 60;
+        own.substeps = 4;
+        own.sweeps = 0;
+        own.geometric_stiffness = 1;
+        own.velocity_filter = 0.25f;
+        own.max_catch_up = 4;
+        own.threads = 1;
+        own.sleep_speed = 0.03f;
+        own.sleep_time = 0.5f;
+        own.contact_events = TAUT_CONTACT_EVENTS_BEGIN_END;
+        own.hit_speed = 1;
+        own.continuous = 1;
+        own.stabilisation = 0.2f;
+        own.relaxation = 1;
+        own.newmark_beta = 0.25f;
+        own.newmark_gamma = 0.5f;
+        own.air_density = 1.2f;
+        own.air_pressure = 101325;
+        own.minimise_tolerance = 1e-6f;
+        own.line_search = 1;
+        own.velocity_gain = 1;
+    });
 }
 
 const char* taut_solver_name(taut_solver solver) {
@@ -176,8 +177,9 @@ taut_result taut_world_step(taut_world handle) {
     });
 }
 
-taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* out) {
-    Check check(__func__);
+taut_result taut_world_advance_sized(taut_world handle, double seconds, taut_advance* first, uint32_t size) {
+    const RecordOut<taut_advance> out(first, size);
+    Check check("taut_world_advance");
     if (!check.number("seconds", seconds, kAdvance)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
         if (const char* why = why_not_minimised(world)) return refuse(TAUT_UNSUPPORTED, "%s: %s", check.call(), why);
@@ -190,8 +192,10 @@ taut_result taut_world_advance(taut_world handle, double seconds, taut_advance* 
     });
 }
 
-taut_result taut_world_relax(taut_world handle, float tolerance, uint32_t max_steps, taut_relaxation* out) {
-    Check check(__func__);
+taut_result taut_world_relax_sized(taut_world handle, float tolerance, uint32_t max_steps, taut_relaxation* first,
+                                   uint32_t size) {
+    const RecordOut<taut_relaxation> out(first, size);
+    Check check("taut_world_relax");
     if (!check.number("tolerance", tolerance, kRestTolerance).count("max_steps", max_steps, 1, kMostRestSteps))
         return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -203,8 +207,9 @@ taut_result taut_world_relax(taut_world handle, float tolerance, uint32_t max_st
     });
 }
 
-taut_result taut_world_get_def(taut_world handle, taut_world_def* out) {
-    Check check(__func__);
+taut_result taut_world_get_def_sized(taut_world handle, taut_world_def* first, uint32_t size) {
+    const RecordOut<taut_world_def> out(first, size);
+    Check check("taut_world_get_def");
     if (!check.pointer("out", out)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
         *out = world.def;
