@@ -91,12 +91,24 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     return index;
 }
 
+// Those of a surface's vertex go with the next step, all of a cloth or solid at once.
+static void forget_surface_contacts(World& world, uint32_t collider) {
+    SurfaceContacts& surfaces = world.pairs.surfaces;
+    if (surfaces.contact.empty()) return;
+    const uint32_t node = world.colliders.record[collider].node;
+    if (is_surface_vertex(world.nodes, world.softs, node)) return surfaces.gone.push_back(node);
+    const size_t gone = std::erase_if(surfaces.contact, [&](const SurfaceContact& contact) {
+        return contact.collider[0] == collider || contact.collider[1] == collider;
+    });
+    if (gone > 0) ++surfaces.version;
+}
+
 void remove_collider(World& world, uint32_t collider) {
     wake(world, world.colliders.record[collider].node);
     forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
     const Collider& record = world.colliders.record[collider];
     if (record.grain) world.pairs.grains.gone.push_back(record.node);
-    if (!world.pairs.surfaces.contact.empty()) world.pairs.surfaces.gone.push_back(record.node);
+    forget_surface_contacts(world, collider);
     link_to(world, record.node, collider) = record.next;
     world.colliders.chained -= world.nodes.info[record.node].collider != kNone;
     world.broadphase.remove(collider);

@@ -300,15 +300,30 @@ void Partition::list_surfaces(uint32_t g, const SurfaceContacts& surfaces) {
     list_pushing_first(surfaces, groups[g]);
 }
 
-void Partition::renew_surfaces(uint32_t g, const SurfaceContacts& surfaces, std::span<const uint32_t> successor) {
-    const auto follow = [&](Array<uint32_t>& list) {
-        for (uint32_t& k : list) k = successor[k];
-    };
-    for (uint32_t other = 0; other < group_count; ++other) {
-        if (other != g) follow(groups[other].surfaces);
-        follow(groups[other].direct_surfaces);
+// Contacts by their new numbers, without those that are no more.
+static void follow(Array<uint32_t>& list, std::span<const uint32_t> successor) {
+    for (uint32_t& k : list) k = successor[k];
+    std::erase(list, kNone);
+}
+
+static void follow_by_colour(Array<uint32_t>& list, Array<uint32_t>& begin, std::span<const uint32_t> successor) {
+    if (list.empty()) return;
+    uint32_t kept = 0, first = 0;
+    for (size_t c = 0; c + 1 < begin.size(); ++c) {
+        const uint32_t end = begin[c + 1];
+        for (; first < end; ++first)
+            if (successor[list[first]] != kNone) list[kept++] = successor[list[first]];
+        begin[c + 1] = kept;
     }
-    for (Block& block : blocks) follow(block.surfaces);
+    list.resize(kept);
+}
+
+void Partition::renew_surfaces(uint32_t g, const SurfaceContacts& surfaces, std::span<const uint32_t> successor) {
+    for (uint32_t other = 0; other < group_count; ++other) {
+        if (other != g) follow_by_colour(groups[other].surfaces, groups[other].surface_colour_begin, successor);
+        follow(groups[other].direct_surfaces, successor);
+    }
+    for (Block& block : blocks) follow(block.surfaces, successor);
     clear_movers(used_);
     surface_colour_.clear();
     reserve_more(surface_colour_, surfaces.contact.size());
