@@ -73,7 +73,7 @@ struct Plans {
     taut_height_field_def field;
 };
 
-struct Shapes {
+struct Built {
     taut_shape hull{0}, mesh{0}, field{0};
 };
 struct Bakes {
@@ -91,15 +91,15 @@ void release(const Bakes& bakes) {
     for (const taut_baked baked : {bakes.hull, bakes.mesh, bakes.field}) EXPECT_OK(taut_baked_release(baked));
 }
 
-Shapes add_built(taut_world world, const Plans& plans) {
-    Shapes out;
+Built add_built(taut_world world, const Plans& plans) {
+    Built out;
     EXPECT_OK(taut_world_add_hull(world, &plans.hull, &out.hull));
     EXPECT_OK(taut_world_add_mesh(world, &plans.mesh, &out.mesh));
     EXPECT_OK(taut_world_add_height_field(world, &plans.field, &out.field));
     return out;
 }
-Shapes add_baked(taut_world world, const Bakes& bakes) {
-    Shapes out;
+Built add_baked(taut_world world, const Bakes& bakes) {
+    Built out;
     EXPECT_OK(taut_world_add_baked(world, bakes.hull, &out.hull));
     EXPECT_OK(taut_world_add_baked(world, bakes.mesh, &out.mesh));
     EXPECT_OK(taut_world_add_baked(world, bakes.field, &out.field));
@@ -107,7 +107,7 @@ Shapes add_baked(taut_world world, const Bakes& bakes) {
 }
 
 // Hulls that fall on the mesh and on the height field beside it.
-uint64_t play(taut_world world, const Shapes& shapes, int steps) {
+uint64_t play(taut_world world, const Built& shapes, int steps) {
     add_body(world, body_def(TAUT_BODY_STATIC, shapes.mesh, 0, 0, 0));
     add_body(world, body_def(TAUT_BODY_STATIC, shapes.field, 40, 0, 0));
     for (int i = 0; i < 12; ++i)
@@ -130,7 +130,7 @@ TEST(Baking, GivesTheBitsOfTheWorld) {
     const Plans plans;
     const Bakes bakes = bake(plans, nullptr);
     const taut_world one = make_world(), other = make_world();
-    const Shapes built = add_built(one, plans), baked = add_baked(other, bakes);
+    const Built built = add_built(one, plans), baked = add_baked(other, bakes);
     EXPECT_EQ(triangles(built.hull), triangles(baked.hull));
     EXPECT_EQ(triangles(built.mesh), triangles(baked.mesh));
     EXPECT_EQ(triangles(built.field), triangles(baked.field));
@@ -165,7 +165,7 @@ TEST(Baking, IsSharedByWorldsOfManyThreads) {
     for (const uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
     // What a world still has outlives the handle.
     const taut_world world = make_world();
-    const Shapes shapes = add_baked(world, bakes);
+    const Built shapes = add_baked(world, bakes);
     release(bakes);
     EXPECT_EQ(taut_baked_is_valid(bakes.mesh), 0);
     EXPECT_EQ(taut_baked_release(bakes.mesh), TAUT_STALE_HANDLE);
@@ -181,7 +181,7 @@ TEST(Baking, MemoryComesFromTheHostAndIsCounted) {
     const Plans plans(129);
     uint64_t before = 0, bytes = 0;
     ASSERT_OK(taut_world_get_bytes(world, &before));
-    const Shapes shapes = add_built(world, plans);
+    const Built shapes = add_built(world, plans);
     ASSERT_OK(taut_world_get_bytes(world, &bytes));
     EXPECT_EQ(bytes, ledger.bytes);
     EXPECT_GT(bytes - before, 2 * 128 * 128 * 60u);  // bytes of a mesh's triangle alone

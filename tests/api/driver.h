@@ -12,6 +12,7 @@
 #include "host/query_calls.h"
 #include "host/shape_calls.h"
 #include "host/sleep_calls.h"
+#include "host/soft_calls.h"
 #include "host/world_calls.h"
 
 namespace taut_test {
@@ -26,7 +27,8 @@ class Driver : private CableCalls,
                private WorldCalls,
                private QueryCalls,
                private NearCalls,
-               private SleepCalls {
+               private SleepCalls,
+               private SoftCalls {
 public:
     // broken: told the call and what is wrong with it.
     Driver(ByteSource source, std::function<void(const char* call, const char* what)> broken) {
@@ -36,6 +38,7 @@ public:
     }
     ~Driver() {
         for (taut_world world : worlds_) taut_world_destroy(world);
+        release_all();
     }
 
     // One call. False: the source ran dry.
@@ -43,36 +46,73 @@ public:
         using Action = void (Driver::*)();
         // What is listed more than once is called more often.
         static constexpr Action actions[] = {
-            &Driver::add_shape,      &Driver::add_shape,
-            &Driver::add_shape,      &Driver::add_scaled_shape,
-            &Driver::remove_shape,   &Driver::read_shape,
-            &Driver::add_body,       &Driver::add_body,
-            &Driver::add_body,       &Driver::add_body,
-            &Driver::add_particle,   &Driver::add_particle,
-            &Driver::read_body,      &Driver::read_states,
-            &Driver::write_body,     &Driver::write_body,
-            &Driver::write_body,     &Driver::push_body,
-            &Driver::push_body,      &Driver::add_collider,
-            &Driver::add_collider,   &Driver::remove_collider,
-            &Driver::read_collider,  &Driver::write_collider,
-            &Driver::write_collider, &Driver::add_joint,
-            &Driver::add_joint,      &Driver::remove_joint,
-            &Driver::read_joint,     &Driver::write_joint,
-            &Driver::add_cable,      &Driver::remove_cable,
-            &Driver::read_cable,     &Driver::reel_cable,
-            &Driver::cast_ray,       &Driver::cast_rays,
-            &Driver::cast_shape,     &Driver::overlap,
-            &Driver::measure,        &Driver::put_to_sleep,
-            &Driver::set_continuous, &Driver::write_world,
-            &Driver::read_world,     &Driver::read_events,
-            &Driver::read_lint,      &Driver::step,
-            &Driver::step,           &Driver::step,
-            &Driver::step,           &Driver::step,
-            &Driver::advance,        &Driver::replace_world,
-            &Driver::check_counts,   &Driver::save_or_restore,
-            &Driver::attach_any,     &Driver::attach_any,
-            &Driver::detach_any,     &Driver::read_attached,
+            &Driver::add_shape,
+            &Driver::add_shape,
+            &Driver::add_shape,
+            &Driver::add_scaled_shape,
+            &Driver::remove_shape,
+            &Driver::read_shape,
+            &Driver::add_body,
+            &Driver::add_body,
+            &Driver::add_body,
+            &Driver::add_body,
+            &Driver::add_particle,
+            &Driver::add_particle,
+            &Driver::read_body,
+            &Driver::read_states,
+            &Driver::write_body,
+            &Driver::write_body,
+            &Driver::write_body,
+            &Driver::push_body,
+            &Driver::push_body,
+            &Driver::add_collider,
+            &Driver::add_collider,
+            &Driver::remove_collider,
+            &Driver::read_collider,
+            &Driver::write_collider,
+            &Driver::write_collider,
+            &Driver::add_joint,
+            &Driver::add_joint,
+            &Driver::remove_joint,
+            &Driver::read_joint,
+            &Driver::write_joint,
+            &Driver::add_cable,
+            &Driver::remove_cable,
+            &Driver::read_cable,
+            &Driver::reel_cable,
+            &Driver::cast_ray,
+            &Driver::cast_rays,
+            &Driver::cast_shape,
+            &Driver::overlap,
+            &Driver::measure,
+            &Driver::put_to_sleep,
+            &Driver::set_continuous,
+            &Driver::write_world,
+            &Driver::read_world,
+            &Driver::read_events,
+            &Driver::read_lint,
+            &Driver::step,
+            &Driver::step,
+            &Driver::step,
+            &Driver::step,
+            &Driver::step,
+            &Driver::advance,
+            &Driver::replace_world,
+            &Driver::check_counts,
+            &Driver::save_or_restore,
+            &Driver::attach_any,
+            &Driver::attach_any,
+            &Driver::detach_any,
+            &Driver::read_attached,
             &Driver::write_attached,
+            &Driver::bake_any,
+            &Driver::add_baked_shape,
+            &Driver::add_soft,
+            &Driver::remove_soft,
+            &Driver::read_cloth,
+            &Driver::read_solid,
+            &Driver::write_soft,
+            &Driver::read_surfaces,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

@@ -51,6 +51,9 @@ protected:
         if (ask("taut_attachment_get_force", [&] { return taut_attachment_get_force(attachment, &force); }))
             expect(!std::isnan(force.x + force.y + force.z), "a force that is none");
         ask("taut_attachment_get_torque", [&] { return taut_attachment_get_torque(attachment, &torque); });
+        uint64_t data = word();
+        run("taut_attachment_set_user_data", [&] { return taut_attachment_set_user_data(attachment, data); });
+        ask("taut_attachment_get_user_data", [&] { return taut_attachment_get_user_data(attachment, &data); });
         taut_attachment_def def;
         if (ask("taut_attachment_get_def", [&] { return taut_attachment_get_def(attachment, &def); })) {
             for (const taut_anchor* end : {&def.a, &def.b})

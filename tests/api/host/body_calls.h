@@ -15,7 +15,7 @@ protected:
         spoil(def.struct_size);
         const uint8_t kind = byte();
         def.kind = static_cast<taut_body_kind>(kind < 4 ? kind : kind < 40 ? kind % 2 : 2);
-        def.position = pos(10);
+        def.position = pos(reach(10));
         def.rotation = quat();
         if (def.kind != TAUT_BODY_STATIC || one_in(32)) {
             def.linear_velocity = vec(10);
@@ -24,7 +24,7 @@ protected:
         def.shape = pick(shapes_, w);
         def.material = material(2);
         def.density = real(1, 5000);
-        if (one_in(3)) def.mass = real(0.01, 1000);
+        if (one_in(3)) def.mass = one_in(8) ? scale(1e-6, 1e15) : real(0.01, 1000);
         if (one_in(8))
             def.inertia = {real(0.1, 10), real(0.1, 10), real(0.1, 10), real(-1, 1), real(-1, 1), real(-1, 1)};
         if (one_in(8)) def.centre_of_mass = vec(1);
@@ -48,7 +48,7 @@ protected:
         taut_particle_def def;
         taut_particle_def_init(&def);
         spoil(def.struct_size);
-        def.mass = one_in(4) ? real(1e-9, 1e6) : real(0.1, 10);
+        def.mass = one_in(8) ? scale(1e-9, 1e21) : one_in(4) ? real(1e-9, 1e6) : real(0.1, 10);
         def.position = pos(10);
         def.velocity = vec(10);
         if (one_in(2)) def.shape = pick(shapes_, w);

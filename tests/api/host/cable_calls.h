@@ -37,6 +37,8 @@ protected:
 
     void read_cable() {
         const taut_cable cable = pick(cables_, pick_world());
+        uint64_t data = 0;
+        ask("taut_cable_get_user_data", [&] { return taut_cable_get_user_data(cable, &data); });
         float length;
         if (ask("taut_cable_get_length", [&] { return taut_cable_get_length(cable, &length); }))
             expect(length > 0 && std::isfinite(length), "a length that is none");

@@ -33,6 +33,9 @@ protected:
         taut_body body;
         if (ask("taut_collider_get_body", [&] { return taut_collider_get_body(collider, &body); }))
             expect(taut_body_is_valid(body), "a collider of a dead body");
+        uint64_t data = word();
+        run("taut_collider_set_user_data", [&] { return taut_collider_set_user_data(collider, data); });
+        ask("taut_collider_get_user_data", [&] { return taut_collider_get_user_data(collider, &data); });
         taut_vec3 velocity, spin;
         if (ask("taut_collider_get_surface_velocity",
                 [&] { return taut_collider_get_surface_velocity(collider, &velocity, &spin); }))

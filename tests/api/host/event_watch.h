@@ -78,12 +78,10 @@ private:
         take(step, left.enter, [&](const taut_sensor_event& e) {
             expect(visits_.insert({e.sensor.bits, e.visitor.bits}).second, "who comes twice");
         });
-        take(step, left.woke, [&](const taut_sleep_event& e) {
-            expect(asleep_.erase(e.body.bits) == 1, "who wakes and never slept");
-        });
-        take(step, left.fell_asleep, [&](const taut_sleep_event& e) {
-            expect(asleep_.insert(e.body.bits).second, "who falls asleep twice");
-        });
+        take(step, left.woke,
+             [&](const taut_sleep_event& e) { expect(asleep_.erase(e.body.bits) == 1, "who wakes and never slept"); });
+        take(step, left.fell_asleep,
+             [&](const taut_sleep_event& e) { expect(asleep_.insert(e.body.bits).second, "who falls asleep twice"); });
     }
     void check_visits(const std::vector<taut_collider>& known, const Broken& expect) const {
         for (taut_collider sensor : known) {

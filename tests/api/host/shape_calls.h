@@ -171,9 +171,94 @@ protected:
         }
         ask("taut_shape_triangles",
             [&] { return taut_shape_triangles(shape, points.data(), static_cast<uint32_t>(points.size()), &count); });
+        read_def("taut_shape_get_plane", shape, taut_plane_def_init, taut_shape_get_plane);
+        read_def("taut_shape_get_box", shape, taut_box_def_init, taut_shape_get_box);
+        read_def("taut_shape_get_sphere", shape, taut_sphere_def_init, taut_shape_get_sphere);
+        read_def("taut_shape_get_capsule", shape, taut_capsule_def_init, taut_shape_get_capsule);
+        read_def("taut_shape_get_cylinder", shape, taut_cylinder_def_init, taut_shape_get_cylinder);
+        read_def("taut_shape_get_cone", shape, taut_cone_def_init, taut_shape_get_cone);
+        read_def("taut_shape_get_tapered_capsule", shape, taut_tapered_capsule_def_init,
+                 taut_shape_get_tapered_capsule);
+        if (one_in(8)) {
+            const float cell = one_in(2) ? 0 : real(0.05, 1);
+            run("taut_shape_sample_distance", [&] { return taut_shape_sample_distance(shape, cell); });
+        }
         taut_mesh_info info;
         if (ask("taut_shape_get_mesh_info", [&] { return taut_shape_get_mesh_info(shape, &info); }))
             expect(info.facets > 0 && info.facets <= info.triangles, "facets that are none");
+    }
+
+    void bake_any() {
+        if (live(baked_, taut_baked_is_valid) >= kMostBaked) return release_baked();
+        std::vector<taut_vec3> points(8);
+        std::vector<float> heights(9);
+        std::vector<uint32_t> indices(12);
+        for (taut_vec3& point : points) point = vec(2);
+        for (float& height : heights) height = one_in(8) ? NAN : real(-1, 1);
+        for (uint32_t& index : indices) index = word() % (one_in(64) ? 9 : 8);
+        taut_baked out = {0};
+        bool baked = false;
+        switch (byte() % 3) {
+            case 0: {
+                taut_hull_def def;
+                taut_hull_def_init(&def);
+                def.points = points.data();
+                def.point_count = 4 + word() % 5;
+                spoil(def.struct_size);
+                baked = run("taut_bake_hull", [&] { return taut_bake_hull(&def, nullptr, &out); });
+                break;
+            }
+            case 1: {
+                taut_mesh_def def;
+                taut_mesh_def_init(&def);
+                def.vertices = points.data();
+                def.vertex_count = 8;
+                def.indices = indices.data();
+                def.triangle_count = 1 + word() % 4;
+                baked = run("taut_bake_mesh", [&] { return taut_bake_mesh(&def, nullptr, &out); });
+                break;
+            }
+            default: {
+                taut_height_field_def def;
+                taut_height_field_def_init(&def);
+                def.rows = def.columns = 3;
+                def.heights = heights.data();
+                baked = run("taut_bake_height_field", [&] { return taut_bake_height_field(&def, nullptr, &out); });
+            }
+        }
+        if (!baked) return;
+        keep(baked_, out, 0);
+        uint64_t bytes = 0;
+        if (ask("taut_baked_get_bytes", [&] { return taut_baked_get_bytes(out, &bytes); }))
+            expect(bytes > 0, "bytes that are none");
+    }
+
+    void add_baked_shape() {
+        if (live(shapes_, taut_shape_is_valid) >= kMostShapes) return;
+        const size_t w = pick_world();
+        const taut_baked baked = pick(baked_, 0);
+        taut_shape out = {0};
+        if (run("taut_world_add_baked", [&] { return taut_world_add_baked(worlds_[w], baked, &out); }))
+            keep(shapes_, out, w);
+    }
+
+    void release_all() {
+        for (const Known<taut_baked>& each : baked_) taut_baked_release(each.handle);
+    }
+
+private:
+    static constexpr size_t kMostBaked = 6;
+
+    void release_baked() {
+        const taut_baked baked = pick(baked_, 0);
+        if (run("taut_baked_release", [&] { return taut_baked_release(baked); }))
+            expect(!taut_baked_is_valid(baked), "what was released and lives");
+    }
+    template <class Def>
+    void read_def(const char* name, taut_shape shape, void (*init)(Def*), taut_result (*get)(taut_shape, Def*)) {
+        Def def;
+        init(&def);
+        if (ask(name, [&] { return get(shape, &def); })) expect(def.struct_size == sizeof def, "a def that is none");
     }
 };
 

@@ -12,6 +12,9 @@ protected:
         uint32_t flag = byte() & 1, read = 0;
         spoil(flag);
         run("taut_body_set_can_sleep", [&] { return taut_body_set_can_sleep(body, flag); });
+        uint32_t can = 0;
+        if (ask("taut_body_get_can_sleep", [&] { return taut_body_get_can_sleep(body, &can); }))
+            expect(can <= 1, "a flag that is none");
         if (run("taut_body_set_awake", [&] { return taut_body_set_awake(body, flag); })) {
             expect(taut_body_is_awake(body, &read) == TAUT_OK && read == flag, "a sleeper who is awake");
         }

@@ -1,6 +1,9 @@
 // Calls of world.h, snapshot.h, event.h, pre_solve.h, profile.h and lint.h.
 #pragma once
 
+#include <cstdlib>
+#include <memory>
+
 #include "event_watch.h"
 
 namespace taut_test {
@@ -10,7 +13,17 @@ protected:
     void create(size_t w) {
         taut_world_def def;
         taut_world_def_init(&def);
-        def.solver = static_cast<taut_solver>(byte() % 3);
+        def.solver = static_cast<taut_solver>(byte() % (one_in(4) ? 8 : 3));
+        def.hooks = hooks();
+        def.threads = one_in(4) ? 1 + byte() % 4 : 1;
+        def.adaptive_damping = one_in(4);
+        def.air_density = one_in(4) ? real(0, 10) : 1.2f;
+        if (!(def.air_density >= 0)) def.air_density = 0;
+        if (one_in(8)) def.max_bodies = 4 + byte() % 64;
+        if (one_in(8)) def.max_colliders = 4 + byte() % 64;
+        if (one_in(8)) def.max_joints = 1 + byte() % 32;
+        if (one_in(8)) def.max_contacts = 1 + byte() % 64;
+        if (def.hooks.enqueue_task) def.threads = 1;
         def.substeps = 1 + byte() % 4;
         def.fixed_substeps = byte() & 1;
         def.sweeps = 1 + byte() % 4;
@@ -19,6 +32,8 @@ protected:
         def.continuous = byte() & 1;
         taut_world out = {0};
         call_ = "taut_world_create";
+        expect(taut_solver_name(def.solver) != nullptr, "a solver without a name");
+        expect(taut_version() > 0 && std::strcmp(taut_result_name(TAUT_OK), "TAUT_OK") == 0, "no version or name");
         if (taut_world_create(&def, &out) != TAUT_OK) expect(false, taut_last_error());
         worlds_[w] = out;
         watch_[w] = {};
@@ -50,6 +65,10 @@ protected:
         const float slowest = one_in(2) ? 0 : real(0, 2);
         run("taut_world_set_restitution_threshold",
             [&] { return taut_world_set_restitution_threshold(world, slowest); });
+        const taut_vec3 wind = vec(one_in(8) ? 1000 : 20);
+        run("taut_world_set_wind", [&] { return taut_world_set_wind(world, wind); });
+        taut_relaxation relaxed;
+        if (one_in(4)) run("taut_world_relax", [&] { return taut_world_relax(world, 1, 3, &relaxed); });
         const taut_pre_solve_fn filter = one_in(2) ? judge : nullptr;
         run("taut_world_set_pre_solve", [&] { return taut_world_set_pre_solve(world, filter, this); });
     }
@@ -111,6 +130,14 @@ protected:
                 expect(finite(contacts[i].position) && finite(contacts[i].normal), "a contact that is not finite");
             }
         }
+        taut_vec3 of_world;
+        uint64_t bytes = 0;
+        if (ask("taut_world_get_gravity", [&] { return taut_world_get_gravity(world, &of_world); }))
+            expect(finite(of_world), "a gravity that is not finite");
+        if (ask("taut_world_get_wind", [&] { return taut_world_get_wind(world, &of_world); }))
+            expect(finite(of_world), "a wind that is not finite");
+        if (ask("taut_world_get_bytes", [&] { return taut_world_get_bytes(world, &bytes); }))
+            expect(bytes > 0, "bytes that are none");
         taut_profile profile;
         profile.struct_size = sizeof profile;
         spoil(profile.struct_size);
@@ -146,7 +173,8 @@ protected:
             expect(bodies == live(bodies_, taut_body_is_valid, w) + count_cable_bodies(w),
                    "bodies that are not counted");
             // Cables bring shapes and joints of their own.
-            const bool alone = live(cables_, taut_cable_is_valid, w) == 0;
+            const bool alone = live(cables_, taut_cable_is_valid, w) == 0 &&
+                               live(cloths_, taut_cloth_is_valid, w) + live(solids_, taut_solid_is_valid, w) == 0;
             const size_t shapes_known = live(shapes_, taut_shape_is_valid, w);
             expect(alone ? shapes == shapes_known : shapes >= shapes_known, "shapes that are not counted");
             const size_t joints_known = live(joints_, taut_joint_is_valid, w);
@@ -155,6 +183,35 @@ protected:
     }
 
 private:
+    struct Task {
+        taut_task_fn run;
+        uint32_t count;
+        void* data;
+    };
+    // An allocator, a log and a task system, each of them or none.
+    taut_hooks hooks() {
+        taut_hooks out{};
+        if (one_in(2)) {
+            out.allocate = [](size_t size, size_t alignment, void*) -> void* {
+                return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+            };
+            out.free = [](void* pointer, size_t, size_t, void*) { std::free(pointer); };
+        }
+        if (one_in(2)) out.log = [](taut_log_level, const char*, void*) {};
+        if (one_in(4)) {
+            // Workers that come when all is done.
+            out.enqueue_task = [](taut_task_fn task, uint32_t count, uint32_t, void* data, void*) -> void* {
+                return new Task{task, count, data};
+            };
+            out.finish_task = [](void* token, void*) {
+                const std::unique_ptr<Task> late(static_cast<Task*>(token));
+                for (uint32_t i = 0; i < late->count; ++i) late->run(i, i + 1, i, late->data);
+            };
+            out.worker_count = 1 + byte() % 3;
+        }
+        return out;
+    }
+
     // A host's filter that answers anything and calls into the world that is stepping.
     static int32_t judge(const taut_pre_solve* contact, taut_pre_solve_answer* answer, void* self) {
         WorldCalls& host = *static_cast<WorldCalls*>(self);
@@ -177,6 +234,7 @@ private:
         uint64_t hash = 0;
         EventWatch watch;
         size_t bodies = 0, cable_bodies = 0, colliders = 0, joints = 0, cable_joints = 0, cables = 0, attachments = 0;
+        size_t cloths = 0, solids = 0;
     };
     void save_world(size_t w) {
         uint64_t size = 0;
@@ -193,7 +251,9 @@ private:
                      joints_.size(),
                      cable_joints_.size(),
                      cables_.size(),
-                     attachments_.size()};
+                     attachments_.size(),
+                     cloths_.size(),
+                     solids_.size()};
     }
     // Now and then what is damaged, or in the wrong world.
     void restore_world(size_t w) {
@@ -221,6 +281,7 @@ private:
         forget(colliders_, saved.colliders), forget(cables_, saved.cables);
         forget(joints_, saved.joints), forget(cable_joints_, saved.cable_joints);
         forget(attachments_, saved.attachments);
+        forget(cloths_, saved.cloths), forget(solids_, saved.solids);
         saved_[1 - w] = {};  // where its own begin in these lists is not known any more
     }
 
