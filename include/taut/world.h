@@ -181,8 +181,9 @@ TAUT_API const char* taut_solver_name(taut_solver solver);
 
 /**
  * Creates a world. Thread safety: any thread.
- * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT, TAUT_LIMIT (1023 worlds),
- *         TAUT_OUT_OF_MEMORY, TAUT_UNSUPPORTED (collision library of the wrong precision).
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_INVALID_ARGUMENT, TAUT_LIMIT (1023 worlds at
+ *         once, 16.7 million in the life of a process: no handle comes again), TAUT_OUT_OF_MEMORY, TAUT_UNSUPPORTED
+ *         (collision library of the wrong precision).
  */
 TAUT_API taut_result taut_world_create(const taut_world_def* def, taut_world* out);
 /** Destroys a world and all in it; every handle into it becomes stale. */

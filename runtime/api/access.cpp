@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "state/world_slot.h"
+
 namespace taut {
 
 // ---------------------------------------------------------------- check
@@ -148,83 +150,42 @@ Check& Check::refuse_with(const char* text, const char* reason) {
 
 namespace {
 
-// A world's id is slot << 10 | generation; slot 0 is not used and generations are 1 to 1023, so an id is never 0.
-constexpr uint32_t kSlots = 1024, kMaxGeneration = 1023;
-constexpr uint32_t slot_of(uint32_t id) { return id >> 10; }
-constexpr uint32_t make_id(uint32_t slot, uint32_t generation) { return slot << 10 | generation; }
-
-// State of a slot in one word, so that finding and locking are one atomic step:
-// readers 16 bits | writer | taken (a world is being made, lives or is being destroyed) | live | generation from
-// bit 20.
-constexpr uint32_t kReaders = 0xffff, kWriter = 1u << 16, kTaken = 1u << 17, kLive = 1u << 18;
-constexpr uint32_t generation_of(uint32_t state) { return state >> 20; }
-constexpr uint32_t of_generation(uint32_t generation) { return generation << 20; }
-
-struct Slot {
-    std::atomic<uint32_t> state{0};
-    World* world = nullptr;  // written before live is set, read by who holds the slot
-};
-
-constinit std::array<Slot, kSlots> slots;
-// Where the search for a free slot begins: one after the last taken, so that a slot, and with it a generation, comes
-// again as late as possible. A stale handle meets its own id only after a million further worlds.
+constinit std::array<WorldSlot, kWorldSlots> slots;
+// Where the search for a free slot begins: one after the last taken, so that all slots are used up evenly.
 constinit std::atomic<uint32_t> next_slot{1};
 
-bool lives(uint32_t state, uint32_t id) { return (state & kLive) && make_id(0, generation_of(state)) == (id & 0x3ff); }
-
-// Takes a free slot and gives it its next generation; 0 if there is none.
+// Takes a free slot; 0 if there is none.
 uint32_t take_slot() {
     const uint32_t first = next_slot.load(std::memory_order_relaxed);
-    for (uint32_t i = 0; i < kSlots - 1; ++i) {
-        const uint32_t slot = 1 + (first - 1 + i) % (kSlots - 1);
-        uint32_t state = slots[slot].state.load(std::memory_order_relaxed);
-        if (state & kTaken) continue;
-        const uint32_t generation = generation_of(state) % kMaxGeneration + 1;
-        if (slots[slot].state.compare_exchange_strong(state, kTaken | of_generation(generation),
-                                                      std::memory_order_acquire, std::memory_order_relaxed)) {
-            next_slot.store(1 + slot % (kSlots - 1), std::memory_order_relaxed);
-            return slot;
-        }
+    for (uint32_t i = 0; i < kWorldSlots - 1; ++i) {
+        const uint32_t slot = 1 + (first - 1 + i) % (kWorldSlots - 1);
+        if (!slots[slot].take()) continue;
+        next_slot.store(1 + slot % (kWorldSlots - 1), std::memory_order_relaxed);
+        return slot;
     }
     return 0;
 }
 
 }  // namespace
 
-Hold::Hold(uint32_t world, Use use) noexcept : slot_(slot_of(world)), use_(use) {
-    Slot& slot = slots[slot_];
-    uint32_t state = slot.state.load(std::memory_order_relaxed);
-    for (;;) {
-        if (!lives(state, world)) {
-            refusal_ = TAUT_STALE_HANDLE;
-            return;
-        }
-        const bool busy = use == Use::write ? (state & (kWriter | kReaders)) != 0
-                                            : (state & kWriter) != 0 || (state & kReaders) == kReaders;
-        if (busy) {
-            refusal_ = TAUT_LOCKED;
-            return;
-        }
-        const uint32_t held = use == Use::write ? state | kWriter : state + 1;
-        if (slot.state.compare_exchange_weak(state, held, std::memory_order_acquire, std::memory_order_relaxed)) break;
-    }
-    world_ = slot.world;
+Hold::Hold(uint32_t world, Use use) noexcept : slot_(world_slot_of(world)), use_(use) {
+    WorldSlot& slot = slots[slot_];
+    const WorldSlot::Lock lock = slot.lock(world, use == Use::write);
+    if (lock == WorldSlot::Lock::held)
+        world_ = slot.world;
+    else
+        refusal_ = lock == WorldSlot::Lock::busy ? TAUT_LOCKED : TAUT_STALE_HANDLE;
 }
 
 Hold::~Hold() {
-    if (!world_) return;
-    if (use_ == Use::write)
-        slots[slot_].state.fetch_and(~kWriter, std::memory_order_release);
-    else
-        slots[slot_].state.fetch_sub(1, std::memory_order_release);
+    if (world_) slots[slot_].unlock(use_ == Use::write);
 }
 
 uint32_t create_world(const taut_world_def& checked_def) {
     const uint32_t index = take_slot();
     if (index == 0) return 0;
-    Slot& slot = slots[index];
-    const uint32_t taken = slot.state.load(std::memory_order_relaxed);
-    const uint32_t id = make_id(index, generation_of(taken));
+    WorldSlot& slot = slots[index];
+    const uint32_t id = make_world_id(index, slot.generation());
     Memory memory(checked_def.hooks);  // for the world's own bytes; its contents count theirs
     void* room = nullptr;
     try {
@@ -232,29 +193,25 @@ uint32_t create_world(const taut_world_def& checked_def) {
         slot.world = new (room) World(checked_def, id);
     } catch (...) {
         memory.release(room, sizeof(World), alignof(World));
-        // No handle has seen the generation: give it back.
-        const uint32_t before = generation_of(taken) - 1;
-        slot.state.store(of_generation(before), std::memory_order_release);
+        slot.give_back();
         throw;
     }
-    slot.state.store(taken | kLive, std::memory_order_release);
+    slot.begin_life();
     return id;
 }
 
 void destroy_world(Hold& hold) {
-    Slot& slot = slots[hold.slot_];
-    slot.state.fetch_and(~kLive, std::memory_order_relaxed);  // stale from here on, also for callbacks
+    WorldSlot& slot = slots[hold.slot_];
+    slot.end_life();
     const taut_hooks hooks = hold.world_->def.hooks;
     hold.world_->~World();
     Memory(hooks).release(hold.world_, sizeof(World), alignof(World));
     slot.world = nullptr;
     hold.world_ = nullptr;
-    slot.state.fetch_and(~(kWriter | kTaken), std::memory_order_release);
+    slot.release();
 }
 
-bool world_lives(uint32_t world) noexcept {
-    return lives(slots[slot_of(world)].state.load(std::memory_order_acquire), world);
-}
+bool world_lives(uint32_t world) noexcept { return slots[world_slot_of(world)].lives(world); }
 
 // ---------------------------------------------------------------- find
 

@@ -156,7 +156,9 @@ void destroy_world(Hold& hold);
 bool world_lives(uint32_t world) noexcept;
 
 // 20 bits of a world's handle; 0 (no world) for anything else.
-inline uint32_t world_of(taut_world handle) { return handle.bits >> 20 ? 0 : static_cast<uint32_t>(handle.bits); }
+inline uint32_t world_of(taut_world handle) {
+    return handle.bits >> kWorldBits ? 0 : static_cast<uint32_t>(handle.bits);
+}
 
 // Text and code for a world that could not be held.
 taut_result refuse_hold(const char* call, const char* what, taut_result refusal);

@@ -150,7 +150,9 @@ taut_result taut_world_create(const taut_world_def* given, taut_world* out) {
                           check.call());
         }
         const uint32_t id = create_world(def);
-        if (id == 0) return refuse(TAUT_LIMIT, "%s: 1023 worlds live already", check.call());
+        if (id == 0)
+            return refuse(TAUT_LIMIT, "%s: 1023 worlds live already, or all 16.7 million handles of worlds were used",
+                          check.call());
         *out = {id};
         return TAUT_OK;
     });

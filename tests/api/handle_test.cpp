@@ -19,7 +19,7 @@ void expect_stale(const std::vector<Call<Handle>>& calls, Handle handle, const c
 
 // Bits that no world gave out.
 const uint64_t kInvented[] = {
-    1, 0xffff, 0x100000, 0xfffffffff, uint64_t{1} << 36, uint64_t{1} << 63, UINT64_MAX, 0x123456789abcdef0};
+    1, 0xffff, 0x100000, 0x1000000, 0xffffffffff, uint64_t{1} << 40, uint64_t{1} << 63, UINT64_MAX, 0x123456789abcdef0};
 
 struct Handles : testing::Test {
     Populated p;
@@ -174,6 +174,26 @@ TEST(Worlds, HandlesDoNotComeBack) {
     }
     EXPECT_FALSE(seen.contains(first.bits));
     EXPECT_FALSE(taut_world_is_valid(first));
+}
+
+// A thousand worlds and one through each of the 1023 slots: more than ten bits of generation tell apart.
+TEST(Worlds, HandlesIntoThemDoNotComeBack) {
+    taut_world_def def;
+    taut_world_def_init(&def);
+    taut_world first;
+    ASSERT_OK(taut_world_create(&def, &first));
+    taut_particle_def particle;
+    taut_particle_def_init(&particle);
+    taut_body old;
+    ASSERT_OK(taut_world_add_particle(first, &particle, &old));
+    ASSERT_OK(taut_world_destroy(first));
+    for (int i = 0; i < 1023 * 1024; ++i) {
+        taut_world world;
+        ASSERT_OK(taut_world_create(&def, &world));
+        ASSERT_NE(world.bits, first.bits) << i;
+        ASSERT_OK(taut_world_destroy(world));
+    }
+    EXPECT_FALSE(taut_body_is_valid(old));
 }
 
 TEST(Worlds, AreLimitedTo1023) {

@@ -131,7 +131,7 @@ TEST(Snapshot, ShapesMustStillBeThere) {
     EXPECT_TRUE(contains(taut_last_error(), "is gone")) << taut_last_error();
     EXPECT_TRUE(watch.unchanged());
     // One in its slot is not it.
-    EXPECT_EQ(add_hull(p.world).bits >> 36, p.hull.bits >> 36);
+    EXPECT_EQ(add_hull(p.world).bits >> 40, p.hull.bits >> 40);
     EXPECT_EQ(restore(p.world, p.saved), TAUT_STALE_HANDLE);
 }
 

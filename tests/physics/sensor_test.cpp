@@ -317,7 +317,7 @@ TEST(Sensor, TakesNoMemoryAfterWarmUp) {
     uint32_t changes = 0;
     for (int i = 0; i < 400; ++i) {
         for (const taut_body each : balls) {
-            const double turn = 0.05 * i + 0.3 * static_cast<double>(each.bits >> 36);
+            const double turn = 0.05 * i + 0.3 * static_cast<double>(each.bits >> 40);
             ok(taut_body_set_velocity(each, Vec(4 * std::cos(turn), 0, 4 * std::sin(turn)).narrow(), {0, 0, 0}));
         }
         world.step();
