@@ -11,6 +11,7 @@
 #endif
 
 #include "base/float_environment.h"
+#include "base/log.h"
 
 namespace taut {
 namespace {
@@ -45,23 +46,25 @@ Team::Team(const taut_hooks& hooks, uint32_t threads)
       run_at_(threads > 1 ? kMostRuns : 0),
       first_run_(threads + 2),
       after_(threads > 1 ? kMaxStages : 0),
-      part_(threads) {
+      part_(threads),
+      wake_(threads) {
     if (hooks_.enqueue_task) return;
     own_.reserve(threads - 1);
     try {
         for (uint32_t i = 1; i < threads; ++i) own_.emplace_back([this, i] { live(i); });
     } catch (...) {
-        call_.store(kQuit, std::memory_order_release);
-        call_.notify_all();
-        for (std::thread& thread : own_) thread.join();
+        quit();
         throw;
     }
 }
 
 Team::~Team() {
     rest();
-    call_.store(kQuit, std::memory_order_release);
-    call_.notify_all();
+    quit();
+}
+
+void Team::quit() {
+    wake(static_cast<uint32_t>(own_.size()), kQuit);
     for (std::thread& thread : own_) thread.join();
 }
 
@@ -164,25 +167,53 @@ void Team::call_helpers() {
     if (called_) return;
     called_ = true;
     caller_ = std::this_thread::get_id();
-    keep_off_caller();
-    call_.fetch_add(1, std::memory_order_release);
-    if (hooks_.enqueue_task)
+    const uint32_t call = call_.fetch_add(1, std::memory_order_release) + 1;
+    if (hooks_.enqueue_task) return enqueue();
+    woken_ = keep_off_caller();
+    wake(woken_, call);
+}
+
+// A host that throws has enqueued nothing: there is nothing to finish, and the caller goes on alone.
+void Team::enqueue() {
+    try {
         token_ = hooks_.enqueue_task(help_as_task, size_ - 1, 1, this, hooks_.task_user_data);
-    else
-        call_.notify_all();
+        enqueued_ = true;
+    } catch (...) {
+        log_line(hooks_, TAUT_LOG_WARNING,
+                 "enqueue_task threw an exception: the step goes on without the host's workers");
+    }
+}
+
+void Team::wake(uint32_t helpers, uint32_t call) {
+    for (uint32_t worker = 1; worker <= helpers; ++worker) {
+        wake_[worker].call.store(call, std::memory_order_release);
+        wake_[worker].call.notify_one();
+    }
 }
 
 // A thread that wakes may be queued behind the one that woke it, though other cores are idle: for 4 ms, as measured on
-// virtual machines whose cores tell of no common cache. So the own threads leave the caller's core alone.
-void Team::keep_off_caller() {
+// virtual machines whose cores tell of no common cache. So the own threads leave the caller's core alone. Returns how
+// many of them have a core.
+uint32_t Team::keep_off_caller() {
+    const auto all = static_cast<uint32_t>(own_.size());
 #if defined(__linux__)
     const int core = sched_getcpu();
     cpu_set_t cores;
-    if (core == caller_core_ || core < 0 || sched_getaffinity(0, sizeof cores, &cores) != 0) return;
-    caller_core_ = core;
+    if (core < 0 || all == 0 || sched_getaffinity(0, sizeof cores, &cores) != 0) return all;
     CPU_CLR(static_cast<size_t>(core), &cores);
-    if (CPU_COUNT(&cores) == 0) return;
-    for (std::thread& thread : own_) pthread_setaffinity_np(thread.native_handle(), sizeof cores, &cores);
+    auto free = static_cast<uint32_t>(CPU_COUNT(&cores));
+    if (free == 0) {  // the caller is tied to its core; own threads stay where they may be
+        if (pthread_getaffinity_np(own_[0].native_handle(), sizeof cores, &cores) != 0) return all;
+        CPU_CLR(static_cast<size_t>(core), &cores);
+        return std::min(all, static_cast<uint32_t>(CPU_COUNT(&cores)));
+    }
+    if (core != caller_core_ || free != free_cores_)
+        for (std::thread& thread : own_) pthread_setaffinity_np(thread.native_handle(), sizeof cores, &cores);
+    caller_core_ = core;
+    free_cores_ = free;
+    return std::min(all, free);
+#else
+    return all;
 #endif
 }
 
@@ -190,7 +221,12 @@ void Team::rest() {
     if (!called_) return;
     called_ = false;
     call_.fetch_add(1, std::memory_order_release);
-    if (hooks_.enqueue_task) hooks_.finish_task(token_, hooks_.task_user_data);
+    if (!enqueued_) return;
+    enqueued_ = false;
+    try {
+        hooks_.finish_task(token_, hooks_.task_user_data);
+    } catch (...) {  // the step is over, and scopes end: nobody is there to hear of it
+    }
 }
 
 // Works on every job until this call for help is over.
@@ -208,12 +244,10 @@ void Team::help(uint32_t call, uint32_t worker) {
 }
 
 void Team::live(uint32_t worker) {
-    for (;;) {
-        uint32_t call = call_.load(std::memory_order_acquire);
-        while (call % 2 == 0) {
-            call_.wait(call, std::memory_order_acquire);
-            call = call_.load(std::memory_order_acquire);
-        }
+    const std::atomic<uint32_t>& wake = wake_[worker].call;
+    for (uint32_t call = 0;;) {
+        wake.wait(call, std::memory_order_acquire);
+        call = wake.load(std::memory_order_acquire);
         if (call == kQuit) return;
         help(call, worker);
     }
@@ -224,7 +258,7 @@ void Team::help_as_task(uint32_t begin, uint32_t, uint32_t, void* team) {
     Team& self = *static_cast<Team*>(team);
     if (std::this_thread::get_id() == self.caller_) return;
     const uint32_t call = self.call_.load(std::memory_order_acquire);
-    if (call % 2 == 1 && call != kQuit) self.help(call, begin + 1);
+    if (call % 2 == 1) self.help(call, begin + 1);
 }
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 // A team of threads for the loops inside a step: the calling thread and helpers, the world's own or the host's, that
-// join while a step runs and sleep between steps.
+// join while a step runs and sleep between steps. Of the own threads as many are woken as there are cores for them:
+// more would take turns on these, and every stage would wait for who is off its core.
 //
 // The calling thread hands out a loop in parts, one for each thread, and these in stages; whoever is there takes one
 // stage after the other. Each thread begins with its own part, the same in each loop as long, so that what it wrote is
@@ -34,6 +35,8 @@ public:
     Team& operator=(const Team&) = delete;
 
     uint32_t size() const { return size_; }
+    // Own threads that the last call for help woke: no more than cores beside the caller's are free to them.
+    uint32_t woken() const { return woken_; }
 
     // run(begin, end) over ranges that cover [0, count), about grain long each, in any order and at once. Returns when
     // all have run. run may neither throw nor allocate from the world; a range of the caller alone is [0, count).
@@ -156,7 +159,10 @@ private:
     bool is_out(const Job& job) const { return job_.load(std::memory_order_acquire) == job.number; }
     Job job_out(uint64_t number) const;
     void call_helpers();
-    void keep_off_caller();
+    uint32_t keep_off_caller();
+    void enqueue();
+    void wake(uint32_t helpers, uint32_t call);
+    void quit();
     void help(uint32_t call, uint32_t worker);
     void live(uint32_t worker);
     static void help_as_task(uint32_t begin, uint32_t end, uint32_t worker, void* team);
@@ -169,8 +175,11 @@ private:
     std::vector<std::thread> own_;
     void* token_ = nullptr;  // of the host's task
     bool called_ = false;    // helpers are there, or on their way
+    bool enqueued_ = false;  // the host has a task to finish
     std::thread::id caller_;
-    int caller_core_ = -1;  // where the own threads do not run
+    int caller_core_ = -1;     // where the own threads do not run
+    uint32_t free_cores_ = 0;  // that the own threads may run on
+    uint32_t woken_ = 0;
     uint64_t last_job_ = 0;
     uint64_t done_ = 0;  // stages of each part in all jobs so far
 
@@ -194,9 +203,14 @@ private:
     };
     std::vector<Part> part_;  // by worker
 
-    // Odd: helpers are wanted; even: they sleep. kQuit: they end.
-    static constexpr uint32_t kQuit = UINT32_MAX;
+    // Odd: helpers are wanted; even: they sleep.
     alignas(64) std::atomic<uint32_t> call_{0};
+    // The last call that an own thread was woken for. kQuit: it ends.
+    static constexpr uint32_t kQuit = UINT32_MAX;
+    struct alignas(64) Wake {
+        std::atomic<uint32_t> call{0};
+    };
+    std::vector<Wake> wake_;  // by worker
 };
 
 // Lets a team rest at the end of a scope, however that is left.

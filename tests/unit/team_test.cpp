@@ -4,6 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <stdexcept>
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
 
 namespace {
 
@@ -63,6 +68,7 @@ TEST(Team, RunsEveryRunOnce) {
 
 // Two threads each begin with what is their own, and wait there for the other.
 TEST(Team, RunsBeginAtTheirHomes) {
+    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "nobody helps on one core";
     constexpr uint32_t kRuns = 20;
     Team team({}, 2);
     const RestAfter rest(team);
@@ -158,6 +164,7 @@ TEST(Team, PartsKeepTheirOrder) {
 
 // Parts that need not wait for each other run on; those that must, do.
 TEST(Team, PartsRunAheadAsFarAsTheyMay) {
+    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "nobody helps on one core";
     Team team({}, 2);
     const RestAfter rest(team);
     const std::vector<uint32_t> after = {0, 0, 0, 3};
@@ -181,6 +188,7 @@ TEST(Team, PartsRunAheadAsFarAsTheyMay) {
 }
 
 TEST(Team, OthersHelp) {
+    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "nobody helps on one core";
     Team team({}, 2);
     const RestAfter rest(team);
     std::atomic<bool> other{false};
@@ -237,6 +245,46 @@ TEST(Team, AHostsWorkersRunEveryIndexOnce) {
         EXPECT_EQ(host.finished, 5);
     }
 }
+
+// A host that throws as it is asked for help is asked again in the next step, and has no task to finish.
+TEST(Team, AHostThatThrowsHasNothingToFinish) {
+    Host host{Host::at_once};
+    taut_hooks hooks = host.hooks(3);
+    hooks.enqueue_task = [](taut_task_fn, uint32_t, uint32_t, void*, void* self) -> void* {
+        Host& of = *static_cast<Host*>(self);
+        if (of.enqueued++ % 2 == 1) throw std::runtime_error("no worker");
+        return self;
+    };
+    Team team(hooks, 4);
+    expect_every_index_once(team, 6);
+    EXPECT_EQ(host.enqueued, 6);
+    EXPECT_EQ(host.finished, 3);
+}
+
+#if defined(__linux__)
+// Threads beyond the cores that the caller may run on stay asleep.
+TEST(Team, WakesNoMoreThreadsThanItHasCoresFor) {
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+    const auto cores = static_cast<uint32_t>(CPU_COUNT(&all));
+    for (uint32_t threads : {2u, 3u, 16u, 64u}) {
+        Team team({}, threads);
+        expect_every_index_once(team, 2);
+        EXPECT_EQ(team.woken(), std::min(threads, cores) - 1);
+    }
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<size_t>(sched_getcpu()), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    {
+        Team team({}, 8);
+        expect_every_index_once(team, 2);
+        EXPECT_EQ(team.woken(), 0u);
+        ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
+        expect_every_index_once(team, 2);
+        EXPECT_EQ(team.woken(), std::min(8u, cores) - 1);
+    }
+}
+#endif
 
 TEST(Team, SmallLoopsCallNobody) {
     Host host{Host::at_once};
