@@ -46,7 +46,7 @@ Team::Team(const taut_hooks& hooks, uint32_t threads)
       run_at_(threads > 1 ? kMostRuns : 0),
       first_run_(threads + 2),
       after_(threads > 1 ? kMaxStages : 0),
-      part_(threads),
+      share_(threads),
       wake_(threads) {
     if (hooks_.enqueue_task) return;
     own_.reserve(threads - 1);
@@ -75,6 +75,7 @@ void Team::hand_out(uint32_t stages, std::span<const uint32_t> after, StageFn ru
     context_.store(context, std::memory_order_release);
     before_.store(done_, std::memory_order_release);
     stages_.store(stages, std::memory_order_release);
+    dealt_.store(shares_, std::memory_order_release);
     ordered_.store(!after.empty(), std::memory_order_release);
     for (size_t i = 0; i < after.size(); ++i) after_[i].store(after[i], std::memory_order_release);
     job_.store(++last_job_, std::memory_order_release);
@@ -86,6 +87,7 @@ Team::Job Team::job_out(uint64_t number) const {
     return {number,
             before_.load(std::memory_order_acquire),
             stages_.load(std::memory_order_acquire),
+            dealt_.load(std::memory_order_acquire),
             ordered_.load(std::memory_order_acquire),
             run_.load(std::memory_order_acquire),
             context_.load(std::memory_order_acquire)};
@@ -93,7 +95,7 @@ Team::Job Team::job_out(uint64_t number) const {
 
 // Takes stages until all of the job are done.
 void Team::work(Job job, uint32_t worker) {
-    part_[worker].joined.store(job.number, std::memory_order_release);
+    share_[worker].joined.store(job.number, std::memory_order_release);
     uint32_t patience = kPatience;  // looks; who needed help once may be off its core for long
     for (Spin spin;;) {
         if (advance(job, worker)) {
@@ -110,46 +112,52 @@ void Team::work(Job job, uint32_t worker) {
     }
 }
 
-// Runs the next stage of a part, if that may begin and nobody else did; of a loop without order all that are left.
-bool Team::advance(Job& job, uint32_t part) {
-    std::atomic<uint64_t>& done = part_[part].done;
+// Of all parts of a share.
+void Team::run_share(const Job& job, uint32_t stage, uint32_t share) const {
+    for (uint32_t part = share; part < size_; part += job.shares) job.run(job.context, stage, part);
+}
+
+// Runs the next stage of a share, if that may begin and nobody else did; of a loop without order all that are left.
+bool Team::advance(Job& job, uint32_t share) {
+    if (share >= job.shares) return false;  // of a thread that an earlier call woke
+    std::atomic<uint64_t>& done = share_[share].done;
     uint32_t stage = 0;
-    if (!take(job, part, stage)) return false;
+    if (!take(job, share, stage)) return false;
     if (job.ordered) {  // nobody else writes: a store need not wait for those that look
-        job.run(job.context, stage, part);
+        run_share(job, stage, share);
         done.store(job.before + stage + 1, std::memory_order_release);
         return true;
     }
     uint64_t ran = 0;
     do {
-        job.run(job.context, stage, part);
+        run_share(job, stage, share);
         ++ran;
-    } while (take(job, part, stage));
+    } while (take(job, share, stage));
     done.fetch_add(ran, std::memory_order_release);
     return true;
 }
 
-bool Team::take(Job& job, uint32_t part, uint32_t& stage) {
-    std::atomic<uint64_t>& taken = part_[part].taken;
+bool Team::take(Job& job, uint32_t share, uint32_t& stage) {
+    std::atomic<uint64_t>& taken = share_[share].taken;
     uint64_t at = taken.load(std::memory_order_acquire);
     const uint64_t of = at >> kStageBits;
     if (of > job.number) return false;  // this thread is late
     stage = of == job.number ? static_cast<uint32_t>(at & ((1u << kStageBits) - 1)) : 0;
     if (stage >= job.stages) return false;
     if (job.ordered) {
-        if (part_[part].done.load(std::memory_order_acquire) != job.before + stage) return false;
+        if (share_[share].done.load(std::memory_order_acquire) != job.before + stage) return false;
         if (!all_did(job, after_[stage].load(std::memory_order_acquire))) return false;
     }
     if (!is_out(job)) return false;
     return taken.compare_exchange_strong(at, job.number << kStageBits | (stage + 1), std::memory_order_acq_rel);
 }
 
-// A part has better stay with the thread that has its data in the cache.
+// A share has better stay with the thread that has its data in the cache.
 bool Team::help_others(Job& job, uint32_t worker, bool patient) {
-    for (uint32_t k = 1; k < size_; ++k) {
-        const uint32_t part = worker + k < size_ ? worker + k : worker + k - size_;
-        const bool at_work = part_[part].joined.load(std::memory_order_acquire) == job.number;
-        if (!(at_work && patient) && advance(job, part)) return true;
+    for (uint32_t k = 1; k <= job.shares; ++k) {
+        const uint32_t share = (worker + k) % job.shares;
+        const bool at_work = share_[share].joined.load(std::memory_order_acquire) == job.number;
+        if (share != worker && !(at_work && patient) && advance(job, share)) return true;
     }
     return false;
 }
@@ -157,7 +165,8 @@ bool Team::help_others(Job& job, uint32_t worker, bool patient) {
 bool Team::all_did(Job& job, uint32_t stages) const {
     if (stages <= job.known) return true;
     uint64_t least = UINT64_MAX;
-    for (const Part& part : part_) least = std::min(least, part.done.load(std::memory_order_acquire));
+    for (uint32_t share = 0; share < job.shares; ++share)
+        least = std::min(least, share_[share].done.load(std::memory_order_acquire));
     if (least < job.before + stages) return false;
     job.known = static_cast<uint32_t>(least - job.before);
     return true;
@@ -168,9 +177,20 @@ void Team::call_helpers() {
     called_ = true;
     caller_ = std::this_thread::get_id();
     const uint32_t call = call_.fetch_add(1, std::memory_order_release) + 1;
-    if (hooks_.enqueue_task) return enqueue();
+    if (hooks_.enqueue_task) {
+        deal(size_);
+        return enqueue();
+    }
     woken_ = keep_off_caller();
+    deal(woken_ + 1);
     wake(woken_, call);
+}
+
+// Between jobs.
+void Team::deal(uint32_t shares) {
+    if (shares == shares_) return;
+    shares_ = shares;
+    for (Share& share : share_) share.done.store(done_, std::memory_order_release);
 }
 
 // A host that throws has enqueued nothing: there is nothing to finish, and the caller goes on alone.

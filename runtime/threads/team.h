@@ -1,6 +1,7 @@
 // A team of threads for the loops inside a step: the calling thread and helpers, the world's own or the host's, that
 // join while a step runs and sleep between steps. Of the own threads as many are woken as there are cores for them:
-// more would take turns on these, and every stage would wait for who is off its core.
+// more would take turns on these, and every stage would wait for who is off its core. The parts of those that sleep are
+// dealt to the others.
 //
 // The calling thread hands out a loop in parts, one for each thread, and these in stages; whoever is there takes one
 // stage after the other. Each thread begins with its own part, the same in each loop as long, so that what it wrote is
@@ -133,12 +134,13 @@ private:
     // A loop as a worker sees it.
     struct Job {
         uint64_t number;
-        uint64_t before;  // stages of each part in all jobs before
-        uint32_t stages;  // of each part
+        uint64_t before;  // stages of each share in all jobs before
+        uint32_t stages;  // of each share
+        uint32_t shares;  // into which the parts are dealt
         bool ordered;     // by after_
         StageFn run;
         const void* context;
-        uint32_t known = 0;  // stages that all parts have done, as far as the worker saw
+        uint32_t known = 0;  // stages that all shares have done, as far as the worker saw
     };
 
     template <class Run>
@@ -152,8 +154,9 @@ private:
     }
     void hand_out(uint32_t stages, std::span<const uint32_t> after, StageFn run, const void* context);
     void work(Job job, uint32_t worker);
-    bool advance(Job& job, uint32_t part);
-    bool take(Job& job, uint32_t part, uint32_t& stage);
+    bool advance(Job& job, uint32_t share);
+    bool take(Job& job, uint32_t share, uint32_t& stage);
+    void run_share(const Job& job, uint32_t stage, uint32_t share) const;
     bool help_others(Job& job, uint32_t worker, bool patient);
     bool all_did(Job& job, uint32_t stages) const;
     bool is_out(const Job& job) const { return job_.load(std::memory_order_acquire) == job.number; }
@@ -161,6 +164,7 @@ private:
     void call_helpers();
     uint32_t keep_off_caller();
     void enqueue();
+    void deal(uint32_t shares);
     void wake(uint32_t helpers, uint32_t call);
     void quit();
     void help(uint32_t call, uint32_t worker);
@@ -180,6 +184,7 @@ private:
     int caller_core_ = -1;     // where the own threads do not run
     uint32_t free_cores_ = 0;  // that the own threads may run on
     uint32_t woken_ = 0;
+    uint32_t shares_ = 0;  // of the parts: one for each thread that is there, which takes every so manieth part
     uint64_t last_job_ = 0;
     uint64_t done_ = 0;  // stages of each part in all jobs so far
 
@@ -193,15 +198,16 @@ private:
     std::atomic<const void*> context_{nullptr};
     std::atomic<uint64_t> before_{0};
     std::atomic<uint32_t> stages_{0};
+    std::atomic<uint32_t> dealt_{0};  // Job::shares
     std::atomic<bool> ordered_{false};
     std::vector<std::atomic<uint32_t>> after_;
-    struct alignas(64) Part {
+    struct alignas(64) Share {
         std::atomic<uint64_t> taken{0};  // job << kStageBits | its stages that were begun; of an earlier job: none yet
-        // What others look at: stages done in all jobs, and the last job that the part's own worker came to.
+        // What others look at: stages done in all jobs, and the last job that the share's own worker came to.
         alignas(64) std::atomic<uint64_t> done{0};
         std::atomic<uint64_t> joined{0};
     };
-    std::vector<Part> part_;  // by worker
+    std::vector<Share> share_;  // by worker
 
     // Odd: helpers are wanted; even: they sleep.
     alignas(64) std::atomic<uint32_t> call_{0};

@@ -15,6 +15,15 @@ namespace {
 using taut::RestAfter;
 using taut::Team;
 
+// That this thread may run on.
+uint32_t cores() {
+#if defined(__linux__)
+    cpu_set_t all;
+    if (sched_getaffinity(0, sizeof all, &all) == 0) return static_cast<uint32_t>(CPU_COUNT(&all));
+#endif
+    return std::thread::hardware_concurrency();
+}
+
 // Loops of many lengths, several a call for help, as a step has them.
 void expect_every_index_once(Team& team, int calls) {
     std::vector<uint32_t> hits(5000);
@@ -68,7 +77,7 @@ TEST(Team, RunsEveryRunOnce) {
 
 // Two threads each begin with what is their own, and wait there for the other.
 TEST(Team, RunsBeginAtTheirHomes) {
-    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "nobody helps on one core";
+    if (cores() < 2) GTEST_SKIP() << "nobody helps on one core";
     constexpr uint32_t kRuns = 20;
     Team team({}, 2);
     const RestAfter rest(team);
@@ -164,7 +173,7 @@ TEST(Team, PartsKeepTheirOrder) {
 
 // Parts that need not wait for each other run on; those that must, do.
 TEST(Team, PartsRunAheadAsFarAsTheyMay) {
-    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "nobody helps on one core";
+    if (cores() < 2) GTEST_SKIP() << "nobody helps on one core";
     Team team({}, 2);
     const RestAfter rest(team);
     const std::vector<uint32_t> after = {0, 0, 0, 3};
@@ -188,7 +197,7 @@ TEST(Team, PartsRunAheadAsFarAsTheyMay) {
 }
 
 TEST(Team, OthersHelp) {
-    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "nobody helps on one core";
+    if (cores() < 2) GTEST_SKIP() << "nobody helps on one core";
     Team team({}, 2);
     const RestAfter rest(team);
     std::atomic<bool> other{false};
@@ -266,11 +275,10 @@ TEST(Team, AHostThatThrowsHasNothingToFinish) {
 TEST(Team, WakesNoMoreThreadsThanItHasCoresFor) {
     cpu_set_t all, one;
     ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
-    const auto cores = static_cast<uint32_t>(CPU_COUNT(&all));
     for (uint32_t threads : {2u, 3u, 16u, 64u}) {
         Team team({}, threads);
         expect_every_index_once(team, 2);
-        EXPECT_EQ(team.woken(), std::min(threads, cores) - 1);
+        EXPECT_EQ(team.woken(), std::min(threads, cores()) - 1);
     }
     CPU_ZERO(&one);
     CPU_SET(static_cast<size_t>(sched_getcpu()), &one);
@@ -281,7 +289,7 @@ TEST(Team, WakesNoMoreThreadsThanItHasCoresFor) {
         EXPECT_EQ(team.woken(), 0u);
         ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
         expect_every_index_once(team, 2);
-        EXPECT_EQ(team.woken(), std::min(8u, cores) - 1);
+        EXPECT_EQ(team.woken(), std::min(8u, cores()) - 1);
     }
 }
 #endif
