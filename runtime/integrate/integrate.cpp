@@ -147,8 +147,8 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
 void take_seat(System& system, uint32_t node) {
     uint32_t& seat = system.seat[node + 1];
     if (seat != 0) return;
-    seat = static_cast<uint32_t>(system.node_at.size());
     reserve_more(system.node_at, 1);
+    seat = static_cast<uint32_t>(system.node_at.size());
     system.node_at.push_back(node);
 }
 
