@@ -45,7 +45,7 @@ void describe(Visitor& visitor, Of& of) {
 }
 
 struct Shapes {
-    static constexpr uint32_t kInner = 1u << 27;  // first index of those inside cables
+    static constexpr uint32_t kInner = 1u << 23;  // first index of those inside cables
 
     explicit Shapes(Memory& memory) : ids(memory), record(memory), inner(memory) {}
 

@@ -270,8 +270,8 @@ void run_heap(uint32_t threads, int steps, std::vector<uint64_t>& out) {
         for (const auto& [list, count] :
              {std::pair{e.begin, e.begin_count}, std::pair{e.persist, e.persist_count}, std::pair{e.end, e.end_count}})
             for (uint32_t i = 0; i < count; ++i) {
-                out.push_back(list[i].collider_a.bits >> 20);  // without the world
-                out.push_back(list[i].collider_b.bits >> 20 << 8 | list[i].point_count);
+                out.push_back(list[i].collider_a.bits >> 24);  // without the world
+                out.push_back(list[i].collider_b.bits >> 24 << 8 | list[i].point_count);
             }
         for (uint32_t i = 0; i < e.point_count; ++i)
             for (float x : {e.points[i].normal_impulse, e.points[i].friction_impulse, e.points[i].approach_speed}) {

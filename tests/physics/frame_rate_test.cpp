@@ -252,7 +252,7 @@ struct Rain {
         told.slept += e.fell_asleep_count;
         told.woke += e.woke_count;
         for (uint32_t i = 0; i < e.hit_count; ++i)  // by slot and generation, not by world
-            ++told.hits_of[std::max(e.hit[i].body_a.bits, e.hit[i].body_b.bits) >> 20];
+            ++told.hits_of[std::max(e.hit[i].body_a.bits, e.hit[i].body_b.bits) >> 24];
     }
 };
 

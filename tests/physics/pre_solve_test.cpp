@@ -226,7 +226,7 @@ TEST(PreSolve, IsAskedInOrderOnTheSteppingThreadWithTheWorldLocked) {
         std::vector<uint64_t>& order = orders[threads > 1];
         Host host;
         host.answer = [&](const taut_pre_solve& contact, taut_pre_solve_answer&) {
-            order.push_back(contact.collider_a.bits >> 20 << 32 ^ contact.collider_b.bits >> 20);  // without the world
+            order.push_back(contact.collider_a.bits >> 24 << 32 ^ contact.collider_b.bits >> 24);  // without the world
             taut_vec3 gravity{};
             EXPECT_EQ(taut_world_set_gravity(world.handle, {0, 0, 0}), TAUT_LOCKED);
             EXPECT_EQ(taut_world_get_gravity(world.handle, &gravity), TAUT_LOCKED);

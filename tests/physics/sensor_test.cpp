@@ -244,7 +244,7 @@ private:
              {std::pair{e.sensor_leave, e.sensor_leave_count}, std::pair{e.sensor_enter, e.sensor_enter_count}})
             for (uint32_t i = 0; i < count; ++i) {
                 ASSERT_TRUE(i == 0 || key(list[i - 1]) < key(list[i]));
-                told_.insert(told_.end(), {key(list[i]).first >> 20, key(list[i]).second >> 20});  // without the world
+                told_.insert(told_.end(), {key(list[i]).first >> 24, key(list[i]).second >> 24});  // without the world
             }
         for (uint32_t i = 0; i < e.sensor_leave_count; ++i) ASSERT_EQ(inside_.erase(key(e.sensor_leave[i])), 1u);
         for (uint32_t i = 0; i < e.sensor_enter_count; ++i) ASSERT_TRUE(inside_.insert(key(e.sensor_enter[i])).second);

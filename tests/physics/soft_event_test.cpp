@@ -263,14 +263,14 @@ std::vector<uint64_t> tell_heap(const World& world, int steps) {
         for (const auto& [list, count] :
              {std::pair{e.begin, e.begin_count}, std::pair{e.persist, e.persist_count}, std::pair{e.end, e.end_count}})
             for (uint32_t k = 0; k < count; ++k) {
-                out.push_back(list[k].collider_a.bits >> 20);  // without the world
-                out.push_back(list[k].collider_b.bits >> 20 << 8 | (list[k].point_count & 255));
+                out.push_back(list[k].collider_a.bits >> 24);  // without the world
+                out.push_back(list[k].collider_b.bits >> 24 << 8 | (list[k].point_count & 255));
             }
         for (uint32_t k = 0; k < e.point_count; ++k)
             for (const float x : {e.points[k].normal_impulse, e.points[k].friction_impulse, e.points[k].approach_speed})
                 out.push_back(std::bit_cast<uint32_t>(x));
         for (uint32_t k = 0; k < e.hit_count; ++k) out.push_back(std::bit_cast<uint32_t>(e.hit[k].approach_speed));
-        for (uint32_t k = 0; k < e.sensor_enter_count; ++k) out.push_back(e.sensor_enter[k].visitor.bits >> 20);
+        for (uint32_t k = 0; k < e.sensor_enter_count; ++k) out.push_back(e.sensor_enter[k].visitor.bits >> 24);
     }
     return out;
 }
