@@ -56,18 +56,20 @@ typedef enum taut_joint_kind {
 
 /** How a joint is solved. */
 typedef enum taut_joint_solve {
-    /** With all joints it hangs together with, at once: exact whatever they carry. Where their factor takes more than
-        64000 multiplications for each of them, as of dense graphs and of a thousand joints between two bodies, all are
-        swept. Where the world's solver has no direct solve, as that solver has it. */
+    /** With all joints it hangs together with, at once: exact whatever they carry. Where a factor of their matrix takes
+        more than 16000 multiplications for each of them, as of dense graphs and of a thousand joints between two
+        bodies, all are swept. Solvers without a direct one sweep all. */
     TAUT_JOINT_SOLVE_DIRECT = 0,
     /** By sweeps: cheap, gives way under loads far heavier than the bodies it holds, by .0253 h^2 |f| (1/m_a + 1/m_b)
        in substeps of h. A drive's stiffness K, damping with it, is at most half of the inertia I of its ends' own
        turning over h^2, I / (2 h^2): some 13 Hz for limbs. */
     TAUT_JOINT_SOLVE_SOFT = 1,
-    /** As it needs: by sweeps while they give way by less than 1/500 of the size of the joint's smaller body, else
-        directly with all that it hangs together with, until sweeps would have held it for a quarter of a second.
-        Directly from the start where sweeps would not hold the weight of the heaviest of these bodies by the lightest,
-        where a body has no size (a particle), and together with a direct joint. */
+    /** By need and cost. Directly with all that it hangs together with where that costs at most twice what sweeps do:
+        chains, doors, bridges; not ragdolls, whose stops come and go, or nets. These are swept while sweeps give way by
+        less than 1/500 of the size of a joint's smaller body, else solved directly, until sweeps would have held them
+        for a quarter of a second; and from the start where sweeps would not hold the weight of the heaviest of their
+        bodies by the lightest. What has no size, a particle, is held directly, and so is what hangs on a direct joint,
+        within the bound above. */
     TAUT_JOINT_SOLVE_BY_LOAD = 2,
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;

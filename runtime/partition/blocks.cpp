@@ -106,6 +106,8 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     both.loaded = ca.loaded || cb.loaded;
     both.hit = ca.hit || cb.hit;
     both.elastic = elastic;
+    both.always = ca.always || cb.always;
+    both.uneven = ca.uneven || cb.uneven;
     unite(a, b);
     component_[find(a)] = both;
     return true;
@@ -181,15 +183,17 @@ void Partition::take_surfaces(const SurfaceContacts& surfaces) {
 void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements,
                            const PartitionRules& rules) {
     const double h = rules.time_step / rules.substeps, gravity = least_gravity(rules);
+    for (const uint32_t node : graph_.movers) {
+        Component& c = component_[node];
+        if (parent_[node] != node || c.nodes == 1) continue;
+        c.loaded = c.most >= kLoadedMassRatio * c.least;
+        c.uneven = strain_of_weights(nodes.mass[c.lightest], c.most / c.least, h, gravity) > 1;
+    }
     const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, float need, uint32_t bounded,
                            bool multiplies) {
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
         const bool loaded = frames_loaded >= kLoadedAfter, direct = solve == JointSolve::direct;
-        if (c.ties == 0) {
-            c.loaded = c.most >= kLoadedMassRatio * c.least;
-            c.uneven = strain_of_weights(nodes.mass[c.lightest], c.most / c.least, h, gravity) > 1;
-        }
         c.ties += multiplies;
         c.elastic = c.elastic || (direct && !multiplies);
         c.loaded = c.loaded || (direct && !multiplies);

@@ -306,7 +306,7 @@ private:
     // Of nodes in blocks: with a joint that is solved directly, or in a tower; or taken in with a contact.
     static constexpr uint8_t kHeld = 1, kTaken = 2;
 
-    struct Price {
+    struct Price {  // what the factor of a mechanism costs
         uint64_t graph;  // Component::graph
         double flops;
     };

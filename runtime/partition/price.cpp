@@ -14,8 +14,9 @@ namespace {
 constexpr double kTieCost = 1000;
 // Times what sweeps cost, a direct solve may cost without need: it is exact.
 constexpr double kWorth = 2;
-// Times what sweeps cost, it may cost at need or by the user's word: as many substeps as sweeps may take hold it then.
-constexpr double kMostCost = kMostElasticSubsteps;
+// Times what sweeps cost, it may cost at need or by the user's word: as much as sweeps of so many times the substeps,
+// with which they give way by 1/256.
+constexpr double kMostCost = 16;
 
 // Bits that depend on all of a number's (the finaliser of splitmix64).
 uint64_t mixed(uint64_t x) {

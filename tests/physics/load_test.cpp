@@ -1,4 +1,5 @@
 // Who carries what: contact pressure under stacks, joint forces of hanging chains, the shape of a hanging cable.
+#include <ctime>
 #include <map>
 
 #include "physics/joint_lab.h"
@@ -124,14 +125,14 @@ TEST(ByLoad, HoldsDirectlyWhatSweepsWouldNot) {
 // the two ways of solving passes without a kick.
 TEST(ByLoad, ChangesToAndFroWithoutAKick) {
     int changes = 0;
-    for (const double frequency : {0.3, 1.0, 2.5}) {
+    for (const double frequency : {0.3, 0.6, 1.0}) {
         SCOPED_TRACE(frequency);
         World world;
         const taut_body before = hang_stopped_links(world);
         double fastest = 0, widest = 0;
         bool direct = false;
         for (int frame = 0; frame < 900; ++frame) {
-            const double pull = 1000 + 700 * std::sin(2 * M_PI * frequency * frame / 60.0);
+            const double pull = 1300 + 900 * std::sin(2 * M_PI * frequency * frame / 60.0);
             ok(taut_body_apply_force(before, {0, static_cast<float>(-pull), 0}, {0, 0, 0}));
             world.step();
             const taut_profile profile = world.profile();
@@ -141,10 +142,50 @@ TEST(ByLoad, ChangesToAndFroWithoutAKick) {
             fastest = std::max(fastest, norm(state(before).velocity));
             widest = std::max(widest, static_cast<double>(profile.joint_error));
         }
-        EXPECT_LE(fastest, 0.1);
-        EXPECT_LE(widest, 0.010);  // as the pull changes by 4.4 kN a second
+        EXPECT_LE(fastest, 0.13);
+        EXPECT_LE(widest, 0.013);  // as the pull changes by 5.7 kN a second
     }
     EXPECT_GE(changes, 20);
+}
+
+// Graphs of joints whose factor is dense: 780 and 1770 joints among 40 and 60 bodies, each tied to each, 1500 between
+// two. Ends are where they are as the world begins, so that nothing moves but by its weight.
+TEST(JointGraphs, TakeNoStepLong) {
+    const auto slowest_step = [](World& world) {
+        double slowest = 0;  // [s] of the processor
+        for (int step = 0; step < 5; ++step) {
+            const std::clock_t start = std::clock();
+            world.step();
+            slowest = std::max(slowest, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+        }
+        return slowest;
+    };
+    for (const int count : {40, 60}) {
+        World world;
+        std::vector<taut_body> bodies;
+        std::vector<Vec> at;
+        for (int i = 0; i < count; ++i) {
+            at.emplace_back(i % 4, 0.5 * (i / 16), i / 4 % 4);
+            bodies.push_back(world.add({.position = at.back(), .mass = 1, .inertia = Vec(0.1, 0.1, 0.1)}));
+        }
+        for (size_t i = 0; i < bodies.size(); ++i)
+            for (size_t k = 0; k < i; ++k) {
+                const Vec middle = 0.5 * (at[i] + at[k]);
+                world.ball(bodies[i], middle - at[i], bodies[k], middle - at[k]);
+            }
+        EXPECT_LE(slowest_step(world), 0.05) << count << " bodies";
+        EXPECT_EQ(world.profile().solves, 0u);
+        EXPECT_LE(world.profile().joint_error, 1e-3f);
+    }
+    World world;
+    const taut_body one = world.add({.position = {0, 0, 0}, .mass = 1, .inertia = Vec(0.1, 0.1, 0.1)});
+    const taut_body other = world.add({.position = {1, 0, 0}, .mass = 1, .inertia = Vec(0.1, 0.1, 0.1)});
+    for (int i = 0; i < 1500; ++i) {
+        const Vec pivot(0.5, 0.1 * std::sin(i), 0.1 * std::cos(i));
+        world.ball(one, pivot, other, pivot - Vec(1, 0, 0));
+    }
+    EXPECT_LE(slowest_step(world), 0.05) << "between two";
+    EXPECT_LE(world.profile().joint_error, 1e-3f);
 }
 
 // y = a cosh(x / a) with 2 a sinh(span / 2 a) = length. Arc length from the middle: a sinh(x / a).
