@@ -66,7 +66,7 @@ taut_joint World::joint_handle(uint32_t joint) const {
     return {pack_handle({joint, joints.ids.generation(joint), id})};
 }
 
-static_assert(Shapes::kInner <= kMaxSlots / 2);  // both kinds have indices of handles
+static_assert(Shapes::kInner < kMaxSlots);  // both kinds have indices of handles
 
 taut_shape World::shape_handle(uint32_t shape) const {
     if (shape == kNone) return {0};
