@@ -64,12 +64,12 @@ typedef enum taut_joint_solve {
        in substeps of h. A drive's stiffness K, damping with it, is at most half of the inertia I of its ends' own
        turning over h^2, I / (2 h^2): some 13 Hz for limbs. */
     TAUT_JOINT_SOLVE_SOFT = 1,
-    /** By need and cost. Directly with all that it hangs together with where that costs at most twice what sweeps do:
-        chains, doors, bridges; not ragdolls, whose stops come and go, or nets. These are swept while sweeps give way by
-        less than 1/500 of the size of a joint's smaller body, else solved directly, until sweeps would have held them
-        for a quarter of a second; and from the start where sweeps would not hold the weight of the heaviest of their
-        bodies by the lightest. What has no size, a particle, is held directly, and so is what hangs on a direct joint,
-        within the bound above. */
+    /** By need and cost. Directly with all that it hangs together with where that costs at most three times what sweeps
+        do, as of chains and doors, or where a joint can break, whose force is exact then. Ragdolls, whose stops come and
+        go, and nets are swept while sweeps give way by less than 1/500 of the size of a joint's smaller body, else
+        solved directly, until sweeps would have held them for a quarter of a second; and from the start where sweeps
+        would not hold the weight of the heaviest of their bodies by the lightest. What has no size, a particle, is held
+        directly, and so is what hangs on a direct joint, within the bound above. */
     TAUT_JOINT_SOLVE_BY_LOAD = 2,
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;

@@ -1,5 +1,6 @@
 // Which joints are solved directly, together with which contacts.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <ranges>
 #include <utility>
@@ -55,6 +56,12 @@ uint8_t note_load(const Nodes& nodes, const ConstraintType& type, std::span<cons
     if (squared > most * most)
         return static_cast<uint8_t>(loaded + 1 < kLoadedAfter ? loaded + 1 : kLoadedAfter + kLoadedFor);
     return loaded > kLoadedAfter ? loaded - 1 : 0;
+}
+
+// What can break needs its force exactly.
+JointSolve asked_for(const Joint& joint) {
+    const bool breaks = std::isfinite(joint.break_force) || std::isfinite(joint.break_torque);
+    return breaks && joint.solve == JointSolve::by_load ? JointSolve::direct : joint.solve;
 }
 
 uint32_t bounded_rows(const Joint& joint) {
@@ -203,7 +210,7 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
         c.bounded += bounded;
     };
     for (const Joint& joint : joints.record)
-        weigh(mover(nodes, joint.nodes()), joint.solve, joint.loaded, joint.need, bounded_rows(joint), true);
+        weigh(mover(nodes, joint.nodes()), asked_for(joint), joint.loaded, joint.need, bounded_rows(joint), true);
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
         const uint32_t at = element_[e].element;

@@ -13,7 +13,7 @@ namespace {
 // Multiplications of a factor in the time that a swept tie takes in a substep, some 250 ns.
 constexpr double kTieCost = 1000;
 // Times what sweeps cost, a direct solve may cost without need: it is exact.
-constexpr double kWorth = 2;
+constexpr double kWorth = 3;
 // Times what sweeps cost, it may cost at need or by the user's word: as much as sweeps of so many times the substeps,
 // with which they give way by 1/256.
 constexpr double kMostCost = 16;
@@ -85,7 +85,8 @@ void Partition::mark_graphs(const Nodes& nodes, const Joints& joints, const Elem
     }
 }
 
-// Into Component::flops. A direct solve with bounded rows factors anew as these come and go: once for each at most.
+// Into Component::flops. A direct solve with bounded rows factors anew as these come and go: in proportion to how many
+// each tie has.
 void Partition::find_prices(const Nodes& nodes, const Joints& joints, const Elements& elements) {
     mark_graphs(nodes, joints, elements);
     known_prices_.swap(prices_);
@@ -106,7 +107,7 @@ void Partition::find_prices(const Nodes& nodes, const Joints& joints, const Elem
         Component& c = component_[root];
         if (parent_[root] != root || c.ties == 0) continue;
         prices_.push_back({c.graph, c.flops});
-        c.exact = c.flops * (1 + c.bounded) <= kWorth * kTieCost * c.ties;
+        c.exact = c.flops * (c.ties + c.bounded) <= kWorth * kTieCost * c.ties * c.ties;
         c.dear = c.flops > kMostCost * kTieCost * c.ties;
     }
     std::ranges::sort(prices_, {}, &Price::graph);

@@ -79,13 +79,17 @@ TEST(HangingChain, JointForcesAreTheWeightsBelow) {
     }
 }
 
-// Five links of 1 kg with stops, for which a direct solve costs far more than sweeps; the last one.
+// Five links of 1 kg with stops, motors and friction, for which a direct solve costs far more than sweeps; the last
+// one.
 taut_body hang_stopped_links(const World& world) {
+    taut_axis_def axis = limited(-1, 1);
+    axis.friction = axis.drive.max_force = 1e-3f;
+    axis.drive.damping = 1e-3f;
     taut_body before{};
     for (int i = 0; i < 5; ++i) {
         const double y = 10 - 0.5 * i;
         const taut_body link = world.add({.position = {0, y - 0.25, 0}, .mass = 1, .inertia = Vec(0.02, 0.003, 0.02)});
-        hinge(world, before, link, {0, y, 0}, {0, 0, 1}, limited(-1, 1));
+        hinge(world, before, link, {0, y, 0}, {0, 0, 1}, axis);
         before = link;
     }
     return before;
