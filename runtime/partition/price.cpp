@@ -12,7 +12,8 @@ namespace {
 
 // Multiplications of a factor in the time that a swept tie takes in a substep, some 250 ns.
 constexpr double kTieCost = 1000;
-// Times what sweeps cost, a direct solve may cost without need: it is exact.
+// Times what sweeps cost, a direct solve may cost without need: it is exact. Chosen between a chain of hinges with
+// stops and friction, 2.6, and a ragdoll, 3.3; a bridge on ropes, 3.6, is beyond it.
 constexpr double kWorth = 3;
 // Times what sweeps cost, it may cost at need or by the user's word: as much as sweeps of so many times the substeps,
 // with which they give way by 1/256.
