@@ -9,6 +9,7 @@
 #include "partition/movers.h"
 #include "partition/needs.h"
 #include "partition/partition.h"
+#include "partition/price.h"
 #include "partition/weights.h"
 
 namespace taut {
@@ -114,7 +115,7 @@ bool Partition::join_contact(uint32_t a, uint32_t b) {
     both.hit = ca.hit || cb.hit;
     both.elastic = elastic;
     both.always = ca.always || cb.always;
-    both.uneven = ca.uneven || cb.uneven;
+    both.sags = ca.sags || cb.sags;
     unite(a, b);
     component_[find(a)] = both;
     return true;
@@ -187,34 +188,31 @@ void Partition::take_surfaces(const SurfaceContacts& surfaces) {
 }
 
 // What ties of each component ask for.
-void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements,
-                           const PartitionRules& rules) {
-    const double h = rules.time_step / rules.substeps, gravity = least_gravity(rules);
-    for (const uint32_t node : graph_.movers) {
-        Component& c = component_[node];
-        if (parent_[node] != node || c.nodes == 1) continue;
-        c.loaded = c.most >= kLoadedMassRatio * c.least;
-        c.uneven = strain_of_weights(nodes.mass[c.lightest], c.most / c.least, h, gravity) > 1;
-    }
-    const auto weigh = [&](uint32_t end, JointSolve solve, uint8_t frames_loaded, float need, uint32_t bounded,
-                           bool multiplies) {
+void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements) {
+    const auto weigh = [&](std::span<const uint32_t> ends, JointSolve solve, uint8_t frames_loaded, float need,
+                           double sweep, uint32_t bounded, bool multiplies) {
+        const uint32_t end = mover(nodes, ends);
         if (solve == JointSolve::swept || end == kNone) return;
         Component& c = component_[find(end)];
         const bool loaded = frames_loaded >= kLoadedAfter, direct = solve == JointSolve::direct;
+        if (multiplies) c.sweep += sweep;
         c.ties += multiplies;
         c.elastic = c.elastic || (direct && !multiplies);
         c.loaded = c.loaded || (direct && !multiplies);
         c.bears = c.bears || loaded;
-        c.direct = c.direct || c.uneven || is_needed(need);
+        c.direct = c.direct || is_needed(need);
         c.always = c.always || direct;
         c.bounded += bounded;
     };
-    for (const Joint& joint : joints.record)
-        weigh(mover(nodes, joint.nodes()), asked_for(joint), joint.loaded, joint.need, bounded_rows(joint), true);
+    for (const Joint& joint : joints.record) {
+        if (!joint.type) continue;
+        weigh(joint.nodes(), asked_for(joint), joint.loaded, joint.need, kTieCost, bounded_rows(joint), true);
+    }
     for (uint32_t e = 0; e < element_.size(); ++e) {
         const ElementSet& set = elements.set[element_[e].set];
         const uint32_t at = element_[e].element;
-        weigh(mover(nodes, movers_of(e)), set.solve, set.loaded[at], set.need[at], set.pulls ? 1 : 0, multiplies(set));
+        weigh(movers_of(e), set.solve, set.loaded[at], set.need[at], sweep_cost(*set.type), set.pulls ? 1 : 0,
+              multiplies(set));
     }
     for (const Press& press : presses_)
         for (const uint32_t node : {press.light, press.by}) {
@@ -223,11 +221,29 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
         }
 }
 
+// Where sweeps would not hold weights alone: that of the heaviest node by the lightest, or what falls until it feels
+// what it hangs by. A direct solve for c times the cost of sweeps is worth it where these, with c times as many
+// substeps, would not hold it either: both grow with h^2.
+void Partition::weigh_bodies(const Nodes& nodes, const PartitionRules& rules) {
+    const double h = rules.time_step / rules.substeps, gravity = least_gravity(rules);
+    for (const uint32_t node : graph_.movers) {
+        Component& c = component_[node];
+        if (parent_[node] != node || c.nodes == 1) continue;
+        const NodeMass& lightest = nodes.mass[c.lightest];
+        const double worth = std::max(1.0, c.cost);
+        c.loaded = c.loaded || c.most >= kLoadedMassRatio * c.least;
+        c.sags = strain_of_weights(lightest, c.most / c.least, h, gravity) > 1 ||
+                 (c.ties > 0 && strain_of_fall(lightest, c.price.depth * h, gravity) > worth * worth);
+        c.direct = c.direct || c.sags;
+    }
+}
+
 // Ties that blocks own, but for mechanisms whose factor is too dear and for those that sweeps hold as well.
 void Partition::choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements,
                               const PartitionRules& rules) {
-    weigh_ties(nodes, joints, elements, rules);
+    weigh_ties(nodes, joints, elements);
     find_prices(nodes, joints, elements);
+    weigh_bodies(nodes, rules);
     for (const uint32_t node : graph_.movers) {
         Component& c = component_[node];
         c.always = c.always || (c.exact && c.ties > 0);
@@ -360,7 +376,7 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
         block.mass_ratio = most / least;
         block.tower = block.joints.empty() && block.elements.empty() && block.elastic.empty();
         const Component& component = component_[find(block.nodes[0])];
-        block.passing = !block.tower && !component.always && !component.uneven;
+        block.passing = !block.tower && !component.always && !component.sags;
     }
 }
 

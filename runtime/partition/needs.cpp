@@ -9,10 +9,10 @@
 namespace taut {
 namespace {
 
-// y / (kSeen d) of an acceleration a = w |f| [m/s^2] and a size d [m].
-double strain(double acceleration, double size, double h) {
-    if (acceleration == 0) return 0;
-    return size > 0 ? kJointYield * h * h * acceleration / (kSeen * size) : std::numeric_limits<double>::infinity();
+// y / (kSeen d) of a yield y [m] and a size d [m].
+double strain(double yield, double size) {
+    if (yield == 0) return 0;
+    return size > 0 ? yield / (kSeen * size) : std::numeric_limits<double>::infinity();
 }
 
 double strain_of(const Nodes& nodes, const ConstraintType& type, std::span<const uint32_t> ends, const double* lambda,
@@ -25,7 +25,7 @@ double strain_of(const Nodes& nodes, const ConstraintType& type, std::span<const
         inverse += nodes.mass[node].inv_mass;
         size = std::min(size, extent(nodes.mass[node]));
     }
-    return strain(inverse * std::sqrt(squared), size, h);
+    return strain(kJointYield * h * h * inverse * std::sqrt(squared), size);
 }
 
 // Seconds of strain beyond what may be seen; once it is needed, of time until it is not.
@@ -42,7 +42,11 @@ float follow(float need, double strain, double frame) {
 }  // namespace
 
 double strain_of_weights(const NodeMass& body, double weights, double h, double gravity) {
-    return strain(weights * gravity, extent(body), h);
+    return strain(kJointYield * h * h * weights * gravity, extent(body));
+}
+
+double strain_of_fall(const NodeMass& body, double time, double gravity) {
+    return strain(0.5 * gravity * time * time, extent(body));
 }
 
 void note_needs(Joints& joints, Elements& elements, const Nodes& nodes, double h, double frame) {

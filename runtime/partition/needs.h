@@ -23,6 +23,10 @@ inline double extent(const NodeMass& body) {
 // Of swept joints that carry a weight of so many of a body's [1]; of what has no size infinite. h [s], gravity [m/s^2]
 double strain_of_weights(const NodeMass& body, double weights, double h, double gravity);
 
+// What moves freely for so long [s] before it feels its support falls by g t^2 / 2: sweeps carry a force from tie to
+// tie in a substep.
+double strain_of_fall(const NodeMass& body, double time, double gravity);
+
 // Once a frame, from the forces of the last one. h: of the substeps that sweeps would take; frame: time step [s].
 void note_needs(Joints& joints, Elements& elements, const Nodes& nodes, double h, double frame);
 

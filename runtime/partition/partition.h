@@ -280,6 +280,12 @@ private:
         uint32_t effort() const { return substeps << 8 | (whips ? 128u : 0u) | sweeps; }
     };
 
+    struct Price {           // of a direct solve of a mechanism, and what sweeps would make of it
+        uint64_t graph = 0;  // Component::graph
+        double flops = 0;    // multiplications of its factor; infinite where they are more than matters
+        uint32_t depth = 0;  // ties between the node furthest from there and what it hangs by
+    };
+
     struct Component {  // of the graph of blocks, by root
         uint32_t nodes = 1, ties = 0, grown = 0, block = UINT32_MAX;
         uint32_t set = UINT32_MAX;       // of elements, the last that its block was marked with
@@ -289,15 +295,17 @@ private:
         bool loaded = false;             // takes in its contacts
         bool direct = false;             // its ties make a block
         bool always = false;             // whatever they carry
-        bool uneven = false;             // sweeps would not hold its heaviest node by its lightest
+        bool sags = false;               // in sweeps, by its weights alone
         bool bears = false;              // more than contacts in sweeps could stand
         uint32_t bounded = 0;            // rows of stops, drives and friction
-        double flops = 0;                // multiplications of its factor; infinite where they are more than matters
-        bool priced = false;             // this is known from the last frame
-        bool exact = false;              // a direct solve costs little more than sweeps
-        bool dear = false;               // it costs more than it may
-        bool hit = false;                // in this frame
-        bool elastic = false;            // has elements without multipliers: its matrix sees no contact
+        double sweep = 0;                // what a sweep of its ties takes, in multiplications of a factor
+        Price price;
+        double cost = 0;                 // of a direct solve, in parts of what sweeps cost
+        bool priced = false;   // this is known from the last frame
+        bool exact = false;    // a direct solve costs little more than sweeps
+        bool dear = false;     // it costs more than it may
+        bool hit = false;      // in this frame
+        bool elastic = false;  // has elements without multipliers: its matrix sees no contact
     };
 
     // A block takes in what touches it, as long as the smaller side of each contact and what came by contacts before
@@ -305,11 +313,6 @@ private:
     static constexpr uint32_t kMostGrown = 64;
     // Of nodes in blocks: with a joint that is solved directly, or in a tower; or taken in with a contact.
     static constexpr uint8_t kHeld = 1, kTaken = 2;
-
-    struct Price {  // what the factor of a mechanism costs
-        uint64_t graph;  // Component::graph
-        double flops;
-    };
 
     // By a heavy body, by a load, or by what these press.
     struct Press {
@@ -371,7 +374,8 @@ private:
     void soften(const Nodes& nodes, const Squeeze& last, double most, double furthest, Pairs& pairs);
     void find_pressed(const Nodes& nodes, Pairs& pairs, const PartitionRules& rules);
     void push_on(const Nodes& nodes, const Pairs& pairs);
-    void weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements, const PartitionRules& rules);
+    void weigh_ties(const Nodes& nodes, const Joints& joints, const Elements& elements);
+    void weigh_bodies(const Nodes& nodes, const PartitionRules& rules);
     void choose_direct(const Nodes& nodes, const Joints& joints, const Elements& elements, const PartitionRules& rules);
     void mark_graphs(const Nodes& nodes, const Joints& joints, const Elements& elements);
     void find_prices(const Nodes& nodes, const Joints& joints, const Elements& elements);

@@ -2,6 +2,7 @@
 // kept while its graph stays.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "linear/sparse_block_ldlt.h"
 #include "partition/movers.h"
@@ -10,8 +11,6 @@
 namespace taut {
 namespace {
 
-// Multiplications of a factor in the time that a swept tie takes in a substep, some 250 ns.
-constexpr double kTieCost = 1000;
 // Times what sweeps cost, a direct solve may cost without need: it is exact. Chosen between a chain of hinges with
 // stops and friction, 2.6, and a ragdoll, 3.3; a bridge on ropes, 3.6, is beyond it.
 constexpr double kWorth = 3;
@@ -35,35 +34,68 @@ int locked_rows(const Joint& joint) {
 // Unknowns and links of a mechanism's matrix, as BlockSolve has them but for contacts.
 class Mechanism {
 public:
-    explicit Mechanism(Memory& memory) : unknown_(memory), link_(memory), matrix_(memory) {}
+    explicit Mechanism(Memory& memory)
+        : unknown_(memory), end_(memory), couple_(memory), supports_(memory), matrix_(memory) {}
 
     uint32_t add_node(bool turns) {
         unknown_.push_back({static_cast<uint8_t>(turns ? 6 : 3), false});
         return static_cast<uint32_t>(unknown_.size()) - 1;
     }
-    // number: of nodes, by slot.
-    void add_tie(std::span<const uint32_t> ends, const Array<uint32_t>& number, int held, int rows, bool couples) {
+    // After all nodes. number: of nodes, by slot.
+    void add_tie(const ConstraintType& type, std::span<const uint32_t> ends, const Array<uint32_t>& number, int held,
+                 int rows, bool couples) {
         const auto tie = static_cast<uint32_t>(unknown_.size());
         unknown_.push_back({static_cast<uint8_t>(held > 3 ? 6 : 3), true, static_cast<uint8_t>(rows)});
+        int moving = 0;
         for (size_t n = 0; n < ends.size(); ++n) {
             if (ends[n] == kNone) continue;
-            link_.push_back(pair_key(number[ends[n]], tie));
+            ++moving;
+            end_.push_back(pair_key(number[ends[n]], tie));
             for (size_t m = 0; m < n && couples; ++m)
-                if (ends[m] != kNone && ends[m] != ends[n]) link_.push_back(pair_key(number[ends[m]], number[ends[n]]));
+                if (ends[m] != kNone && ends[m] != ends[n])
+                    couple_.push_back(pair_key(number[ends[m]], number[ends[n]]));
         }
+        if (moving < type.nodes) supports_.push_back(tie);
     }
     // Multiplications of a factor; infinite where they are more than so many.
     double cost(double most) {
         matrix_.begin(static_cast<uint32_t>(unknown_.size()));
         for (uint32_t i = 0; i < unknown_.size(); ++i)
             matrix_.set_unknown(i, unknown_[i].size, unknown_[i].multiplier, unknown_[i].rows);
-        for (const uint64_t link : link_) matrix_.link(static_cast<uint32_t>(link >> 32), static_cast<uint32_t>(link));
+        for (const Array<uint64_t>* links : {&end_, &couple_})
+            for (const uint64_t link : *links)
+                matrix_.link(static_cast<uint32_t>(link >> 32), static_cast<uint32_t>(link));
         return matrix_.cost(most);
+    }
+    // Ties between what it hangs by and the node furthest from there; 0 where it hangs by nothing.
+    uint32_t depth() const {
+        const auto neighbours = neighbours_of_all();
+        Array<uint8_t> seen(unknown_.size(), 0, end_.get_allocator());
+        Array<uint32_t> front(supports_), next(front.get_allocator());
+        uint32_t ties = 0;
+        for (; !front.empty(); front.swap(next), ties += !front.empty()) {
+            next.clear();
+            for (const uint32_t i : front)
+                for (auto at = std::ranges::lower_bound(neighbours, uint64_t{i} << 32);
+                     at != neighbours.end() && *at >> 32 == i; ++at)
+                    if (const auto j = static_cast<uint32_t>(*at); !std::exchange(seen[j], uint8_t{1}))
+                        next.push_back(j);
+        }
+        return (ties + 1) / 2;
     }
 
 private:
+    // Unknown << 32 | one that it is linked to, ascending.
+    Array<uint64_t> neighbours_of_all() const {
+        Array<uint64_t> out(end_);
+        for (const uint64_t link : end_) out.push_back(link << 32 | link >> 32);
+        std::ranges::sort(out);
+        return out;
+    }
+
     Array<Unknown> unknown_;
-    Array<uint64_t> link_;
+    Array<uint64_t> end_, couple_;  // a tie and a node of it, two nodes of a tie: smaller << 32 | larger
+    Array<uint32_t> supports_;      // ties with an end that does not move
     SparseBlockLdlt matrix_;
 };
 
@@ -86,7 +118,7 @@ void Partition::mark_graphs(const Nodes& nodes, const Joints& joints, const Elem
     }
 }
 
-// Into Component::flops. A direct solve with bounded rows factors anew as these come and go: in proportion to how many
+// Into Component::price. A direct solve with bounded rows factors anew as these come and go: in proportion to how many
 // each tie has.
 void Partition::find_prices(const Nodes& nodes, const Joints& joints, const Elements& elements) {
     mark_graphs(nodes, joints, elements);
@@ -99,7 +131,7 @@ void Partition::find_prices(const Nodes& nodes, const Joints& joints, const Elem
         const auto known = std::ranges::lower_bound(known_prices_, c.graph, {}, &Price::graph);
         c.priced = known != known_prices_.end() && known->graph == c.graph;
         if (c.priced)
-            c.flops = known->flops;
+            c.price = *known;
         else
             complete = false;
     }
@@ -107,9 +139,10 @@ void Partition::find_prices(const Nodes& nodes, const Joints& joints, const Elem
     for (const uint32_t root : graph_.movers) {
         Component& c = component_[root];
         if (parent_[root] != root || c.ties == 0) continue;
-        prices_.push_back({c.graph, c.flops});
-        c.exact = c.flops * (c.ties + c.bounded) <= kWorth * kTieCost * c.ties * c.ties;
-        c.dear = c.flops > kMostCost * kTieCost * c.ties;
+        prices_.push_back(c.price);
+        c.cost = c.price.flops / c.sweep * (c.ties + c.bounded) / c.ties;
+        c.exact = c.cost <= kWorth;
+        c.dear = c.price.flops > kMostCost * c.sweep;
     }
     std::ranges::sort(prices_, {}, &Price::graph);
 }
@@ -144,14 +177,15 @@ void Partition::price_new(const Nodes& nodes, const Joints& joints, const Elemen
                 number[piece->index] = mechanism.add_node(nodes.info[piece->index].kind != NodeKind::particle);
             } else if (piece->kind == 1) {
                 const Joint& joint = joints.record[piece->index];
-                mechanism.add_tie(graph_.ties[piece->index], number, joint.held(), locked_rows(joint),
+                mechanism.add_tie(*joint.type, graph_.ties[piece->index], number, joint.held(), locked_rows(joint),
                                   joint.type->couples_nodes || !joint.plain);
             } else {
                 const ConstraintType& type = elements.set[element_[piece->index].set].type->row;
-                mechanism.add_tie(movers_of(piece->index), number, type.rows, type.rows, true);
+                mechanism.add_tie(type, movers_of(piece->index), number, type.rows, type.rows, true);
             }
         }
-        component_[root].flops = mechanism.cost(kMostCost * kTieCost * component_[root].ties);
+        Component& c = component_[root];
+        c.price = {c.graph, mechanism.cost(kMostCost * c.sweep), mechanism.depth()};
     }
 }
 
