@@ -422,6 +422,8 @@ void Broadphase::let_go() {
     taut::let_go(s.found_of);
 }
 
+void Broadphase::trim() noexcept { taut::trim(state_->boxes.pairs); }
+
 std::span<const uint64_t> Broadphase::pairs() const { return state_->boxes.pairs; }
 std::span<const uint64_t> Broadphase::arrived() const { return state_->fresh; }
 std::span<const uint64_t> Broadphase::departed() const { return state_->gone; }

@@ -174,6 +174,8 @@ public:
     std::span<const uint64_t> departed() const;
     // Of what it worked with, after which the last two are empty.
     void let_go();
+    // Gives back the room of pairs that are no more, if that is most of it.
+    void trim() noexcept;
 
     // What of it is state: the tree follows.
     struct FatBox {

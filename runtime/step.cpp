@@ -6,6 +6,7 @@
 #include "check/quarantine.h"
 #include "check/validate.h"
 #include "detect/contact_limit.h"
+#include "detect/crowds.h"
 #include "detect/detect.h"
 #include "detect/grains.h"
 #include "detect/impact.h"
@@ -88,6 +89,7 @@ void detect(World& w, Stopwatch& watch) {
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
     find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
+    w.profile.dropped_contacts = thin_crowds(w.nodes, w.colliders, w.shapes, w.pairs);
     find_touches(w, lead);
     if (wake_touched(w)) {
         list_active(w);
@@ -102,8 +104,9 @@ void detect(World& w, Stopwatch& watch) {
     if (refused > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
     open_internal_faces({w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead});
-    w.profile.dropped_contacts = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
-    if (const uint32_t dropped = w.profile.dropped_contacts; dropped > 0)
+    const uint32_t dropped = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
+    w.profile.dropped_contacts += dropped;
+    if (dropped > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u contacts dropped: max_contacts is %u", dropped, w.def.max_contacts);
     tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();
@@ -176,6 +179,16 @@ Array<uint8_t> followed_vertices(World& w) {
     return followed;
 }
 
+// Of what a crowded moment took, all that was not needed again.
+void give_back(World& w) {
+    if (!w.memory.takes_stock()) return;
+    trim(w.pairs);
+    w.broadphase.trim();
+    w.system.contacts.trim();
+    for (Array<taut_contact_event>* events : {&w.contact_begin, &w.contact_persist, &w.contact_end}) trim(*events);
+    trim(w.contact_points);
+}
+
 }  // namespace
 
 void step(World& w) {
@@ -222,6 +235,7 @@ void step(World& w) {
     update_sleep(w);
     end_events(w);
     tell(w, {Stage::sleep});
+    give_back(w);
     w.profile.publish_us = watch.lap();
     w.profile.allocations = w.memory.calls() - calls;
     w.profile.step_us = whole.lap();

@@ -113,7 +113,9 @@ typedef struct taut_world_def {
     uint32_t max_contacts;        /**< contacts (manifolds of up to four points; of a surface one for each part that is
                                        touched) that a step solves. Of more, the deepest are kept, and of equal ones
                                        the first by colliders; the rest are as if the two did not touch, and counted by
-                                       taut_events and taut_profile. 0: no limit. Default 0 */
+                                       taut_events and taut_profile. 0: no limit. Default 0. Whatever it is, of bodies
+                                       in one place, each with more than 12 others sunk into it by more than contacts
+                                       begin at, each touches the 12 deepest alone, and what is not crowded so */
     uint32_t adaptive_damping;    /**< 1: joints solved directly damp as much as the size of their force asks for,
                                        whichever way it points (Andrews, Teichmann and Kry 2017): h^2 |K| [kg m^2] in the
                                        place of h^2 K in each substep h. Weights of 1000000 links then hang from light

@@ -20,11 +20,14 @@ void Memory::take_out(int size_class, uint32_t count) noexcept {
     kept.count -= count;
 }
 
-// At the steps 128, 256, 512, ...: with patience that grows with the world's age, what comes and goes is asked of the
-// host anew a few times at most.
+// With patience that grows with the world's age, what comes and goes is asked of the host anew a few times at most.
+bool Memory::takes_stock() const { return steps_ + 1 >= kPatience && std::has_single_bit(steps_ + 1); }
+
 void Memory::end_step() noexcept {
+    const bool looks = takes_stock();
     keeping_ = false;
-    if (++steps_ < kPatience || !std::has_single_bit(steps_)) return;
+    ++steps_;
+    if (!looks) return;
     for (int c = 0; c < kSizes; ++c) {
         if (size_of_class(c) >= kLarge) take_out(c, kept_[c].least);
         kept_[c].least = kept_[c].count;

@@ -38,6 +38,9 @@ public:
         Memory& memory_;
     };
 
+    // Whether this step ends with a look at what was not needed for long: the steps 128, 256, 512, ...
+    bool takes_stock() const;
+
     static constexpr size_t kLarge = 16384;  // bytes; smaller pieces stay as long as the world
     // What a request of this size takes from the host.
     static size_t whole(size_t size, size_t alignment);
@@ -145,6 +148,23 @@ template <class T, class Allocator>
 void let_go(std::vector<T, Allocator>& array) {
     array.clear();
     if (array.capacity() * sizeof(T) >= Memory::kLarge) std::vector<T, Allocator>(array.get_allocator()).swap(array);
+}
+
+// Most of it unused, and that is much.
+template <class T>
+bool is_too_large(size_t size, size_t capacity) {
+    return capacity * sizeof(T) >= Memory::kLarge && size <= capacity / 4;
+}
+
+// Gives back most of what an array does not need, if it is too large. Does nothing where memory is short.
+template <class T, class Allocator>
+void trim(std::vector<T, Allocator>& array) noexcept try {
+    if (!is_too_large<T>(array.size(), array.capacity())) return;
+    std::vector<T, Allocator> kept(array.get_allocator());
+    kept.reserve(with_slack(array.size()));
+    kept.assign(array.begin(), array.end());
+    kept.swap(array);
+} catch (const std::bad_alloc&) {
 }
 
 }  // namespace taut

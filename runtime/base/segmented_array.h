@@ -104,6 +104,14 @@ public:
             move(end - count, to_end - count, count);
         }
     }
+    // Gives back what it does not need, if it is too large.
+    void trim() noexcept {
+        if (!is_too_large<T>(size_, capacity())) return;
+        const size_t needed = (with_slack(size_) + kSegment * kTogether - 1) / (kSegment * kTogether) * kTogether;
+        for (size_t i = needed; i < segment_.size(); i += kTogether)
+            allocator_.deallocate(segment_[i].first, kTogether * kSegment);
+        segment_.resize(needed);
+    }
     template <class Condition>
     void erase_if(Condition&& condition) {
         size_ = static_cast<size_t>(std::remove_if(begin(), end(), condition) - begin());

@@ -110,6 +110,11 @@ public:
         next_piece_ = 0;
         left_ = 0;
     }
+    // Gives back what it does not need, if it is too large.
+    void trim() noexcept {
+        if (!is_too_large<LanePoint>(next_piece_ * kPiece, piece_.size() * kPiece)) return;
+        for (; piece_.size() > with_slack(next_piece_); piece_.pop_back()) allocator_.deallocate(piece_.back(), kPiece);
+    }
     // So many side by side, at most four, which hold whatever was there before. Throws std::bad_alloc.
     LanePoint* take(uint32_t count) {
         if (count > left_) begin_piece();
@@ -166,6 +171,15 @@ struct ContactLanes {
     }
 
     LaneView view() { return {group.data(), drive.data(), rolling.data(), 0}; }
+
+    // Gives back the room of contacts that are no more, if that is most of it.
+    void trim() noexcept {
+        taut::trim(group);
+        point.trim();
+        taut::trim(drive);
+        taut::trim(rolling);
+        taut::trim(pairs);
+    }
 };
 
 // Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.

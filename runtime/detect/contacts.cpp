@@ -38,8 +38,8 @@ public:
             near.arrives = near.fast = near.reused = false;
             near.changes = near.pair != kNone;  // a record may have lost its points since it was asked
             index_[count_] = i;
-            const bool filtered = near.filtered, stays_clear = stay_clear(pairs, near);
-            count_ += !(filtered | stays_clear);
+            const bool left_out = near.filtered | near.crowded, stays_clear = stay_clear(pairs, near);
+            count_ += !(left_out | stays_clear);
         }
     }
     uint32_t count() const { return count_; }
@@ -74,7 +74,7 @@ void look_at(const Detection& of, Arrivals& arrivals, Findings& findings, NearPa
     findings.find(near.fast, near, pair);
 }
 
-bool seeks_parts(const NearPair& near) { return near.on_surface && !near.reused && !near.filtered; }
+bool seeks_parts(const NearPair& near) { return near.on_surface && !near.reused && !near.filtered && !near.crowded; }
 bool lost_points(const Pairs& pairs, const NearPair& near) {
     return near.pair != kNone && pairs.list[near.pair].manifold.count == 0;
 }

@@ -99,7 +99,7 @@ bool any_astray(const Pairs& pairs, uint32_t a, uint32_t b) {
 // Whether a pair is looked after: two that were fast, or of which one went astray.
 bool is_asked(const Colliders& colliders, const Pairs& pairs, const NearPair& near) {
     const uint32_t a = near.collider_a(), b = near.collider_b();
-    return (near.fast | any_astray(pairs, a, b)) && !near.filtered && !ignorable(colliders, a, b);
+    return (near.fast | any_astray(pairs, a, b)) && !near.filtered && !near.crowded && !ignorable(colliders, a, b);
 }
 
 // Whether it moved further against each other than a part of its thickness.

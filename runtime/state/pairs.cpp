@@ -46,6 +46,22 @@ void give_slots(Pairs& pairs, NearPair& near) {
     near.pair = kNone;
 }
 
+void trim(Pairs& pairs) noexcept {
+    std::ranges::sort(pairs.free);
+    for (; !pairs.free.empty() && pairs.free.back() + 1 == pairs.list.size(); pairs.free.pop_back())
+        pairs.list.resize(pairs.list.size() - 1);
+    std::ranges::reverse(pairs.free);
+    pairs.near.trim();
+    pairs.resting.trim();
+    pairs.list.trim();
+    trim(pairs.free);
+    trim(pairs.active);
+    trim(pairs.ended);
+    trim(pairs.picked);
+    trim(pairs.asked);
+    trim(pairs.crowds);
+}
+
 namespace {
 
 // Where the slot of a record is written down: at its near pair, at the record of the part before, or with the free

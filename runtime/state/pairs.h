@@ -63,6 +63,7 @@ struct NearPair {
     bool kept : 1 = false;           // all its records hold their manifolds as found; detect/reuse.h
     bool reused : 1 = false;         // and these go on in this frame
     bool changed : 1 = false;        // the host may have changed a collider since the pair was looked at
+    bool crowded : 1 = false;        // left out in this frame; detect/crowds.h
 
     uint32_t collider_a() const { return static_cast<uint32_t>(key >> 32); }
     uint32_t collider_b() const { return static_cast<uint32_t>(key); }
@@ -81,7 +82,7 @@ struct NearPair {
 template <class Visitor, Like<NearPair> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [key, cache, clear, pair, asks, filtered, on_surface, against_fixed, fast, arrives, changes, touching,
-           touched, hit, kept, reused, changed] =
+           touched, hit, kept, reused, changed, crowded] =
         of;  // pair: the record is found by its key; fast to changes: within a step
     bool bits[] = {filtered, on_surface, against_fixed, touching, touched, hit, kept, reused, changed};
     TAUT_FIELDS(visitor, key, cache, clear, bits);
@@ -102,6 +103,17 @@ struct AskedPair {
     uint32_t a, b;  // colliders, the smaller index first
     bool fast;
     bool passed = false;  // did so
+};
+
+// The ball inside a collider, and the deepest of what is sunk into it; detect/crowds.h.
+struct Crowd {
+    static constexpr uint32_t kMost = 12;  // as many balls as touch one of their size (Schuette, van der Waerden 1953)
+
+    Vec3 middle = Vec3::Zero();
+    double radius = 0;        // [m]
+    uint32_t count = 0;       // of what is sunk in
+    uint32_t least = 0;       // how many of the deepest are as deep as the least of them
+    float depth[kMost] = {};  // of these [m], least first
 };
 
 // A manifold as it was found, and how b's shape lay then, all as seen from a's shape; detect/reuse.h.
@@ -286,6 +298,8 @@ struct Pairs {
           asked(memory),
           marks(memory),
           bearings(memory),
+          crowds(memory),
+          crowd_of(memory),
           mechanisms(memory),
           placement(memory),
           stance(memory),
@@ -338,6 +352,9 @@ struct Pairs {
     Array<uint8_t> marks;             // by collider, scratch: bits of hold_back()
     Array<uint8_t> bearings;          // by collider, scratch of open_internal_faces()
     bool any_fast = false;            // of near, in this frame; find_contacts()
+    bool any_crowded = false;         // likewise; thin_crowds()
+    Array<Crowd> crowds;              // scratch of thin_crowds()
+    Array<uint32_t> crowd_of;         // by collider, likewise
     Mechanisms mechanisms;
     Array<collision::Placement> placement;  // by collider; place_collider()
     Array<Stance> stance;                   // by collider; place_collider()
@@ -373,6 +390,9 @@ void forget_forces(Pair& pair);
 // Of a pair that is swept from now on. A direct solve sets hundreds of times a light body's momentum against as much
 // from its other side, and sweeps that begin with what is left of that throw it out at kilometres a second.
 void leave_block(Pair& pair);
+
+// Gives back the room of what is no more, if that is most of it.
+void trim(Pairs& pairs) noexcept;
 
 // Before the active pairs are listed anew: brings the records of a few of them to where they lie in the order of near.
 // A thread that goes through a part of near then has them for itself: of neighbours in memory processors fetch what
@@ -419,8 +439,8 @@ template <class Visitor, Like<Pairs> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world,
            asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, bearings, any_fast,
-           mechanisms, placement, stance, travel, picked, arriving, unheld, any_unheld, homes, carried, carried_before,
-           parts, grains, surfaces] = of;
+           any_crowded, crowds, crowd_of, mechanisms, placement, stance, travel, picked, arriving, unheld, any_unheld,
+           homes, carried, carried_before, parts, grains, surfaces] = of;
     TAUT_FIELDS(visitor, near, resting, mechanisms, carried, grains, surfaces);
     TAUT_ASIDE(visitor, complete, ended, asks, colliders_version);
     visitor.ordered(list, [&](auto&& act) {
