@@ -147,6 +147,7 @@ void end_path(Nodes& nodes, KinematicPath& path, NodeMotion& motion, double take
 // A step of a call. Throws as step(), with what it was given taken back.
 void take(World& world, const Shares& shares) {
     Nodes& nodes = world.nodes;
+    world.undo.note(world);
     load_step(nodes, shares);
     for_paths(nodes, [&](KinematicPath& path, NodeMotion& motion) { lead_step(world, path, motion, shares); });
     try {
@@ -154,8 +155,10 @@ void take(World& world, const Shares& shares) {
     } catch (...) {
         nodes.load.clear();
         for_paths(nodes, [](KinematicPath& path, NodeMotion& motion) { set_speed(motion, path.held); });
+        world.undo.restore(world);
         throw;
     }
+    world.undo.keep(world);
     pay_owed(nodes, shares);
 }
 
@@ -163,19 +166,23 @@ void take(World& world, const Shares& shares) {
 
 void take_step(World& world) {
     Nodes& nodes = world.nodes;
+    world.undo.note(world);
     nodes.load = nodes.applied;
     try {
         step(world);
     } catch (...) {
         nodes.load.clear();
+        world.undo.restore(world);
         throw;
     }
+    world.undo.keep(world);
     nodes.applied.clear();
     for_paths(nodes, [](KinematicPath& path, NodeMotion&) { path.follows = path.asked = false; });
 }
 
 void take_rest(World& world, Relaxation& relaxation) {
     Nodes& nodes = world.nodes;
+    world.undo.note(world);
     Array<Speed> led(nodes.slots(), Speed{}, world.memory);
     const auto for_led = [&](auto&& act) {
         for (uint32_t node = 0; node < nodes.slots(); ++node)
@@ -197,9 +204,11 @@ void take_rest(World& world, Relaxation& relaxation) {
         step(world);
     } catch (...) {
         end();
+        world.undo.restore(world);
         throw;
     }
     end();
+    world.undo.keep(world);
     for (uint32_t node = 0; node < nodes.slots(); ++node)
         if (moves_by_forces(nodes.info[node].kind)) set_speed(nodes.motion[node], {});
     std::ranges::fill(nodes.history, NodeHistory{});

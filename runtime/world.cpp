@@ -42,7 +42,8 @@ World::World(const taut_world_def& checked_def, uint32_t world_id)
       moved_before(memory),
       frozen(memory),
       reports(memory),
-      impacts(memory) {
+      impacts(memory),
+      undo(memory) {
     last_step = def.time_step;
     spring_substep = first_substep = static_cast<double>(def.time_step) / def.substeps;
     pairs.world = id;

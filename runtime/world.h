@@ -8,6 +8,7 @@
 #include "partition/partition.h"
 #include "publish/contact_watch.h"
 #include "publish/event_window.h"
+#include "snapshot/undo.h"
 #include "solvers/report.h"
 #include "solvers/solver.h"
 #include "stages.h"
@@ -37,7 +38,7 @@ struct World {
     Memory memory;       // first: everything below allocates from it
     taut_world_def def;  // as checked at creation; gravity may change
     Team team;           // that works on its steps
-    uint32_t id = 0;     // slot and generation of the handle, 20 bits; the table in api/access.cpp holds its lock
+    uint32_t id = 0;     // slot and generation of the handle, 24 bits; the table in api/access.cpp holds its lock
 
     // state: lives across frames
     Nodes nodes;
@@ -91,6 +92,7 @@ struct World {
     double first_substep = 0;  // that of the def at creation
     uint32_t least_substeps() const;
     Impacts impacts;  // derived
+    Undo undo;        // of the step that is being taken
 
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;
@@ -122,14 +124,15 @@ void describe(Visitor& visitor, Of& of) {
            pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
            contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
            torn, yielded, fell_asleep, woke, moved_before, frozen, profile, reports, observer, relaxation,
-           spring_substep, first_substep, impacts] = of;
+           spring_substep, first_substep, impacts, undo] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,
                 broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);
     TAUT_ASIDE(visitor, sensors, last_step);
     // Not state: the host's own (memory, team, id, pre_solve, observer, relaxation, first_substep); what a step works
-    // with (system, scratch, watch, impacts, moved_before); what steps told (all others), which a restoration forgets.
+    // with (system, scratch, watch, impacts, undo, moved_before); what steps told (all others), which a restoration
+    // forgets.
 }
 
 // One fixed time step. Throws std::bad_alloc only before the state changes or with the state still consistent.

@@ -92,8 +92,9 @@ typedef struct taut_world_def {
                                        implicit Euler damping (Tournier 2015). Default 0.25 */
     uint32_t max_catch_up;        /**< most steps in one taut_world_advance, [1, 1000]. Default 4 */
     uint32_t threads;             /**< that work on a step, the calling one included, [1, 64]: above 1 the world starts
-                                       its own, which sleep between steps. With task hooks the host's workers help
-                                       instead, and it stays 1. Results do not depend on it. Default 1 */
+                                       its own, which sleep between steps; no more of them wake than there are cores
+                                       for. With task hooks the host's workers help instead, and it stays 1. Results do
+                                       not depend on it. Default 1 */
     taut_hooks hooks;             /**< default: none */
     uint32_t sleeping;            /**< 1: islands that came to rest fall asleep and cost next to nothing; see sleep.h.
                                        Default 0 */

@@ -12,7 +12,10 @@ void log_line(const taut_hooks& hooks, taut_log_level level, const char* format,
     va_start(arguments, format);
     std::vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    hooks.log(level, text, hooks.log_user_data);
+    try {
+        hooks.log(level, text, hooks.log_user_data);
+    } catch (...) {  // what is told changes nothing
+    }
 }
 
 }  // namespace taut

@@ -1,6 +1,7 @@
 // A restoration goes through the bytes twice. First it reads without keeping, sees that all is there and makes room in
 // the world's lists for what will be in them: this may fail, and changes nothing. Then it reads once more, for good.
 #include <cstring>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "publish/publish.h"
 #include "snapshot/format.h"
 #include "snapshot/snapshot.h"
+#include "snapshot/undo.h"
 #include "snapshot/visitor.h"
 
 namespace taut {
@@ -326,8 +328,29 @@ void derive(World& world) {
     for (const NodeInfo& info : world.nodes.info)
         world.nodes.movable += info.kind != NodeKind::dead && info.kind != NodeKind::fixed;
     for (SurfaceMesh& mesh : world.softs.mesh) mesh.version = 0;  // of other triangles, maybe
-    world.frozen.clear();
-    forget_events(world);
+}
+
+// What steps told the host.
+auto told(World& w) {
+    return std::tie(w.contact_begin, w.contact_persist, w.contact_end, w.contact_points, w.hits, w.moved, w.quarantined,
+                    w.broken, w.detached, w.torn, w.yielded, w.fell_asleep, w.woke, w.sensors.enter, w.sensors.leave,
+                    w.frozen);
+}
+template <class... Lists>
+std::tuple<Lists...> made_like(const std::tuple<Lists&...>&, Memory& memory) {
+    return {Lists(memory)...};
+}
+using Told = decltype(made_like(told(std::declval<World&>()), std::declval<Memory&>()));
+
+template <class Act, size_t... kIndex>
+void for_each_two(auto& one, auto& other, Act&& act, std::index_sequence<kIndex...>) {
+    (act(std::get<kIndex>(one), std::get<kIndex>(other)), ...);
+}
+// act(list of the world, noted list)
+template <class Act>
+void for_told(World& world, Told& noted, Act&& act) {
+    auto lists = told(world);
+    for_each_two(lists, noted, act, std::make_index_sequence<std::tuple_size_v<Told>>());
 }
 
 // TAUT_OK: it is a snapshot of this world, and undamaged.
@@ -379,10 +402,82 @@ taut_result restore(const char* call, World& world, std::span<const std::byte> f
         Restore reading(again, staging);
         describe(reading, world);
         derive(world);
+        world.frozen.clear();
+        forget_events(world);
     } catch (const Damaged&) {
         return refuse(TAUT_INVALID_ARGUMENT, "%s: the snapshot is damaged", call);
     }
     return TAUT_OK;
+}
+
+struct Undo::Note {
+    Note(World& world, Memory& memory)
+        : bytes(memory), staging{memory, memory, memory, memory}, lists(made_like(told(world), memory)) {}
+
+    Array<std::byte> bytes;  // the state
+    Staging staging;         // of it
+    Told lists;
+    uint32_t steps = 0, dropped_steps = 0, dropped_contacts = 0;  // EventWindow
+    taut_profile profile{};
+};
+
+void Undo::note(World& world) {
+    const bool may_fail = world.pre_solve.ask || memory_.calls() != calls_;
+    noted_ = false;
+    if (may_fail) {
+        std::optional<Memory::Keeping> keeping;  // where each step notes, it takes the same again and again
+        if (world.pre_solve.ask) keeping.emplace(memory_);
+        if (!note_) {
+            void* const room = memory_.allocate(sizeof(Note), alignof(Note));
+            note_ = new (room) Note(world, memory_);
+        }
+        Note& note = *note_;
+        note.bytes.resize(state_size(world));
+        save_state(world, note.bytes.data());
+        std::apply([](auto&... staged) { (staged.list.clear(), ...); }, note.staging);
+        Source source{note.bytes.data(), note.bytes.data() + note.bytes.size()};
+        MakeRoom room(source, note.staging);
+        describe(room, world);
+        reserve_derived(world, room.slots(world.nodes.ids), room.slots(world.colliders.ids));
+        for_told(world, note.lists, [](const auto& list, auto& noted) { noted = list; });
+        note.steps = world.window.steps;
+        note.dropped_steps = world.window.dropped_steps;
+        note.dropped_contacts = world.window.dropped_contacts;
+        note.profile = world.profile;
+        noted_ = true;
+    }
+    calls_ = memory_.calls();
+}
+
+void Undo::keep(const World& world) noexcept {
+    if (!world.pre_solve.ask) forget();
+}
+
+void Undo::restore(World& world) noexcept {
+    if (!noted_) return;
+    const Memory::Keeping keeping(memory_);
+    Note& note = *note_;
+    try {
+        Source source{note.bytes.data(), note.bytes.data() + note.bytes.size()};
+        Restore reading(source, note.staging);
+        describe(reading, world);
+        derive(world);
+    } catch (...) {  // note() made the room
+    }
+    for_told(world, note.lists, [](auto& list, auto& noted) { list.swap(noted); });
+    world.window.steps = note.steps;
+    world.window.dropped_steps = note.dropped_steps;
+    world.window.dropped_contacts = note.dropped_contacts;
+    world.profile = note.profile;
+    forget();
+}
+
+void Undo::forget() noexcept {
+    if (!note_) return;
+    note_->~Note();
+    memory_.release(note_, sizeof(Note), alignof(Note));
+    note_ = nullptr;
+    noted_ = false;
 }
 
 }  // namespace taut

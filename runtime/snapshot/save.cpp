@@ -41,6 +41,17 @@ void tell(Visitor& visitor, const World& world) {
 
 }  // namespace
 
+size_t state_size(const World& world) {
+    Count count;
+    describe(count, world);
+    return count.bytes();
+}
+
+void save_state(const World& world, std::byte* to) {
+    Save saving(to);
+    describe(saving, world);
+}
+
 size_t snapshot_size(const World& world) {
     Count count;
     tell(count, world);
