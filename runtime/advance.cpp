@@ -144,21 +144,33 @@ void end_path(Nodes& nodes, KinematicPath& path, NodeMotion& motion, double take
 
 // ---------------------------------------------------------------- steps
 
-// A step of a call. Throws as step(), with what it was given taken back.
-void take(World& world, const Shares& shares) {
-    Nodes& nodes = world.nodes;
+// A step with what leads to it: all of it, or throws and leaves the world as it was, as far as Undo does.
+template <class Act>
+void or_nothing(World& world, Act&& act) {
     world.undo.note(world);
-    load_step(nodes, shares);
-    for_paths(nodes, [&](KinematicPath& path, NodeMotion& motion) { lead_step(world, path, motion, shares); });
     try {
-        step(world);
+        act();
     } catch (...) {
-        nodes.load.clear();
-        for_paths(nodes, [](KinematicPath& path, NodeMotion& motion) { set_speed(motion, path.held); });
+        world.nodes.load.clear();
         world.undo.restore(world);
         throw;
     }
-    world.undo.keep(world);
+    world.undo.forget();
+}
+
+// A step of a call. Throws as step(), with what it was given taken back.
+void take(World& world, const Shares& shares) {
+    Nodes& nodes = world.nodes;
+    or_nothing(world, [&] {
+        load_step(nodes, shares);
+        for_paths(nodes, [&](KinematicPath& path, NodeMotion& motion) { lead_step(world, path, motion, shares); });
+        try {
+            step(world);
+        } catch (...) {
+            for_paths(nodes, [](KinematicPath& path, NodeMotion& motion) { set_speed(motion, path.held); });
+            throw;
+        }
+    });
     pay_owed(nodes, shares);
 }
 
@@ -166,49 +178,42 @@ void take(World& world, const Shares& shares) {
 
 void take_step(World& world) {
     Nodes& nodes = world.nodes;
-    world.undo.note(world);
-    nodes.load = nodes.applied;
-    try {
+    or_nothing(world, [&] {
+        nodes.load = nodes.applied;
         step(world);
-    } catch (...) {
-        nodes.load.clear();
-        world.undo.restore(world);
-        throw;
-    }
-    world.undo.keep(world);
+    });
     nodes.applied.clear();
     for_paths(nodes, [](KinematicPath& path, NodeMotion&) { path.follows = path.asked = false; });
 }
 
 void take_rest(World& world, Relaxation& relaxation) {
     Nodes& nodes = world.nodes;
-    world.undo.note(world);
-    Array<Speed> led(nodes.slots(), Speed{}, world.memory);
-    const auto for_led = [&](auto&& act) {
+    const auto for_led = [&](Array<Speed>& led, auto&& act) {
         for (uint32_t node = 0; node < nodes.slots(); ++node)
             if (nodes.info[node].kind == NodeKind::kinematic) act(nodes.motion[node], led[node]);
     };
-    wake_all(world);
-    nodes.load = nodes.applied;
-    for_led([](NodeMotion& motion, Speed& speed) {
-        speed = {motion.v, motion.w};
-        set_speed(motion, {});
-    });
-    world.relaxation = &relaxation;
-    const auto end = [&] {
-        world.relaxation = nullptr;
+    or_nothing(world, [&] {
+        Array<Speed> led(nodes.slots(), Speed{}, world.memory);
+        wake_all(world);
+        nodes.load = nodes.applied;
+        for_led(led, [](NodeMotion& motion, Speed& speed) {
+            speed = {motion.v, motion.w};
+            set_speed(motion, {});
+        });
+        const auto end = [&] {
+            world.relaxation = nullptr;
+            for_led(led, [](NodeMotion& motion, const Speed& speed) { set_speed(motion, speed); });
+        };
+        world.relaxation = &relaxation;
+        try {
+            step(world);
+        } catch (...) {
+            end();
+            throw;
+        }
         nodes.load.clear();
-        for_led([](NodeMotion& motion, const Speed& speed) { set_speed(motion, speed); });
-    };
-    try {
-        step(world);
-    } catch (...) {
         end();
-        world.undo.restore(world);
-        throw;
-    }
-    end();
-    world.undo.keep(world);
+    });
     for (uint32_t node = 0; node < nodes.slots(); ++node)
         if (moves_by_forces(nodes.info[node].kind)) set_speed(nodes.motion[node], {});
     std::ranges::fill(nodes.history, NodeHistory{});

@@ -102,7 +102,7 @@ void detect(World& w, Stopwatch& watch) {
                              filter_surfaces(w.nodes, w.colliders, w.shapes, w.pre_solve, w.pairs, surfaces.contact);
     if (surfaces.contact.size() < found) ++surfaces.version;
     if (refused > 0)
-        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range", refused);
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range, or thrown", refused);
     open_internal_faces({w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead});
     const uint32_t dropped = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
     w.profile.dropped_contacts += dropped;

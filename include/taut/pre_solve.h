@@ -48,7 +48,8 @@ typedef struct taut_pre_solve_answer {
 /**
  * Returns 1 to accept a contact, 0 to ignore it in this step. answer holds the friction and restitution of the two
  * surfaces and may be changed. Another return value or a number out of range is refused: the contact is accepted as it
- * was, and the step logs a warning. Calls on the world from inside return TAUT_LOCKED.
+ * was, and the step logs a warning; what it throws is refused likewise. Calls on the world from inside return
+ * TAUT_LOCKED.
  */
 typedef int32_t (*taut_pre_solve_fn)(const taut_pre_solve* contact, taut_pre_solve_answer* answer, void* user_data);
 

@@ -63,7 +63,11 @@ bool within(float x, float most) { return x >= 0 && x <= most; }
 template <class Contact>
 Verdict ask_host(const PreSolve& pre_solve, const taut_pre_solve& question, Contact& contact) {
     taut_pre_solve_answer answer{contact.friction, contact.restitution};
-    const int32_t said = pre_solve.ask(&question, &answer, pre_solve.user_data);
+    int32_t said = -1;
+    try {
+        said = pre_solve.ask(&question, &answer, pre_solve.user_data);
+    } catch (...) {  // half of the step is done
+    }
     if (said == 0) return Verdict::ignored;
     if (said != 1 || !within(answer.friction, kMostFriction) || !within(answer.restitution, 1)) return Verdict::refused;
     contact.friction = answer.friction;

@@ -74,11 +74,20 @@ protected:
     Source& source_;
 };
 
-class Restore : public Reader<Restore> {
-public:
-    Restore(Source& source, Staging& staging) : Reader(source), staging_(staging) {}
+// whole: as Visitor::kWhole.
+template <bool whole>
+class Restore : public Reader<Restore<whole>> {
+    using Base = Reader<Restore>;
+    using Base::source_;
 
-    using Reader::visit;
+public:
+    static constexpr bool kWhole = whole;
+
+    Restore(Source& source, Staging& staging) : Base(source), staging_(staging) {}
+
+    using Base::element_of;
+    using Base::one;
+    using Base::visit;
 
     void plain(void* field, size_t size) { source_.take(field, size); }
     void visit(IdPool& ids) {
@@ -92,7 +101,7 @@ public:
         } else {
             list.clear();
             list.resize(source_.take_count());
-            if constexpr (Plain<T>)
+            if constexpr (Base::template by_bytes<T>())
                 source_.take(list.data(), list.size() * sizeof(T));
             else
                 for (T& each : list) one(each);
@@ -102,7 +111,7 @@ public:
     void visit(SegmentedArray<T>& list) {
         list.resize(0);
         list.resize(source_.take_count());
-        for (T& each : list) one(each);
+        for (T& each : list) element_of(each);
     }
     template <class T, class Each>
     void ordered(SegmentedArray<T>& list, Each&&) {
@@ -148,14 +157,14 @@ private:
 
     template <class T>
     void element(Array<T>& column, uint32_t slot, uint32_t) {
-        if constexpr (!Nested<T>) one(column[slot]);
+        if constexpr (!Nested<T>) element_of(column[slot]);
     }
     template <class T>
     void element(SharedValues<T>& column, uint32_t slot, uint32_t before) {
         bool same;
         plain(&same, sizeof same);
         T value = before == kNone ? T{} : column[before];
-        if (!same) one(value);
+        if (!same) element_of(value);
         column.set(slot, value);
     }
     template <class List>
@@ -164,7 +173,7 @@ private:
         plain(&any, sizeof any);
         if (!any) return;
         typename List::value_type value{};
-        one(value);
+        element_of(value);
         if (column.array.empty()) column.array.resize(slots_);
         column.array[slot] = value;
     }
@@ -173,11 +182,17 @@ private:
     uint32_t slots_ = 0;  // of the rows that are read
 };
 
-class MakeRoom : public Reader<MakeRoom> {
-public:
-    MakeRoom(Source& source, Staging& staging) : Reader(source), staging_(staging), restore_(source, staging) {}
+template <bool whole>
+class MakeRoom : public Reader<MakeRoom<whole>> {
+    using Base = Reader<MakeRoom>;
+    using Base::source_;
 
-    using Reader::visit;
+public:
+    static constexpr bool kWhole = whole;
+
+    MakeRoom(Source& source, Staging& staging) : Base(source), staging_(staging), restore_(source, staging) {}
+
+    using Base::visit;
 
     void plain(const void*, size_t size) { source_.skip(size); }
     void visit(IdPool& ids) {
@@ -193,17 +208,14 @@ public:
             stage<T>(count, [](uint32_t) { return true; });
         } else {
             list.reserve(count);
-            if constexpr (Plain<T>)
-                source_.skip(count * sizeof(T));
-            else
-                for (uint32_t i = 0; i < count; ++i) try_out<T>();
+            try_out<T>(count);
         }
     }
     template <class T>
     void visit(SegmentedArray<T>& list) {
         const uint32_t count = source_.take_count();
         list.reserve(count);
-        for (uint32_t i = 0; i < count; ++i) try_out<T>();
+        try_out<T>(count);
     }
     template <class T, class Each>
     void ordered(SegmentedArray<T>& list, Each&&) {
@@ -239,10 +251,15 @@ private:
 
     const Slots& slots_of(const IdPool& ids) const { return *std::ranges::find(slots_, &ids, &Slots::of); }
     template <class T>
-    T try_out() {
-        T value{};
-        restore_.one(value);
-        return value;
+    void try_out(uint32_t count = 1) {
+        if constexpr (Base::template by_bytes<T>()) {
+            source_.skip(count * sizeof(T));
+        } else {
+            for (uint32_t i = 0; i < count; ++i) {
+                T value{};
+                restore_.one(value);
+            }
+        }
     }
     template <class T, class Lives>
     void stage(uint32_t count, Lives&& lives) {
@@ -292,7 +309,7 @@ private:
     }
 
     Staging& staging_;
-    Restore restore_;
+    Restore<whole> restore_;
     std::array<Slots, 12> slots_{};
     size_t pools_ = 0;
     size_t values_ = 0;  // of the shared ones that are read
@@ -395,11 +412,11 @@ taut_result restore(const char* call, World& world, std::span<const std::byte> f
         if (const taut_result there = check_shapes(call, world, source); there != TAUT_OK) return there;
         Source again = source;
         Staging staging{world.memory, world.memory, world.memory, world.memory};
-        MakeRoom room(source, staging);
+        MakeRoom<false> room(source, staging);
         describe(room, world);
         if (source.left() > 0) throw Damaged();
         reserve_derived(world, room.slots(world.nodes.ids), room.slots(world.colliders.ids));
-        Restore reading(again, staging);
+        Restore<false> reading(again, staging);
         describe(reading, world);
         derive(world);
         world.frozen.clear();
@@ -418,48 +435,39 @@ struct Undo::Note {
     Staging staging;         // of it
     Told lists;
     uint32_t steps = 0, dropped_steps = 0, dropped_contacts = 0;  // EventWindow
+    bool read = false;
     taut_profile profile{};
 };
 
 void Undo::note(World& world) {
-    const bool may_fail = world.pre_solve.ask || memory_.calls() != calls_;
-    noted_ = false;
-    if (may_fail) {
-        std::optional<Memory::Keeping> keeping;  // where each step notes, it takes the same again and again
-        if (world.pre_solve.ask) keeping.emplace(memory_);
-        if (!note_) {
-            void* const room = memory_.allocate(sizeof(Note), alignof(Note));
-            note_ = new (room) Note(world, memory_);
-        }
+    if (memory_.calls() != calls_) {
+        forget();
+        void* const place = memory_.allocate(sizeof(Note), alignof(Note));
+        note_ = new (place) Note(world, memory_);
         Note& note = *note_;
-        note.bytes.resize(state_size(world));
-        save_state(world, note.bytes.data());
-        std::apply([](auto&... staged) { (staged.list.clear(), ...); }, note.staging);
+        note.bytes.resize(note_size(world));
+        save_note(world, note.bytes.data());
         Source source{note.bytes.data(), note.bytes.data() + note.bytes.size()};
-        MakeRoom room(source, note.staging);
+        MakeRoom<true> room(source, note.staging);
         describe(room, world);
         reserve_derived(world, room.slots(world.nodes.ids), room.slots(world.colliders.ids));
         for_told(world, note.lists, [](const auto& list, auto& noted) { noted = list; });
         note.steps = world.window.steps;
         note.dropped_steps = world.window.dropped_steps;
         note.dropped_contacts = world.window.dropped_contacts;
+        note.read = world.window.read;
         note.profile = world.profile;
-        noted_ = true;
     }
     calls_ = memory_.calls();
 }
 
-void Undo::keep(const World& world) noexcept {
-    if (!world.pre_solve.ask) forget();
-}
-
 void Undo::restore(World& world) noexcept {
-    if (!noted_) return;
+    if (!note_) return;
     const Memory::Keeping keeping(memory_);
     Note& note = *note_;
     try {
         Source source{note.bytes.data(), note.bytes.data() + note.bytes.size()};
-        Restore reading(source, note.staging);
+        Restore<true> reading(source, note.staging);
         describe(reading, world);
         derive(world);
     } catch (...) {  // note() made the room
@@ -468,6 +476,7 @@ void Undo::restore(World& world) noexcept {
     world.window.steps = note.steps;
     world.window.dropped_steps = note.dropped_steps;
     world.window.dropped_contacts = note.dropped_contacts;
+    world.window.read = note.read;
     world.profile = note.profile;
     forget();
 }
@@ -477,7 +486,6 @@ void Undo::forget() noexcept {
     note_->~Note();
     memory_.release(note_, sizeof(Note), alignof(Note));
     note_ = nullptr;
-    noted_ = false;
 }
 
 }  // namespace taut

@@ -8,8 +8,12 @@
 namespace taut {
 namespace {
 
-class Count : public Onlooker<Count> {
+// whole: as Visitor::kWhole.
+template <bool whole>
+class Count : public Onlooker<Count<whole>> {
 public:
+    static constexpr bool kWhole = whole;
+
     void plain(const void*, size_t size) { bytes_ += size; }
     size_t bytes() const { return bytes_; }
 
@@ -17,8 +21,11 @@ private:
     size_t bytes_ = 0;
 };
 
-class Save : public Onlooker<Save> {
+template <bool whole>
+class Save : public Onlooker<Save<whole>> {
 public:
+    static constexpr bool kWhole = whole;
+
     explicit Save(std::byte* to) : to_(to) {}
 
     void plain(const void* field, size_t size) {
@@ -41,25 +48,25 @@ void tell(Visitor& visitor, const World& world) {
 
 }  // namespace
 
-size_t state_size(const World& world) {
-    Count count;
+size_t note_size(const World& world) {
+    Count<true> count;
     describe(count, world);
     return count.bytes();
 }
 
-void save_state(const World& world, std::byte* to) {
-    Save saving(to);
+void save_note(const World& world, std::byte* to) {
+    Save<true> saving(to);
     describe(saving, world);
 }
 
 size_t snapshot_size(const World& world) {
-    Count count;
+    Count<false> count;
     tell(count, world);
     return sizeof(SnapshotHeader) + count.bytes();
 }
 
 void save(const World& world, std::span<std::byte> to) {
-    Save saving(to.data() + sizeof(SnapshotHeader));
+    Save<false> saving(to.data() + sizeof(SnapshotHeader));
     tell(saving, world);
     SnapshotHeader header = header_of(world, to.size());
     header.checksum = checksum(header, to.subspan(sizeof header));

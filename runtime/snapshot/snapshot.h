@@ -9,9 +9,9 @@
 
 namespace taut {
 
-// Of the state alone, without header and shapes.
-size_t state_size(const World& world);
-void save_state(const World& world, std::byte* to);
+// Of the state alone, without header and shapes, and with elements of lists as their bytes: for this process.
+size_t note_size(const World& world);
+void save_note(const World& world, std::byte* to);
 size_t snapshot_size(const World& world);
 // Into as many bytes as snapshot_size() says.
 void save(const World& world, std::span<std::byte> to);

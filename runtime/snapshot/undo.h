@@ -1,6 +1,7 @@
-// What a step that fails leaves: the world as it was, bit by bit. The state is noted before a step that may fail, which
-// costs about a tenth of it: where the host is asked before contacts are solved, and where memory was taken since the
-// last step began, as it is while scenes grow. Steps of a warm world take none.
+// What a step that fails leaves: the world as it was, bit by bit. A step fails where the host has no memory for it, so
+// the state is noted before steps that may need some: those of a world that took memory since its last step began, as
+// while it is built and grows. Steps of a warm world take none, and note nothing: the first one after some that does
+// need memory, and gets none, leaves a world that is consistent, part of the way on.
 #pragma once
 
 #include <cstdint>
@@ -20,18 +21,17 @@ public:
 
     // Before a step. Throws std::bad_alloc with nothing changed.
     void note(World& world);
-    // After one that went well, and after one that failed: where nothing was noted, that stays as the step left it.
-    void keep(const World& world) noexcept;
+    // After one that failed; nothing happens where nothing was noted.
     void restore(World& world) noexcept;
+    // After one that went well.
+    void forget() noexcept;
 
 private:
     struct Note;
-    void forget() noexcept;
 
     Memory& memory_;
-    Note* note_ = nullptr;
-    bool noted_ = false;  // this step
-    uint64_t calls_ = 0;  // of memory, as the last step began
+    Note* note_ = nullptr;  // of the step that is being taken
+    uint64_t calls_ = 0;    // of memory, as the last step began
 };
 
 }  // namespace taut

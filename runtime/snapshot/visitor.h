@@ -25,9 +25,20 @@ concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires {
 template <class T>
 concept Nested = !Plain<T> && std::is_constructible_v<T, Memory&>;
 
+// Elements of lists that have none inside: within one process their bytes are all there is to them as well.
+template <class T>
+concept Flat = !Nested<T> && std::is_trivially_destructible_v<T>;
+
 template <class Self>
 class Visitor {
 public:
+    // Whether flat elements are taken as their bytes, which is many times as fast as by their lists of fields.
+    static constexpr bool kWhole = false;
+    template <class T>
+    static constexpr bool by_bytes() {
+        return Plain<T> || (Self::kWhole && Flat<T>);
+    }
+
     template <class... Fields>
     void fields(const char*, Fields&&... each) {
         (self().one(each), ...);
@@ -63,6 +74,16 @@ public:
     void visit(T& field) {
         describe(self(), field);
     }
+    // An element of a list or column, with what else describes it.
+    template <class T, class... With>
+    void element_of(T& element, With... with) {
+        if constexpr (by_bytes<std::remove_const_t<T>>())
+            self().plain(&element, sizeof element);
+        else if constexpr (sizeof...(with) > 0)
+            describe(self(), element, with...);
+        else
+            self().one(element);
+    }
 
 protected:
     Self& self() { return static_cast<Self&>(*this); }
@@ -78,7 +99,7 @@ public:
     void visit(const Array<T>& list) {
         const auto count = static_cast<uint32_t>(list.size());
         this->self().plain(&count, sizeof count);
-        if constexpr (Plain<T>)
+        if constexpr (Visitor<Self>::template by_bytes<T>())
             this->self().plain(list.data(), count * sizeof(T));
         else
             for (const T& each : list) this->self().one(each);
@@ -87,7 +108,7 @@ public:
     void visit(const SegmentedArray<T>& list) {
         const auto count = static_cast<uint32_t>(list.size());
         this->self().plain(&count, sizeof count);
-        for (const T& each : list) this->self().one(each);
+        for (const T& each : list) this->element_of(each);
     }
     // Elements in the order in which each(act) names them, with what else describes them.
     template <class T, class Each>
@@ -95,7 +116,7 @@ public:
         uint32_t count = 0;
         each([&](const T&, auto...) { ++count; });
         this->self().plain(&count, sizeof count);
-        each([&](const T& element, auto... with) { describe(this->self(), element, with...); });
+        each([&](const T& element, auto... with) { this->element_of(element, with...); });
     }
     void visit(const ConstraintType* const& type) {
         const auto types = constraint_types();
@@ -123,20 +144,20 @@ public:
 private:
     template <class T>
     void element(const Array<T>& column, uint32_t slot, uint32_t) {
-        this->self().one(column[slot]);
+        this->element_of(column[slot]);
     }
     // Most are as the one before.
     template <class T>
     void element(const SharedValues<T>& column, uint32_t slot, uint32_t before) {
         const bool same = before != kNone && column.same(slot, before);
         this->self().plain(&same, sizeof same);
-        if (!same) this->self().one(column[slot]);
+        if (!same) this->element_of(column[slot]);
     }
     template <class List>
     void element(const OrNone<List>& column, uint32_t slot, uint32_t) {
         const bool any = slot < column.array.size() && column.array[slot].any();
         this->self().plain(&any, sizeof any);
-        if (any) this->self().one(column.array[slot]);
+        if (any) this->element_of(column.array[slot]);
     }
 };
 
