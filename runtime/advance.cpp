@@ -155,7 +155,6 @@ void or_nothing(World& world, Act&& act) {
         world.undo.restore(world);
         throw;
     }
-    world.undo.forget();
 }
 
 // A step of a call. Throws as step(), with what it was given taken back.

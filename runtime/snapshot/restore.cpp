@@ -431,8 +431,8 @@ struct Undo::Note {
     Note(World& world, Memory& memory)
         : bytes(memory), staging{memory, memory, memory, memory}, lists(made_like(told(world), memory)) {}
 
-    Array<std::byte> bytes;  // the state
-    Staging staging;         // of it
+    UnsetArray<std::byte> bytes;  // the state
+    Staging staging;              // of it
     Told lists;
     uint32_t steps = 0, dropped_steps = 0, dropped_contacts = 0;  // EventWindow
     bool read = false;
@@ -440,14 +440,17 @@ struct Undo::Note {
 };
 
 void Undo::note(World& world) {
-    if (memory_.calls() != calls_) {
+    noted_ = false;
+    if (memory_.calls() == calls_) {
         forget();
-        void* const place = memory_.allocate(sizeof(Note), alignof(Note));
-        note_ = new (place) Note(world, memory_);
+    } else {
+        if (!note_) note_ = new (memory_.allocate(sizeof(Note), alignof(Note))) Note(world, memory_);
         Note& note = *note_;
+        note.bytes.clear();
         note.bytes.resize(note_size(world));
         save_note(world, note.bytes.data());
         Source source{note.bytes.data(), note.bytes.data() + note.bytes.size()};
+        std::apply([](auto&... staged) { (staged.list.clear(), ...); }, note.staging);
         MakeRoom<true> room(source, note.staging);
         describe(room, world);
         reserve_derived(world, room.slots(world.nodes.ids), room.slots(world.colliders.ids));
@@ -457,12 +460,13 @@ void Undo::note(World& world) {
         note.dropped_contacts = world.window.dropped_contacts;
         note.read = world.window.read;
         note.profile = world.profile;
+        noted_ = true;
     }
     calls_ = memory_.calls();
 }
 
 void Undo::restore(World& world) noexcept {
-    if (!note_) return;
+    if (!noted_) return;
     const Memory::Keeping keeping(memory_);
     Note& note = *note_;
     try {
@@ -486,6 +490,7 @@ void Undo::forget() noexcept {
     note_->~Note();
     memory_.release(note_, sizeof(Note), alignof(Note));
     note_ = nullptr;
+    noted_ = false;
 }
 
 }  // namespace taut

@@ -19,19 +19,19 @@ public:
     Undo(const Undo&) = delete;
     Undo& operator=(const Undo&) = delete;
 
-    // Before a step. Throws std::bad_alloc with nothing changed.
+    // Before a step. Throws std::bad_alloc with nothing changed. The room of a note stays until a step needs none.
     void note(World& world);
     // After one that failed; nothing happens where nothing was noted.
     void restore(World& world) noexcept;
-    // After one that went well.
-    void forget() noexcept;
 
 private:
     struct Note;
+    void forget() noexcept;
 
     Memory& memory_;
-    Note* note_ = nullptr;  // of the step that is being taken
-    uint64_t calls_ = 0;    // of memory, as the last step began
+    Note* note_ = nullptr;
+    bool noted_ = false;  // in this step
+    uint64_t calls_ = 0;  // of memory, as the last step began
 };
 
 }  // namespace taut
