@@ -350,6 +350,8 @@ struct Motion {
     double reach;         // no point of the shape's core is further from the centre: spin_radius() [m]
 
     Placement after(double time) const;
+    // The same from then on.
+    Motion from(double time) const { return {after(time), centre + time * velocity, velocity, spin, reach}; }
     Vec3 place_after(double time) const;  // of the shape's origin
     // By how much the way of that leaves its chord until a time [m].
     double bend(double time) const;

@@ -50,6 +50,14 @@ public:
         const double least = proven(Vec3::Zero(), distance.normal) - radii();
         return least >= -depth ? std::optional(Plane{least, distance.normal}) : std::nullopt;
     }
+    // The plane that keeps the two furthest apart, or of which they are least beyond; its normal in world axes. hint:
+    // likewise, a unit vector to start from.
+    Plane parting(const Vec3& hint) const {
+        const Distance cores = distance(Vec3::Zero(), to_a(hint), kBoundGap);
+        if (cores.apart) return {proven(Vec3::Zero(), cores.normal) - radii(), to_world(cores.normal)};
+        const Push least = push();
+        return {least.separation, to_world(least.normal)};
+    }
     // How far a plane across the normal keeps the cores apart: no more than their distance, however far GJK came.
     double proven(const Vec3& moved, const Vec3& normal) const {
         return difference_.separation(normal) + normal.dot(to_a(at_b_.position + moved - at_a_.position));
@@ -102,6 +110,11 @@ bool cast_at_convex(const Shape& moving, const Placement& from, const Vec3& alon
 // When two convex shapes under way come as near as reach [m]: 0 at the start; limit [s] if they do not before.
 double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                       double limit);
+
+// Whether the ways of a convex shape and a triangle lead deeper into each other than depth [m] until a
+// moment [s]; in doubt they do. normal: unit, from a to b, across which they are likely to stay apart.
+bool triangle_passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, Vec3 normal,
+                          double depth, double until);
 
 // A convex shape above a plane: by how much [m], and its lowest point in the world.
 struct Clearance {

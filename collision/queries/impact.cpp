@@ -7,7 +7,6 @@
 //
 // at each t until T: by no more than that does the reach of a point along n exceed the chord between now and then, and
 // so that of the furthest one.
-#include <array>
 #include <limits>
 
 #include "collision/queries/couple.h"
@@ -85,14 +84,6 @@ double plane_meeting(const Shape& a, const Motion& motion_a, const Shape& b, con
     return t;
 }
 
-using Meeting = double (*)(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
-                           double limit);
-
-// By the kind of b; a is convex and bounded.
-constexpr std::array<Meeting, kShapeKinds> kMeetings = {plane_meeting,  convex_meeting, convex_meeting,
-                                                        convex_meeting, convex_meeting, convex_meeting,
-                                                        convex_meeting, convex_meeting, surface_meeting};
-
 // Of two shapes' origins until a time: the chord of the way from one's to the other's, which they leave by no more than
 // |w|^2 l t^2 / 8 each, l the lever about which one turns.
 struct Chord {
@@ -122,25 +113,36 @@ struct Depth {
     bool deep;
     double clear;  // [s]
 };
+// b is the plane.
+Depth depth_at_plane(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double moment,
+                     double depth) {
+    const double gap = find_gap(a, motion_a.after(moment), b, motion_b.after(moment)).distance;
+    return {gap < -depth, (gap + depth) / fastest(motion_a, motion_b)};
+}
 Depth depth_at(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double moment,
-               double depth, double until) {
-    if (!is_convex(b)) {
-        const double gap = find_gap(a, motion_a.after(moment), b, motion_b.after(moment)).distance;
-        return {gap < -depth, (gap + depth) / fastest(motion_a, motion_b)};
-    }
+               double depth, const Moment& end) {
     const Moment now(a, motion_a, b, motion_b, moment);
     const auto plane = now.couple().bound(depth);
     if (!plane || plane->apart < -depth) return {true, 0};  // without a plane, in doubt
-    const Moment end(a, motion_a, b, motion_b, until);
     return {false, now.time_apart(now.couple().to_world(plane->normal), plane->apart, -depth, end)};
 }
+// b is a triangle, which has no inside to make it smaller by. The plane of the look before is asked first, across a
+// normal that the look leaves to the next one: most often the triangle's own.
+Depth depth_at_triangle(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double moment,
+                        double depth, const Moment& end, Vec3& normal) {
+    const Moment now(a, motion_a, b, motion_b, moment);
+    double apart = now.apart(normal);
+    if (apart < -depth) {
+        const Couple::Plane plane = now.couple().parting(normal);
+        normal = plane.normal;
+        apart = plane.apart;
+    }
+    return {apart < -depth, now.time_apart(normal, apart, -depth, end)};
+}
 
-// Whether the ways lead deeper than depth from the moment met on. In doubt they do. Most that do are as deep where the
-// centres pass each other.
-bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
-                 double depth, double until) {
-    const auto look_at = [&](double t) { return depth_at(a, motion_a, b, motion_b, t, depth, until); };
-    if (is_convex(b) && look_at(Chord(motion_a, motion_b, until).nearest_moment(met, until)).deep) return true;
+// Whether two get deep, by looks from a moment on until another. In doubt they are.
+template <class Look>
+bool any_deep(const Motion& motion_a, const Motion& motion_b, double met, double depth, double until, Look&& look_at) {
     const double least = 0.5 * depth / fastest(motion_a, motion_b);  // from look to look [s]
     double t = met;
     for (int look = 0; look < kMaxLooks && t < until; ++look) {
@@ -149,6 +151,21 @@ bool passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const M
         t += std::max(found.clear, least);
     }
     return t < until;
+}
+
+bool plane_passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
+                       double depth, double until) {
+    return any_deep(motion_a, motion_b, met, depth, until,
+                    [&](double t) { return depth_at_plane(a, motion_a, b, motion_b, t, depth); });
+}
+
+// Most of them that pass deep are as deep where the centres pass each other.
+bool convex_passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double met,
+                        double depth, double until) {
+    const Moment end(a, motion_a, b, motion_b, until);
+    const auto look_at = [&](double t) { return depth_at(a, motion_a, b, motion_b, t, depth, end); };
+    return look_at(Chord(motion_a, motion_b, until).nearest_moment(met, until)).deep ||
+           any_deep(motion_a, motion_b, met, depth, until, look_at);
 }
 
 // Whether balls about the origins, which hold the shapes however they turn, come as near as reach.
@@ -169,6 +186,7 @@ double Motion::bend(double time) const { return spin.squaredNorm() * (at.positio
 
 Placement Motion::after(double time) const {
     if (time == 0) return at;
+    if (spin == Vec3::Zero()) return {centre + time * velocity + (at.position - centre), at.rotation};
     const Mat3 turn = rotation_from_vector(time * spin).toRotationMatrix();
     const Vec3 lever = turn * (at.position - centre);
     return {centre + time * velocity + lever, (turn * at.rotation.cast<double>()).cast<float>()};
@@ -232,14 +250,30 @@ double convex_meeting(const Shape& a, const Motion& motion_a, const Shape& b, co
     return t;
 }
 
+// Most triangles that are passed are so at the end.
+bool triangle_passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, Vec3 normal,
+                          double depth, double until) {
+    const Moment end(a, motion_a, b, motion_b, until);
+    const auto look_at = [&](double t) { return depth_at_triangle(a, motion_a, b, motion_b, t, depth, end, normal); };
+    return look_at(until).deep || any_deep(motion_a, motion_b, 0, depth, until, look_at);
+}
+
 double find_impact(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
                    double depth, double horizon) {
     if (!is_convex(a) && !is_convex(b)) return kNever;  // planes and surfaces do not meet one another
     if (!is_convex(a)) return find_impact(b, motion_b, a, motion_a, reach, depth, horizon);
-    const double met = kMeetings[size_t(b.kind)](a, motion_a, b, motion_b, reach, horizon);
+    const bool on_plane = b.kind == ShapeKind::plane, on_surface = b.kind == ShapeKind::surface;
+    uint32_t triangle = 0;
+    const double met = on_surface ? surface_meeting(a, motion_a, b, motion_b, reach, horizon, triangle)
+                       : on_plane ? plane_meeting(a, motion_a, b, motion_b, reach, horizon)
+                                  : convex_meeting(a, motion_a, b, motion_b, reach, horizon);
     if (met == 0) return 0;
     if (!(met < horizon)) return kNever;
-    return passes_deep(a, motion_a, b, motion_b, met, depth, 2 * horizon) ? met : kNever;
+    const double until = 2 * horizon;
+    const bool deep = on_surface ? surface_passes_deep(a, motion_a, b, motion_b, triangle, met, depth, until)
+                      : on_plane ? plane_passes_deep(a, motion_a, b, motion_b, met, depth, until)
+                                 : convex_passes_deep(a, motion_a, b, motion_b, met, depth, until);
+    return deep ? met : kNever;
 }
 
 }  // namespace taut::collision

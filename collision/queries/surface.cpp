@@ -26,6 +26,7 @@ public:
     Vec3 to_own(const Vec3& vector) const { return rotation_.transpose() * vector; }
     Vec3 to_world(const Vec3& vector) const { return rotation_ * vector; }
     Vec3 place(const Vec3& point) const { return to_own(point - at_.position); }
+    Mat3 turn(const Mat3f& rotation) const { return rotation_.transpose() * rotation.cast<double>(); }
     bool two_sided() const { return surface_.two_sided; }
 
     Room room() const {
@@ -131,6 +132,20 @@ public:
     TriangleShape& operator=(const TriangleShape&) = delete;
     const Shape& shape() const { return shape_; }
     const Placement& at() const { return at_; }
+    // Of the triangle with the surface that moves so.
+    Motion along(const Motion& of_surface) const {
+        Motion motion = of_surface;
+        motion.at = at_;
+        motion.reach = spin_radius(shape_, (at_.position - motion.centre).norm());
+        return motion;
+    }
+    // Its normal that points away from a place: unit, world axes; any where the triangle has no area.
+    Vec3 facing(const Vec3& place) const {
+        const Vec3 across = (corner_[1] - corner_[0]).cross(corner_[2] - corner_[0]).cast<double>();
+        const double length = across.norm();
+        const Vec3 normal = length > 0 ? Vec3(at_.rotation.cast<double>() * (across / length)) : Vec3(Vec3::UnitY());
+        return normal.dot(place - at_.position) > 0 ? Vec3(-normal) : normal;
+    }
 
 private:
     Vec3 lay_out(const std::array<Vec3, 3>& corner, float inner) {
@@ -179,6 +194,62 @@ Room way_through(const Shape& a, const Motion& motion_a, const Shape& b, const M
     return Room{now.lo.cwiseMin(then.lo), now.hi.cwiseMax(then.hi)}.grown(most * time * time / 8);
 }
 
+// Planes of a surface's triangles that keep a shape apart from them all along its way, by impact.cpp's bound:
+//   s(t) >= min(s(0), s(T)) - |w_a|^2 r_a T^2 / 8
+// for surfaces that do not turn.
+class PlaneTest {
+public:
+    PlaneTest(const Shape& a, const Motion& motion_a, const Triangles& triangles, const Motion& motion_b, double time)
+        : shape_(a),
+          motion_(motion_a),
+          triangles_(triangles),
+          turns_(motion_b.spin != Vec3::Zero()),
+          velocity_(triangles.to_own(motion_b.velocity)),
+          now_(triangles, motion_a.at) {
+        set_time(time);
+    }
+    // Until when.
+    void set_time(double time) {
+        then_ = Pose(triangles_, motion_.after(time));
+        way_ = time * velocity_;
+        bend_ = motion_.spin.squaredNorm() * motion_.reach * time * time / 8;
+    }
+
+    // By more than least [m].
+    bool keep_apart(uint32_t number, double least) const {
+        if (turns_) return false;
+        const std::array<Vec3, 3> corner = triangles_.corners(number);
+        Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+        const double length = normal.norm();
+        if (!(length > 0)) return false;
+        normal /= normal.dot(now_.place - corner[0]) > 0 ? length : -length;
+        return above(now_, normal, corner[0]) - bend_ > least && above(then_, normal, corner[0] + way_) - bend_ > least;
+    }
+
+private:
+    struct Pose {  // as the surface lies now
+        Vec3 place = Vec3::Zero();
+        Mat3 rotation = Mat3::Identity();
+
+        Pose() = default;
+        Pose(const Triangles& triangles, const Placement& at)
+            : place(triangles.place(at.position)), rotation(triangles.turn(at.rotation)) {}
+    };
+    double above(const Pose& pose, const Vec3& normal, const Vec3& corner) const {
+        const Vec3 down = pose.rotation.transpose() * -normal;
+        return normal.dot(pose.place - corner) - down.dot(furthest_point(shape_, down));
+    }
+
+    const Shape& shape_;
+    const Motion& motion_;
+    const Triangles& triangles_;
+    bool turns_;
+    Vec3 velocity_;  // of the surface [m/s]
+    Pose now_, then_;
+    Vec3 way_ = Vec3::Zero();  // of the surface [m]
+    double bend_ = 0;          // [m]
+};
+
 }  // namespace
 
 bool cast_ray_at_surface(const Shape& shape, const Placement& at, const Vec3& from, const Vec3& along, double limit,
@@ -224,18 +295,38 @@ bool cast_at_surface(const Shape& moving, const Placement& from, const Vec3& alo
 }
 
 double surface_meeting(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b, double reach,
-                       double limit) {
+                       double limit, uint32_t& number) {
     const Triangles triangles(b, motion_b.at);
+    PlaneTest planes(a, motion_a, triangles, motion_b, limit);
     double first = limit;
-    triangles.find(way_through(a, motion_a, b, motion_b, limit).grown(reach), [&](uint32_t number) {
-        if (first == 0) return;
-        const TriangleShape triangle(triangles, motion_b.at, number, inner_radius(a));
-        Motion motion = motion_b;
-        motion.at = triangle.at();
-        motion.reach = spin_radius(triangle.shape(), (motion.at.position - motion.centre).norm());
-        first = std::min(first, convex_meeting(a, motion_a, triangle.shape(), motion, reach, first));
+    triangles.find(way_through(a, motion_a, b, motion_b, limit).grown(reach), [&](uint32_t next) {
+        if (first == 0 || planes.keep_apart(next, reach)) return;
+        const TriangleShape triangle(triangles, motion_b.at, next, inner_radius(a));
+        const double met = convex_meeting(a, motion_a, triangle.shape(), triangle.along(motion_b), reach, first);
+        if (met >= first) return;
+        number = next;
+        first = met;
+        planes.set_time(first);
     });
     return first;
+}
+
+bool surface_passes_deep(const Shape& a, const Motion& motion_a, const Shape& b, const Motion& motion_b,
+                         uint32_t number, double met, double depth, double until) {
+    const Motion from_a = motion_a.from(met), from_b = motion_b.from(met);
+    const Triangles triangles(b, from_b.at);
+    const PlaneTest planes(a, from_a, triangles, from_b, until - met);
+    const auto passes = [&](uint32_t next) {
+        if (planes.keep_apart(next, -depth)) return false;
+        const TriangleShape triangle(triangles, from_b.at, next, inner_radius(a));
+        return triangle_passes_deep(a, from_a, triangle.shape(), triangle.along(from_b),
+                                    triangle.facing(from_a.at.position), depth, until - met);
+    };
+    bool deep = passes(number);
+    if (deep) return true;
+    triangles.find(way_through(a, from_a, b, from_b, until - met),
+                   [&](uint32_t next) { deep = deep || (next != number && passes(next)); });
+    return deep;
 }
 
 bool surface_overlap(const Shape& a, const Placement& at_a, const Shape& b, const Placement& at_b) {
