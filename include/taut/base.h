@@ -134,8 +134,8 @@ typedef void (*taut_task_fn)(uint32_t begin, uint32_t end, uint32_t worker, void
 /**
  * Hands task(range) over [0, count) to the host's workers in ranges of at least grain; returns a token for finish.
  * Called at most once a step, on the thread that steps, when there is work to share. A worker that starts late or never
- * delays nothing but itself: the stepping thread does what nobody takes. Where it throws, it has handed out nothing, and
- * the step goes on without help.
+ * delays nothing but itself: the stepping thread does what nobody takes. Where it throws, it has handed out nothing,
+ * and the step goes on without help.
  */
 typedef void* (*taut_enqueue_task_fn)(taut_task_fn task, uint32_t count, uint32_t grain, void* task_data,
                                       void* user_data);

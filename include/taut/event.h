@@ -179,7 +179,7 @@ typedef struct taut_events {
     const taut_sleep_event* woke;        /**< the other way round */
     uint32_t fell_asleep_count;
     uint32_t woke_count;
-    uint32_t dropped_contacts; /**< beyond the world's max_contacts or in a crowd (there), and not solved; sum over the steps */
+    uint32_t dropped_contacts; /**< not solved: in a crowd, or beyond taut_world_def.max_contacts; sum over the steps */
     uint32_t torn_count;
     const taut_attachment_break_event* detached; /**< in the order of the attachments' slots */
     const taut_tear_event* torn;                 /**< by cloths' slots, of each the largest strain first */

@@ -58,15 +58,16 @@ typedef enum taut_joint_kind {
 typedef enum taut_joint_solve {
     /** With all joints it hangs together with, at once: exact whatever they carry. Where a factor of their matrix takes
         more than 16000 multiplications for each of them (of an element in proportion to its rows and nodes), as of
-        dense graphs and of a thousand joints between two bodies, all are swept. Solvers without a direct one sweep all. */
+        dense graphs and of a thousand joints between two bodies, all are swept. Solvers without a direct one sweep all.
+     */
     TAUT_JOINT_SOLVE_DIRECT = 0,
     /** By sweeps: cheap, gives way under loads far heavier than the bodies it holds, by .0253 h^2 |f| (1/m_a + 1/m_b)
        in substeps of h. A drive's stiffness K, damping with it, is at most half of the inertia I of its ends' own
        turning over h^2, I / (2 h^2): some 13 Hz for limbs. */
     TAUT_JOINT_SOLVE_SOFT = 1,
     /** By need and cost. Directly with all that it hangs together with where that costs at most three times what sweeps
-        do, as of chains and doors, or where a joint can break, whose force is exact then. Ragdolls, whose stops come and
-        go, and nets are swept while sweeps give way by less than 1/500 of the size of a joint's smaller body, else
+        do, as of chains and doors, or where a joint can break, whose force is exact then. Ragdolls, whose stops come
+       and go, and nets are swept while sweeps give way by less than 1/500 of the size of a joint's smaller body, else
         solved directly, until sweeps would have held them for a quarter of a second. From the start they are solved
         directly where sweeps would not hold the weight of the heaviest of their bodies by the lightest, and where they
         hang, n joints deep, by what does not move: sweeps carry a force from joint to joint in a substep h, in which

@@ -48,7 +48,7 @@ typedef struct taut_profile {
     uint64_t allocations; /**< calls of the allocator during the step */
     uint32_t awake;       /**< of the bodies; counts and quality above, but for bodies and joints, are theirs alone */
     uint32_t sleeping_islands;
-    uint32_t dropped_contacts; /**< beyond the world's max_contacts or in a crowd (there), and not solved */
+    uint32_t dropped_contacts; /**< not solved: in a crowd, or beyond taut_world_def.max_contacts */
     uint32_t elements;         /**< of cables of particles, cloths and solids */
     /* what the solves of the step left, largest of all islands and substeps; 0 unless taut_world_def.report is 1 */
     float yield;          /**< by which a swept contact or rigid joint gives way under its force, s h^2 w |f| [m]: h
