@@ -54,11 +54,12 @@ TEST_P(CrowdOf, PartsInTheEnd) {
     }
 }
 
+std::string name_of(const testing::TestParamInfo<Crowded>& tested) {
+    constexpr const char* kNames[] = {"boxes", "balls", "boxes_by_a_heavy_one"};
+    return kNames[static_cast<int>(tested.param)];
+}
 INSTANTIATE_TEST_SUITE_P(Of, CrowdOf, testing::Values(Crowded::boxes, Crowded::balls, Crowded::boxes_by_a_heavy_one),
-                         [](const auto& tested) {
-                             constexpr const char* kNames[] = {"boxes", "balls", "boxes_by_a_heavy_one"};
-                             return std::string(kNames[static_cast<int>(tested.param)]);
-                         });
+                         name_of);
 
 // Hundreds of small balls about a large one, and cubes of a block: as many as have room touch each other.
 TEST(Crowds, WhatHasRoomIsNone) {
