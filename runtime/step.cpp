@@ -23,6 +23,7 @@
 #include "publish/publish.h"
 #include "sleep/sleep.h"
 #include "solvers/minimisation.h"
+#include "state/sane.h"
 #include "system/reached.h"
 #include "world.h"
 
@@ -102,7 +103,8 @@ void detect(World& w, Stopwatch& watch) {
                              filter_surfaces(w.nodes, w.colliders, w.shapes, w.pre_solve, w.pairs, surfaces.contact);
     if (surfaces.contact.size() < found) ++surfaces.version;
     if (refused > 0)
-        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range, or thrown", refused);
+        log_line(w.def.hooks, TAUT_LOG_WARNING, "%u answers of the pre-solve function refused: out of range, or thrown",
+                 refused);
     open_internal_faces({w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step, lead});
     const uint32_t dropped = limit_contacts(w.nodes, w.colliders, w.def.max_contacts, w.pairs);
     w.profile.dropped_contacts += dropped;
@@ -110,6 +112,15 @@ void detect(World& w, Stopwatch& watch) {
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u contacts dropped: max_contacts is %u", dropped, w.def.max_contacts);
     tell(w, {Stage::contacts});
     w.profile.narrowphase_us = watch.lap();
+}
+
+void tell_quarantine(World& w) {
+    std::ranges::sort(w.frozen);
+    const auto fast = std::ranges::count_if(
+        w.frozen, [&](uint32_t node) { return w.nodes.find_frozen(node)->why == Divergence::too_fast; });
+    log_line(w.def.hooks, TAUT_LOG_WARNING,
+             "%zu bodies quarantined: the motion of %zu was not finite, of %zu beyond %g m/s or rad/s", w.frozen.size(),
+             w.frozen.size() - static_cast<size_t>(fast), static_cast<size_t>(fast), kMaxSpeed);
 }
 
 void solve(World& w, Stopwatch& watch) {
@@ -151,7 +162,7 @@ void solve(World& w, Stopwatch& watch) {
     if (report.unfinished > 0)
         log_line(w.def.hooks, TAUT_LOG_WARNING, "%u minimisations ended before their tolerance", report.unfinished);
     if (!w.frozen.empty()) {
-        log_line(w.def.hooks, TAUT_LOG_WARNING, "%zu bodies quarantined: their motion was not finite", w.frozen.size());
+        tell_quarantine(w);
         drop_bad_impulses(w.pairs, w.joints, w.elements);
         ++w.joints.version;  // blocks lose the frozen nodes
     }

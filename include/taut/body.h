@@ -69,6 +69,14 @@ typedef struct taut_pose {
     uint32_t reserved[2]; /**< zero; keeps the size a multiple of 16 */
 } taut_pose;
 
+/** Why a step froze a body or particle. */
+typedef enum taut_quarantine_reason {
+    TAUT_QUARANTINE_NONE = 0,       /**< it did not */
+    TAUT_QUARANTINE_NON_FINITE = 1, /**< its pose or velocity, or what a force would make of it, was no finite number */
+    TAUT_QUARANTINE_TOO_FAST = 2,   /**< it was faster than 1e6 m/s or rad/s, or a force would make it so */
+    TAUT_QUARANTINE_REASON_MAX = 0x7fffffff
+} taut_quarantine_reason;
+
 TAUT_API void taut_body_def_init_sized(taut_body_def* def, uint32_t size);
 static inline void taut_body_def_init(taut_body_def* def) { taut_body_def_init_sized(def, (uint32_t)sizeof(*def)); }
 TAUT_API void taut_particle_def_init_sized(taut_particle_def* def, uint32_t size);
@@ -165,6 +173,16 @@ TAUT_API taut_result taut_body_apply_force_at(taut_body body, taut_vec3 force, t
 TAUT_API taut_result taut_body_apply_impulse(taut_body body, taut_vec3 impulse, taut_vec3 angular_impulse);
 /** Impulse [N s] at a world point, at once. */
 TAUT_API taut_result taut_body_apply_impulse_at(taut_body body, taut_vec3 impulse, taut_pos point);
+
+/** Whether the body is in quarantine, and why: see taut_quarantine_event. Its kind is TAUT_BODY_STATIC meanwhile.
+ * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_quarantine(taut_body body, taut_quarantine_reason* out);
+/**
+ * Lets a body in quarantine go: from the next step on it is what it was before, at rest where it stands, with no force
+ * on it and its contacts found anew. Where the cause goes on, it comes back; taut_body_set_pose moves it away before.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (it is in none), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_release(taut_body body);
 
 #ifdef __cplusplus
 }

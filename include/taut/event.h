@@ -86,12 +86,13 @@ typedef struct taut_moved_event {
     taut_pose pose; /**< after the last step */
 } taut_moved_event;
 
-/** A body whose state became non-finite: it was put back to its last finite pose and made static. */
+/** A body whose motion diverged: it was put back to its pose before the step, and stays there like a static one until
+ * taut_body_release. Told once; what it touches or is tied to goes on. */
 typedef struct taut_quarantine_event {
     taut_body body;
     uint64_t user_data;
-    uint32_t step;     /**< as of a contact event */
-    uint32_t reserved; /**< zero */
+    uint32_t step;                 /**< as of a contact event */
+    taut_quarantine_reason reason; /**< never TAUT_QUARANTINE_NONE */
 } taut_quarantine_event;
 
 /** A joint that ended a step with more force or torque than its def allows, and was removed then. */

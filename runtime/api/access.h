@@ -267,10 +267,10 @@ inline Vec3 to_vec(const taut_vec3& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_vec(const taut_pos& p) { return {p.x, p.y, p.z}; }
 inline Quat to_quat(const taut_quat& q) { return Quat(q.w, q.x, q.y, q.z).normalized(); }
 inline taut_pos to_pos(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-// What outgrows single precision is told as the largest float: no reading is infinite.
+// What outgrows single precision is told as the largest float, what is no number as 0: all readings are finite.
 inline float to_float(double x) {
     constexpr double kLargest = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
+    return x == x ? static_cast<float>(std::clamp(x, -kLargest, kLargest)) : 0.0f;
 }
 inline taut_vec3 to_vec3(const Vec3& v) { return {to_float(v.x()), to_float(v.y()), to_float(v.z())}; }
 inline taut_quat to_quat(const Quat& q) {

@@ -7,6 +7,7 @@
 #include "advance.h"
 #include "api/access.h"
 #include "models/bodies.h"
+#include "publish/publish.h"
 #include "sleep/wake.h"
 
 using namespace taut;
@@ -241,5 +242,30 @@ taut_result taut_body_apply_impulse_at(taut_body handle, taut_vec3 impulse, taut
         // A particle's inverse inertia is zero: the point does not matter.
         const Vec3 arm = to_vec(point) - world.nodes.motion[node].x;
         return push(check, world, node, to_vec(impulse), arm.cross(to_vec(impulse)));
+    });
+}
+
+taut_result taut_body_get_quarantine(taut_body handle, taut_quarantine_reason* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = public_reason(world.nodes.find_frozen(node));
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_release(taut_body handle) {
+    Check check(__func__);
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        if (!check.require(world.nodes.find_frozen(node), "body is in no quarantine")) return check.result();
+        world.nodes.mass.reserve_values(1);
+        refresh_boxes(world, node);
+        forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));  // asked anew by the step
+        wake_about(world, node);
+        world.nodes.let_go(node);
+        for (Joint& joint : world.joints.record)
+            if (ends_on(joint, node)) forget_angles(joint);
+        ++world.joints.version;  // blocks have the node again
+        return TAUT_OK;
     });
 }

@@ -254,7 +254,7 @@ taut_result taut_cable_get_length(taut_cable handle, float* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        *out = static_cast<float>(cable_length(world.cables.record[index]));
+        *out = to_float(cable_length(world.cables.record[index]));
         return TAUT_OK;
     });
 }
@@ -275,7 +275,7 @@ taut_result taut_cable_get_tensions(taut_cable handle, float* tensions, uint32_t
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const Cable& cable = world.cables.record[index];
         return copy_out(cable.segments(), tensions, capacity, count, check.call(), "tensions",
-                        [&](uint32_t i) { return static_cast<float>(cable_tension(world, cable, i)); });
+                        [&](uint32_t i) { return to_float(cable_tension(world, cable, i)); });
     });
 }
 

@@ -66,8 +66,8 @@ taut_contact public_contact(const World& world, const Pair& pair, int i) {
             to_pos(world.nodes.origin(pair.a) + point.position.cast<double>()),
             {normal.x(), normal.y(), normal.z()},
             point.separation,
-            substep * force.normal,
-            substep * std::hypot(force.tangent1, force.tangent2),
+            to_float(substep * double{force.normal}),
+            to_float(substep * std::hypot(double{force.tangent1}, double{force.tangent2})),
             world.collider_handle(pair.collider_a()),
             world.collider_handle(pair.collider_b())};
 }
@@ -98,8 +98,8 @@ taut_contact public_contact(const World& world, const GrainContact& contact) {
             to_pos(world.nodes.origin(contact.a) + way * n.cast<double>()),
             {n.x(), n.y(), n.z()},
             contact.separation,
-            substep * push,
-            substep * (contact.force - push * n).norm(),
+            to_float(substep * double{push}),
+            to_float(substep * (contact.force - push * n).cast<double>().norm()),
             world.collider_handle(a),
             world.collider_handle(b)};
 }
@@ -114,8 +114,8 @@ taut_contact public_contact(const World& world, const SurfaceContact& contact) {
             to_pos(0.5 * (a.at + b.at)),
             {contact.normal.x(), contact.normal.y(), contact.normal.z()},
             contact.gap,
-            substep * contact.force.normal,
-            substep * std::hypot(contact.force.tangent1, contact.force.tangent2),
+            to_float(substep * double{contact.force.normal}),
+            to_float(substep * std::hypot(double{contact.force.tangent1}, double{contact.force.tangent2})),
             world.collider_handle(contact.collider[1]),
             world.collider_handle(contact.collider[0])};
 }

@@ -77,7 +77,7 @@ taut_result taut_joint_get_error(taut_joint handle, float* out) {
     Check check(__func__);
     check.pointer("out", out);
     return reading(check, handle, [&](const World&, const Joint& joint, const JointReading& now) {
-        *out = static_cast<float>(error_of(joint, now).linear);
+        *out = to_float(error_of(joint, now).linear);
         return TAUT_OK;
     });
 }
@@ -86,7 +86,7 @@ taut_result taut_joint_get_angular_error(taut_joint handle, float* out) {
     Check check(__func__);
     check.pointer("out", out);
     return reading(check, handle, [&](const World&, const Joint& joint, const JointReading& now) {
-        *out = static_cast<float>(error_of(joint, now).angular);
+        *out = to_float(error_of(joint, now).angular);
         return TAUT_OK;
     });
 }
@@ -97,8 +97,8 @@ taut_result taut_joint_get_coordinates(taut_joint handle, uint32_t axis, float* 
         JointAxis place;
         const taut_result found = find_axis(check.call(), joint, axis, place);
         if (found != TAUT_OK) return found;
-        if (value) *value = static_cast<float>(now.value[place.row]);
-        if (rate) *rate = static_cast<float>(rate_of(world.nodes, joint, now, place.row));
+        if (value) *value = to_float(now.value[place.row]);
+        if (rate) *rate = to_float(rate_of(world.nodes, joint, now, place.row));
         return TAUT_OK;
     });
 }
@@ -115,10 +115,10 @@ taut_result taut_joint_get_axis_forces_sized(taut_joint handle, uint32_t axis, t
         *out = forces;
         if (joint.fresh) return TAUT_OK;
         const AxisMemory& memory = joint.memory[place.row];
-        forces.total = static_cast<float>(joint.lambda[place.row]);
-        forces.stop = memory.lower - memory.upper;
-        forces.drive = memory.drive;
-        forces.friction = memory.friction;
+        forces.total = to_float(joint.lambda[place.row]);
+        forces.stop = to_float(double{memory.lower} - double{memory.upper});
+        forces.drive = to_float(double{memory.drive});
+        forces.friction = to_float(double{memory.friction});
         forces.active_stop = forces.stop > 0 ? -1 : forces.stop < 0 ? 1 : 0;
         *out = forces;
         return TAUT_OK;

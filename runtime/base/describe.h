@@ -17,6 +17,8 @@
 // Fields that are saved, but do not count for the hash: which of the same things it is (generations, serials), and
 // what the host is told.
 #define TAUT_ASIDE(visitor, ...) (visitor).aside(#__VA_ARGS__, __VA_ARGS__)
+// A list that is saved, and counts for the hash where it is not empty.
+#define TAUT_RARE(visitor, list) (visitor).rare(#list, list)
 // Of each live slot of an IdPool, which was listed before, its element in each of these columns: arrays or
 // SharedValues, by slot.
 #define TAUT_ROWS(visitor, ids, ...) (visitor).rows(#__VA_ARGS__, ids, __VA_ARGS__)

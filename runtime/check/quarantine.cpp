@@ -8,17 +8,17 @@ namespace taut {
 
 namespace {
 
-bool pushed_too_hard(const NodeMotion& m, const NodeMass& mass, const NodeLoad& load, double h) {
+// Of a node in its motion, and in what its load makes of that within h.
+Divergence divergence_of(const Nodes& nodes, uint32_t node, double h) {
+    const NodeMotion& m = nodes.motion[node];
+    const NodeLoad& load = nodes.load_of(node);
+    const Divergence now = divergence_of(m);
+    if (now != Divergence::none || !load.any()) return now;
+    const NodeMass& mass = nodes.mass[node];
     NodeMotion after = m;
     after.v += h * mass.inv_mass * load.force;
     after.w += h * (m.q * (mass.inv_inertia.matrix() * (m.q.conjugate() * load.torque)));
-    return !sane(after);
-}
-
-bool is_bad(const Nodes& nodes, uint32_t node, double h) {
-    const NodeMotion& m = nodes.motion[node];
-    const NodeLoad& load = nodes.load_of(node);
-    return !sane(m) || (load.any() && pushed_too_hard(m, nodes.mass[node], load, h));
+    return divergence_of(after);
 }
 
 constexpr uint32_t kGrain = 256;  // nodes that a thread takes at a time
@@ -32,7 +32,7 @@ Findings look_at(Team& team, const Nodes& nodes, const Array<uint32_t>& list, do
     team.for_ranges(static_cast<uint32_t>(list.size()), kGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             if (nodes.load_of(list[i]).any()) loaded.store(true, std::memory_order_relaxed);
-            if (is_bad(nodes, list[i], h)) bad.store(true, std::memory_order_relaxed);
+            if (divergence_of(nodes, list[i], h) != Divergence::none) bad.store(true, std::memory_order_relaxed);
         }
     });
     return {loaded.load(std::memory_order_relaxed), bad.load(std::memory_order_relaxed)};
@@ -43,25 +43,17 @@ Findings look_at(Team& team, const Nodes& nodes, const Array<uint32_t>& list, do
 bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h) {
     const Findings found = look_at(team, nodes, list, h);
     if (!found.bad) return found.loaded;
-    const size_t first = frozen.size();
-    for (uint32_t node : list)
-        if (is_bad(nodes, node, h)) frozen.push_back(node);
-    std::sort(frozen.begin() + static_cast<std::ptrdiff_t>(first), frozen.end());
-    for (size_t i = first; i < frozen.size(); ++i) {
-        const uint32_t node = frozen[i];
-        NodeMotion& m = nodes.motion[node];
-        nodes.mass.reserve_values(1);
-        nodes.clear_load(node);
-        const NodePose& last = nodes.before[node];
-        m = {};
-        m.q = last.rotation;
-        m.x = last.position + last.rotation * nodes.mass[node].centre;
-        nodes.info[node].kind = NodeKind::fixed;
-        NodeMass none = nodes.mass[node];
-        none.mass = none.inv_mass = 0;
-        none.inertia = none.inv_inertia = {};
-        nodes.mass.set(node, none);
+    const auto first = static_cast<std::ptrdiff_t>(frozen.size());
+    for (const uint32_t node : list) {
+        if (divergence_of(nodes, node, h) == Divergence::none) continue;
+        if (moves_by_forces(nodes.info[node].kind))
+            frozen.push_back(node);
+        else
+            nodes.stay(node);  // frozen in this frame, and told
     }
+    std::sort(frozen.begin() + first, frozen.end());
+    for (auto node = frozen.begin() + first; node != frozen.end(); ++node)
+        nodes.freeze(*node, divergence_of(nodes, *node, h));
     return found.loaded;
 }
 

@@ -1,5 +1,5 @@
-// Containment: a node whose motion is no longer finite is put back to its last good pose and never moves again;
-// the rest of the world goes on.
+// Containment: a node whose motion is no longer finite, or too fast for any, is put back to its last good pose and
+// stays there until the host lets it go; the rest of the world goes on.
 #pragma once
 
 #include "state/elements.h"
@@ -10,8 +10,9 @@
 
 namespace taut {
 
-// Freezes the insane nodes of a list, and those that their own load makes so within h, before they drag others along;
-// appends their numbers to frozen. True: some node of the list has a load, and is to be asked again as it moves on.
+// Freezes the nodes of a list that are not sane, or that their own load makes so within h, before they drag others
+// along; appends their numbers to frozen. True: some node of the list has a load, and is to be asked again as it moves
+// on.
 bool quarantine(Team& team, Nodes& nodes, const Array<uint32_t>& list, Array<uint32_t>& frozen, double h = 0);
 
 // Carried impulses and forces that are not finite become zero.

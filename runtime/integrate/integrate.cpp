@@ -185,7 +185,7 @@ void stop(System& system, uint32_t at) {
     system.exact[at] = {};
     system.sweep[at] = {};
     if (!system.sweep_pose.empty()) system.sweep_pose[at].inv_mass = 0;
-    if (system.in_block[at]) system.inertia[at].setZero();  // cannot be factored, and moves freely
+    if (system.in_block[at]) system.inertia[at].setZero();
 }
 
 bool are_points(const Nodes& nodes, const Batch& batch) {

@@ -141,7 +141,8 @@ void publish_motion(World& world, const Array<uint32_t>& frozen) {
                    public_pose(nodes.origin(node), nodes.motion[node].q)};
         });
     for (uint32_t node : frozen)
-        world.quarantined.push_back({world.body_handle(node), nodes.info[node].user_data, world.window.steps, 0});
+        world.quarantined.push_back({world.body_handle(node), nodes.info[node].user_data, world.window.steps,
+                                     public_reason(nodes.find_frozen(node))});
 }
 
 void publish_profile(World& world) {

@@ -13,6 +13,10 @@ void begin_events(World& world);
 void end_events(World& world);
 
 void publish_contacts(World& world);
+// Null: in no quarantine.
+inline taut_quarantine_reason public_reason(const FrozenNode* frozen) {
+    return frozen ? static_cast<taut_quarantine_reason>(frozen->why) : TAUT_QUARANTINE_NONE;
+}
 void publish_motion(World& world, const Array<uint32_t>& frozen);
 void publish_profile(World& world);
 // Removes the joints that ended the step above their thresholds, each with an event. Last: it forgets pairs.

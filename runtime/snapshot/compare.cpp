@@ -19,6 +19,10 @@ public:
     }
     template <class... Fields>
     void aside(const char*, Fields&&...) {}
+    template <class List>
+    void rare(const char* name, const List& list) {
+        if (!list.empty()) fields(name, list);
+    }
 
     std::vector<std::byte> bytes;
 };
@@ -40,6 +44,10 @@ public:
     }
     template <class... Fields>
     void aside(const char*, Fields&&...) {}
+    template <class List>
+    void rare(const char* name, const List& list) {
+        if (!list.empty()) fields(name, list);
+    }
     template <class... Columns>
     void rows(const char* names, const Columns&... columns) {
         path_.push_back(names);

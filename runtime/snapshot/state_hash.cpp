@@ -21,6 +21,10 @@ public:
     }
     template <class... Fields>
     void aside(const char*, Fields&&...) {}
+    template <class List>
+    void rare(const char* name, const List& list) {
+        if (!list.empty()) fields(name, list);
+    }
     void begin_row(uint32_t slot) { hash_.add(uint64_t{slot}); }
 
     uint64_t value() const { return hash_.value(); }

@@ -48,6 +48,11 @@ public:
         self().fields(names, each...);
     }
 
+    template <class List>
+    void rare(const char* name, List& list) {
+        self().fields(name, list);
+    }
+
     template <class T>
     void one(T& field) {
         using Field = std::remove_const_t<T>;

@@ -21,6 +21,9 @@ uint32_t coupling(const ConstraintType& type, int n, int m) {  // m < n
     return static_cast<uint32_t>(1 + type.nodes + n * (n - 1) / 2 + m);
 }
 
+// Of a node that is held within a frame [kg, kg m^2]: above any mass, and far within what squares of double hold.
+constexpr double kHeldMass = 1e30;
+
 int locked_rows(const RowBlock& block) {
     int count = 0;
     for (int r = 0; r < block.type->rows; ++r) count += block.locked(r);
@@ -203,10 +206,14 @@ void BlockSolve::find_places() {
 
 void BlockSolve::add_mass(uint32_t i) {
     const uint32_t node = b_.nodes[i];
-    const double mass = s_.nodes.mass[node].mass;
+    const bool held = !moves_by_forces(s_.nodes.info[node].kind);  // in this frame: it keeps its place in the matrix
+    const double mass = held ? kHeldMass : s_.nodes.mass[node].mass;
     const double diagonal[9] = {mass, 0, 0, 0, mass, 0, 0, 0, mass};
     b_.matrix.add(b_.places[i], {diagonal, 3, 3, 3});
-    if (size_of(i) == 6) b_.matrix.add(b_.places[i], {sys_.inertia[sys_.at(node)].data(), 3, 3, 3, 3, 3});
+    if (size_of(i) == 6 && held)
+        b_.matrix.add(b_.places[i], {diagonal, 3, 3, 3, 3, 3});
+    else if (size_of(i) == 6)
+        b_.matrix.add(b_.places[i], {sys_.inertia[sys_.at(node)].data(), 3, 3, 3, 3, 3});
 }
 
 // K, or |K|, of a joint's force at this substep's poses: (6 nodes) x (6 nodes).
@@ -258,11 +265,18 @@ double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
     return kLoopCompliance * k;
 }
 
+// Whether a tie ends on nothing that moves, as one on held nodes does: it asks for nothing.
+bool BlockSolve::stands(const RowBlock& block) const {
+    return std::all_of(block.node, block.node + block.type->nodes,
+                       [&](uint32_t at) { return !(sys_.sweep[at].mass.inv_mass > 0); });
+}
+
 // The locked rows; the place of a row that is not, but comes before one that is, is taken by mu = 0.
 void BlockSolve::add_rows(uint32_t j) {
     const RowBlock& block = row(j);
     const int rows = block.held(), padded = size_of(nodes_ + j);
-    for (int n = 0; n < block.type->nodes; ++n) {
+    const bool idle = stands(block);
+    for (int n = 0; n < block.type->nodes && !idle; ++n) {
         const uint32_t i = local(block.node[n]);
         if (i == kNone) continue;
         const double* jacobian = jacobian_of(sys_, block, n).data();
@@ -277,7 +291,7 @@ void BlockSolve::add_rows(uint32_t j) {
     double diagonal[kMaxRows * kMaxRows] = {};
     for (int r = 0; r < padded; ++r) diagonal[r * padded + r] = -1;
     for (int r = 0; r < rows; ++r) {
-        if (!block.locked(r)) continue;
+        if (!block.locked(r) || idle) continue;
         for (int k = 0; k < rows; ++k) diagonal[r * padded + k] = -c(r, k);
         if (b_.looped) diagonal[r * padded + r] = -std::max(c(r, r), loop_compliance(block, r));
     }

@@ -75,6 +75,7 @@ private:
     void add_rows(uint32_t j);
     void add_bounded();
     double loop_compliance(const RowBlock& block, int r) const;
+    bool stands(const RowBlock& block) const;
 
     // block_elastic.cpp
     template <class Act>

@@ -25,6 +25,7 @@ public:
     void apply(const RowVector& impulse) {
         for (int i = 0; i < block_.type->nodes; ++i) {
             const uint32_t node = block_.node[i];
+            if (!(system_.sweep[node].mass.inv_mass > 0)) continue;  // others read it
             const NodeVector dv = response(system_.sweep[node].mass, jacobian(i).transpose() * impulse);
             SweepVelocity& u = system_.sweep[node].velocity;
             for (int k = 0; k < 3; ++k) {

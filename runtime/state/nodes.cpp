@@ -55,6 +55,7 @@ void Nodes::remove(uint32_t node) {
     set_rest(node, Rest::asleep);
     sleep[node] = {};
     if (const KinematicPath* path = find_path(node)) paths.erase(paths.begin() + (path - paths.data()));
+    if (const FrozenNode* held = find_frozen(node)) frozen.erase(frozen.begin() + (held - frozen.data()));
     ids.destroy(node);
 }
 
@@ -80,6 +81,45 @@ void Nodes::list_active() {
     }
     listed_ = !std::exchange(all_, false);
     ++lists;
+}
+
+void Nodes::freeze(uint32_t node, Divergence why) {
+    mass.reserve_values(1);
+    reserve_more(frozen, 1);
+    const auto at = std::ranges::lower_bound(frozen, node, {}, &FrozenNode::node);
+    frozen.insert(at, {node, info[node].kind, why, mass[node]});
+    stay(node);
+    clear_load(node);
+    if (node < history.size()) history[node] = {};
+    NodeMass none = mass[node];
+    none.mass = none.inv_mass = 0;
+    none.inertia = none.inv_inertia = {};
+    mass.set(node, none);
+    info[node].kind = NodeKind::fixed;
+    --movable;
+}
+
+void Nodes::stay(uint32_t node) {
+    const NodePose& last = before[node];
+    motion[node] = {};
+    motion[node].q = last.rotation;
+    motion[node].x = centre_at(node, last);
+}
+
+void Nodes::let_go(uint32_t node) {
+    mass.reserve_values(1);
+    const FrozenNode held = *find_frozen(node);
+    mass.set(node, held.mass);
+    info[node].kind = held.kind;
+    ++movable;
+    sleep[node].quiet = 0;
+    set_rest(node, Rest::awake);
+    frozen.erase(std::ranges::lower_bound(frozen, node, {}, &FrozenNode::node));
+}
+
+const FrozenNode* Nodes::find_frozen(uint32_t node) const {
+    const auto at = std::ranges::lower_bound(frozen, node, {}, &FrozenNode::node);
+    return at != frozen.end() && at->node == node ? &*at : nullptr;
 }
 
 KinematicPath* Nodes::find_path(uint32_t node) {

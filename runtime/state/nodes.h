@@ -111,6 +111,22 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_ASIDE(visitor, told_asleep);
 }
 
+// Why a node is in quarantine: its motion, or what its load would make of it, is not finite or beyond kMaxSpeed.
+enum class Divergence : uint8_t { none, non_finite, too_fast };  // as taut_quarantine_reason
+
+// What a node in quarantine was.
+struct FrozenNode {
+    uint32_t node = kNone;
+    NodeKind kind = NodeKind::dead;
+    Divergence why = Divergence::none;
+    NodeMass mass;
+};
+template <class Visitor, Like<FrozenNode> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, kind, why, mass] = of;
+    TAUT_FIELDS(visitor, node, kind, why, mass);
+}
+
 struct NodePose {  // of the body's origin, for rendering
     Vec3 position = Vec3::Zero();
     Quat rotation = Quat::Identity();
@@ -173,6 +189,7 @@ struct Nodes {
           owed(memory),
           load(memory),
           paths(memory),
+          frozen(memory),
           before(memory),
           history(memory),
           rest(memory),
@@ -195,6 +212,12 @@ struct Nodes {
     KinematicPath* find_path(uint32_t node);
     // Makes one where there is none; throws std::bad_alloc with nothing changed.
     KinematicPath& path_of(uint32_t node);
+    // A node that forces move stays where it was before the last step, as a fixed one, until it is let go: as what it
+    // was, at rest. Throws std::bad_alloc with nothing changed.
+    void freeze(uint32_t node, Divergence why);
+    void let_go(uint32_t node);
+    void stay(uint32_t node);                            // where it was before the last step, at rest
+    const FrozenNode* find_frozen(uint32_t node) const;  // null: it is in no quarantine
     Vec3 centre_at(uint32_t node, const NodePose& pose) const {
         return pose.position + pose.rotation * mass[node].centre;
     }
@@ -220,6 +243,7 @@ struct Nodes {
     Array<NodeLoad> owed;        // by its calls over what the accumulator holds of their time [N s]
     Array<NodeLoad> load;        // in the step that is being taken [N]
     Array<KinematicPath> paths;  // sorted by node
+    Array<FrozenNode> frozen;    // likewise
     Array<NodePose> before;      // origin pose before the last step
     Array<NodeHistory> history;  // of all, or of none in worlds whose scheme has one step
     Array<Rest> rest;            // set_rest()
@@ -242,12 +266,13 @@ private:
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
     // load: within a step; the list of active ones follows.
-    auto& [ids, info, motion, mass, applied, owed, load, paths, before, history, rest, sleep, active, lists, movable,
-           listed, all] = of;
+    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, before, history, rest, sleep, active, lists,
+           movable, listed, all] = of;
     OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
     TAUT_ASIDE(visitor, ids);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);
     TAUT_FIELDS(visitor, paths);
+    TAUT_RARE(visitor, frozen);
 }
 
 }  // namespace taut

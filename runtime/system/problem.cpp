@@ -251,6 +251,8 @@ void Problem::find_islands() {
         m_.seat.push_back(seat);
         m_.island_of[seat] = m_.island_of[root(seat)];
     }
+    // Sums over them go by node: seats lie as threads take them.
+    std::ranges::sort(m_.seat, {}, [&](uint32_t seat) { return s_.node_at[seat]; });
 }
 
 // J W J^T.

@@ -99,7 +99,7 @@ struct ProblemMemory {
     Array<double> start, rate;          // C(x_n) and rate(u), rows of System::rows; of position projection
     Array<uint32_t> count, parent;      // by seat: units on it, and scratch of find_islands()
     Array<uint32_t> island_of;          // by seat
-    Array<uint32_t> seat;               // of moving nodes that a unit is on
+    Array<uint32_t> seat;               // of moving nodes that a unit is on, in the order of nodes
     Array<Turning> turning;             // of units that turn
     Array<NodeVector> applied;          // what impulses of units that turn gave to their nodes, J^T mu as it was then
     Array<NodeVector> node, node_vector[5];  // by seat; for a solver

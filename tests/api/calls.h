@@ -370,6 +370,12 @@ inline std::vector<Call<taut_body>> body_calls() {
              uint32_t out = 0;
              return taut_body_get_continuous(b, &out);
          }},
+        {"taut_body_release", [](taut_body b) { return taut_body_release(b); }},
+        {"taut_body_get_quarantine",
+         [](taut_body b) {
+             taut_quarantine_reason out;
+             return taut_body_get_quarantine(b, &out);
+         }},
         {"taut_body_get_kind",
          [](taut_body b) {
              taut_body_kind out;

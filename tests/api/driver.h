@@ -113,6 +113,7 @@ public:
             &Driver::read_solid,
             &Driver::write_soft,
             &Driver::read_surfaces,
+            &Driver::let_go,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

@@ -184,6 +184,19 @@ protected:
         }
     }
 
+    // Pushed beyond all speed now and then, which the next step freezes.
+    void let_go() {
+        const taut_body body = pick_body(pick_world());
+        if (one_in(4)) run("taut_body_apply_force", [&] { return taut_body_apply_force(body, {1e24f, 0, 0}, {}); });
+        taut_quarantine_reason why = TAUT_QUARANTINE_NONE;
+        run("taut_body_get_quarantine", [&] { return taut_body_get_quarantine(body, &why); });
+        expect(why <= TAUT_QUARANTINE_TOO_FAST, "no reason of a quarantine");
+        if (!run("taut_body_release", [&] { return taut_body_release(body); })) return;
+        expect(why != TAUT_QUARANTINE_NONE, "who was in no quarantine is let go");
+        expect(taut_body_get_quarantine(body, &why) == TAUT_OK && why == TAUT_QUARANTINE_NONE,
+               "who was let go is held");
+    }
+
 private:
     // A live body of a world, null if there is none.
     taut_body one_of(size_t w) {
