@@ -278,11 +278,12 @@ Broadphase::~Broadphase() {
 
 void Broadphase::add(uint32_t id, const Box& tight, bool moves, bool grain) {
     State& s = *state_;
+    if (id >= s.boxes.of.size()) reserve_more(s.boxes.of, id + 1 - s.boxes.of.size());
+    reserve_tree();
     if (s.stays.size() <= id) s.stays.resize(size_t(id) + 1);
     if (s.in_tree.size() <= id) s.in_tree.resize(size_t(id) + 1);
     if (s.leaves.size() <= id) s.leaves.resize(size_t(id) + 1);
     if (s.boxes.of.size() <= id) s.boxes.of.resize(size_t(id) + 1);
-    reserve_tree();
     s.mark(id);
     const btDbvtVolume volume = fat_volume(tight, Vec3f::Zero());
     s.boxes.of[id].box = box_of(volume);

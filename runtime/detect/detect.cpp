@@ -311,9 +311,13 @@ void update_pairs(Team& team, const Nodes& nodes, const Colliders& colliders, co
     if (pairs.complete) return;
     find_news(broadphase, was_complete, pairs);
     pairs.near.reserve(pairs.near.size() + pairs.arrived.size());
+    grow_to(pairs.met, colliders.record.size());
     end_departed(nodes, colliders, pairs);
-    exchange_pairs(pairs.near, {pairs.departed, pairs.arrived},
-                   [&](uint64_t key) { return new_pair(nodes, colliders, pairs, key); });
+    exchange_pairs(pairs.near, {pairs.departed, pairs.arrived}, [&](uint64_t key) {
+        const NearPair near = new_pair(nodes, colliders, pairs, key);
+        pairs.met[near.collider_a()] = pairs.met[near.collider_b()] = 1;
+        return near;
+    });
     pairs.complete = true;
     let_go(pairs.arrived);
     let_go(pairs.departed);

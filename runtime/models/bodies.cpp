@@ -21,6 +21,8 @@ uint32_t& link_to(World& world, uint32_t node, uint32_t collider) {
     return *link;
 }
 
+bool has_met(const World& world, uint32_t node) { return has_met(world.pairs, world.nodes, world.colliders, node); }
+
 }  // namespace
 
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
@@ -50,7 +52,7 @@ uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, 
 void remove_node(World& world, uint32_t node) {
     wake(world, node);
     // What may fail comes first.
-    reserve_ended(world.pairs, ends_on(node));
+    if (has_met(world, node)) reserve_ended(world.pairs, ends_on(node));
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
         if (ends_on(world.joints.record[joint], node)) world.joints.remove(joint);
@@ -61,7 +63,7 @@ void remove_node(World& world, uint32_t node) {
 
 void drop_node(World& world, uint32_t node) {
     wake(world, node);
-    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
+    if (has_met(world, node)) forget_pairs(world.pairs, world.nodes, world.colliders, ends_on(node));
     remove_colliders(world, node);
     world.nodes.remove(node);
 }
@@ -85,6 +87,7 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     world.colliders.chained += world.nodes.info[record.node].collider != kNone;
     link_to(world, record.node, kNone) = index;
     world.pairs.forget_place(index);
+    world.pairs.met[index] = 0;
     ++world.shapes[record.shape].users;
     if (!moves_by_forces(world.nodes.info[record.node].kind))
         wake_box(world, contact_box(world.nodes, world.shapes, record));
@@ -105,7 +108,7 @@ static void forget_surface_contacts(World& world, uint32_t collider) {
 
 void remove_collider(World& world, uint32_t collider) {
     wake(world, world.colliders.record[collider].node);
-    forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
+    if (world.pairs.met[collider]) forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(collider));
     const Collider& record = world.colliders.record[collider];
     if (record.grain) world.pairs.grains.gone.push_back(record.node);
     forget_surface_contacts(world, collider);

@@ -33,10 +33,11 @@ void wake_island(World& world, uint32_t node) {
 
 // All that touches a node or is tied to it.
 void wake_neighbours(World& world, uint32_t node) {
-    for_pairs(world.pairs, [&](const Pair& pair) {
+    const auto wake_sides = [&](const Pair& pair) {
         if (!ends_on(node)(pair) || !touches_closely(pair)) return;
         for (uint32_t side : {pair.a, pair.b, pair.a2, pair.b2}) wake_island(world, side);
-    });
+    };
+    if (has_met(world.pairs, world.nodes, world.colliders, node)) for_pairs(world.pairs, wake_sides);
     for (const SurfaceContact& contact : world.pairs.surfaces.contact) {
         if (std::ranges::find(contact.node, node) == std::end(contact.node) || !touches_closely(contact)) continue;
         for (const uint32_t side : contact.node) wake_island(world, side);

@@ -110,7 +110,9 @@ void link_records(Pairs& pairs) {
     pairs.next_ordered = 0;
     uint32_t slot = 0;
     const auto count = static_cast<uint32_t>(pairs.list.size());
+    std::ranges::fill(pairs.met, uint8_t{0});
     for_near(pairs, [&](NearPair& near) {
+        pairs.met[near.collider_a()] = pairs.met[near.collider_b()] = 1;
         for (uint32_t* link = &near.pair; slot < count && pairs.list[slot].key == near.key; ++slot) {
             *link = slot;
             link = &pairs.list[slot].next;

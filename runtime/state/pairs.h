@@ -292,6 +292,7 @@ struct Pairs {
           by_depth(memory),
           ended(memory),
           joined(memory),
+          met(memory),
           reach(memory),
           pace(memory),
           courses(memory),
@@ -316,7 +317,7 @@ struct Pairs {
 
     // In what update_bounds() fills, for so many colliders: as they come, not in the step that sees them first.
     void make_room(size_t colliders) {
-        grow_to(reach, colliders), grow_to(pace, colliders), grow_to(placement, colliders);
+        grow_to(met, colliders), grow_to(reach, colliders), grow_to(pace, colliders), grow_to(placement, colliders);
         grow_to(stance, colliders), grow_to(travel, colliders);
     }
     // Of a new collider in a slot, or of one that gets another shape.
@@ -345,6 +346,7 @@ struct Pairs {
     Array<uint64_t> joined;           // keys of nodes whose joint forbids contacts, sorted
     uint64_t joined_version = 0;      // of the joints that they were taken from
     uint64_t colliders_version = 0;   // that NearPair::changed knows
+    Array<uint8_t> met;               // by collider: 1 if it may have a record in near or resting; has_met()
     Array<Reach> reach;               // by collider; update_bounds()
     Array<Pace> pace;                 // by collider; update_bounds()
     Array<Course> courses;            // by collider, scratch; hold_back()
@@ -410,6 +412,13 @@ void exchange_pairs(NearPairs& list, const Changes& changes, Make&& make) {
 // Notes that a touching pair ended, if anybody asks.
 void report_end(Pairs& pairs, const Nodes& nodes, const Colliders& colliders, const NearPair& near);
 
+// Whether a node may be in a record of near pairs, which what stands alone need not look for among those of others.
+inline bool has_met(const Pairs& pairs, const Nodes& nodes, const Colliders& colliders, uint32_t node) {
+    bool met = nodes.info[node].is_part();  // whose colliders may be another node's
+    for_colliders(nodes, colliders, node, [&](uint32_t c) { met = met || pairs.met[c]; });
+    return met;
+}
+
 // Calls act(near) for all near pairs, resting ones too, in the order of keys.
 template <class SomePairs, class Act>
 void for_near(SomePairs& pairs, Act&& act) {
@@ -438,7 +447,7 @@ void for_pairs(SomePairs& pairs, Act&& act) {
 template <class Visitor, Like<Pairs> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [near, resting, late, complete, list, free, next_ordered, arrived, departed, active, by_depth, ended, world,
-           asks, joined, joined_version, colliders_version, reach, pace, courses, asked, marks, bearings, any_fast,
+           asks, joined, joined_version, colliders_version, met, reach, pace, courses, asked, marks, bearings, any_fast,
            any_crowded, crowds, crowd_of, mechanisms, placement, stance, travel, picked, arriving, unheld, any_unheld,
            homes, carried, carried_before, parts, grains, surfaces] = of;
     TAUT_FIELDS(visitor, near, resting, mechanisms, carried, grains, surfaces);
@@ -447,8 +456,8 @@ void describe(Visitor& visitor, Of& of) {
         for_near(of,
                  [&](const NearPair& pair) { for_parts(of, pair, [&](const Pair& part) { act(part, pair.kept); }); });
     });
-    // reach, placement, stance, travel: rows of the colliders, world.h. joined, pace: found by the next step. All
-    // others are what steps work with.
+    // reach, placement, stance, travel: rows of the colliders, world.h. joined, pace: found by the next step; met:
+    // link_records(). All others are what steps work with.
 }
 // Once a restoration filled it: room for what link_records() makes, which may throw std::bad_alloc, and that.
 void reserve_links(Pairs& pairs);

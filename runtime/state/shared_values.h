@@ -25,11 +25,14 @@ public:
     void reserve_values(size_t more) {
         reserve_more(held_, more + 1);
         while (held_.size() + more + 1 > first_.size()) rehash();
-        if (held_.empty()) take({});  // the default one stays
+        if (held_.empty()) take({});  // the default one stays the first
     }
 
     // One more slot, with the default value.
-    void add() { which_.push_back(take({})); }
+    void add() {
+        which_.push_back(0);
+        ++held_[0].users;
+    }
     void set(uint32_t slot, const T& value) {
         const uint32_t before = std::exchange(which_[slot], take(value));
         drop(before);
