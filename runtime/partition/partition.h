@@ -300,7 +300,7 @@ private:
         uint32_t bounded = 0;            // rows of stops, drives and friction
         double sweep = 0;                // what a sweep of its ties takes, in multiplications of a factor
         Price price;
-        double cost = 0;                 // of a direct solve, in parts of what sweeps cost
+        double cost = 0;       // of a direct solve, in parts of what sweeps cost
         bool priced = false;   // this is known from the last frame
         bool exact = false;    // a direct solve costs little more than sweeps
         bool dear = false;     // it costs more than it may

