@@ -94,7 +94,10 @@ double removing_slabs(bool crowd) {
 }  // namespace
 
 // Of 1600 boxes that touch, which each removal asked for pairs with what goes.
-TEST(Standing, RemovingWhatStandsAloneAsksNoCrowd) { EXPECT_LE(removing_slabs(true), 4 * removing_slabs(false)); }
+TEST(Standing, RemovingWhatStandsAloneAsksNoCrowd) {
+    if (few_starts()) GTEST_SKIP() << "instrumented";
+    EXPECT_LE(removing_slabs(true), 4 * removing_slabs(false));
+}
 
 // 22500 of them in place of 144: a step that went over all bodies took 25 times as long.
 TEST(Standing, StaticBodiesCostAStepNothing) {
