@@ -58,8 +58,8 @@ typedef enum taut_joint_kind {
 typedef enum taut_joint_solve {
     /** With all joints it hangs together with, at once: exact whatever they carry. Where a factor of their matrix takes
         more than 16000 multiplications for each of them (of an element in proportion to its rows and nodes), as of
-        dense graphs and of a thousand joints between two bodies, all are swept. Solvers without a direct one sweep all.
-     */
+        dense graphs and of a thousand joints between two bodies, all are swept. Solvers without a direct one sweep
+        all. */
     TAUT_JOINT_SOLVE_DIRECT = 0,
     /** By sweeps: cheap, gives way under loads far heavier than the bodies it holds, by .0253 h^2 |f| (1/m_a + 1/m_b)
        in substeps of h. A drive's stiffness K, damping with it, is at most half of the inertia I of its ends' own
@@ -72,8 +72,8 @@ typedef enum taut_joint_solve {
         directly where sweeps would not hold the weight of the heaviest of their bodies by the lightest, and where they
         hang, n joints deep, by what does not move: sweeps carry a force from joint to joint in a substep h, in which
         the last falls by g (n h)^2 / 2. That is worth c times the cost where it is over c^2 / 500 of a body's size.
-        What has no size, a particle, is held
-        directly, and so is what hangs on a direct joint, within the bound above. */
+        What has no size, a particle, is held directly, and so is what hangs on a direct joint, within the bound
+        above. */
     TAUT_JOINT_SOLVE_BY_LOAD = 2,
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;
