@@ -7,6 +7,41 @@
 namespace taut {
 namespace {
 
+InnerBall inner_ball(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs,
+                     uint32_t c) {
+    const Collider& collider = colliders.record[c];
+    if (collider.node_b != kNone || !moves_by_forces(nodes.info[collider.node].kind)) return {};
+    const collision::Shape& shape = shapes[collider.shape].shape;
+    const collision::Placement& at = pairs.placement[c];
+    return {at.position + (at.rotation * collision::middle(shape).cast<float>()).cast<double>(),
+            std::max(0.0, collision::thickness(shape) - static_cast<double>(pairs.travel[c].margin))};
+}
+
+// By how much two balls overlap [m]; 0: not.
+float overlap(const InnerBall& a, const InnerBall& b) {
+    if (a.radius == 0 || b.radius == 0) return 0;
+    const double reach = a.radius + b.radius, squared = (a.middle - b.middle).squaredNorm();
+    return squared < reach * reach ? static_cast<float>(reach - std::sqrt(squared)) : 0;
+}
+
+// Whether a collider has more than Crowd::kMost sunk into it of those after it in the order of keys. Where none has, no
+// more pairs are sunk than Crowd::kMost for each collider, among any of them.
+bool any_crowd(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, const Pairs& pairs) {
+    const NearPairs& near = pairs.near;
+    for (size_t begin = 0, end = 0; begin < near.size(); begin = end) {
+        const uint32_t first = near[begin].collider_a();
+        while (end < near.size() && near[end].collider_a() == first) ++end;
+        if (end - begin <= Crowd::kMost) continue;
+        const InnerBall ball = inner_ball(nodes, colliders, shapes, pairs, first);
+        uint32_t sunk = 0;
+        for (size_t i = begin; ball.radius > 0 && i < end; ++i)
+            if (!near[i].filtered)
+                sunk += overlap(ball, inner_ball(nodes, colliders, shapes, pairs, near[i].collider_b())) > 0;
+        if (sunk > Crowd::kMost) return true;
+    }
+    return false;
+}
+
 void enter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     grow_to(pairs.crowd_of, colliders.record.size());
     pairs.crowds.assign(colliders.active.size(), {});
@@ -14,13 +49,8 @@ void enter(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes,
         for (const uint32_t c : {near.collider_a(), near.collider_b()}) pairs.crowd_of[c] = kNone;
     for (uint32_t i = 0; i < pairs.crowds.size(); ++i) {
         const uint32_t c = colliders.active[i];
-        const Collider& collider = colliders.record[c];
-        const collision::Shape& shape = shapes[collider.shape].shape;
-        if (collider.node_b != kNone || !moves_by_forces(nodes.info[collider.node].kind)) continue;
-        const collision::Placement& at = pairs.placement[c];
-        pairs.crowd_of[c] = i;
-        pairs.crowds[i].middle = at.position + (at.rotation * collision::middle(shape).cast<float>()).cast<double>();
-        pairs.crowds[i].radius = collision::thickness(shape) - static_cast<double>(pairs.travel[c].margin);
+        pairs.crowds[i].ball = inner_ball(nodes, colliders, shapes, pairs, c);
+        if (pairs.crowds[i].ball.radius > 0) pairs.crowd_of[c] = i;
     }
 }
 
@@ -33,11 +63,7 @@ struct Sides {
         if (near.filtered || of_a == kNone || of_b == kNone) return;
         a = &pairs.crowds[of_a], b = &pairs.crowds[of_b];
     }
-    // By how much the balls inside them overlap [m]; 0: not.
-    float sunk() const {
-        const double reach = a->radius + b->radius, squared = (a->middle - b->middle).squaredNorm();
-        return reach > 0 && squared < reach * reach ? static_cast<float>(reach - std::sqrt(squared)) : 0;
-    }
+    float sunk() const { return overlap(a->ball, b->ball); }
 };
 
 void take(Crowd& crowd, float depth) {
@@ -76,7 +102,7 @@ void leave_out(Pairs& pairs, NearPair& near) {
 uint32_t thin_crowds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs) {
     if (std::exchange(pairs.any_crowded, false))
         for (NearPair& near : pairs.near) near.crowded = false;
-    if (pairs.near.size() <= Crowd::kMost * colliders.active.size()) return 0;
+    if (!any_crowd(nodes, colliders, shapes, pairs)) return 0;
     enter(nodes, colliders, shapes, pairs);
     for (const NearPair& near : pairs.near) {
         const Sides sides(pairs, near);

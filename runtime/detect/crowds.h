@@ -15,7 +15,7 @@
 namespace taut {
 
 // Marks the near pairs that are left out in this frame, takes the points of those that had some, and returns how many
-// they are. Does nothing while there are no more pairs than Crowd::kMost for each collider that a step goes through.
+// they are. Does nothing while no collider has more than Crowd::kMost sunk into it of those after it in order.
 uint32_t thin_crowds(const Nodes& nodes, const Colliders& colliders, const Shapes& shapes, Pairs& pairs);
 
 }  // namespace taut

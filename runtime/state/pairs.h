@@ -105,12 +105,17 @@ struct AskedPair {
     bool passed = false;  // did so
 };
 
-// The ball inside a collider, and the deepest of what is sunk into it; detect/crowds.h.
+// The ball inside a collider, less its contact margin: of no radius where it does not yield or spans two nodes.
+struct InnerBall {
+    Vec3 middle = Vec3::Zero();
+    double radius = 0;  // [m]
+};
+
+// The deepest of what is sunk into a collider; detect/crowds.h.
 struct Crowd {
     static constexpr uint32_t kMost = 12;  // as many balls as touch one of their size (Schuette, van der Waerden 1953)
 
-    Vec3 middle = Vec3::Zero();
-    double radius = 0;        // [m]
+    InnerBall ball;
     uint32_t count = 0;       // of what is sunk in
     uint32_t least = 0;       // how many of the deepest are as deep as the least of them
     float depth[kMost] = {};  // of these [m], least first

@@ -40,6 +40,18 @@ TEST_P(CrowdOf, Hundreds) {
     EXPECT_LE(seconds / kSteps, 0.05);
 }
 
+// What is elsewhere in the world changes nothing.
+TEST_P(CrowdOf, BesideLoneOnes) {
+    constexpr int kCount = 60;
+    World world([](taut_world_def& def) { def.gravity = {0, 0, 0}; });
+    put_together(world, kCount, 5);
+    const taut_shape ball = world.sphere(0.1);
+    for (int i = 0; i < 1000; ++i) world.add({.shape = ball, .position = {10.0 + i, 0, 0}, .mass = 1});
+    world.step();
+    EXPECT_LE(world.profile().touching, 12u * kCount);
+    EXPECT_GT(world.profile().dropped_contacts, 0u);
+}
+
 // Each has its turn: in the end all lie on the ground, none within another.
 TEST_P(CrowdOf, PartsInTheEnd) {
     World world;
