@@ -125,6 +125,16 @@ public:
     using Host::refused;
 };
 
+// A source that runs dry with its bytes, which outlive it.
+inline ByteSource source_of(std::span<const uint8_t> bytes) {
+    return [bytes, at = size_t{0}](void* out, size_t wanted) mutable {
+        if (bytes.size() - at < wanted) return false;
+        std::memcpy(out, bytes.data() + at, wanted);
+        at += wanted;
+        return true;
+    };
+}
+
 // A source without end: splitmix64.
 inline ByteSource random_source(uint64_t seed) {
     return [state = seed](void* out, size_t size) mutable {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <taut/taut.h>
