@@ -100,6 +100,6 @@ TEST_P(FuzzedHost, BreaksNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Corpus, FuzzedHost,
-                         testing::Combine(testing::Range<size_t>(0, corpus().size()), testing::Range<uint64_t>(0, 5)));
+                         testing::Combine(testing::Range<size_t>(0, corpus().size()), testing::Range<uint64_t>(0, 21)));
 
 }  // namespace
