@@ -55,6 +55,7 @@ public:
     virtual taut_world world() const { return {}; }  // null: not Taut
     virtual SolveTime solve_time() const { return {}; }
     virtual std::vector<StageTime> stage_times() const { return {}; }  // the same stages after every step
+    virtual uint64_t bytes() const { return 0; }                       // that it holds; 0: not known
     virtual uint32_t asleep() const { return 0; }                      // bodies
     virtual uint32_t quarantined() const { return 0; }  // bodies frozen by the last step because they became non-finite
 };

@@ -141,7 +141,10 @@ int run(const Options& options) {
     const Subject ours = subject(options);
     const scenes::Scene& scene = ours.scene;
     if (!options.cold) warm(ours);
+    const double before = thread_ms();
     const std::unique_ptr<Engine> engine = ours.engine();
+    const double made = thread_ms() - before;
+    uint64_t bytes = engine->bytes();
     Metrics metrics(scene, *engine, ours.steps());
     std::optional<SolveReportFile> report;
     if (!options.report.empty()) report.emplace(options.report);
@@ -151,6 +154,7 @@ int run(const Options& options) {
         solve.microseconds += last.microseconds;
         solve.solves += last.solves;
         metrics.after_step(step);
+        bytes = std::max(bytes, engine->bytes());
         if (report) report->add(engine->world(), step);
     });
     std::optional<Other> other;
@@ -167,6 +171,8 @@ int run(const Options& options) {
                                    [](const scenes::Body& body) { return body.kind != TAUT_BODY_STATIC; });
     json["steps"] = ours.steps();
     json["runs"] = options.runs;
+    json["made_ms"] = made;
+    if (bytes > 0) json["bytes_max"] = bytes;
     times.report(json);
     const Spike spike = times.worst_after(options.warm_up);
     spike.report(json);

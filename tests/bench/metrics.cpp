@@ -66,6 +66,8 @@ std::vector<scenes::Shape> unscaled(std::vector<scenes::Shape> shapes) {
 const char* const kFieldHelp = R"(JSON fields (one object on one line):
   engine scene threads bodies steps runs
                                       what ran; bodies counts dynamic bodies and particles
+  made_ms                             what the calling thread worked to make the world
+  bytes_max                           memory that it held, the most after any step
   mean_ms median_ms p99_ms max_ms     wall time of one step, the quietest of the runs
   thread_mean_ms thread_median_ms thread_max_ms
                                       what the calling thread worked of it: on one thread, without what else ran

@@ -66,6 +66,12 @@ public:
                 {"publish", ms(p.publish_us)}};
     }
 
+    uint64_t bytes() const override {
+        uint64_t bytes = 0;
+        scenes::check(taut_world_get_bytes(world_.world, &bytes), "reading how much memory the world holds");
+        return bytes;
+    }
+
     uint32_t asleep() const override {
         const taut_profile profile = world_.profile();
         return profile.bodies - profile.awake;
