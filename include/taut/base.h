@@ -25,10 +25,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Before each function; a host that builds or loads the library in another way defines it itself. */
+#ifndef TAUT_API
 #if defined(_WIN32)
 #define TAUT_API
 #else
 #define TAUT_API __attribute__((visibility("default")))
+#endif
 #endif
 
 #ifdef __cplusplus

@@ -1,17 +1,20 @@
-# Installs libraries, headers, the package for CMake and the one for pkg-config. All of it can be moved as a whole.
+# Installs libraries, headers, the package for CMake and the one for pkg-config. All of it can be moved as a whole. The
+# target package makes a .tar.gz of it, and a .deb.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
 set(here ${PROJECT_SOURCE_DIR}/runtime/api)
 
-install(TARGETS taut EXPORT tautTargets
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(BUILD_SHARED_LIBS)
+    install(TARGETS taut EXPORT tautTargets
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${package_dir})
+endif()
 install(TARGETS taut_static EXPORT tautStaticTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.h")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${package_dir})
 install(EXPORT tautStaticTargets NAMESPACE taut:: DESTINATION ${package_dir})
 configure_package_config_file(${here}/tautConfig.cmake.in ${PROJECT_BINARY_DIR}/tautConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
@@ -34,5 +37,28 @@ foreach(kind IN ITEMS LIBDIR INCLUDEDIR)
         set(TAUT_PC_${kind} "\${prefix}/${CMAKE_INSTALL_${kind}}")
     endif()
 endforeach()
+set(TAUT_PC_LIBS "-ltaut")
+set(TAUT_PC_LIBS_PRIVATE "-lBulletCollision -lLinearMath -lccd -l${TAUT_CXX_LIBRARY} -lm")
+if(NOT BUILD_SHARED_LIBS)
+    string(APPEND TAUT_PC_LIBS " ${TAUT_PC_LIBS_PRIVATE}")
+endif()
 configure_file(${here}/taut.pc.in ${PROJECT_BINARY_DIR}/taut.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/taut.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+set(CPACK_PACKAGE_NAME taut)
+set(CPACK_PACKAGE_VENDOR "Taut authors")
+set(CPACK_PACKAGE_CONTACT "Taut authors")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_GENERATOR TGZ)
+set(CPACK_VERBATIM_VARIABLES ON)
+find_program(TAUT_DPKG dpkg)
+mark_as_advanced(TAUT_DPKG)
+if(TAUT_DPKG)
+    list(APPEND CPACK_GENERATOR DEB)
+    set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+    set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+    set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+    # What the static library links has the shared ones with it.
+    set(CPACK_DEBIAN_PACKAGE_DEPENDS "libbullet-dev, libccd-dev, libstdc++6")
+endif()
+include(CPack)
