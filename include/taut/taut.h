@@ -11,6 +11,7 @@
 #include <taut/cable.h>
 #include <taut/cloth.h>
 #include <taut/collider.h>
+#include <taut/draw.h>
 #include <taut/event.h>
 #include <taut/joint.h>
 #include <taut/lint.h>

@@ -234,6 +234,10 @@ public:
 
     // Of a node, in this frame; kNone where forces do not move it.
     uint32_t island_of(uint32_t node) const { return graph_.mover(node) == kNone ? kNone : island_of_[node]; }
+    // Likewise of the last frame, whatever came to the world or left it since.
+    uint32_t last_island_of(uint32_t node) const {
+        return node < graph_.moves.size() && node < island_of_.size() ? island_of(node) : kNone;
+    }
     // Within a frame, after the contacts of surfaces of a group without blocks were found anew: successor: of each
     // before its index now.
     void renew_surfaces(uint32_t group, const SurfaceContacts& surfaces, std::span<const uint32_t> successor);

@@ -85,6 +85,7 @@ public:
             &Driver::cast_shape,
             &Driver::overlap,
             &Driver::measure,
+            &Driver::draw,
             &Driver::put_to_sleep,
             &Driver::set_continuous,
             &Driver::write_world,

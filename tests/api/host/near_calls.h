@@ -46,6 +46,28 @@ protected:
         }
     }
 
+    // As much as there is room for, all of it finite.
+    void draw() {
+        const taut_world world = worlds_[pick_world()];
+        taut_draw_def def;
+        taut_draw_def_init(&def);
+        def.what = byte();
+        def.colours = static_cast<taut_draw_colours>(byte() % 3);
+        def.force_scale = real(0, 1);
+        if (byte() % 2) def.low = pos(10), def.high = pos(20);
+        std::vector<taut_draw_line> lines(byte());
+        std::vector<taut_draw_triangle> triangles(byte());
+        std::vector<taut_draw_label> labels(byte());
+        taut_drawing drawing;
+        taut_drawing_init(&drawing);
+        drawing.lines = lines.data(), drawing.line_capacity = static_cast<uint32_t>(lines.size());
+        drawing.triangles = triangles.data(), drawing.triangle_capacity = static_cast<uint32_t>(triangles.size());
+        drawing.labels = labels.data(), drawing.label_capacity = static_cast<uint32_t>(labels.size());
+        if (!ask("taut_world_draw", [&] { return taut_world_draw(world, &def, &drawing); })) return;
+        for (uint32_t i = 0; i < drawing.line_count; ++i)
+            expect(finite(lines[i].from) && finite(lines[i].to), "a line is not finite");
+    }
+
     void measure() {
         const size_t w = pick_world();
         const taut_collider a = pick(colliders_, w), b = pick(colliders_, w);
