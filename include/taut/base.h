@@ -27,7 +27,7 @@
 
 /* Before each function; a host that builds or loads the library in another way defines it itself. */
 #ifndef TAUT_API
-#if defined(_WIN32)
+#if defined(_WIN32) || defined(SWIG) /* which knows no attributes */
 #define TAUT_API
 #else
 #define TAUT_API __attribute__((visibility("default")))
