@@ -14,6 +14,7 @@
 #include "options.h"
 #include "png_file.h"
 #include "render/egl_context.h"
+#include "scene_export.h"
 #include "scene_view.h"
 #include "scenes/catalogue.h"
 #include "video.h"
@@ -91,6 +92,9 @@ class Run {
 public:
     Run(const Options& options, const scenes::Scene& scene)
         : options_(options), scene_(scene), frames_(options.frames.value_or(scene.steps)), world_(scene) {
+        if (!options.gltf.empty()) gltf_ = std::make_unique<GltfExport>(scene, world_);
+        if (!options.csv.empty()) table_ = std::make_unique<PoseTable>(options.csv, world_);
+        record(0);
         if (!options.render) return;
         if (!options.video.empty())
             video_ = std::make_unique<Video>(options.video, options.width, options.height,
@@ -106,10 +110,16 @@ public:
     void go() {
         for (uint32_t frame = 0; frame < frames_; ++frame) {
             step();
-            if (renderer_ && (frame + 1) % options_.every == 0) draw(frame);
+            if (gltf_) gltf_->watch();
+            if ((frame + 1) % options_.every == 0) {
+                record(frame + 1);
+                if (renderer_) draw(frame);
+            }
             show_progress(frame + 1);
         }
         if (video_) video_->finish();
+        if (gltf_) gltf_->write(options_.gltf);
+        if (table_) table_->finish();
     }
 
     nlohmann::ordered_json json() const;
@@ -143,6 +153,13 @@ private:
             list_.instances[i].position = list_.instances[i].position + offset;
         for (size_t i = first_corner; i < list_.surfaces.size(); ++i)
             list_.surfaces[i].position = list_.surfaces[i].position + offset;
+    }
+
+    // The world after so many steps.
+    void record(uint32_t steps) {
+        const double time = steps * static_cast<double>(scene_.world.time_step);
+        if (gltf_) gltf_->record(time);
+        if (table_) table_->record(steps, time);
     }
 
     void step() {
@@ -232,6 +249,8 @@ private:
     std::unique_ptr<Twin> twin_;
     render::Vec3 aside_{};  // from the middle to the twin [m]
     std::unique_ptr<Video> video_;
+    std::unique_ptr<GltfExport> gltf_;
+    std::unique_ptr<PoseTable> table_;
     render::DrawList list_;
     taut_profile profile_{};
     double step_ms_ = 0, joint_error_ = 0;
@@ -259,6 +278,8 @@ nlohmann::ordered_json Run::json() const {
     json["quarantined"] = figures_.quarantined;
     json["state_hash"] = hash_text;
     if (twin_) json["without_geometric_stiffness"] = twin_->json();
+    if (gltf_) json["gltf"] = options_.gltf;
+    if (table_) json["csv"] = options_.csv;
     if (!renderer_) return json;
     json["size"] = std::to_string(options_.width) + "x" + std::to_string(options_.height);
     json["gl_renderer"] = renderer_->gl_renderer();

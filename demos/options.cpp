@@ -50,6 +50,9 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--size", size, "picture size, WxH (default: 1280x720)");
     app.add_option("--video", options.video, "film, made by ffmpeg");
     app.add_option("--json", options.json, "also write the figures to this file");
+    app.add_option("--gltf", options.gltf,
+                   "animated glTF 2.0 file (.glb) of the drawn frames; draws none without --out or --video");
+    app.add_option("--csv", options.csv, "table of the poses of bodies and vertices in those frames");
     app.add_option("--threads", options.threads, "threads of a step")->check(CLI::Range(1, 64));
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");
@@ -99,9 +102,10 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     if (tension_flag->count() > 0) options.tension = tension;
     if (cloth_flag->count() + solid_flag->count() + mesh_flag->count() > 0 && scene_flag->count() == 0)
         options.scene = cloth_flag->count() > 0 ? "cloth_file" : solid_flag->count() > 0 ? "solid_file" : "mesh_drop";
-    options.render = !no_render;
+    const bool pictures = !options.out.empty() || !options.video.empty();
+    options.render = !no_render && (pictures || (options.gltf.empty() && options.csv.empty()));
     options.hud = !no_hud;
-    if (options.out.empty() && options.video.empty()) options.out = "out";
+    if (!pictures) options.out = "out";
     return options;
 }
 

@@ -17,6 +17,7 @@ struct Options {
     uint32_t every = 1;              // draws the last of each so many frames
     std::string out;                 // folder of the PNG frames, empty: none
     std::string video, json;         // files, empty: none
+    std::string gltf, csv;           // likewise
     int width = 1280, height = 720;
     uint32_t threads = 1;
     uint64_t seed = 0;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scenes/pose.h"
+#include "shape_mesh.h"
 
 namespace demo {
 
@@ -21,15 +22,8 @@ constexpr float kRodRadius = 0.04f, kRopeRadius = 0.028f, kPointRadius = 0.05f,
                 kCableWeightRadius = 0.30f;  // drawn sizes [m]
 constexpr float kContactRadius = 0.03f, kNormalLength = 0.30f;
 
-const Colour kCrates[] = {from_srgb(0xE4572E), from_srgb(0xF3A712), from_srgb(0xF2E3BC),
-                          from_srgb(0x4B9C8E), from_srgb(0x2E6F95), from_srgb(0x8E5572)};
-const Colour kBricks[] = {from_srgb(0xC4553B), from_srgb(0xD6704A), from_srgb(0xB5473A), from_srgb(0xE08E5A)};
-const Colour kSteel = from_srgb(0x3B424C), kLinkGrey = from_srgb(0xA9B4C0), kStone = from_srgb(0xB9B4A7);
-const Colour kWood[] = {from_srgb(0xB98A58), from_srgb(0xA97A4C), from_srgb(0xC79A68)};
-const Colour kCloth[] = {from_srgb(0x35618E), from_srgb(0x3D6B99)};
-const Colour kPaint = from_srgb(0xE0B03A), kSkin = from_srgb(0xE3A983), kStop = from_srgb(0xFF2F4F);
-const Colour kWall = from_srgb(0x8FA3B5), kDecoration = from_srgb(0xE8B23A), kPin = from_srgb(0x2A2F36);
-const Colour kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
+const Colour kLinkGrey = from_srgb(0xA9B4C0), kStop = from_srgb(0xFF2F4F), kDecoration = from_srgb(0xE8B23A),
+             kPin = from_srgb(0x2A2F36), kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
 
 Vec3 vec(taut_pos p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
@@ -40,42 +34,6 @@ bool is_asleep(taut_body body) {
 }
 
 Colour darker(const Colour& colour) { return {0.4f * colour.x, 0.4f * colour.y, 0.4f * colour.z}; }
-
-// Neighbours rarely share a colour, and a body keeps its own.
-template <size_t N>
-Colour pick(const Colour (&colours)[N], size_t index) {
-    return colours[(index * 2654435761u >> 7) % N];
-}
-
-Colour colour_of(Look look, size_t index) {
-    switch (look) {
-        case Look::brick:
-            return pick(kBricks, index);
-        case Look::steel:
-            return kSteel;
-        case Look::link:
-            return kLinkGrey;
-        case Look::particle:
-            return kPin;
-        case Look::stone:
-            return kStone;
-        case Look::wall:
-            return kWall;
-        case Look::wood:
-            return pick(kWood, index);
-        case Look::paint:
-            return kPaint;
-        case Look::skin:
-            return kSkin;
-        case Look::cloth:
-            return pick(kCloth, index);
-        case Look::crate:
-        case Look::hidden:
-        case Look::ground:
-            break;
-    }
-    return pick(kCrates, index);
-}
 
 Instance rod(Vec3 a, Vec3 b, float radius, Colour colour) {
     Vec3 along = b - a;
@@ -97,32 +55,6 @@ Instance ball(Vec3 centre, float radius, Colour colour, float gloss) {
     instance.colour = colour;
     instance.gloss = gloss;
     return instance;
-}
-
-constexpr int kSides = 32;
-
-std::vector<render::Vertex> cone_mesh(const scenes::Shape& shape) {
-    const float r = shape.radius, h = shape.half_length, side = std::hypot(2 * h, r);
-    const float out = 2 * h / side, up = r / side;
-    return render::turned_mesh({{0, -h, 0, -1}, {r, -h, 0, -1}, {r, -h, out, up}, {0, h, out, up}}, kSides);
-}
-
-// Arcs of two balls with the line that touches both; its normal's slope is the difference of the radii over the length.
-std::vector<render::Vertex> tapered_capsule_mesh(const scenes::Shape& shape) {
-    constexpr int kArc = 12;
-    const float h = shape.half_length, slope = (shape.radius - shape.top_radius) / (2 * h);
-    const float low = -0.5f * std::numbers::pi_v<float>, middle = std::asin(slope), high = -low;
-    std::vector<render::ProfilePoint> profile;
-    auto arc = [&](float from, float to, float radius, float centre) {
-        for (int i = 0; i <= kArc; ++i) {
-            const float angle = from + (to - from) * static_cast<float>(i) / kArc;
-            const float c = std::cos(angle), s = std::sin(angle);
-            profile.push_back({radius * c, centre + radius * s, c, s});
-        }
-    };
-    arc(low, middle, shape.radius, -h);
-    arc(middle, high, shape.top_radius, h);
-    return render::turned_mesh(profile, kSides);
 }
 
 // 0 for a joint that broke.
@@ -174,19 +106,8 @@ SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world,
         const ShapeKind kind = scene.shapes[i].kind;
         if (kind == ShapeKind::sphere) mesh = render::kMeshSphere;
         if (kind == ShapeKind::cylinder) mesh = render::kMeshCylinder;
-        if (kind == ShapeKind::cone) mesh = renderer.add_mesh(cone_mesh(scene.shapes[i]));
-        if (kind == ShapeKind::tapered_capsule) mesh = renderer.add_mesh(tapered_capsule_mesh(scene.shapes[i]));
-        if (kind == ShapeKind::hull || kind == ShapeKind::scaled_hull || kind == ShapeKind::mesh ||
-            kind == ShapeKind::height_field) {
-            uint32_t count = 0;
-            taut_shape_triangles(world.shapes[i], nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
-            std::vector<taut_vec3> triangles(count);
-            scenes::check(taut_shape_triangles(world.shapes[i], triangles.data(), count, &count),
-                          "reading a shape's triangles");
-            std::vector<Vec3> points;
-            for (const taut_vec3& p : triangles) points.push_back({p.x, p.y, p.z});
-            mesh = renderer.add_mesh(render::flat_mesh(points));
-        }
+        const std::vector<render::Vertex> own = own_mesh(scene.shapes[i], world.shapes[i]);
+        if (!own.empty()) mesh = renderer.add_mesh(own);
         meshes_.push_back(mesh);
     }
     renderer.set_stage(stage());
@@ -413,29 +334,13 @@ void SceneView::spread_over_vertices(const std::vector<uint32_t>& elements, size
 
 // The skin in place of the solid's own boundary.
 void SceneView::put_on(const scenes::Skin& skin) {
-    std::vector<taut_pos> points(skin.corners.size() / 4);
-    std::vector<float> values(at_vertices_.empty() ? 0 : points.size());
-    for (size_t i = 0; i < skin.corners.size(); ++i) {
-        const taut_pos& from = points_[skin.corners[i]];
-        const auto weight = static_cast<double>(skin.weights[i]);
-        taut_pos& p = points[i / 4];
-        p = {p.x + weight * from.x, p.y + weight * from.y, p.z + weight * from.z};
-        if (!values.empty()) values[i / 4] += skin.weights[i] * at_vertices_[skin.corners[i]];
-    }
-    points_ = std::move(points);
+    std::vector<float> values(at_vertices_.empty() ? 0 : skin.corners.size() / 4);
+    for (size_t i = 0; i < skin.corners.size() && !values.empty(); ++i)
+        values[i / 4] += skin.weights[i] * at_vertices_[skin.corners[i]];
+    points_ = skin_points(skin, points_);
     at_vertices_ = std::move(values);
     triangles_ = skin.triangles;
-    std::vector<Vec3> sum(points_.size());  // of areas
-    for (size_t t = 0; t < triangles_.size(); t += 3) {
-        const Vec3 a = vec(points_[triangles_[t]]);
-        const Vec3 area = cross(vec(points_[triangles_[t + 1]]) - a, vec(points_[triangles_[t + 2]]) - a);
-        for (size_t k = 0; k < 3; ++k) sum[triangles_[t + k]] = sum[triangles_[t + k]] + area;
-    }
-    normals_.clear();
-    for (const Vec3& n : sum) {
-        const Vec3 unit = length(n) > 0 ? normalised(n) : Vec3{0, 1, 0};
-        normals_.push_back({unit.x, unit.y, unit.z});
-    }
+    normals_ = normals_of(points_, triangles_);
 }
 
 void SceneView::add_surface(render::DrawList& list, const Paint& paint) const {
@@ -460,7 +365,7 @@ void SceneView::add_softs(render::DrawList& list) {
         return Paint{from_srgb(look.paint != 0 ? look.paint : usual), both_sides, measured ? look.most : 0};
     };
     for (size_t i = 0; i < scene_.cloths.size(); ++i) {
-        const Paint paint = paint_of(scene_.cloths[i].look, 0xB8473A, true);
+        const Paint paint = paint_of(scene_.cloths[i].look, kClothPaint, true);
         read_surface(world_.cloths[i]);
         if (paint.most > 0) {
             read_all(taut_cloth_get_strains, world_.cloths[i], values_);
@@ -470,7 +375,7 @@ void SceneView::add_softs(render::DrawList& list) {
     }
     for (size_t i = 0; i < scene_.solids.size(); ++i) {
         const scenes::Solid& solid = scene_.solids[i];
-        Paint paint = paint_of(solid.look, 0x4E8C6A, false);
+        Paint paint = paint_of(solid.look, kSolidPaint, false);
         if (solid.cells.empty()) paint.most = 0;  // what samples tell is nobody's cells
         read_surface(world_.solids[i]);
         at_vertices_.clear();
