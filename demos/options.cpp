@@ -68,6 +68,10 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
                                              ".ele (TetGen), or a closed surface as .obj")
                                   ->excludes(mesh_flag)
                                   ->excludes(cloth_flag);
+    CLI::Option* urdf_flag = app.add_option("--urdf", options.mesh, "URDF file of a robot (scene robot)")
+                                 ->excludes(mesh_flag)
+                                 ->excludes(cloth_flag)
+                                 ->excludes(solid_flag);
     CLI::Option* substeps_flag =
         app.add_option("--substeps", substeps, "least substeps of a step")->check(CLI::Range(1, 64));
     CLI::Option* solver_flag =
@@ -100,8 +104,11 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     if (substeps_flag->count() > 0) options.substeps = substeps;
     if (solver_flag->count() > 0) options.solver = solver;
     if (tension_flag->count() > 0) options.tension = tension;
-    if (cloth_flag->count() + solid_flag->count() + mesh_flag->count() > 0 && scene_flag->count() == 0)
-        options.scene = cloth_flag->count() > 0 ? "cloth_file" : solid_flag->count() > 0 ? "solid_file" : "mesh_drop";
+    if (!options.mesh.empty() && scene_flag->count() == 0)
+        options.scene = cloth_flag->count() > 0   ? "cloth_file"
+                        : solid_flag->count() > 0 ? "solid_file"
+                        : urdf_flag->count() > 0  ? "robot"
+                                                  : "mesh_drop";
     const bool pictures = !options.out.empty() || !options.video.empty();
     options.render = !no_render && (pictures || (options.gltf.empty() && options.csv.empty()));
     options.hud = !no_hud;

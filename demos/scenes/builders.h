@@ -92,5 +92,6 @@ Scene build_soft_car(double n, double r, const Options& options);
 Scene build_tyre(double n, double r, const Options& options);
 Scene build_cloth_file(double n, double r, const Options& options);
 Scene build_solid_file(double n, double r, const Options& options);
+Scene build_robot(double n, double r, const Options& options);
 
 }  // namespace scenes

@@ -192,6 +192,8 @@ const std::vector<Family>& families() {
         {"cloth_file", "cloth_file", "a cloth of an OBJ file falls on a ball", 360, true, build_cloth_file, 0},
         {"solid_file", "solid_file", "a solid of a mesh file falls on a step", 300, true, build_solid_file, 0, false,
          true},
+        {"robot", "robot", "an arm with a gripper, or the robot of a URDF file, moves its joints", 600, false,
+         build_robot, 0, true},
         {"mesh_drop", "mesh_drop", "hulls of a mesh file's pieces poured down stairs", 600, true, build_mesh_drop, 0},
     };
     return list;

@@ -76,9 +76,10 @@ struct Body {
     taut_pos position{};
     taut_quat rotation{0, 0, 0, 1};
     taut_vec3 linear_velocity{}, angular_velocity{};
-    float mass = 0;        // [kg], 0: from density
-    float density = 1000;  // [kg/m^3]
-    taut_sym3 inertia{};   // all zero: from the shape [kg m^2]
+    float mass = 0;              // [kg], 0: from density
+    float density = 1000;        // [kg/m^3]
+    taut_sym3 inertia{};         // all zero: from the shape [kg m^2]
+    taut_vec3 centre_of_mass{};  // where inertia is given: that is about it [m]
     float friction = 0.5f;
     int32_t group = 0;  // bodies of the same negative group don't collide
     Look look = Look::crate;

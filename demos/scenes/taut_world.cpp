@@ -123,6 +123,7 @@ taut_result add_body(taut_world world, const Body& body, taut_shape shape, uint6
     def.density = body.density;
     def.mass = body.mass;
     def.inertia = body.inertia;
+    def.centre_of_mass = body.centre_of_mass;
     def.user_data = index;
     return taut_world_add_body(world, &def, out);
 }
@@ -374,7 +375,8 @@ void TautWorld::move_vertices(const Motion& motion, double value) const {
 // A motor that holds a speed alone takes no target, which grows beyond a turn.
 void TautWorld::drive(const Motion& motion, double value, double rate) const {
     const auto joint = static_cast<size_t>(motion.joint);
-    const bool aims = scene_.joints[joint].axes[motion.axis].drive.stiffness > 0;
+    const taut_drive& drive = scene_.joints[joint].axes[motion.axis].drive;
+    const bool aims = drive.stiffness > 0 || drive.frequency > 0;
     check(taut_joint_set_target(joints[joint], motion.axis, aims ? static_cast<float>(value) : 0.0f,
                                 static_cast<float>(rate)),
           "driving a joint");
