@@ -9,6 +9,7 @@
 #include <taut/base.h>
 #include <taut/body.h>
 #include <taut/cable.h>
+#include <taut/character.h>
 #include <taut/cloth.h>
 #include <taut/collider.h>
 #include <taut/draw.h>
