@@ -25,6 +25,7 @@
 #include <taut/sleep.h>
 #include <taut/snapshot.h>
 #include <taut/solid.h>
+#include <taut/vehicle.h>
 #include <taut/world.h>
 
 #endif
