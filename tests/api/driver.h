@@ -8,6 +8,7 @@
 #include "host/collider_calls.h"
 #include "host/joint_add_calls.h"
 #include "host/joint_calls.h"
+#include "host/mover_calls.h"
 #include "host/near_calls.h"
 #include "host/query_calls.h"
 #include "host/shape_calls.h"
@@ -27,6 +28,7 @@ class Driver : private CableCalls,
                private WorldCalls,
                private QueryCalls,
                private NearCalls,
+               private MoverCalls,
                private SleepCalls,
                private SoftCalls {
 public:
@@ -115,6 +117,8 @@ public:
             &Driver::write_soft,
             &Driver::read_surfaces,
             &Driver::let_go,
+            &Driver::move_character,
+            &Driver::drive_vehicle,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

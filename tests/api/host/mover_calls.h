@@ -1,0 +1,119 @@
+// Calls of character.h and vehicle.h.
+#pragma once
+
+#include <cstddef>
+
+#include "query_values.h"
+
+namespace taut_test {
+
+class MoverCalls : protected virtual QueryValues {
+protected:
+    void move_character() {
+        const size_t w = pick_world();
+        if (one_in(4)) {
+            taut_character_init(&character_[w]);
+            character_[w].position = pos(reach(10));
+        }
+        taut_character_def def;
+        taut_character_def_init(&def);
+        spoil(def.struct_size);
+        def.shape = pick(shapes_, w);
+        if (one_in(4)) def.body = pick_body(w);
+        if (one_in(4)) def.up = vec(1);
+        if (one_in(4)) def.gap = real(1e-4, 0.1), def.step_height = real(0, 1), def.max_slope = real(0, 1.55);
+        if (one_in(4)) def.push_force = real(0, 1e9), def.mass = real(0, 1e6), def.gravity = real(0, 1e4);
+        if (one_in(4)) def.acceleration = real(0, 1e6), def.air_acceleration = real(0, 1e6);
+        const Filter filter = query_filter(w);
+        def.filter = filter.get();
+        const taut_character before = character_[w];
+        const taut_vec3 walk = vec(10);
+        const float jump = one_in(4) ? real(0, 10) : 0, seconds = one_in(8) ? real(0, 1) : 1 / 60.0f;
+        if (run("taut_character_move",
+                [&] { return taut_character_move(worlds_[w], &def, walk, jump, seconds, &character_[w]); })) {
+            expect(finite(character_[w].position) && finite(character_[w].velocity), "a character that is not finite");
+            expect(character_[w].state <= TAUT_CHARACTER_SLIDING, "a state that is none");
+            expect_finite(character_[w].ground_pose);
+            expect_all_finite();
+        } else {
+            expect(std::memcmp(&before, &character_[w], sizeof before) == 0, "a refused call moved a character");
+        }
+        if (one_in(16)) spoil_bytes(&character_[w], sizeof character_[w]);
+    }
+
+    void drive_vehicle() {
+        const size_t w = pick_world();
+        if (one_in(8)) taut_vehicle_init(&vehicle_[w]);
+        taut_wheel_def wheels[3];
+        for (taut_wheel_def& wheel : wheels) {
+            taut_wheel_def_init(&wheel);
+            wheel.position = vec(1);
+            if (one_in(4)) wheel.stiffness = scale(1, 1e12), wheel.compression_damping = scale(1, 1e12);
+            if (one_in(4)) wheel.radius = real(0.01, 2), wheel.travel = real(0.01, 2), wheel.inertia = scale(1e-6, 1e9);
+            if (one_in(4)) wheel.friction = real(0, 100), wheel.relaxation = real(0.01, 10);
+            if (one_in(4)) wheel.shape = pick(shapes_, w);
+            wheel.steering = real(-1.5, 1.5);
+            wheel.drive = real(0, 1);
+        }
+        const taut_engine_point torque[] = {{0, real(0, 300)}, {real(1, 500), real(0, 300)}, {600, real(-100, 300)}};
+        const float gears[] = {real(0.1, 20), real(0.1, 20)};
+        taut_vehicle_def def;
+        taut_vehicle_def_init(&def);
+        spoil(def.struct_size);
+        def.chassis = pick_body(w);
+        def.wheels = wheels;
+        def.wheel_count = one_in(32) ? byte() : 1 + byte() % 3;
+        if (def.wheel_count > 3 && def.wheel_count <= TAUT_VEHICLE_MAX_WHEELS) def.wheel_count = 3;
+        def.torque = torque;
+        def.torque_count = byte() % 4;
+        def.gears = gears;
+        def.gear_count = byte() % 3;
+        if (one_in(8)) def.forward = vec(1), def.up = vec(1);
+        const Filter filter = query_filter(w);
+        def.filter = filter.get();
+        taut_vehicle_input input{};
+        input.throttle = real(0, 1);
+        if (one_in(2)) input.brake = real(0, 1), input.handbrake = real(0, 1);
+        input.steering = real(-1, 1);
+        input.gear = one_in(2) ? TAUT_VEHICLE_AUTOMATIC : byte() % 4 - 1;
+        const float seconds = one_in(8) ? real(1e-4, 0.1) : 1 / 60.0f;
+        const taut_vehicle before = vehicle_[w];
+        if (run("taut_vehicle_drive",
+                [&] { return taut_vehicle_drive(worlds_[w], &def, &input, seconds, &vehicle_[w]); })) {
+            for (uint32_t i = 0; i < def.wheel_count; ++i) {
+                const taut_wheel& wheel = vehicle_[w].wheels[i];
+                expect_finite(wheel.pose);
+                expect(
+                    finite(wheel.force) && std::isfinite(wheel.speed) && std::isfinite(wheel.slip[0] + wheel.slip[1]),
+                    "a wheel that is not finite");
+            }
+            expect_all_finite();
+        } else {
+            expect(std::memcmp(&before, &vehicle_[w], sizeof before) == 0, "a refused call drove a vehicle");
+        }
+        if (one_in(16)) spoil_bytes(&vehicle_[w], sizeof vehicle_[w]);
+    }
+
+private:
+    // Anything may be in a host's memory but a size beyond it.
+    void spoil_bytes(void* at, size_t size) {
+        auto* bytes = static_cast<unsigned char*>(at);
+        bytes[sizeof(uint32_t) + word() % (size - sizeof(uint32_t))] = byte();
+    }
+
+    static taut_character new_character() {
+        taut_character out;
+        taut_character_init(&out);
+        return out;
+    }
+    static taut_vehicle new_vehicle() {
+        taut_vehicle out;
+        taut_vehicle_init(&out);
+        return out;
+    }
+
+    taut_character character_[2] = {new_character(), new_character()};
+    taut_vehicle vehicle_[2] = {new_vehicle(), new_vehicle()};
+};
+
+}  // namespace taut_test
