@@ -13,7 +13,7 @@ namespace {
 constexpr int kSides = 24;         // of a circle; of a half circle from pole to pole half as many
 constexpr float kPlaneHalf = 10;   // [m]
 constexpr float kPlaneNormal = 1;  // [m]
-constexpr float kPi = 3.14159265358979f;
+constexpr float kTurn = 6.28318530717959f;
 
 // ---------------------------------------------------------------- what turns about y
 
@@ -29,10 +29,10 @@ struct Profile {
     void add(float radius, float height, bool bends = false) { ring[size_t(count++)] = {radius, height, bends}; }
     // Part of a circle about (0, middle), between two latitudes [rad], which bends at one of its points.
     void add_arc(float radius, float middle, float from, float to, float bend) {
-        const int steps = int(std::ceil(kSides * (to - from) / (2 * kPi)));
+        const int steps = int(std::ceil(kSides * (to - from) / kTurn));
         for (int i = 0; i <= steps; ++i) {
             const float latitude = std::lerp(from, to, float(i) / float(steps));
-            const bool pole = std::abs(latitude) == kPi / 2;
+            const bool pole = std::abs(latitude) == kTurn / 4;
             add(pole ? 0 : radius * std::cos(latitude), middle + radius * std::sin(latitude), latitude == bend);
         }
     }
@@ -43,8 +43,8 @@ struct Profile {
 Profile capsule_profile(float low, float high, float half) {
     const float latitude = std::asin(std::clamp((low - high) / (2 * half), -1.0f, 1.0f));
     Profile out;
-    if (latitude > -kPi / 2) out.add_arc(low, -half, -kPi / 2, latitude, latitude);
-    if (latitude < kPi / 2) out.add_arc(high, half, latitude, kPi / 2, latitude);
+    if (latitude > -kTurn / 4) out.add_arc(low, -half, -kTurn / 4, latitude, latitude);
+    if (latitude < kTurn / 4) out.add_arc(high, half, latitude, kTurn / 4, latitude);
     return out;
 }
 
@@ -53,7 +53,7 @@ Profile profile_of(const Shape& shape) {
     Profile out;
     switch (shape.kind) {
         case ShapeKind::sphere:
-            out.add_arc(s.x(), 0, -kPi / 2, kPi / 2, 0);
+            out.add_arc(s.x(), 0, -kTurn / 4, kTurn / 4, 0);
             break;
         case ShapeKind::capsule:
             return capsule_profile(s.x(), s.x(), s.y());
@@ -73,7 +73,7 @@ Profile profile_of(const Shape& shape) {
 }
 
 Vec3f at(const Ring& ring, int side) {
-    const float turn = 2 * kPi * float(side % kSides) / kSides;
+    const float turn = kTurn * float(side % kSides) / kSides;
     return {ring.radius * std::cos(turn), ring.height, ring.radius * std::sin(turn)};
 }
 

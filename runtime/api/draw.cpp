@@ -18,7 +18,7 @@ constexpr double kAll = 1e7;          // [m]
 
 constexpr uint32_t kStatic = 0x9aa0a6ff, kKinematic = 0x9b6dd6ff, kDynamic = 0xf2a03dff, kAsleep = 0x3b5b92ff,
                    kSensor = 0x4caf50ff, kFrozen = 0xff2020ff, kBounds = 0x6a7078ff, kNormal = 0x20c0ffff,
-                   kPush = 0xff4060ff, kJoint = 0xf0e040ff, kGap = 0xff2020ff, kText = 0xffffffff,
+                   kPush = 0xff4060ff, kJoint = 0xf0e040ff, kGap = 0xff2020ff, kWriting = 0xffffffff,
                    kAxes[3] = {0xff4040ff, 0x40ff40ff, 0x4080ffff};
 
 template <class Record>
@@ -97,7 +97,7 @@ private:
         triangles_.add({{to_pos(a), to_pos(b), to_pos(c)}, colour, 0});
     }
     void label(const Vec3& at, double value, const char* unit) {
-        taut_draw_label out{to_pos(at), kText, ""};
+        taut_draw_label out{to_pos(at), kWriting, ""};
         std::snprintf(out.text, sizeof out.text, "%.3g %s", value, unit);
         labels_.add(out);
     }
