@@ -62,7 +62,7 @@ typedef struct taut_character {
     taut_character_state state;
     taut_pos position;         /**< of the capsule's centre [m], within 9e6 of the origin */
     taut_vec3 velocity;        /**< relative to ground_velocity [m/s], within 1e4; on the ground horizontal */
-    taut_vec3 ground_velocity; /**< on the ground: of its point beneath the character [m/s]; else 0 */
+    taut_vec3 ground_velocity; /**< of the ground beneath it; in the air and sliding, as it left the ground [m/s] */
     taut_vec3 ground_normal;   /**< unit, of the surface that carries it, against which it slides; 0 in the air */
     float ground_turn;         /**< by which the ground turned about up within the call, for the direction that the
                                     character looks in [rad] */

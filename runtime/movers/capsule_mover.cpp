@@ -10,7 +10,7 @@ constexpr int kMostTurns = 8;        // of a way along what is in it
 constexpr int kMostRecoveries = 8;   // rounds of getting out of what overlaps
 constexpr double kShortest = 1e-6;   // way [m]: that of queries
 constexpr double kFlat = 1e-3;       // horizontal part of the normal of a ceiling
-constexpr double kLeastRise = 0.01;  // of a step, in parts of the gap
+constexpr double kLeastGain = 1e-3;  // of a way that a step opens: a wall opens what rounding gives
 constexpr double kWedged = 0.05;     // sine of the slope on which nothing slides that is held from two sides
 constexpr double kTiny = 1e-12;      // [1]
 
@@ -183,13 +183,12 @@ bool CapsuleMover::step_up(Vec3& way) {
     const Vec3 above = at;
     const bool stopped = advance(at, way, touch, left);
     const double gone = (at - above).norm();
-    if (gone < kShortest) return false;
+    if (gone < kShortest + kLeastGain * way.norm()) return false;
     double down = 0;
     Vec3 normal;
     const double floor = (feet() - gap_ * up_).dot(up_);
     if (!drop(at, risen + gap_, touch, down) || touch.point.dot(up_) > floor + step_height_) return false;
-    // Where it does not rise it was no step.
-    if ((at - position_).dot(up_) < kLeastRise * gap_ || !can_stand(at, touch, normal)) return false;
+    if (!can_stand(at, touch, normal)) return false;
     position_ = at;
     way *= stopped ? left : 0.0;
     return true;

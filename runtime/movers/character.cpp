@@ -155,6 +155,10 @@ void Frame::step_on_ground() {
     Barriers barriers;
     mover_.walk(speed.way, barriers);
     clip(barriers);
+    // What leans on walls goes along them no faster than its walk leads, and so comes to rest in corners.
+    Vec3 led = Vec3::Zero();
+    if (!barriers.ways.empty() && !barriers.speeds.nearest(walk_, led)) led.setZero();
+    if (!barriers.ways.empty() && led.norm() < velocity_.norm()) velocity_ = led;
     // Down a slope of as much as it can walk on, or a step.
     const double slope = def_.max_slope;
     const double gone = mover_.across(mover_.position() - start).norm();
