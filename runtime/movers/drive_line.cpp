@@ -9,6 +9,8 @@ namespace {
 constexpr double kWorthAChange = 1.05;
 // Speed of the engine that is left to the next gear: at its last one it is held, and would never leave the gear.
 constexpr double kReserve = 1.03;
+// The same of a lower gear, which is changed to only where it will last.
+constexpr double kDownReserve = 1.2;
 
 double ratio_of(const taut_vehicle_def& def, int32_t gear) {
     if (gear > 0) return double(def.gears[gear - 1]);
@@ -16,17 +18,17 @@ double ratio_of(const taut_vehicle_def& def, int32_t gear) {
 }
 
 // At the wheels with full throttle, with a slipping clutch below the idle speed.
-double force_of(const taut_vehicle_def& def, int32_t gear, double speed) {
+double force_of(const taut_vehicle_def& def, int32_t gear, double speed, double reserve) {
     const double ratio = ratio_of(def, gear);
-    return ratio * engine_torque(def, std::max(kReserve * ratio * speed, double(def.idle_speed)));
+    return ratio * engine_torque(def, std::max(reserve * ratio * speed, double(def.idle_speed)));
 }
 
 int32_t best_gear(const taut_vehicle_def& def, int32_t now, double speed) {
     int32_t best = now > 0 && now <= int32_t(def.gear_count) ? now : 1;
-    double most = force_of(def, best, speed);
+    double most = force_of(def, best, speed, kReserve);
     double needed = now > 0 ? kWorthAChange : 1.0;
     for (int32_t gear = 1; gear <= int32_t(def.gear_count); ++gear) {
-        const double force = force_of(def, gear, speed);
+        const double force = force_of(def, gear, speed, gear < now ? kDownReserve : kReserve);
         if (gear == best || !(force > needed * most)) continue;
         best = gear;
         most = force;
