@@ -12,12 +12,12 @@ namespace scenes {
 
 namespace {
 
-constexpr float kHoldHertz = 4;                              // of the joints' drives [Hz]
+constexpr float kHoldHertz = 15;                             // of the joints' drives [Hz]
 constexpr double kSwingTurn = 0.6, kSwingShare = 0.35;       // of a joint's swing to a side [rad], and of its range
 constexpr double kSlowestSwing = 0.2, kSwingStagger = 0.07;  // frequencies of the swings [Hz]
 
 // Six axes and a gripper of two fingers, 27 kg, on a foot that stands still.
-constexpr const char* kArm = R"(<?xml version="1.0"?>
+constexpr const char* kArmUrdf = R"(<?xml version="1.0"?>
 <robot name="arm">
   <link name="foot">
     <collision><origin xyz="0 0 0.1"/><geometry><cylinder radius="0.15" length="0.2"/></geometry></collision>
@@ -133,7 +133,7 @@ Scene build_robot(double, double, const Options& options) {
     const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
     place.rotation = {-half, 0, 0, half};  // z, which is up there, to y
     const size_t first = scene.bodies.size();
-    const Robot robot = options.mesh.empty() ? add_urdf_text(scene, kArm, "the arm made here", place)
+    const Robot robot = options.mesh.empty() ? add_urdf_text(scene, kArmUrdf, "the arm made here", place)
                                              : add_urdf(scene, options.mesh, place);
     double least = 0, reach = 0.5;
     bool any = false;
