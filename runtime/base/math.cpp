@@ -52,6 +52,20 @@ double angle_of(double y, double x) {
     return y < 0 ? -angle : angle;
 }
 
+// In the implicit form e^-x = 1 / (1 + E), E = e^x - 1, of which every term is positive: by its series, y^k / k! to
+// y^15 for y <= 1/2, which leaves out less than 1e-18, and E(2y) = E(y) (E(y) + 2). Of large x, E is infinite.
+Decay decay_over(double x) {
+    if (!(x > 0)) return {};
+    double y = x;
+    int doublings = 0;
+    for (; y > 0.5; y *= 0.5) ++doublings;
+    double series = 0;
+    for (int k = 15; k >= 1; --k) series = (1 + series) * y / k;
+    for (; doublings > 0; --doublings) series *= series + 2;
+    const double left = 1 / (1 + series);
+    return {left, (series < 1 ? series * left : 1 - left) / x};
+}
+
 namespace {
 
 // Turns below half a radian, which most are: the same series, from the square of half the angle y <= 1/16. What they

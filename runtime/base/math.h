@@ -29,6 +29,13 @@ double cosine(double x);
 // Angle of the point (x, y) in (-pi, pi], 0 at the origin: atan2(y, x) within 4e-16, the same bits everywhere.
 double angle_of(double y, double x);
 
+// What is left of a quantity that decays at a constant rate, and its mean meanwhile, in parts of it.
+struct Decay {
+    double left = 1, mean = 1;
+};
+// Of e^-x over x >= 0: e^-x and (1 - e^-x) / x, within 1e-13, the same bits everywhere.
+Decay decay_over(double x);
+
 // Rotation by the vector theta [rad]; exact for any size (large angles are halved first).
 Quat rotation_from_vector(const Vec3& theta);
 // The turn from one unit vector to another by the shortest way.

@@ -35,6 +35,17 @@ TEST(Cosine, IsCosine) {
     EXPECT_LE(worst, kClose);
 }
 
+TEST(DecayOver, IsTheExponential) {
+    EXPECT_EQ(decay_over(0).left, 1);
+    EXPECT_EQ(decay_over(0).mean, 1);
+    for (double x = 1e-300; x < 1e6; x *= 1.7) {
+        const Decay found = decay_over(x);
+        EXPECT_NEAR(found.left, std::exp(-x), 1e-13 * std::exp(-x)) << "x " << x;
+        EXPECT_NEAR(found.mean, -std::expm1(-x) / x, 1e-13 / std::max(1.0, x)) << "x " << x;
+    }
+    EXPECT_EQ(decay_over(1e6).left, 0);
+}
+
 TEST(AngleOf, IsTheArcTangentAllAround) {
     double worst = 0;
     for (double radius : {1e-300, 1e-9, 1.0, 1e9, 1e150})
