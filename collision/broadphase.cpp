@@ -289,6 +289,7 @@ void Broadphase::add(uint32_t id, const Box& tight, bool moves, bool grain) {
     s.boxes.of[id].box = box_of(volume);
     s.boxes.of[id].moves = moves;
     s.boxes.of[id].grain = grain;
+    s.boxes.of[id].stray = false;
     set_leaf(id, true);
 }
 
@@ -358,16 +359,18 @@ void Broadphase::set_leaf(uint32_t id, bool lives) {
     State& s = *state_;
     btDbvtNode*& leaf = s.leaves[id];
     if (!lives || !leaf) s.stays[id] = 0;
-    if (!lives || (leaf && s.in_tree[id] != State::kind_of(s.boxes.of[id]))) {
+    if (!lives) {
         if (leaf) s.tree_of(id).remove(leaf);
         leaf = nullptr;
+        return;
     }
-    if (!lives) return;
     const FatBox& fat = s.boxes.of[id];
     const btDbvtVolume volume = tight_volume(fat.box);
-    if (!leaf) {
+    if (!leaf || s.in_tree[id] != State::kind_of(fat)) {
+        btDbvtNode* const grown = s.trees[size_t(State::kind_of(fat))].add(volume, id);  // what may fail comes first
+        if (leaf) s.tree_of(id).remove(leaf);
         s.in_tree[id] = State::kind_of(fat);
-        leaf = s.tree_of(id).add(volume, id);
+        leaf = grown;
     } else if (NotEqual(leaf->volume, volume)) {
         s.change(id, volume);
     }

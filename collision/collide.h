@@ -151,7 +151,7 @@ public:
     Broadphase& operator=(const Broadphase&) = delete;
 
     // moves: false for static bodies. Two ids that both do not move never pair, nor do two grains: each of these kinds
-    // has a tree of its own.
+    // has a tree of its own. One that is there already becomes what it is said to be.
     void add(uint32_t id, const Box& tight, bool moves, bool grain = false);
     void remove(uint32_t id);
     // Re-inserts the leaf if the tight box (already grown by the contact margin) left its fat box; displacement [m]
