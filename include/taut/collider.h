@@ -140,6 +140,8 @@ static inline taut_result taut_collider_get_def(taut_collider collider, taut_col
     return taut_collider_get_def_sized(collider, out, (uint32_t)sizeof(*out));
 }
 TAUT_API taut_result taut_collider_get_body(taut_collider collider, taut_body* out);
+/** Its least axis-aligned box [m], as taut_body_get_bounds. */
+TAUT_API taut_result taut_collider_get_bounds(taut_collider collider, taut_pos* low, taut_pos* high);
 TAUT_API taut_result taut_collider_get_user_data(taut_collider collider, uint64_t* out);
 TAUT_API taut_result taut_collider_set_user_data(taut_collider collider, uint64_t value);
 /**

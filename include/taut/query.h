@@ -177,6 +177,22 @@ TAUT_API taut_result taut_world_overlap_box(taut_world world, taut_pos low, taut
                                             const taut_query_filter* filter, taut_collider* colliders,
                                             uint32_t capacity, uint32_t* count);
 
+/**
+ * Where a ray meets one collider, whatever its filter and whether or not its body is enabled.
+ * @return TAUT_OK, also when it does not; TAUT_INVALID_ARGUMENT, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. So
+ *         do the next two.
+ */
+TAUT_API taut_result taut_collider_cast_ray_sized(taut_collider collider, const taut_ray* ray, taut_query_hit* out,
+                                                  uint32_t size);
+static inline taut_result taut_collider_cast_ray(taut_collider collider, const taut_ray* ray, taut_query_hit* out) {
+    return taut_collider_cast_ray_sized(collider, ray, out, (uint32_t)sizeof(*out));
+}
+/** 1 if a shape (no plane, mesh or height field) at a pose overlaps or touches a collider, else 0. @return also
+ * TAUT_FOREIGN_HANDLE (shape of another world). */
+TAUT_API taut_result taut_collider_overlap_shape(taut_collider collider, taut_shape shape, const taut_pose* pose,
+                                                 int32_t* out);
+/** 1 if a collider holds a point [m], else 0. */
+TAUT_API taut_result taut_collider_overlap_point(taut_collider collider, taut_pos point, int32_t* out);
 /** The point of a collider's surface nearest to a point [m], which is a; the distance is negative inside. */
 TAUT_API taut_result taut_collider_closest_point_sized(taut_collider collider, taut_pos point, taut_distance* out,
                                                        uint32_t size);

@@ -8,6 +8,7 @@
 #include "api/sized.h"
 #include "detect/detect.h"
 #include "models/bodies.h"
+#include "queries/queries.h"
 #include "sleep/wake.h"
 
 using namespace taut;
@@ -214,6 +215,17 @@ taut_result taut_collider_get_body(taut_collider handle, taut_body* out) {
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
         *out = world.body_handle(world.colliders.record[collider].node);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_get_bounds(taut_collider handle, taut_pos* low, taut_pos* high) {
+    Check check(__func__);
+    if (!check.pointer("low", low).pointer("high", high)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t collider) {
+        const Bounds of = bounds_of(world, collider);
+        *low = to_pos(of.low);
+        *high = to_pos(of.high);
         return TAUT_OK;
     });
 }

@@ -83,6 +83,17 @@ taut_result taut_world_cast_rays_sized(taut_world world, const taut_ray* rays, u
     });
 }
 
+taut_result taut_collider_cast_ray_sized(taut_collider collider, const taut_ray* ray, taut_query_hit* first,
+                                         uint32_t size) {
+    const RecordOut<taut_query_hit> out(first, size);
+    Check check("taut_collider_cast_ray");
+    if (!check.pointer("ray", ray).pointer("out", out) || !check_ray(check, *ray)) return check.result();
+    return with(check.call(), collider, Use::read, [&](const World& world, uint32_t index) {
+        *out = hit_on(world, index, to_query(*ray));
+        return TAUT_OK;
+    });
+}
+
 // ---------------------------------------------------------------- shapes on their way
 
 taut_result taut_world_cast_shape_sized(taut_world world, const taut_shape_cast* cast, const taut_query_filter* filter,

@@ -52,6 +52,29 @@ taut_result taut_world_overlap_box(taut_world world, taut_pos low, taut_pos high
     });
 }
 
+taut_result taut_collider_overlap_shape(taut_collider collider, taut_shape handle, const taut_pose* pose,
+                                        int32_t* out) {
+    Check check(__func__);
+    if (!check.pointer("pose", pose).pointer("out", out)) return check.result();
+    if (!check.pose("pose.position", "pose.rotation", *pose)) return check.result();
+    return with(check.call(), collider, Use::read, [&](const World& world, uint32_t index) {
+        const collision::Shape* shape = nullptr;
+        const taut_result found = find_convex(check, world, handle, shape);
+        if (found != TAUT_OK) return found;
+        *out = is_met(world, index, ShapeQuery{*shape, to_placement(*pose)});
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_overlap_point(taut_collider collider, taut_pos point, int32_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out).vector("point", point, kPosition)) return check.result();
+    return with(check.call(), collider, Use::read, [&](const World& world, uint32_t index) {
+        *out = is_met(world, index, PointQuery{to_vec(point)});
+        return TAUT_OK;
+    });
+}
+
 // ---------------------------------------------------------------- distances
 
 taut_result taut_collider_closest_point_sized(taut_collider collider, taut_pos point, taut_distance* first,

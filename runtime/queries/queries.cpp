@@ -109,6 +109,28 @@ bool BoxQuery::meets(const Shape& other, const Placement& at) const {
            (box.hi.cast<double>().array() >= -half.array()).all();
 }
 
+taut_query_hit hit_on(const World& world, uint32_t collider, const RayQuery& query) {
+    Hit hit;
+    if (query.meets(shape_of(world, collider), placement_of(world, collider), 1, hit))
+        return public_hit(world, collider, hit);
+    taut_query_hit none{};
+    none.fraction = 1;
+    return none;
+}
+
+template <class Query>
+bool is_met(const World& world, uint32_t collider, const Query& query) {
+    return query.meets(shape_of(world, collider), placement_of(world, collider));
+}
+template bool is_met(const World&, uint32_t, const PointQuery&);
+template bool is_met(const World&, uint32_t, const ShapeQuery&);
+
+Bounds bounds_of(const World& world, uint32_t collider) {
+    const Placement at = placement_of(world, collider);
+    const collision::Box box = collision::bounds(shape_of(world, collider), {Vec3::Zero(), at.rotation});
+    return {at.position + box.lo.cast<double>(), at.position + box.hi.cast<double>()};
+}
+
 template <class Query>
 taut_query_hit first_hit(const Sight& sight, const Query& query) {
     const World& world = sight.world();

@@ -96,6 +96,17 @@ void all_hits(const Sight& sight, const Query& query, Sink<taut_query_hit>& sink
 template <class Query>
 void all_overlaps(const Sight& sight, const Query& query, Sink<taut_collider>& sink);
 
+// Of one collider, whether or not anybody sees it: where a ray meets it, or a hit of nothing; whether it is met.
+taut_query_hit hit_on(const World& world, uint32_t collider, const RayQuery& query);
+template <class Query>
+bool is_met(const World& world, uint32_t collider, const Query& query);
+
+// The least axis-aligned box about a collider, found about its own place, which far from the world's is exact only so.
+struct Bounds {
+    Vec3 low, high;  // [m]
+};
+Bounds bounds_of(const World& world, uint32_t collider);
+
 // The collider nearest to a shape, within a distance [m], or none.
 taut_distance nearest(const Sight& sight, const ShapeQuery& query, float within);
 // From one collider, and from a point, to another.
