@@ -104,6 +104,7 @@ TAUT_API int32_t taut_body_is_valid(taut_body body);
 TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind* out);
 TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
+
 /** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
 TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia);
 /** Material of the first collider. @return TAUT_INVALID_ARGUMENT for a body without colliders. */
@@ -117,6 +118,7 @@ TAUT_API taut_result taut_body_set_contact_events(taut_body body, uint32_t conta
 TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose* out);
 /** Teleports. A particle ignores the rotation. Carried contact impulses of the body are dropped. */
 TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose* pose);
+
 /** Pose between the last two steps at the fraction left by taut_world_advance, for rendering: that of one step ago. */
 TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
 
@@ -131,6 +133,14 @@ TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
 TAUT_API taut_result taut_world_get_body_states(taut_world world, const taut_body* bodies, uint32_t count,
                                                 taut_pose* poses, size_t pose_stride, taut_vec3* linear,
                                                 size_t linear_stride, taut_vec3* angular, size_t angular_stride);
+
+/**
+ * The bodies and particles of a world by slots, those of cables, cloths and solids too.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_get_bodies(taut_world world, taut_body* bodies, uint32_t capacity, uint32_t* count);
+/** The joints that end on a body, by slots. @return as taut_world_get_bodies. */
+TAUT_API taut_result taut_body_get_joints(taut_body body, taut_joint* joints, uint32_t capacity, uint32_t* count);
 
 /** Velocity of the centre of mass [m/s] and angular velocity [rad/s], world axes. Either pointer may be null. */
 TAUT_API taut_result taut_body_get_velocity(taut_body body, taut_vec3* linear, taut_vec3* angular);

@@ -221,6 +221,13 @@ static inline taut_result taut_world_get_contacts(taut_world world, taut_contact
                                                   uint32_t* count) {
     return taut_world_get_contacts_sized(world, contacts, capacity, count, (uint32_t)sizeof(*contacts));
 }
+/** Those of one body, which is a or b of each, in the same order. @return as taut_world_get_contacts. */
+TAUT_API taut_result taut_body_get_contacts_sized(taut_body body, taut_contact* contacts, uint32_t capacity,
+                                                  uint32_t* count, uint32_t size);
+static inline taut_result taut_body_get_contacts(taut_body body, taut_contact* contacts, uint32_t capacity,
+                                                 uint32_t* count) {
+    return taut_body_get_contacts_sized(body, contacts, capacity, count, (uint32_t)sizeof(*contacts));
+}
 
 #ifdef __cplusplus
 }

@@ -455,6 +455,11 @@ TAUT_API taut_result taut_joint_set_solve(taut_joint joint, taut_joint_solve sol
 /** Moves the joint on both ends. Ball and distance joints do not look at the rotations, which must be valid all the
  *  same. @return as for adding a joint. */
 TAUT_API taut_result taut_joint_set_frames(taut_joint joint, const taut_frame* frame_a, const taut_frame* frame_b);
+/**
+ * The joints of a world by slots.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_get_joints(taut_world world, taut_joint* joints, uint32_t capacity, uint32_t* count);
 /** Whether the two bodies collide, 0 or 1. */
 TAUT_API taut_result taut_joint_set_collide_connected(taut_joint joint, uint32_t collide_connected);
 

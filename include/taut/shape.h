@@ -273,6 +273,11 @@ TAUT_API taut_result taut_shape_sample_distance(taut_shape mesh, float cell_size
 
 /** Removes a shape. @return TAUT_OK; TAUT_IN_USE while a body uses it; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_shape_remove(taut_shape shape);
+/**
+ * The shapes that a world was given and has, by slots; not those inside cables, cloths and solids.
+ * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_get_shapes(taut_world world, taut_shape* shapes, uint32_t capacity, uint32_t* count);
 /** 1 if the handle names a live shape, else 0. */
 TAUT_API int32_t taut_shape_is_valid(taut_shape shape);
 

@@ -3,6 +3,9 @@
 
 #include <taut/event.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "api/access.h"
 
 namespace taut {
@@ -17,19 +20,23 @@ taut_contact public_contact(const World& world, const SurfaceContact& contact);
 bool touching(const Grains& grains, const GrainContact& contact);
 bool touching(const SurfaceContacts& surfaces, const SurfaceContact& contact);
 
-uint32_t count_contacts(const World& world);
-// act(const taut_contact&)
+uint32_t count_contacts(const World& world);  // of all
+// act(const taut_contact&) for those that may be of a node; kNone: for all.
 template <class Act>
-void for_contacts(const World& world, Act&& act) {
+void for_contacts(const World& world, uint32_t node, Act&& act) {
     for_pairs(world.pairs, [&](const Pair& pair) {
-        for (int i = 0; pair.touching && i < pair.manifold.count; ++i) act(public_contact(world, pair, i));
+        if (!pair.touching || (node != kNone && !ends_on(node)(pair))) return;
+        for (int i = 0; i < pair.manifold.count; ++i) act(public_contact(world, pair, i));
     });
     const Grains& grains = world.pairs.grains;
-    const SurfaceContacts& surfaces = world.pairs.surfaces;
     for (const GrainContact& contact : grains.contact)
-        if (touching(grains, contact)) act(public_contact(world, contact));
+        if ((node == kNone || contact.a == node || contact.b == node) && touching(grains, contact))
+            act(public_contact(world, contact));
+    const SurfaceContacts& surfaces = world.pairs.surfaces;
     for (const SurfaceContact& contact : surfaces.contact)
-        if (touching(surfaces, contact)) act(public_contact(world, contact));
+        if ((node == kNone || std::ranges::find(contact.node, node) != std::end(contact.node)) &&
+            touching(surfaces, contact))
+            act(public_contact(world, contact));
 }
 
 }  // namespace taut

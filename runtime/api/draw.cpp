@@ -179,7 +179,7 @@ private:
 
     void add_contacts() {
         const double substep = static_cast<double>(told_substep(world_));
-        for_contacts(world_, [&](const taut_contact& contact) {
+        for_contacts(world_, kNone, [&](const taut_contact& contact) {
             const Vec3 at = to_vec(contact.position), normal = to_vec(contact.normal);
             if (!sees(at)) return;
             if (asks(TAUT_DRAW_CONTACTS)) line(at, at + kMark * normal, kNormal);

@@ -49,6 +49,15 @@ taut_result taut_world_get_events_sized(taut_world handle, taut_events* first, u
     });
 }
 
+namespace {
+
+// Whether a contact is told: all, or those of one body.
+bool has(const taut_contact& contact, taut_body of) {
+    return contact.body_a.bits == of.bits || contact.body_b.bits == of.bits;
+}
+
+}  // namespace
+
 taut_result taut_world_get_contacts_sized(taut_world handle, taut_contact* first, uint32_t capacity, uint32_t* count,
                                           uint32_t size) {
     const RecordOut<taut_contact> contacts(first, size);
@@ -63,7 +72,26 @@ taut_result taut_world_get_contacts_sized(taut_world handle, taut_contact* first
         if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
         *count = needed;
         uint32_t next = 0;
-        for_contacts(world, [&](const taut_contact& contact) { contacts[next++] = contact; });
+        for_contacts(world, kNone, [&](const taut_contact& contact) { contacts[next++] = contact; });
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_contacts_sized(taut_body handle, taut_contact* first, uint32_t capacity, uint32_t* count,
+                                         uint32_t size) {
+    const RecordOut<taut_contact> contacts(first, size);
+    Check check("taut_body_get_contacts");
+    if (!check.pointer("count", count)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        uint32_t needed = 0, next = 0;
+        for_contacts(world, node, [&](const taut_contact& contact) { needed += has(contact, handle); });
+        *count = needed;
+        if (needed > capacity)
+            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
+        if (needed > 0 && !check.pointer("contacts", contacts)) return check.result();
+        for_contacts(world, node, [&](const taut_contact& contact) {
+            if (has(contact, handle)) contacts[next++] = contact;
+        });
         return TAUT_OK;
     });
 }
