@@ -118,6 +118,23 @@ TAUT_API taut_result taut_body_set_contact_events(taut_body body, uint32_t conta
 TAUT_API taut_result taut_body_get_pose(taut_body body, taut_pose* out);
 /** Teleports. A particle ignores the rotation. Carried contact impulses of the body are dropped. */
 TAUT_API taut_result taut_body_set_pose(taut_body body, const taut_pose* pose);
+/**
+ * A point of the body's frame in the world, and back, after the last step; a vector is turned alone.
+ * @param local, point [m], within 1e7. @param vector each component, and of a local vector, within 1e30.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_body_get_world_point(taut_body body, taut_vec3 local, taut_pos* out);
+TAUT_API taut_result taut_body_get_local_point(taut_body body, taut_pos point, taut_vec3* out);
+TAUT_API taut_result taut_body_get_world_vector(taut_body body, taut_vec3 local, taut_vec3* out);
+TAUT_API taut_result taut_body_get_local_vector(taut_body body, taut_vec3 vector, taut_vec3* out);
+/** Velocity [m/s] of what of the body is at a world point [m], v + w x r; world axes. @return as above. */
+TAUT_API taut_result taut_body_get_point_velocity(taut_body body, taut_pos point, taut_vec3* out);
+/**
+ * The least axis-aligned box about the body's colliders as they are [m], sensors included, within single precision of
+ * its size; that of a plane is +-1e9 m on every side.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (a body without colliders), TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_body_get_bounds(taut_body body, taut_pos* low, taut_pos* high);
 
 /** Pose between the last two steps at the fraction left by taut_world_advance, for rendering: that of one step ago. */
 TAUT_API taut_result taut_body_get_render_pose(taut_body body, taut_pose* out);
