@@ -121,6 +121,9 @@ void tell_quarantine(World& w) {
     log_line(w.def.hooks, TAUT_LOG_WARNING,
              "%zu bodies quarantined: the motion of %zu was not finite, of %zu beyond %g m/s or rad/s", w.frozen.size(),
              w.frozen.size() - static_cast<size_t>(fast), static_cast<size_t>(fast), kMaxSpeed);
+    for (const uint32_t node : w.frozen)
+        if (const char* const name = w.nodes.name_of(node))
+            log_line(w.def.hooks, TAUT_LOG_WARNING, "body '%s' quarantined", name);
 }
 
 void solve(World& w, Stopwatch& watch) {

@@ -47,6 +47,9 @@ typedef struct taut_body_def {
     uint32_t contact_events;            /**< of shape: sum of TAUT_CONTACT_EVENTS_ bits. Default 0 */
 } taut_body_def;
 
+/** Room for the name of a body with its final 0 [bytes]. */
+#define TAUT_BODY_NAME_SIZE 32
+
 /** A particle: a point mass that joints connect to particles, rigid bodies and the world; a grain, with a shape. */
 typedef struct taut_particle_def {
     uint32_t struct_size;
@@ -104,6 +107,18 @@ TAUT_API int32_t taut_body_is_valid(taut_body body);
 TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind* out);
 TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
+/**
+ * What the texts of refused calls, the log and taut_lint_entry call the body; it means nothing else.
+ * @param name UTF-8 of at most TAUT_BODY_NAME_SIZE - 1 bytes, copied; null or empty: none, as it comes.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (too long), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_set_name(taut_body body, const char* name);
+/**
+ * Copies the name with its final 0; empty for a body without one.
+ * @param count of bytes written. @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count;
+ *        TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_body_get_name(taut_body body, char* name, uint32_t capacity, uint32_t* count);
 
 /** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
 TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia);

@@ -6,6 +6,7 @@
 #define TAUT_LINT_H
 
 #include <taut/base.h>
+#include <taut/body.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -49,12 +50,13 @@ typedef enum taut_lint_kind {
 /** One finding. */
 typedef struct taut_lint_entry {
     taut_lint_kind kind;
-    uint32_t reserved;          /**< zero */
-    taut_body body;             /**< null where none is meant */
-    taut_joint joint;           /**< null where none is meant */
-    float value;                /**< found */
-    float limit;                /**< what it should keep to */
-    taut_attachment attachment; /**< null where none is meant */
+    uint32_t reserved;                   /**< zero */
+    taut_body body;                      /**< null where none is meant */
+    taut_joint joint;                    /**< null where none is meant */
+    float value;                         /**< found */
+    float limit;                         /**< what it should keep to */
+    taut_attachment attachment;          /**< null where none is meant */
+    char body_name[TAUT_BODY_NAME_SIZE]; /**< of body, see taut_body_set_name; empty where it has none */
 } taut_lint_entry;
 
 /**

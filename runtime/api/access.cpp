@@ -245,6 +245,10 @@ taut_result find(const char* call, const char* field, const World& world, Handle
 
 }  // namespace
 
+void tell_name(const World& world, uint32_t node) {
+    if (const char* const name = world.nodes.name_of(node)) add_to_error(" (body '%s')", name);
+}
+
 taut_result find_body(const char* call, const char* field, const World& world, taut_body handle, uint32_t& node) {
     return find(call, field, world, handle, node);
 }

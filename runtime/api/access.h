@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <type_traits>
 
 #include "base/float_environment.h"
 #include "base/result.h"
@@ -234,6 +235,9 @@ taut_result with_world(const char* call, taut_world handle, Use use, Act&& act) 
     });
 }
 
+// Adds the name of a body that has one to the text of a refusal.
+void tell_name(const World& world, uint32_t node);
+
 // act(World&, index) for a handle of a body, shape, collider, joint or cable, with its world held.
 template <class Handle, class Act>
 taut_result with(const char* call, Handle handle, Use use, Act&& act) noexcept {
@@ -243,7 +247,10 @@ taut_result with(const char* call, Handle handle, Use use, Act&& act) noexcept {
         const Hold hold(bits.world, use);
         if (!hold.world()) return refuse_hold(call, name_of(handle), hold.refusal());
         if (!names(*hold.world(), handle, bits)) return refuse_stale(call, name_of(handle), handle.bits);
-        return act(*hold.world(), bits.index);
+        const taut_result result = act(*hold.world(), bits.index);
+        if constexpr (std::is_same_v<Handle, taut_body>)
+            if (result != TAUT_OK) tell_name(*hold.world(), bits.index);
+        return result;
     });
 }
 

@@ -1,6 +1,11 @@
 // What a body is and is made of; body_motion.cpp has how it moves.
 #include <taut/body.h>
 
+#include <string.h>
+
+#include <algorithm>
+#include <array>
+
 #include "api/access.h"
 #include "api/collider_def.h"
 #include "models/bodies.h"
@@ -37,6 +42,34 @@ taut_result taut_body_get_user_data(taut_body handle, uint64_t* out) {
 taut_result taut_body_set_user_data(taut_body handle, uint64_t value) {
     return with(__func__, handle, Use::write, [&](World& world, uint32_t node) {
         world.nodes.info[node].user_data = value;
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_set_name(taut_body handle, const char* name) {
+    Check check(__func__);
+    std::array<char, TAUT_BODY_NAME_SIZE> text{};
+    const size_t length = name ? strnlen(name, text.size()) : 0;
+    if (!check.require(length < text.size(), "name has 32 bytes or more, expected at most 31")) return check.result();
+    std::copy_n(name ? name : "", length, text.begin());
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        world.nodes.set_name(node, text);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_name(taut_body handle, char* name, uint32_t capacity, uint32_t* count) {
+    Check check(__func__);
+    if (!check.pointer("count", count)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        const char* const held = world.nodes.name_of(node);
+        const char* const text = held ? held : "";
+        const auto needed = static_cast<uint32_t>(std::strlen(text) + 1);
+        *count = needed;
+        if (needed > capacity)
+            return refuse(TAUT_TOO_SMALL, "%s: capacity is %u, expected at least %u", check.call(), capacity, needed);
+        if (!check.pointer("name", name)) return check.result();
+        std::copy_n(text, needed, name);
         return TAUT_OK;
     });
 }

@@ -2,6 +2,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 
 namespace taut {
 namespace {
@@ -16,6 +17,14 @@ taut_result refuse(taut_result code, const char* format, ...) noexcept {
     std::vsnprintf(text, sizeof text, format, values);
     va_end(values);
     return code;
+}
+
+void add_to_error(const char* format, ...) noexcept {
+    const size_t length = std::strlen(text);
+    va_list values;
+    va_start(values, format);
+    std::vsnprintf(text + length, sizeof text - length, format, values);
+    va_end(values);
 }
 
 const char* last_error() noexcept { return text; }

@@ -55,12 +55,22 @@ public:
 
     // Node and joint may be kNone.
     void add(taut_lint_kind kind, uint32_t node, uint32_t joint, double value, double limit) const {
-        found_.push_back({kind, 0, world.body_handle(node), world.joint_handle(joint), static_cast<float>(value),
-                          static_cast<float>(limit), taut_attachment{}});
+        taut_lint_entry entry{};
+        entry.kind = kind;
+        entry.body = world.body_handle(node);
+        entry.joint = world.joint_handle(joint);
+        entry.value = static_cast<float>(value);
+        entry.limit = static_cast<float>(limit);
+        if (const char* const name = nodes.name_of(node)) std::copy_n(name, sizeof entry.body_name, entry.body_name);
+        found_.push_back(entry);
     }
     void add(taut_lint_kind kind, taut_attachment attachment, double value, double limit) const {
-        found_.push_back(
-            {kind, 0, taut_body{}, taut_joint{}, static_cast<float>(value), static_cast<float>(limit), attachment});
+        taut_lint_entry entry{};
+        entry.kind = kind;
+        entry.value = static_cast<float>(value);
+        entry.limit = static_cast<float>(limit);
+        entry.attachment = attachment;
+        found_.push_back(entry);
     }
     void add_above(taut_lint_kind kind, uint32_t node, uint32_t joint, double value, double limit) const {
         if (value > limit) add(kind, node, joint, value, limit);

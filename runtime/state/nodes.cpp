@@ -7,6 +7,25 @@ namespace taut {
 
 const NodeLoad Nodes::kNoLoad;
 
+namespace {
+
+// Of lists that are sorted by node.
+template <class T>
+void drop(Array<T>& list, uint32_t node) {
+    const auto at = std::ranges::lower_bound(list, node, {}, &T::node);
+    if (at != list.end() && at->node == node) list.erase(at);
+}
+template <class T>
+void put(Array<T>& list, const T& value) {
+    const auto at = std::ranges::lower_bound(list, value.node, {}, &T::node);
+    if (at != list.end() && at->node == value.node)
+        *at = value;
+    else
+        list.insert(at, value);
+}
+
+}  // namespace
+
 uint32_t Nodes::add() {
     ids.reserve_one();
     const size_t slots = info.size() + 1;
@@ -56,6 +75,7 @@ void Nodes::remove(uint32_t node) {
     sleep[node] = {};
     if (const KinematicPath* path = find_path(node)) paths.erase(paths.begin() + (path - paths.data()));
     if (const FrozenNode* held = find_frozen(node)) frozen.erase(frozen.begin() + (held - frozen.data()));
+    drop(names, node);
     ids.destroy(node);
 }
 
@@ -120,6 +140,15 @@ void Nodes::let_go(uint32_t node) {
 const FrozenNode* Nodes::find_frozen(uint32_t node) const {
     const auto at = std::ranges::lower_bound(frozen, node, {}, &FrozenNode::node);
     return at != frozen.end() && at->node == node ? &*at : nullptr;
+}
+
+const char* Nodes::name_of(uint32_t node) const {
+    const NodeName* const name = find_in(names, node);
+    return name ? name->text.data() : nullptr;
+}
+
+void Nodes::set_name(uint32_t node, const std::array<char, TAUT_BODY_NAME_SIZE>& text) {
+    text[0] == 0 ? drop(names, node) : put(names, {node, text});
 }
 
 KinematicPath* Nodes::find_path(uint32_t node) {

@@ -179,6 +179,17 @@ void describe(Visitor& visitor, Of& of) {
     if (follows) TAUT_FIELDS(visitor, asked, start, speed, target);
 }
 
+// What the host calls a node.
+struct NodeName {
+    uint32_t node = kNone;
+    std::array<char, TAUT_BODY_NAME_SIZE> text{};
+};
+template <class Visitor, Like<NodeName> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, text] = of;
+    TAUT_FIELDS(visitor, node, text);
+}
+
 struct Nodes {
     explicit Nodes(Memory& memory)
         : ids(memory),
@@ -190,6 +201,7 @@ struct Nodes {
           load(memory),
           paths(memory),
           frozen(memory),
+          names(memory),
           before(memory),
           history(memory),
           rest(memory),
@@ -216,7 +228,10 @@ struct Nodes {
     // was, at rest. Throws std::bad_alloc with nothing changed.
     void freeze(uint32_t node, Divergence why);
     void let_go(uint32_t node);
-    void stay(uint32_t node);                            // where it was before the last step, at rest
+    void stay(uint32_t node);                  // where it was before the last step, at rest
+    const char* name_of(uint32_t node) const;  // null: it has none
+    // Empty: none from now on. Throws std::bad_alloc with nothing changed.
+    void set_name(uint32_t node, const std::array<char, TAUT_BODY_NAME_SIZE>& text);
     const FrozenNode* find_frozen(uint32_t node) const;  // null: it is in no quarantine
     Vec3 centre_at(uint32_t node, const NodePose& pose) const {
         return pose.position + pose.rotation * mass[node].centre;
@@ -244,6 +259,7 @@ struct Nodes {
     Array<NodeLoad> load;        // in the step that is being taken [N]
     Array<KinematicPath> paths;  // sorted by node
     Array<FrozenNode> frozen;    // likewise
+    Array<NodeName> names;       // likewise
     Array<NodePose> before;      // origin pose before the last step
     Array<NodeHistory> history;  // of all, or of none in worlds whose scheme has one step
     Array<Rest> rest;            // set_rest()
@@ -254,6 +270,13 @@ struct Nodes {
 
 private:
     std::array<Array<NodeLoad>*, 3> loads() { return {&applied, &owed, &load}; }
+
+    // In a list that is sorted by node.
+    template <class T>
+    static const T* find_in(const Array<T>& list, uint32_t node) {
+        const auto at = std::ranges::lower_bound(list, node, {}, &T::node);
+        return at != list.end() && at->node == node ? &*at : nullptr;
+    }
 
     static const NodeLoad kNoLoad;
 
@@ -266,10 +289,10 @@ private:
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
     // load: within a step; the list of active ones follows.
-    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, before, history, rest, sleep, active, lists,
-           movable, listed, all] = of;
+    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, before, history, rest, sleep, active,
+           lists, movable, listed, all] = of;
     OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
-    TAUT_ASIDE(visitor, ids);
+    TAUT_ASIDE(visitor, ids, names);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);
     TAUT_FIELDS(visitor, paths);
     TAUT_RARE(visitor, frozen);
