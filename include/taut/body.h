@@ -45,6 +45,10 @@ typedef struct taut_body_def {
     const taut_collider_def* colliders; /**< collider_count of them, copied; null if there are none */
     uint32_t collider_flags;            /**< of shape: sum of TAUT_COLLIDER_ bits. Default 0 */
     uint32_t contact_events;            /**< of shape: sum of TAUT_CONTACT_EVENTS_ bits. Default 0 */
+    float linear_damping;               /**< [1/s], [0, 1e6], see taut_body_set_damping. Default 0 */
+    float angular_damping;              /**< likewise */
+    float max_linear_speed;             /**< [m/s], (0, 1e6], see taut_body_set_max_speed; 0: none. Default 0 */
+    float max_angular_speed;            /**< [rad/s], likewise */
 } taut_body_def;
 
 /** Room for the name of a body with its final 0 [bytes]. */
@@ -63,6 +67,8 @@ typedef struct taut_particle_def {
     taut_filter filter;      /**< of shape */
     uint32_t collider_flags; /**< of shape: sum of TAUT_COLLIDER_ bits. Default 0 */
     uint32_t contact_events; /**< of shape: sum of TAUT_CONTACT_EVENTS_ bits. Default 0 */
+    float damping;           /**< [1/s], [0, 1e6], see taut_body_set_damping. Default 0 */
+    float max_speed;         /**< [m/s], (0, 1e6], see taut_body_set_max_speed; 0: none. Default 0 */
 } taut_particle_def;
 
 /** Position of the body's origin and rotation of its frame. */
@@ -122,6 +128,31 @@ TAUT_API taut_result taut_body_get_name(taut_body body, char* name, uint32_t cap
 
 /** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
 TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia);
+/**
+ * Damping [1/s] of a body's own motion, [0, 1e6]: what air or oil would do. A velocity v that a force m a drives decays
+ * by dv/dt = a - c v, and each substep of h takes the solution, e^(-c h) v + a (1 - e^(-c h)) / c: after t seconds
+ * v e^(-c t), and a body that falls reaches g / c, with any step and any c. The spin likewise: the angular momentum
+ * decays by the angular damping. A particle has no angular one. Contacts and joints act after that with whole impulses,
+ * so that what rests bears on them with (1 - e^(-c h)) / (c h) of its weight: 1 % less at 5/s in substeps of 4 ms.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; angular of a particle), TAUT_IN_USE (a body of a cable, cloth or
+ *         solid), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_set_damping(taut_body body, float linear, float angular);
+/** Either pointer may be null. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_damping(taut_body body, float* linear, float* angular);
+/** Changes what gravity does to a body, [-1000, 1000] times that of the world. @return as taut_body_set_damping. */
+TAUT_API taut_result taut_body_set_gravity_scale(taut_body body, float gravity_scale);
+/** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_gravity_scale(taut_body body, float* out);
+/**
+ * Greatest speed of the centre of mass [m/s] and of the spin [rad/s], (0, 1e6]; 0: none. What is faster, by whatever
+ * means, keeps its direction and has this speed: before each substep's solve, after forces, and after it. Only what
+ * contacts and joints give within a substep moves a body faster, for that substep.
+ * @return as taut_body_set_damping.
+ */
+TAUT_API taut_result taut_body_set_max_speed(taut_body body, float linear, float angular);
+/** Either pointer may be null. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_max_speed(taut_body body, float* linear, float* angular);
 /** Material of the first collider. @return TAUT_INVALID_ARGUMENT for a body without colliders. */
 TAUT_API taut_result taut_body_get_material(taut_body body, taut_material* out);
 /** Material of all colliders of the body. */

@@ -28,7 +28,9 @@ constexpr Range kPosition{-1e7, 1e7};  // [m]; also the length of the vector
 constexpr Range kSpeed{-1e4, 1e4};     // [m/s, rad/s]; also the length of the vector
 constexpr Range kGravity{-1e4, 1e4};   // [m/s^2]
 constexpr Range kGravityScale{-1000, 1000};
-constexpr Range kTimeStep{1e-4, 0.1};  // [s]
+constexpr Range kDampingRate{0, 1e6};       // [1/s]
+constexpr Range kSpeedLimit{0, 1e6, true};  // [m/s, rad/s]
+constexpr Range kTimeStep{1e-4, 0.1};       // [s]
 constexpr Range kFriction{0, 100};
 constexpr Range kFrictionArm{0, 1000};  // [m]
 constexpr Range kUnitInterval{0, 1};

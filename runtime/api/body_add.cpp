@@ -48,7 +48,12 @@ Check& check_def(Check& check, const taut_body_def& def) {
         .zero_or("mass", def.mass, kBodyMass)
         .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
     check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
-    check_inertia(check, def.inertia).number("gravity_scale", def.gravity_scale, kGravityScale);
+    check_inertia(check, def.inertia)
+        .number("gravity_scale", def.gravity_scale, kGravityScale)
+        .number("linear_damping", def.linear_damping, kDampingRate)
+        .number("angular_damping", def.angular_damping, kDampingRate)
+        .zero_or("max_linear_speed", def.max_linear_speed, kSpeedLimit)
+        .zero_or("max_angular_speed", def.max_angular_speed, kSpeedLimit);
     if (def.collider_count > 0) check.pointer("colliders", def.colliders);
     if (!check) return check;
     char scope[32];
@@ -61,13 +66,16 @@ Check& check_def(Check& check, const taut_body_def& def) {
 }
 
 taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
-                     std::span<const ColliderPlan> colliders, taut_body* out) {
+                     std::span<const ColliderPlan> colliders, Restraint restraint, taut_body* out) {
     taut_result room = room_for_bodies(check.call(), world, 1);
     if (room == TAUT_OK) room = room_for_colliders(check.call(), world, colliders.size());
     if (room != TAUT_OK) return room;
     NodeInfo own = info;
     own.continuous = world.def.continuous != 0;
-    *out = world.body_handle(add_node(world, own, motion, mass, colliders));
+    if (restraint.any()) reserve_more(world.nodes.restraints, 1);  // what may fail comes first
+    restraint.node = add_node(world, own, motion, mass, colliders);
+    world.nodes.set_restraint(restraint);
+    *out = world.body_handle(restraint.node);
     return TAUT_OK;
 }
 
@@ -151,7 +159,9 @@ taut_result taut_world_add_body(taut_world handle, const taut_body_def* given, t
         motion.q = to_quat(def.rotation);
         motion.x = to_vec(def.position) + motion.q * mass.centre;
         set_velocity(motion, to_vec(def.linear_velocity), to_vec(def.angular_velocity));
-        return add_body(check, world, info, motion, mass, colliders, out);
+        return add_body(check, world, info, motion, mass, colliders,
+                        {kNone, def.linear_damping, def.angular_damping, def.max_linear_speed, def.max_angular_speed},
+                        out);
     });
 }
 
@@ -163,7 +173,9 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
     check.number("mass", def.mass, kParticleMass)
         .bounded("position", def.position, kPosition)
         .bounded("velocity", def.velocity, kSpeed)
-        .number("gravity_scale", def.gravity_scale, kGravityScale);
+        .number("gravity_scale", def.gravity_scale, kGravityScale)
+        .number("damping", def.damping, kDampingRate)
+        .zero_or("max_speed", def.max_speed, kSpeedLimit);
     check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
     check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
     if (!check) return check.result();
@@ -185,7 +197,8 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         NodeInfo info;
         info.kind = NodeKind::particle;
         info.user_data = def.user_data;
-        return add_body(check, world, info, motion, mass, {&collider, has_shape ? 1u : 0u}, out);
+        return add_body(check, world, info, motion, mass, {&collider, has_shape ? 1u : 0u},
+                        {kNone, def.damping, 0, def.max_speed, 0}, out);
     });
 }
 

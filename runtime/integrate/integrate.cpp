@@ -211,6 +211,66 @@ void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     set_sweep_velocity(system.sweep[at].velocity, u);
 }
 
+NodeMotion& motion_of(System& system, Nodes& nodes, uint32_t node) {
+    return motions_of(system, nodes)[system.lent ? system.at(node) : node];
+}
+
+void shorten(Vec3& velocity, double most) {
+    const double speed = velocity.norm();
+    if (most > 0 && speed > most) velocity *= most / speed;
+}
+
+// act(restraint, node) for those nodes of a group that have one.
+template <class Act>
+void for_restrained(Team& team, const Group& group, const Nodes& nodes, Act&& act) {
+    if (nodes.restraints.empty()) return;
+    for_nodes(team, group.nodes, [&](uint32_t node) {
+        if (nodes.info[node].restrained) act(*nodes.find_restraint(node), node);
+    });
+}
+
+// Damping is dv/dt = a - c v with a constant over the substep, whose solution is
+//   v(h) = e^(-c h) v + a h (1 - e^(-c h)) / (c h):
+// the same decay and the same final speed a / c for any h. The first part is taken before the forces, so that all that
+// a substep starts from has it.
+void damp_velocities(Team& team, System& system, const Group& group, Nodes& nodes) {
+    for_restrained(team, group, nodes, [&](const Restraint& by, uint32_t node) {
+        NodeMotion& m = motion_of(system, nodes, node);
+        m.v *= decay_over(system.scheme.h * by.damping).left;
+        m.w *= decay_over(system.scheme.h * by.angular_damping).left;
+    });
+}
+
+// The second part, of the forces that predict() took in full; and no more speed than a body may have.
+void restrain_velocities(Team& team, System& system, const Group& group, const Nodes& nodes, const Vec3& gravity) {
+    for_restrained(team, group, nodes, [&](const Restraint& by, uint32_t node) {
+        if (!moves_by_forces(nodes.info[node].kind)) return;
+        const NodeMass& mass = nodes.mass[node];
+        const NodeLoad& load = nodes.load_of(node);
+        const double h = system.scheme.h;
+        const uint32_t at = system.at(node);
+        Velocity& u = system.exact[at];
+        u.v -= (1 - decay_over(h * by.damping).mean) * h * (mass.gravity_scale * gravity + mass.inv_mass * load.force);
+        if (load.torque != Vec3::Zero()) {
+            const Mat3& R = system.pose[at].R;
+            u.w -= (1 - decay_over(h * by.angular_damping).mean) * h *
+                   (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
+        }
+        shorten(u.v, by.most_speed);
+        shorten(u.w, by.most_spin);
+        set_sweep_velocity(system.sweep[at].velocity, u);
+    });
+}
+
+// What contacts and joints gave beyond that is not kept.
+void limit_velocities(Team& team, System& system, const Group& group, Nodes& nodes) {
+    for_restrained(team, group, nodes, [&](const Restraint& by, uint32_t node) {
+        NodeMotion& m = motion_of(system, nodes, node);
+        shorten(m.v, by.most_speed);
+        shorten(m.w, by.most_spin);
+    });
+}
+
 void make_room_by_seat(System& system, bool tied) {
     grow_to(system.start, system.pose.size());
     if (tied) grow_to(system.sweep_pose, system.pose.size());
@@ -263,6 +323,7 @@ void MotionLoan::end() {
 }
 
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity) {
+    damp_velocities(team, system, group, nodes);
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
     const NodeMotion* const motion = motions_of(system, nodes);
@@ -281,6 +342,7 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
             if (rows.load) add_torque(system, nodes, node, at);
         }
     });
+    restrain_velocities(team, system, group, nodes, gravity);
 }
 
 void commit_strikes(System& system, const Impacts& impacts, Nodes& nodes) {
@@ -335,6 +397,7 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
         if (kernels.store(rows, batch, Masses(nodes, batch).of, keeping, turning, in_block, slow) != kAll)
             all_sane.store(false, std::memory_order_relaxed);
     });
+    limit_velocities(team, system, group, nodes);
     return all_sane.load(std::memory_order_relaxed);
 }
 

@@ -33,7 +33,8 @@ private:
     Nodes& nodes_;
 };
 
-// v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit.
+// v* = v + h (g + f/m); w* = w + h I^-1 torque, with the gyroscopic torque implicit; damped and limited where nodes
+// are.
 void predict(Team& team, System& system, const Group& group, Nodes& nodes, const Vec3& gravity);
 
 // Of nodes whose paths impacts moved: x to where they begin, or shifts as they were.

@@ -76,6 +76,7 @@ void Nodes::remove(uint32_t node) {
     if (const KinematicPath* path = find_path(node)) paths.erase(paths.begin() + (path - paths.data()));
     if (const FrozenNode* held = find_frozen(node)) frozen.erase(frozen.begin() + (held - frozen.data()));
     drop(names, node);
+    drop(restraints, node);
     ids.destroy(node);
 }
 
@@ -149,6 +150,19 @@ const char* Nodes::name_of(uint32_t node) const {
 
 void Nodes::set_name(uint32_t node, const std::array<char, TAUT_BODY_NAME_SIZE>& text) {
     text[0] == 0 ? drop(names, node) : put(names, {node, text});
+}
+
+void Nodes::set_restraint(const Restraint& restraint) {
+    restraint.any() ? put(restraints, restraint) : drop(restraints, restraint.node);
+    info[restraint.node].restrained = restraint.any();
+}
+
+void Nodes::set_gravity_scale(uint32_t node, double scale) {
+    mass.reserve_values(1);
+    NodeMass own = mass[node];
+    own.gravity_scale = scale;
+    mass.set(node, own);
+    if (find_frozen(node)) std::ranges::lower_bound(frozen, node, {}, &FrozenNode::node)->mass.gravity_scale = scale;
 }
 
 KinematicPath* Nodes::find_path(uint32_t node) {

@@ -67,6 +67,21 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, mass, inv_mass, inertia, inv_inertia, centre, gravity_scale, isotropic);
 }
 
+// What slows a node by itself; 0: nothing does.
+struct Restraint {
+    uint32_t node = kNone;
+    double damping = 0, angular_damping = 0;  // [1/s]
+    double most_speed = 0, most_spin = 0;     // [m/s, rad/s]
+
+    bool operator==(const Restraint&) const = default;
+    bool any() const { return damping != 0 || angular_damping != 0 || most_speed != 0 || most_spin != 0; }
+};
+template <class Visitor, Like<Restraint> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, damping, angular_damping, most_speed, most_spin] = of;
+    TAUT_FIELDS(visitor, node, damping, angular_damping, most_speed, most_spin);
+}
+
 struct NodeLoad {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]; times a time: [N s], [N m s]
 
@@ -86,6 +101,7 @@ struct NodeInfo {
     uint32_t cable = kNone;     // that it is part of
     uint32_t soft = kNone;      // likewise, a cloth or solid
     bool continuous = true;     // what moves past its own thickness is looked for along its way; detect/impact.h
+    bool restrained = false;    // Nodes::restraints has it
     uint64_t user_data = 0;
 
     // What the host knows as a whole, and changes as one.
@@ -93,9 +109,9 @@ struct NodeInfo {
 };
 template <class Visitor, Like<NodeInfo> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, collider, cable, soft, continuous, user_data] = of;
+    auto& [kind, collider, cable, soft, continuous, restrained, user_data] = of;
     TAUT_FIELDS(visitor, kind, collider, cable, soft, continuous);
-    TAUT_ASIDE(visitor, user_data);
+    TAUT_ASIDE(visitor, restrained, user_data);
 }
 
 struct NodeSleep {
@@ -202,6 +218,7 @@ struct Nodes {
           paths(memory),
           frozen(memory),
           names(memory),
+          restraints(memory),
           before(memory),
           history(memory),
           rest(memory),
@@ -228,7 +245,13 @@ struct Nodes {
     // was, at rest. Throws std::bad_alloc with nothing changed.
     void freeze(uint32_t node, Divergence why);
     void let_go(uint32_t node);
-    void stay(uint32_t node);                  // where it was before the last step, at rest
+    void stay(uint32_t node);  // where it was before the last step, at rest
+    // Of a node; null: it has none.
+    const Restraint* find_restraint(uint32_t node) const { return find_in(restraints, node); }
+    // Its node says whose it is; one of nothing is dropped. Throws std::bad_alloc with nothing changed.
+    void set_restraint(const Restraint& restraint);
+    // How strongly gravity pulls; of one in quarantine, once it is let go. Throws std::bad_alloc with nothing changed.
+    void set_gravity_scale(uint32_t node, double scale);
     const char* name_of(uint32_t node) const;  // null: it has none
     // Empty: none from now on. Throws std::bad_alloc with nothing changed.
     void set_name(uint32_t node, const std::array<char, TAUT_BODY_NAME_SIZE>& text);
@@ -254,15 +277,16 @@ struct Nodes {
     Array<NodeMotion> motion;
     SharedValues<NodeMass> mass;
     // Of all, or of none while nothing was put on any.
-    Array<NodeLoad> applied;     // by the host, over the time of its next call [N]
-    Array<NodeLoad> owed;        // by its calls over what the accumulator holds of their time [N s]
-    Array<NodeLoad> load;        // in the step that is being taken [N]
-    Array<KinematicPath> paths;  // sorted by node
-    Array<FrozenNode> frozen;    // likewise
-    Array<NodeName> names;       // likewise
-    Array<NodePose> before;      // origin pose before the last step
-    Array<NodeHistory> history;  // of all, or of none in worlds whose scheme has one step
-    Array<Rest> rest;            // set_rest()
+    Array<NodeLoad> applied;      // by the host, over the time of its next call [N]
+    Array<NodeLoad> owed;         // by its calls over what the accumulator holds of their time [N s]
+    Array<NodeLoad> load;         // in the step that is being taken [N]
+    Array<KinematicPath> paths;   // sorted by node
+    Array<FrozenNode> frozen;     // likewise
+    Array<NodeName> names;        // likewise
+    Array<Restraint> restraints;  // likewise
+    Array<NodePose> before;       // origin pose before the last step
+    Array<NodeHistory> history;   // of all, or of none in worlds whose scheme has one step
+    Array<Rest> rest;             // set_rest()
     Array<NodeSleep> sleep;
     Array<uint32_t> active;  // slots of those that do not sleep, ascending; list_active()
     uint64_t lists = 0;      // counts changes of it
@@ -289,13 +313,14 @@ private:
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
     // load: within a step; the list of active ones follows.
-    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, before, history, rest, sleep, active,
-           lists, movable, listed, all] = of;
+    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, restraints, before, history, rest, sleep,
+           active, lists, movable, listed, all] = of;
     OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
     TAUT_ASIDE(visitor, ids, names);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);
     TAUT_FIELDS(visitor, paths);
     TAUT_RARE(visitor, frozen);
+    TAUT_RARE(visitor, restraints);
 }
 
 }  // namespace taut
