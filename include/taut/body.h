@@ -114,6 +114,17 @@ TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind* out);
 TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
 /**
+ * Takes a body out of the world (0) or puts it back (1, as it comes). Disabled, it stays where it is and keeps all that
+ * it has, its velocity too, but nothing moves it, nothing touches it or finds it in a query of the world, and its
+ * joints are off. Its contacts end with the next step's events. All but forces, impulses and targets can be set
+ * meanwhile.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT unless 0 or 1; TAUT_IN_USE (a body of a cable, cloth or solid, or one that a
+ *         cable or attachment holds), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_set_enabled(taut_body body, uint32_t enabled);
+/** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_enabled(taut_body body, uint32_t* out);
+/**
  * What the texts of refused calls, the log and taut_lint_entry call the body; it means nothing else.
  * @param name UTF-8 of at most TAUT_BODY_NAME_SIZE - 1 bytes, copied; null or empty: none, as it comes.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT (too long), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.

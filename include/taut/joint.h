@@ -456,6 +456,16 @@ TAUT_API taut_result taut_joint_set_solve(taut_joint joint, taut_joint_solve sol
  *  same. @return as for adding a joint. */
 TAUT_API taut_result taut_joint_set_frames(taut_joint joint, const taut_frame* frame_a, const taut_frame* frame_b);
 /**
+ * Switches a joint off (0) or on (1, as it comes). Off, it is as if it was not there: it carries nothing, and its
+ * bodies collide. On again, it begins as one just added: where its bodies came apart it pulls them together at once, so
+ * taut_joint_set_frames or taut_body_set_pose go before. A joint of a disabled body does not work either, whatever
+ * this says.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT unless 0 or 1, TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_joint_set_enabled(taut_joint joint, uint32_t enabled);
+/** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_joint_get_enabled(taut_joint joint, uint32_t* out);
+/**
  * The joints of a world by slots.
  * @return TAUT_OK; TAUT_TOO_SMALL with the number needed in *count; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */

@@ -62,6 +62,8 @@ taut_result find_anchor(Check& check, const World& world, const char* scope, con
         uint32_t node = kNone;
         const taut_result found = find_body(check.call(), field.text, world, anchor.bodies[n], node);
         if (found != TAUT_OK) return found;
+        if (!world.nodes.enabled(node))
+            return refuse(TAUT_INVALID_ARGUMENT, "%s: %s is disabled", check.call(), field.text);
         for (uint32_t m = 0; m < n; ++m)
             if (out.node[m] == node)
                 return refuse(TAUT_INVALID_ARGUMENT, "%s: %s is there twice", check.call(), field.text);

@@ -2,6 +2,7 @@
 #include <taut/body.h>
 
 #include "api/access.h"
+#include "models/bodies.h"
 #include "sleep/wake.h"
 
 using namespace taut;
@@ -37,7 +38,39 @@ taut_result restrain(Check& check, taut_body handle, bool of_spin, Act&& act) {
     });
 }
 
+// A cable, cloth or solid, or an attachment.
+bool is_held(const World& world, uint32_t node) {
+    bool held = false;
+    for_each_element(world.elements, [&](const ElementSet&, uint32_t, std::span<const uint32_t> ends) {
+        held = held || std::ranges::find(ends, node) != ends.end();
+    });
+    for (const Joint& joint : world.joints.record) held = held || (joint.inner && ends_on(joint, node));
+    return held;
+}
+
 }  // namespace
+
+taut_result taut_body_set_enabled(taut_body handle, uint32_t enabled) {
+    Check check(__func__);
+    if (!check.boolean("enabled", enabled)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        if (world.nodes.enabled(node) == (enabled != 0)) return TAUT_OK;
+        check_whole(check, world, node)
+            .require(enabled || !is_held(world, node), "a cable or attachment holds the body", TAUT_IN_USE);
+        if (!check) return check.result();
+        set_enabled(world, node, enabled != 0);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_enabled(taut_body handle, uint32_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = world.nodes.enabled(node) ? 1 : 0;
+        return TAUT_OK;
+    });
+}
 
 taut_result taut_body_set_damping(taut_body handle, float linear, float angular) {
     Check check(__func__);

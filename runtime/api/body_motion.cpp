@@ -17,8 +17,10 @@ namespace {
 // ---------------------------------------------------------------- check
 
 // A node that forces and impulses move; angular: whether there is any moment, which a particle cannot take.
-Check& check_pushable(Check& check, NodeKind kind, bool angular) {
+Check& check_pushable(Check& check, const Nodes& nodes, uint32_t node, bool angular) {
+    const NodeKind kind = nodes.info[node].kind;
     check.require(moves_by_forces(kind), "body is not dynamic: forces do not move it");
+    check.require(nodes.enabled(node), "body is disabled: nothing moves it");
     return check.require(kind != NodeKind::particle || !angular, "body is a particle, which takes no torque");
 }
 
@@ -185,9 +187,9 @@ taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) 
     if (!check.pointer("target", target)) return check.result();
     if (!check.pose("target.position", "target.rotation", *target)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
-        if (!check.require(world.nodes.info[node].kind == NodeKind::kinematic, "body is not kinematic")) {
-            return check.result();
-        }
+        check.require(world.nodes.info[node].kind == NodeKind::kinematic, "body is not kinematic")
+            .require(world.nodes.enabled(node), "body is disabled: nothing moves it");
+        if (!check) return check.result();
         const NodePose to{to_vec(target->position), to_quat(target->rotation)};
         const auto [v, w] = speed_between(world.nodes, node, origin_pose(world, node), to, world.def.time_step);
         check.require(v.norm() <= kSpeed.hi, "target.position asks for a speed beyond 1e4 m/s");
@@ -204,7 +206,7 @@ taut_result taut_body_apply_force(taut_body handle, taut_vec3 force, taut_vec3 t
     if (!check.vector("force", force, kForce).vector("torque", torque, kForce)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const Vec3 moment = to_vec(torque);
-        if (!check_pushable(check, world.nodes.info[node].kind, !moment.isZero(0))) return check.result();
+        if (!check_pushable(check, world.nodes, node, !moment.isZero(0))) return check.result();
         add_load(world, node, to_vec(force), moment);
         return TAUT_OK;
     });
@@ -215,7 +217,7 @@ taut_result taut_body_apply_force_at(taut_body handle, taut_vec3 force, taut_pos
     if (!check.vector("force", force, kForce).bounded("point", point, kPosition)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const NodeKind kind = world.nodes.info[node].kind;
-        if (!check_pushable(check, kind, false)) return check.result();
+        if (!check_pushable(check, world.nodes, node, false)) return check.result();
         // A particle is where it is: the point does not matter.
         const Vec3 arm = to_vec(point) - world.nodes.motion[node].x;
         add_load(world, node, to_vec(force), kind != NodeKind::particle ? arm.cross(to_vec(force)) : Vec3::Zero());
@@ -229,7 +231,7 @@ taut_result taut_body_apply_impulse(taut_body handle, taut_vec3 impulse, taut_ve
     if (!check) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const Vec3 moment = to_vec(angular_impulse);
-        if (!check_pushable(check, world.nodes.info[node].kind, !moment.isZero(0))) return check.result();
+        if (!check_pushable(check, world.nodes, node, !moment.isZero(0))) return check.result();
         return push(check, world, node, to_vec(impulse), moment);
     });
 }
@@ -238,7 +240,7 @@ taut_result taut_body_apply_impulse_at(taut_body handle, taut_vec3 impulse, taut
     Check check(__func__);
     if (!check.vector("impulse", impulse, kForce).bounded("point", point, kPosition)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
-        if (!check_pushable(check, world.nodes.info[node].kind, false)) return check.result();
+        if (!check_pushable(check, world.nodes, node, false)) return check.result();
         // A particle's inverse inertia is zero: the point does not matter.
         const Vec3 arm = to_vec(point) - world.nodes.motion[node].x;
         return push(check, world, node, to_vec(impulse), arm.cross(to_vec(impulse)));

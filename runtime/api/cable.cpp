@@ -94,6 +94,8 @@ taut_result find_end(Check& check, const World& world, const taut_cable_end_def&
     if (def.body.bits == 0) return TAUT_OK;
     const taut_result found = find_body(check.call(), names.body, world, def.body, tie.node);
     if (found != TAUT_OK) return found;
+    if (!world.nodes.enabled(tie.node))
+        return refuse(TAUT_INVALID_ARGUMENT, "%s: %s is disabled", check.call(), names.body);
     const NodeMotion& motion = world.nodes.motion[tie.node];
     if (world.nodes.info[tie.node].kind == NodeKind::particle) {
         check.require(tie.anchor == Vec3::Zero(), "an anchor is off its particle, expected 0");

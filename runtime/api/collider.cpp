@@ -260,7 +260,8 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
         ColliderPlan changed = world.colliders.plan(index);
         const taut_result made = make_collider(check, world, world.nodes.info[collider.node].kind, def, changed);
         if (made != TAUT_OK) return made;
-        world.broadphase.update(index, contact_box(world.nodes, world.shapes, changed), Vec3f::Zero());
+        if (world.nodes.enabled(collider.node))
+            world.broadphase.update(index, contact_box(world.nodes, world.shapes, changed), Vec3f::Zero());
         --world.shapes[collider.shape].users;
         ++world.shapes[changed.shape].users;
         collider = changed;

@@ -5,6 +5,7 @@
 
 #include "api/joint_parts.h"
 #include "api/sized.h"
+#include "models/bodies.h"
 
 using namespace taut;
 
@@ -240,6 +241,29 @@ taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, 
         write_ends(moved, kind, ends[0], ends[1]);
         if (moved.type == &kDistance && !check_distance(check, world, moved)) return check.result();
         replace_joint(world.nodes, joint, moved);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_set_enabled(taut_joint handle, uint32_t enabled) {
+    Check check(__func__);
+    check.boolean("enabled", enabled);
+    return change(check, handle, [&](World& world, Joint& joint) {
+        if (joint.off.off == (enabled == 0)) return TAUT_OK;
+        reserve_pair_of_ends(world, joint);
+        wake_ends(world, joint);  // while it ties them
+        if (!joint.collide_connected) forget_pair_of_ends(world, joint);
+        joint.off.off = enabled == 0;
+        update_idle(world, joint);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_joint_get_enabled(taut_joint handle, uint32_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
+        *out = world.joints.record[index].off.off ? 0 : 1;
         return TAUT_OK;
     });
 }

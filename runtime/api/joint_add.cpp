@@ -5,6 +5,7 @@
 
 #include "api/joint_parts.h"
 #include "api/sized.h"
+#include "models/bodies.h"
 
 using namespace taut;
 
@@ -183,6 +184,7 @@ taut_result add_joint(Check& check, World& world, const Joint& joint, taut_joint
     if (room != TAUT_OK) return room;
     reserve_pair_of_ends(world, joint);
     const uint32_t index = world.joints.add(joint);
+    world.joints.record[index].idle = is_idle(world.nodes, joint);
     if (!joint.collide_connected) forget_pair_of_ends(world, joint);
     wake_ends(world, joint);
     *out = world.joint_handle(index);

@@ -43,7 +43,7 @@ void forget_pair_of_ends(World& world, const Joint& joint);
 
 // What a joint holds goes on in another way.
 inline void wake_ends(World& world, const Joint& joint) {
-    for (uint32_t node : joint.nodes()) wake(world, node);
+    for (uint32_t node : joint.ends()) wake(world, node);
 }
 
 // Puts a changed joint in the place of the old one. What the change does to coordinates comes bit by bit over the next

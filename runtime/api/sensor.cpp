@@ -19,7 +19,7 @@ taut_result taut_collider_set_sensor(taut_collider handle, int32_t sensor) {
         wake_about(world, collider.node);
         forget_pairs(world.pairs, world.nodes, world.colliders, ends_on_collider(index));  // asked anew by the step
         collider.sensor = sensor != 0;
-        world.colliders.list_sensor(index, collider.sensor);
+        if (world.nodes.enabled(collider.node)) world.colliders.list_sensor(index, collider.sensor);
         return TAUT_OK;
     });
 }

@@ -10,7 +10,9 @@ taut_result taut_body_is_awake(taut_body handle, uint32_t* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
-        *out = world.nodes.sleeps(node) ? 0 : 1;
+        // A disabled one is what events said of it last; they go on once it is enabled.
+        const bool sleeps = world.nodes.enabled(node) ? world.nodes.sleeps(node) : world.nodes.sleep[node].told_asleep;
+        *out = sleeps ? 0 : 1;
         return TAUT_OK;
     });
 }
@@ -20,6 +22,7 @@ taut_result taut_body_set_awake(taut_body handle, uint32_t awake) {
     if (!check.boolean("awake", awake)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         check.require(moves_by_forces(world.nodes.info[node].kind), "body is static or kinematic")
+            .require(world.nodes.enabled(node), "body is disabled: nothing moves it")
             .require(awake || world.def.sleeping, "awake is 0, but the world's def does not let bodies sleep");
         if (!check) return check.result();
         if (awake)

@@ -23,7 +23,7 @@ bool holds(const ElementSet& set) { return set.type && set.form == ElementForm::
 template <class Act>
 void for_each_hold(const Joints& joints, const Elements& elements, Act&& act) {
     for (const Joint& joint : joints.record)
-        if (joint.type) act(joint.nodes());
+        if (joint.works()) act(joint.nodes());
     for_each_element(elements, [&](const ElementSet& set, uint32_t, std::span<const uint32_t> nodes) {
         if (holds(set)) act(nodes);
     });

@@ -10,6 +10,7 @@ namespace {
 
 bool is_obstacle(const Nodes& nodes, const Collider& collider) {
     if (collider.node == kNone || collider.sensor || collider.node_b != kNone) return false;
+    if (!nodes.enabled(collider.node)) return false;
     const NodeKind kind = nodes.info[collider.node].kind;
     return (kind == NodeKind::fixed || kind == NodeKind::kinematic) && nodes.info[collider.node].soft == kNone;
 }

@@ -1,5 +1,6 @@
 #include "models/bodies.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "detect/detect.h"
@@ -19,6 +20,34 @@ uint32_t& link_to(World& world, uint32_t node, uint32_t collider) {
     uint32_t* link = &world.nodes.info[node].collider;
     while (*link != collider) link = &world.colliders.record[*link].next;
     return *link;
+}
+
+// Into the broadphase, or there as what its node is now. Throws std::bad_alloc with nothing changed.
+void enter(World& world, uint32_t index) {
+    const Collider& record = world.colliders.record[index];
+    const bool moves = world.nodes.info[record.node].kind != NodeKind::fixed;
+    reserve_more(world.pairs.grains.gone, world.colliders.grains.size() + 1);
+    reserve_more(world.pairs.surfaces.gone, world.colliders.record.size());
+    world.broadphase.add(index, contact_box(world.nodes, world.shapes, record), moves,
+                         record.grain || is_surface_vertex(world.nodes, world.softs, record.node));
+}
+
+// All of a node's, or none.
+void enter_all(World& world, uint32_t node) {
+    uint32_t entered = 0;
+    try {
+        for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
+            enter(world, c);
+            ++entered;
+        });
+    } catch (...) {
+        for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
+            if (entered == 0) return;
+            world.broadphase.remove(c);
+            --entered;
+        });
+        throw;
+    }
 }
 
 bool has_met(const World& world, uint32_t node) { return has_met(world.pairs, world.nodes, world.colliders, node); }
@@ -74,12 +103,9 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     const uint32_t index = world.colliders.add(collider);
     Collider& record = world.colliders.record[index];
     record.next = kNone;
+    const bool enabled = world.nodes.enabled(record.node);
     try {
-        const bool moves = world.nodes.info[record.node].kind != NodeKind::fixed;
-        reserve_more(world.pairs.grains.gone, world.colliders.grains.size());
-        reserve_more(world.pairs.surfaces.gone, world.colliders.record.size());
-        world.broadphase.add(index, contact_box(world.nodes, world.shapes, record), moves,
-                             record.grain || is_surface_vertex(world.nodes, world.softs, record.node));
+        if (enabled) enter(world, index);
     } catch (...) {
         world.colliders.remove(index);
         throw;
@@ -89,6 +115,10 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     world.pairs.forget_place(index);
     world.pairs.met[index] = 0;
     ++world.shapes[record.shape].users;
+    if (!enabled) {
+        world.colliders.list_own(index, false);
+        return index;
+    }
     if (!moves_by_forces(world.nodes.info[record.node].kind))
         wake_box(world, contact_box(world.nodes, world.shapes, record));
     return index;
@@ -114,15 +144,78 @@ void remove_collider(World& world, uint32_t collider) {
     forget_surface_contacts(world, collider);
     link_to(world, record.node, collider) = record.next;
     world.colliders.chained -= world.nodes.info[record.node].collider != kNone;
-    world.broadphase.remove(collider);
+    if (world.nodes.enabled(record.node)) world.broadphase.remove(collider);
     --world.shapes[record.shape].users;
     world.colliders.remove(collider);
 }
 
 void refresh_boxes(World& world, uint32_t node) {
+    if (!world.nodes.enabled(node)) return;
     for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
         world.broadphase.update(c, contact_box(world.nodes, world.shapes, world.colliders.record[c]), Vec3f::Zero());
     });
+}
+
+void update_idle(World& world, Joint& joint) {
+    const bool idle = is_idle(world.nodes, joint);
+    if (idle == joint.idle) return;
+    joint.idle = idle;
+    joint.fresh = true;
+    joint.loaded = 0;
+    joint.need = 0;
+    std::ranges::fill(joint.lambda, 0.0);
+    std::ranges::fill(joint.drift, 0.0);
+    std::ranges::fill(joint.memory, AxisMemory{});
+    ++world.joints.version;
+}
+
+static void update_joints(World& world, uint32_t node) {
+    for (Joint& joint : world.joints.record)
+        if (ends_on(joint, node)) update_idle(world, joint);
+}
+
+static void disable(World& world, uint32_t node) {
+    Nodes& nodes = world.nodes;
+    if (has_met(world, node)) reserve_ended(world.pairs, ends_on(node));  // what may fail comes first
+    wake_about(world, node);
+    if (has_met(world, node)) forget_pairs(world.pairs, nodes, world.colliders, ends_on(node));
+    for_colliders(nodes, world.colliders, node, [&](uint32_t c) {
+        if (world.colliders.record[c].grain) world.pairs.grains.gone.push_back(node);
+        forget_surface_contacts(world, c);
+        world.broadphase.remove(c);
+        world.colliders.list_own(c, false);
+    });
+    nodes.info[node].disabled.off = true;
+    nodes.set_rest(node, Rest::asleep);
+    nodes.clear_load(node);
+    if (KinematicPath* const path = nodes.find_path(node)) path->follows = path->asked = false;
+    nodes.before[node] = origin_pose(world, node);
+    if (node < nodes.history.size()) nodes.history[node] = {};
+    update_joints(world, node);
+}
+
+static void enable(World& world, uint32_t node) {
+    Nodes& nodes = world.nodes;
+    uint32_t count = 0;
+    for_colliders(nodes, world.colliders, node, [&](uint32_t) { ++count; });
+    world.colliders.reserve_lists(count);  // what may fail comes first
+    enter_all(world, node);
+    for_colliders(nodes, world.colliders, node, [&](uint32_t c) {
+        world.colliders.list_own(c, true);
+        world.pairs.forget_place(c);
+        world.pairs.met[c] = 0;
+    });
+    nodes.info[node].disabled.off = false;
+    nodes.set_rest(node, Rest::awake);
+    nodes.sleep[node].quiet = 0;
+    world.sleep.changed = world.sleep.changed || nodes.sleep[node].told_asleep;
+    update_joints(world, node);
+    wake_about(world, node);
+}
+
+void set_enabled(World& world, uint32_t node, bool enabled) {
+    if (enabled == world.nodes.enabled(node)) return;
+    enabled ? enable(world, node) : disable(world, node);
 }
 
 void shift_centre(World& world, uint32_t node, const Vec3& offset) {
@@ -132,7 +225,7 @@ void shift_centre(World& world, uint32_t node, const Vec3& offset) {
     m.slow_v += m.slow_w.cross(offset);
     const Vec3 local = m.q.conjugate() * offset;
     for (Joint& joint : world.joints.record) {
-        for (int side = 0; side < static_cast<int>(joint.nodes().size()); ++side) {
+        for (int side = 0; side < static_cast<int>(joint.ends().size()); ++side) {
             if (joint.node[side] == node) set_anchor(joint, side, anchor_of(joint, side) - local);
         }
     }

@@ -14,8 +14,8 @@ inline NodePose origin_pose(const World& world, uint32_t node) {
 // A node with its colliders, whose node and next are set here. Throws std::bad_alloc with nothing changed.
 uint32_t add_node(World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
                   std::span<const ColliderPlan> colliders = {});
-// With its colliders and every joint and attachment on it. Throws std::bad_alloc with nothing changed, and not at all where
-// reserve_ended(world.pairs, ends_on(node)) has gone before.
+// With its colliders and every joint and attachment on it. Throws std::bad_alloc with nothing changed, and not at all
+// where reserve_ended(world.pairs, ends_on(node)) has gone before.
 void remove_node(World& world, uint32_t node);
 // The same of one on which there is none of these any more.
 void drop_node(World& world, uint32_t node);
@@ -29,8 +29,19 @@ void remove_collider(World& world, uint32_t collider);
 // as the next step does it again.
 void refresh_boxes(World& world, uint32_t node);
 
-// Moves a body's centre of mass by an offset [m], world axes: what the body does, and where its joints and attachments hold
-// it, stays.
+// Takes a node out of all that steps and queries go through, with its colliders and joints, or puts it back there; it
+// is not part of anything. Throws std::bad_alloc with nothing changed.
+void set_enabled(World& world, uint32_t node, bool enabled);
+
+// Brings Joint::idle up to date. A joint that begins to work anew is as one just made.
+void update_idle(World& world, Joint& joint);
+inline bool is_idle(const Nodes& nodes, const Joint& joint) {
+    const auto disabled = [&](uint32_t end) { return end != kNone && !nodes.enabled(end); };
+    return joint.off.off || std::ranges::any_of(joint.ends(), disabled);
+}
+
+// Moves a body's centre of mass by an offset [m], world axes: what the body does, and where its joints and attachments
+// hold it, stays.
 void shift_centre(World& world, uint32_t node, const Vec3& offset);
 
 }  // namespace taut

@@ -85,7 +85,7 @@ void remove_cable(World& world, uint32_t index) {
     for (uint32_t node : world.cables.record[index].node) wake(world, node);  // and what it is tied to
     for (uint32_t joint = 0; joint < world.joints.ids.slots(); ++joint) {
         if (!world.joints.ids.live(joint)) continue;
-        const auto nodes = world.joints.record[joint].nodes();
+        const auto nodes = world.joints.record[joint].ends();
         if (std::any_of(nodes.begin(), nodes.end(), own)) world.joints.remove(joint);
     }
     drop_attachments(world, own);

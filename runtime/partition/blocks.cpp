@@ -91,7 +91,7 @@ void keep_once(Array<uint64_t>& links) {
 
 void note_loads(Joints& joints, Elements& elements, const Nodes& nodes) {
     for (Joint& joint : joints.record)
-        if (joint.type && !asleep(nodes, joint))
+        if (joint.works() && !asleep(nodes, joint))
             joint.loaded = note_load(nodes, *joint.type, joint.nodes(), joint.lambda, joint.loaded);
     for_each_element(elements, [&](ElementSet& set, uint32_t e, std::span<const uint32_t> ends) {
         if (!asleep(nodes, ends))
@@ -205,7 +205,7 @@ void Partition::weigh_ties(const Nodes& nodes, const Joints& joints, const Eleme
         c.bounded += bounded;
     };
     for (const Joint& joint : joints.record) {
-        if (!joint.type) continue;
+        if (!joint.works()) continue;
         weigh(joint.nodes(), asked_for(joint), joint.loaded, joint.need, kTieCost, bounded_rows(joint), true);
     }
     for (uint32_t e = 0; e < element_.size(); ++e) {

@@ -51,7 +51,7 @@ double strain_of_fall(const NodeMass& body, double time, double gravity) {
 
 void note_needs(Joints& joints, Elements& elements, const Nodes& nodes, double h, double frame) {
     for (Joint& joint : joints.record) {
-        if (!joint.type || joint.solve != JointSolve::by_load || asleep(nodes, joint)) continue;
+        if (!joint.works() || joint.solve != JointSolve::by_load || asleep(nodes, joint)) continue;
         joint.need = follow(joint.need, strain_of(nodes, *joint.type, joint.nodes(), joint.lambda, h), frame);
     }
     for_each_element(elements, [&](ElementSet& set, uint32_t e, std::span<const uint32_t> ends) {

@@ -41,7 +41,7 @@ public:
     bool overloaded(uint32_t tie) const {
         if (is_joint(tie)) {
             const Joint& joint = w_.joints.record[tie];
-            if (!joint.type || (std::isinf(joint.break_force) && std::isinf(joint.break_torque))) return false;
+            if (!joint.works() || (std::isinf(joint.break_force) && std::isinf(joint.break_torque))) return false;
             return !asleep(w_.nodes, joint) && load_ratio(tie) > 1;
         }
         const Attachment& of = w_.attachments.record[attachment(tie)];

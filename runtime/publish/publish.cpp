@@ -69,7 +69,7 @@ Tally tally(World& world) {
     const auto add_joint = [&](Tally& t, const Joint& joint) {
         if (!joint.type) return;
         ++t.joints;
-        if (asleep(world.nodes, joint)) return;
+        if (joint.idle || asleep(world.nodes, joint)) return;
         t.joint_error = std::max(t.joint_error, static_cast<float>(gap_of(world.nodes, joint)));
     };
     const auto add_set = [&](Tally& t, const ElementSet& set) {

@@ -16,7 +16,7 @@ void wake_node(World& world, uint32_t node) {
 }
 
 void wake_island(World& world, uint32_t node) {
-    if (node == kNone || !moves_by_forces(world.nodes.info[node].kind)) return;
+    if (node == kNone || !moves_by_forces(world.nodes.info[node].kind) || !world.nodes.enabled(node)) return;
     if (!world.nodes.sleeps(node)) {
         world.nodes.sleep[node].quiet = 0;
         return;
@@ -55,7 +55,7 @@ bool overlap(const collision::Box& a, const collision::Box& b) {
 }  // namespace
 
 void wake(World& world, uint32_t node) {
-    if (node == kNone) return;
+    if (node == kNone || !world.nodes.enabled(node)) return;
     const NodeKind kind = world.nodes.info[node].kind;
     if (kind == NodeKind::fixed) world.nodes.set_rest(node, Rest::awake);
     if (!world.def.sleeping) return;
@@ -73,7 +73,7 @@ void wake_all(World& world) {
 }
 
 void wake_near(World& world, uint32_t node) {
-    if (!world.def.sleeping || moves_by_forces(world.nodes.info[node].kind)) return;
+    if (!world.def.sleeping || moves_by_forces(world.nodes.info[node].kind) || !world.nodes.enabled(node)) return;
     for_colliders(world.nodes, world.colliders, node, [&](uint32_t c) {
         wake_box(world, contact_box(world.nodes, world.shapes, world.colliders.record[c]));
     });

@@ -336,7 +336,8 @@ void derive(World& world) {
         ++world.shapes[record.shape].users;
         world.colliders.chained += record.next != kNone;
     }
-    world.broadphase.rebuild(lives);
+    world.broadphase.rebuild(
+        [&](uint32_t c) { return lives(c) && world.nodes.enabled(world.colliders.record[c].node); });
     link_records(world.pairs);
     world.partition.forget_frame(world.nodes.slots());
     world.nodes.load.clear();

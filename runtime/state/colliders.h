@@ -150,6 +150,17 @@ struct Colliders {
     // Brings `active` up to date, after Nodes::active.
     void list_active(const Nodes& nodes);
 
+    // Into the lists of sensors and grains, or out of them; for the former reserve_lists() went before.
+    void reserve_lists(size_t more) {
+        reserve_more(sensors, more);
+        reserve_more(grains, more);
+    }
+    void list_own(uint32_t index, bool listed) {
+        list(sensors, index, listed && record[index].sensor);
+        list(grains, index, listed && record[index].grain);
+        listed_ = 0;
+    }
+
     // Brings the list of sensors up to date; reserve_sensor() went before.
     void list_sensor(uint32_t index, bool sensor) { list(sensors, index, sensor); }
 

@@ -32,7 +32,7 @@ struct ConstraintView {
 };
 
 inline ConstraintView view_of(const Joint& joint) {
-    ConstraintView view{joint.type,   joint.data,  joint.nodes(),
+    ConstraintView view{joint.type,   joint.data,  joint.ends(),
                         joint.lambda, joint.drift, {joint.compliance, joint.angular_compliance}};
     for (int r = 0; joint.type && r < joint.type->rows; ++r)
         view.locked |= static_cast<uint8_t>((joint.plain || joint.axis[r].mode == AxisMode::locked) << r);

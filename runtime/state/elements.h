@@ -147,7 +147,7 @@ void for_each_element(Of& elements, Act&& act) {
 template <class Act>
 void for_each_tie(const Joints& joints, const Elements& elements, Act&& act) {
     for (const Joint& joint : joints.record)
-        if (joint.type) act(joint.nodes());
+        if (joint.works()) act(joint.nodes());
     for_each_element(elements, [&](const ElementSet&, uint32_t, std::span<const uint32_t> nodes) { act(nodes); });
 }
 

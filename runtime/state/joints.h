@@ -36,6 +36,8 @@ struct Joint {
     JointSolve solve = JointSolve::direct;
     bool collide_connected = false;
     bool inner = false;             // of something that the host knows as a whole: no handle leads to it
+    bool idle = false;              // the host switched it off, or an end is disabled: as if it was not there
+    Switch off;                     // the former
     uint8_t loaded = 0;             // frames under or since a load beyond what contacts in sweeps hold; partition.h
     float need = 0;                 // of a direct solve [s]; partition/needs.h
     bool fresh = true;              // not solved yet: lambda means nothing
@@ -55,13 +57,16 @@ struct Joint {
     // Tells what a direct solve's matrix is made for: who, and which rows are multipliers.
     uint64_t mark() const { return serial << 4 | static_cast<uint64_t>(held()) << 1 | (plain ? 1 : 0); }
 
-    std::span<const uint32_t> nodes() const { return {node, static_cast<size_t>(type ? type->nodes : 0)}; }
+    bool works() const { return type && !idle; }
+    std::span<const uint32_t> ends() const { return {node, static_cast<size_t>(type ? type->nodes : 0)}; }
+    // Those that it ties: none while it is idle.
+    std::span<const uint32_t> nodes() const { return {node, static_cast<size_t>(works() ? type->nodes : 0)}; }
 };
 template <class Visitor, Like<Joint> Of>
 void describe(Visitor& visitor, Of& of) {
     auto& [type, node, lambda, drift, compliance, damping, angular_compliance, angular_damping, break_force,
-           break_torque, plain, solve, collide_connected, inner, loaded, need, fresh, slow_turn, user_data, serial,
-           axis, memory, data] = of;
+           break_torque, plain, solve, collide_connected, inner, idle, off, loaded, need, fresh, slow_turn, user_data,
+           serial, axis, memory, data] = of;
     TAUT_FIELDS(visitor, type, plain);
     const int nodes = type ? type->nodes : 0, rows = type ? type->rows : 0;
     for (int n = 0; n < nodes; ++n) TAUT_FIELDS(visitor, node[n]);
@@ -71,12 +76,13 @@ void describe(Visitor& visitor, Of& of) {
                 collide_connected, inner, loaded, need, fresh, slow_turn);
     Bytes own{data, type ? type->data_size : 0};
     TAUT_FIELDS(visitor, own);
-    TAUT_ASIDE(visitor, user_data, serial);
+    TAUT_RARE(visitor, off);
+    TAUT_ASIDE(visitor, idle, user_data, serial);
 }
 
 inline bool ends_on(const Joint& joint, uint32_t node) {
-    const auto nodes = joint.nodes();
-    return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+    const auto ends = joint.ends();
+    return std::find(ends.begin(), ends.end(), node) != ends.end();
 }
 
 // Angles between stops are read anew: the joint's ends did not come to their poses by motion.

@@ -97,7 +97,7 @@ void Nodes::list_active() {
     for (uint32_t node = 0; node < slots(); ++node) {
         if (!all_ && node + kMany <= slots() && std::memcmp(&rest[node], kAllAsleep.data(), kMany) == 0)
             node += kMany - 1;
-        else if (rest[node] != Rest::asleep || (all_ && info[node].kind != NodeKind::dead))
+        else if (rest[node] != Rest::asleep || (all_ && info[node].kind != NodeKind::dead && enabled(node)))
             active.push_back(node);
     }
     listed_ = !std::exchange(all_, false);
@@ -134,7 +134,7 @@ void Nodes::let_go(uint32_t node) {
     info[node].kind = held.kind;
     ++movable;
     sleep[node].quiet = 0;
-    set_rest(node, Rest::awake);
+    if (enabled(node)) set_rest(node, Rest::awake);
     frozen.erase(std::ranges::lower_bound(frozen, node, {}, &FrozenNode::node));
 }
 

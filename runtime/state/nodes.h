@@ -95,12 +95,25 @@ void describe(Visitor& visitor, Of& of) {
     if (any) TAUT_FIELDS(visitor, force, torque);
 }
 
+// What is on as it comes, and counts for the hash where it is off.
+struct Switch {
+    bool off = false;
+
+    bool empty() const { return !off; }
+};
+template <class Visitor, Like<Switch> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [off] = of;
+    TAUT_FIELDS(visitor, off);
+}
+
 struct NodeInfo {
     NodeKind kind = NodeKind::dead;
     uint32_t collider = kNone;  // the first of its colliders
     uint32_t cable = kNone;     // that it is part of
     uint32_t soft = kNone;      // likewise, a cloth or solid
     bool continuous = true;     // what moves past its own thickness is looked for along its way; detect/impact.h
+    Switch disabled;            // asleep until it is enabled: no box, no pair and no joint of it is there meanwhile
     bool restrained = false;    // Nodes::restraints has it
     uint64_t user_data = 0;
 
@@ -109,8 +122,9 @@ struct NodeInfo {
 };
 template <class Visitor, Like<NodeInfo> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, collider, cable, soft, continuous, restrained, user_data] = of;
+    auto& [kind, collider, cable, soft, continuous, disabled, restrained, user_data] = of;
     TAUT_FIELDS(visitor, kind, collider, cable, soft, continuous);
+    TAUT_RARE(visitor, disabled);
     TAUT_ASIDE(visitor, restrained, user_data);
 }
 
@@ -262,6 +276,7 @@ struct Nodes {
     // Moved by forces, and not asleep.
     bool solved(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] == Rest::awake; }
     bool sleeps(uint32_t node) const { return moves_by_forces(info[node].kind) && rest[node] != Rest::awake; }
+    bool enabled(uint32_t node) const { return !info[node].disabled.off; }
     void set_rest(uint32_t node, Rest to) {
         listed_ = listed_ && (rest[node] == Rest::asleep) == (to == Rest::asleep);
         rest[node] = to;

@@ -18,7 +18,7 @@ void list_reached(const Nodes& nodes, const Joints& joints, const Pairs& pairs, 
     reached.clear();
     for (const ActivePair& pair : pairs.active) add(nodes, pair.nodes(), reached);
     for (const Joint& joint : joints.record)
-        if (joint.type) add(nodes, joint.nodes(), reached);
+        if (joint.works()) add(nodes, joint.nodes(), reached);
     for (const GrainContact& contact : pairs.grains.contact) add(nodes, std::array{contact.a, contact.b}, reached);
     add(nodes, held, reached);
     add_reached(nodes, pairs.surfaces, reached);
