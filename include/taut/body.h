@@ -114,6 +114,17 @@ TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind* out);
 TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
 /**
+ * Makes a rigid body static, kinematic or dynamic. Its contacts end with the next step's events and are found anew;
+ * joints stay. What is static from now on has no velocity, any other keeps its own; forces put on it and targets of
+ * taut_body_move_kinematic are forgotten. What is dynamic from now on has the mass that it had as a dynamic body or
+ * that taut_body_set_mass gave it since, else that of its colliders at their densities.
+ * @param kind not TAUT_BODY_PARTICLE.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (the body is a particle or in quarantine; dynamic with a plane, mesh or height
+ *         field, or with a mass from colliders that is not within [1e-6, 1e15] kg), TAUT_IN_USE (a body of a cable,
+ *         cloth or solid), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_set_kind(taut_body body, taut_body_kind kind);
+/**
  * Takes a body out of the world (0) or puts it back (1, as it comes). Disabled, it stays where it is and keeps all that
  * it has, its velocity too, but nothing moves it, nothing touches it or finds it in a query of the world, and its
  * joints are off. Its contacts end with the next step's events. All but forces, impulses and targets can be set
@@ -139,6 +150,16 @@ TAUT_API taut_result taut_body_get_name(taut_body body, char* name, uint32_t cap
 
 /** Mass properties as the solver uses them; zero mass for a static or kinematic body. */
 TAUT_API taut_result taut_body_get_mass(taut_body body, float* mass, taut_vec3* centre_of_mass, taut_sym3* inertia);
+/**
+ * Sets what a def's mass, centre_of_mass and inertia say, by the same rules: a mass of 0 is that of the colliders, an
+ * inertia of 0 theirs, scaled to the mass, with their centre. Joints stay where they hold the body, and the motion of
+ * every point of it stays. A static or kinematic body has the mass once it is dynamic. A particle takes a mass alone,
+ * [1e-9, 1e21] kg.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (range; not positive definite; in quarantine; a centre or inertia of a
+ *         particle), TAUT_IN_USE (a body of a cable, cloth or solid), TAUT_STALE_HANDLE, TAUT_LOCKED,
+ *         TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_set_mass(taut_body body, float mass, taut_vec3 centre_of_mass, taut_sym3 inertia);
 /**
  * Damping [1/s] of a body's own motion, [0, 1e6]: what air or oil would do. A velocity v that a force m a drives decays
  * by dv/dt = a - c v, and each substep of h takes the solution, e^(-c h) v + a (1 - e^(-c h)) / c: after t seconds

@@ -15,15 +15,6 @@ namespace {
 
 constexpr NodeKind kNodeKind[] = {NodeKind::fixed, NodeKind::kinematic, NodeKind::dynamic};
 
-Check& check_inertia(Check& check, const taut_sym3& m) {
-    return check.number("inertia.xx", m.xx, kInertia)
-        .number("inertia.yy", m.yy, kInertia)
-        .number("inertia.zz", m.zz, kInertia)
-        .number("inertia.xy", m.xy, kInertia)
-        .number("inertia.xz", m.xz, kInertia)
-        .number("inertia.yz", m.yz, kInertia);
-}
-
 // One of a body's, which lie as far apart as the first of them says that it is long.
 bool take_collider(Check& check, const taut_body_def& def, uint32_t i, taut_collider_def& out) {
     const size_t stride = def.colliders[0].struct_size;
@@ -44,11 +35,9 @@ Check& check_def(Check& check, const taut_body_def& def) {
     }
     check_material(check, kMaterialInDef, def.material)
         .zero("filter.reserved", def.filter.reserved)
-        .number("density", def.density, kDensity)
-        .zero_or("mass", def.mass, kBodyMass)
-        .vector("centre_of_mass", def.centre_of_mass, kShapeCoordinate);
-    check_asks(check, "collider_flags", def.collider_flags, def.contact_events);
-    check_inertia(check, def.inertia)
+        .number("density", def.density, kDensity);
+    check_mass(check, def.mass, def.centre_of_mass, def.inertia);
+    check_asks(check, "collider_flags", def.collider_flags, def.contact_events)
         .number("gravity_scale", def.gravity_scale, kGravityScale)
         .number("linear_damping", def.linear_damping, kDampingRate)
         .number("angular_damping", def.angular_damping, kDampingRate)

@@ -53,6 +53,17 @@ void complete(Check& check, NodeMass& out) {
 
 }  // namespace
 
+Check& check_mass(Check& check, float mass, const taut_vec3& centre_of_mass, const taut_sym3& inertia) {
+    return check.zero_or("mass", mass, kBodyMass)
+        .vector("centre_of_mass", centre_of_mass, kShapeCoordinate)
+        .number("inertia.xx", inertia.xx, kInertia)
+        .number("inertia.yy", inertia.yy, kInertia)
+        .number("inertia.zz", inertia.zz, kInertia)
+        .number("inertia.xy", inertia.xy, kInertia)
+        .number("inertia.xz", inertia.xz, kInertia)
+        .number("inertia.yz", inertia.yz, kInertia);
+}
+
 // Of the parts, I = sum R I_p R^T + m_p (d.d - d d^T), d from the common centre to the part's (Steiner).
 collision::MassProperties mass_of(const Shapes& shapes, std::span<const ColliderPlan> colliders) {
     if (colliders.size() == 1 && colliders[0].at_origin() && !colliders[0].sensor)
@@ -114,6 +125,20 @@ void set_body_mass(Check& check, const Shapes& shapes, std::span<const ColliderP
     out.centre = sum.centre;
     out.inertia = sum.inertia;
     complete(check, out);
+}
+
+SpareMass put_aside(uint32_t node, NodeMass& mass) {
+    const SpareMass spare{node, mass.mass, mass.inertia};
+    mass.mass = mass.inv_mass = 0;
+    mass.inertia = mass.inv_inertia = {};
+    mass.isotropic = false;
+    return spare;
+}
+
+void take_back(Check& check, const SpareMass& spare, NodeMass& mass) {
+    mass.mass = spare.mass;
+    mass.inertia = spare.inertia;
+    complete(check, mass);
 }
 
 }  // namespace taut

@@ -218,6 +218,39 @@ void set_enabled(World& world, uint32_t node, bool enabled) {
     enabled ? enable(world, node) : disable(world, node);
 }
 
+void change_kind(World& world, uint32_t node, NodeKind kind, const NodeMass& mass) {
+    Nodes& nodes = world.nodes;
+    const NodeKind before = nodes.info[node].kind;
+    const bool enabled = nodes.enabled(node);
+    world.system.make_room(nodes.slots(), nodes.movable + 1);  // what may fail comes first
+    nodes.mass.reserve_values(1);
+    if (enabled && has_met(world, node)) reserve_ended(world.pairs, ends_on(node));
+    nodes.info[node].kind = kind;
+    try {
+        if (enabled) for_colliders(nodes, world.colliders, node, [&](uint32_t c) { enter(world, c); });
+    } catch (...) {
+        nodes.info[node].kind = before;
+        throw;
+    }
+    nodes.info[node].kind = before;
+    wake_about(world, node);
+    if (enabled && has_met(world, node)) forget_pairs(world.pairs, nodes, world.colliders, ends_on(node));
+    nodes.info[node].kind = kind;
+    nodes.movable += kind != NodeKind::fixed;
+    nodes.movable -= before != NodeKind::fixed;
+    shift_centre(world, node, nodes.motion[node].q * (mass.centre - nodes.mass[node].centre));
+    nodes.mass.set(node, mass);
+    if (!moves_by_forces(kind)) nodes.clear_load(node);
+    if (const KinematicPath* path = nodes.find_path(node))
+        nodes.paths.erase(nodes.paths.begin() + (path - nodes.paths.data()));
+    if (kind == NodeKind::fixed) set_velocity(nodes.motion[node], Vec3::Zero(), Vec3::Zero());
+    if (node < nodes.history.size()) nodes.history[node] = {};
+    nodes.sleep[node].quiet = 0;
+    if (enabled) nodes.set_rest(node, Rest::awake);
+    ++world.joints.version;  // blocks gain or lose the node
+    wake_about(world, node);
+}
+
 void shift_centre(World& world, uint32_t node, const Vec3& offset) {
     NodeMotion& m = world.nodes.motion[node];
     m.x += offset;

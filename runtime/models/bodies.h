@@ -33,6 +33,10 @@ void refresh_boxes(World& world, uint32_t node);
 // is not part of anything. Throws std::bad_alloc with nothing changed.
 void set_enabled(World& world, uint32_t node, bool enabled);
 
+// Makes a rigid body static, kinematic or dynamic; mass: what it has then. What is static has no velocity. Throws
+// std::bad_alloc with nothing changed but what the next step brings up to date.
+void change_kind(World& world, uint32_t node, NodeKind kind, const NodeMass& mass);
+
 // Brings Joint::idle up to date. A joint that begins to work anew is as one just made.
 void update_idle(World& world, Joint& joint);
 inline bool is_idle(const Nodes& nodes, const Joint& joint) {

@@ -77,6 +77,7 @@ void Nodes::remove(uint32_t node) {
     if (const FrozenNode* held = find_frozen(node)) frozen.erase(frozen.begin() + (held - frozen.data()));
     drop(names, node);
     drop(restraints, node);
+    drop(spares, node);
     ids.destroy(node);
 }
 
@@ -156,6 +157,10 @@ void Nodes::set_restraint(const Restraint& restraint) {
     restraint.any() ? put(restraints, restraint) : drop(restraints, restraint.node);
     info[restraint.node].restrained = restraint.any();
 }
+
+void Nodes::set_spare(const SpareMass& spare) { put(spares, spare); }
+
+void Nodes::drop_spare(uint32_t node) { drop(spares, node); }
 
 void Nodes::set_gravity_scale(uint32_t node, double scale) {
     mass.reserve_values(1);

@@ -82,6 +82,18 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, node, damping, angular_damping, most_speed, most_spin);
 }
 
+// The mass that a node which forces do not move has once they do.
+struct SpareMass {
+    uint32_t node = kNone;
+    double mass = 0;  // [kg]
+    Sym3 inertia;     // about the centre of mass, body axes [kg m^2]
+};
+template <class Visitor, Like<SpareMass> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, mass, inertia] = of;
+    TAUT_FIELDS(visitor, node, mass, inertia);
+}
+
 struct NodeLoad {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m]; times a time: [N s], [N m s]
 
@@ -233,6 +245,7 @@ struct Nodes {
           frozen(memory),
           names(memory),
           restraints(memory),
+          spares(memory),
           before(memory),
           history(memory),
           rest(memory),
@@ -262,8 +275,11 @@ struct Nodes {
     void stay(uint32_t node);  // where it was before the last step, at rest
     // Of a node; null: it has none.
     const Restraint* find_restraint(uint32_t node) const { return find_in(restraints, node); }
-    // Its node says whose it is; one of nothing is dropped. Throws std::bad_alloc with nothing changed.
+    const SpareMass* find_spare(uint32_t node) const { return find_in(spares, node); }
+    // Their nodes say whose they are; one of nothing is dropped. Throw std::bad_alloc with nothing changed.
     void set_restraint(const Restraint& restraint);
+    void set_spare(const SpareMass& spare);
+    void drop_spare(uint32_t node);
     // How strongly gravity pulls; of one in quarantine, once it is let go. Throws std::bad_alloc with nothing changed.
     void set_gravity_scale(uint32_t node, double scale);
     const char* name_of(uint32_t node) const;  // null: it has none
@@ -299,6 +315,7 @@ struct Nodes {
     Array<FrozenNode> frozen;     // likewise
     Array<NodeName> names;        // likewise
     Array<Restraint> restraints;  // likewise
+    Array<SpareMass> spares;      // likewise
     Array<NodePose> before;       // origin pose before the last step
     Array<NodeHistory> history;   // of all, or of none in worlds whose scheme has one step
     Array<Rest> rest;             // set_rest()
@@ -328,14 +345,15 @@ private:
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
     // load: within a step; the list of active ones follows.
-    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, restraints, before, history, rest, sleep,
-           active, lists, movable, listed, all] = of;
+    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, restraints, spares, before, history,
+           rest, sleep, active, lists, movable, listed, all] = of;
     OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
     TAUT_ASIDE(visitor, ids, names);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);
     TAUT_FIELDS(visitor, paths);
     TAUT_RARE(visitor, frozen);
     TAUT_RARE(visitor, restraints);
+    TAUT_RARE(visitor, spares);
 }
 
 }  // namespace taut
