@@ -47,6 +47,24 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              return taut_world_set_wind(w, {0, 1, 0});
          }},
         {"taut_world_get_counts", [](taut_world w) { return taut_world_get_counts(w, nullptr, nullptr, nullptr); }},
+        {"taut_world_get_bodies",
+         [](taut_world w) {
+             static taut_body out[1024];
+             uint32_t count;
+             return taut_world_get_bodies(w, out, 1024, &count);
+         }},
+        {"taut_world_get_joints",
+         [](taut_world w) {
+             static taut_joint out[256];
+             uint32_t count;
+             return taut_world_get_joints(w, out, 256, &count);
+         }},
+        {"taut_world_get_shapes",
+         [](taut_world w) {
+             static taut_shape out[256];
+             uint32_t count;
+             return taut_world_get_shapes(w, out, 256, &count);
+         }},
         {"taut_world_get_bytes",
          [](taut_world w) {
              uint64_t out;
@@ -412,6 +430,75 @@ inline std::vector<Call<taut_body>> body_calls() {
              return taut_body_get_pose(b, &out);
          }},
         {"taut_body_set_pose", [](taut_body b) { return taut_body_set_pose(b, &kIdentity); }},
+        {"taut_body_set_enabled", [](taut_body b) { return taut_body_set_enabled(b, 1); }},
+        {"taut_body_get_enabled",
+         [](taut_body b) {
+             uint32_t out;
+             return taut_body_get_enabled(b, &out);
+         }},
+        {"taut_body_set_name", [](taut_body b) { return taut_body_set_name(b, "body"); }},
+        {"taut_body_get_name",
+         [](taut_body b) {
+             char out[TAUT_BODY_NAME_SIZE];
+             uint32_t count;
+             return taut_body_get_name(b, out, sizeof out, &count);
+         }},
+        {"taut_body_set_damping", [](taut_body b) { return taut_body_set_damping(b, 1, 0); }},
+        {"taut_body_get_damping", [](taut_body b) { return taut_body_get_damping(b, nullptr, nullptr); }},
+        {"taut_body_set_gravity_scale", [](taut_body b) { return taut_body_set_gravity_scale(b, 1); }},
+        {"taut_body_get_gravity_scale",
+         [](taut_body b) {
+             float out;
+             return taut_body_get_gravity_scale(b, &out);
+         }},
+        {"taut_body_set_max_speed", [](taut_body b) { return taut_body_set_max_speed(b, 100, 0); }},
+        {"taut_body_get_max_speed", [](taut_body b) { return taut_body_get_max_speed(b, nullptr, nullptr); }},
+        {"taut_body_set_mass",
+         [](taut_body b) {
+             return taut_body_set_mass(b, 1, {0, 0, 0}, {0, 0, 0, 0, 0, 0});
+         }},
+        {"taut_body_get_world_point",
+         [](taut_body b) {
+             taut_pos out;
+             return taut_body_get_world_point(b, {1, 0, 0}, &out);
+         }},
+        {"taut_body_get_local_point",
+         [](taut_body b) {
+             taut_vec3 out;
+             return taut_body_get_local_point(b, {1, 0, 0}, &out);
+         }},
+        {"taut_body_get_world_vector",
+         [](taut_body b) {
+             taut_vec3 out;
+             return taut_body_get_world_vector(b, {1, 0, 0}, &out);
+         }},
+        {"taut_body_get_local_vector",
+         [](taut_body b) {
+             taut_vec3 out;
+             return taut_body_get_local_vector(b, {1, 0, 0}, &out);
+         }},
+        {"taut_body_get_point_velocity",
+         [](taut_body b) {
+             taut_vec3 out;
+             return taut_body_get_point_velocity(b, {1, 0, 0}, &out);
+         }},
+        {"taut_body_get_bounds",
+         [](taut_body b) {
+             taut_pos low, high;
+             return taut_body_get_bounds(b, &low, &high);
+         }},
+        {"taut_body_get_joints",
+         [](taut_body b) {
+             taut_joint out[64];
+             uint32_t count;
+             return taut_body_get_joints(b, out, 64, &count);
+         }},
+        {"taut_body_get_contacts",
+         [](taut_body b) {
+             static taut_contact out[256];
+             uint32_t count;
+             return taut_body_get_contacts(b, out, 256, &count);
+         }},
         {"taut_body_get_render_pose",
          [](taut_body b) {
              taut_pose out;
@@ -511,6 +598,21 @@ inline std::vector<Call<taut_collider>> collider_calls(const Populated& p) {
          [](taut_collider c) {
              taut_body out;
              return taut_collider_get_body(c, &out);
+         }},
+        {"taut_collider_get_bounds",
+         [](taut_collider c) {
+             taut_pos low, high;
+             return taut_collider_get_bounds(c, &low, &high);
+         }},
+        {"taut_collider_cast_ray",
+         [](taut_collider c) {
+             taut_query_hit out;
+             return taut_collider_cast_ray(c, &kDown, &out);
+         }},
+        {"taut_collider_overlap_point",
+         [](taut_collider c) {
+             int32_t out;
+             return taut_collider_overlap_point(c, {0, 3, 0}, &out);
          }},
         {"taut_collider_get_user_data",
          [](taut_collider c) {
@@ -650,6 +752,12 @@ inline std::vector<Call<taut_joint>> joint_calls() {
         {"taut_joint_set_angular_compliance", [](taut_joint j) { return taut_joint_set_angular_compliance(j, 0, 0); }},
         {"taut_joint_set_break", [](taut_joint j) { return taut_joint_set_break(j, 1e9f, 0); }},
         {"taut_joint_set_solve", [](taut_joint j) { return taut_joint_set_solve(j, TAUT_JOINT_SOLVE_SOFT); }},
+        {"taut_joint_set_enabled", [](taut_joint j) { return taut_joint_set_enabled(j, 1); }},
+        {"taut_joint_get_enabled",
+         [](taut_joint j) {
+             uint32_t out;
+             return taut_joint_get_enabled(j, &out);
+         }},
         {"taut_joint_set_collide_connected", [](taut_joint j) { return taut_joint_set_collide_connected(j, 1); }},
         {"taut_joint_remove", [](taut_joint j) { return taut_joint_remove(j); }},
     };

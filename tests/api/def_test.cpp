@@ -167,6 +167,10 @@ TEST_F(Refusals, Body) {
                        FIELD(Def, inertia.xz, 0, 0, Field::unchecked),
                        FIELD(Def, inertia.yz, 0, 0, Field::unchecked),
                        FIELD(Def, gravity_scale, -1000, 1000),
+                       FIELD(Def, linear_damping, 0, 1e6),
+                       FIELD(Def, angular_damping, 0, 1e6),
+                       FIELD(Def, max_linear_speed, 0, 1e6),
+                       FIELD(Def, max_angular_speed, 0, 1e6),
                    });
     const auto refuse = [&](const char* word, auto change) {
         Def bad = def;
@@ -201,8 +205,9 @@ TEST_F(Refusals, Particle) {
     taut_particle_def_init(&def);
     DefCheck check(p.world, "taut_world_add_particle", taut_world_add_particle);
     using Def = taut_particle_def;
-    check.run(def, {FIELD(Def, mass, 1e-9, 1e21), FIELD3(Def, position, -1e7, 1e7), FIELD3(Def, velocity, -1e4, 1e4),
-                    FIELD(Def, gravity_scale, -1000, 1000)});
+    check.run(def,
+              {FIELD(Def, mass, 1e-9, 1e21), FIELD3(Def, position, -1e7, 1e7), FIELD3(Def, velocity, -1e4, 1e4),
+               FIELD(Def, gravity_scale, -1000, 1000), FIELD(Def, damping, 0, 1e6), FIELD(Def, max_speed, 0, 1e6)});
     def.mass = 0;
     check.expect_refused(&def, TAUT_INVALID_ARGUMENT, "mass is 0");
 }

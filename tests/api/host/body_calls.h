@@ -32,6 +32,8 @@ protected:
         if (one_in(8)) def.collider_flags = byte() % (one_in(16) ? 16 : 8);
         if (one_in(8)) def.contact_events = byte() % (one_in(16) ? 32 : 16);
         def.gravity_scale = real(-2, 2);
+        if (one_in(4)) def.linear_damping = damping(), def.angular_damping = damping();
+        if (one_in(8)) def.max_linear_speed = real(0, 20), def.max_angular_speed = real(0, 20);
         taut_collider_def colliders[2];
         for (taut_collider_def& collider : colliders) collider = collider_def(w);
         if (one_in(8)) def.colliders = colliders, def.collider_count = 1 + byte() % 2;
@@ -52,6 +54,8 @@ protected:
         def.position = pos(10);
         def.velocity = vec(10);
         if (one_in(2)) def.shape = pick(shapes_, w);
+        if (one_in(4)) def.damping = damping();
+        if (one_in(8)) def.max_speed = real(0, 20);
         taut_body out = {0};
         if (run("taut_world_add_particle", [&] { return taut_world_add_particle(worlds_[w], &def, &out); })) {
             keep(bodies_, out, w);
@@ -165,6 +169,131 @@ protected:
         }
     }
 
+    // What is set is read.
+    void change_body() {
+        const taut_body body = pick_body(pick_world());
+        const float a = damping(), b = one_in(2) ? 0 : damping();
+        float linear = 0, angular = 0;
+        switch (byte() % 7) {
+            case 0:
+                if (!run("taut_body_set_damping", [&] { return taut_body_set_damping(body, a, b); })) break;
+                expect(ask("taut_body_get_damping", [&] { return taut_body_get_damping(body, &linear, &angular); }) &&
+                           linear == a && angular == b,
+                       "a damping of another");
+                break;
+            case 1: {
+                const float limit = real(0, 30);
+                if (!run("taut_body_set_max_speed", [&] { return taut_body_set_max_speed(body, limit, b); })) break;
+                expect(
+                    ask("taut_body_get_max_speed", [&] { return taut_body_get_max_speed(body, &linear, &angular); }) &&
+                        linear == limit && angular == b,
+                    "a greatest speed of another");
+                break;
+            }
+            case 2: {
+                const float scale = real(-2, 2);
+                if (!run("taut_body_set_gravity_scale", [&] { return taut_body_set_gravity_scale(body, scale); }))
+                    break;
+                expect(ask("taut_body_get_gravity_scale", [&] { return taut_body_get_gravity_scale(body, &linear); }) &&
+                           linear == scale,
+                       "a gravity of another");
+                break;
+            }
+            case 3: {
+                const float mass = one_in(3) ? 0 : real(0.01, 1000);
+                const taut_vec3 centre = one_in(2) ? taut_vec3{0, 0, 0} : vec(1);
+                taut_sym3 inertia = {0, 0, 0, 0, 0, 0};
+                if (one_in(2)) inertia = {real(1, 10), real(1, 10), real(1, 10), real(-1, 1), 0, real(-1, 1)};
+                run("taut_body_set_mass", [&] { return taut_body_set_mass(body, mass, centre, inertia); });
+                break;
+            }
+            case 4: {
+                const auto kind = static_cast<taut_body_kind>(byte() % (one_in(8) ? 5 : 3));
+                if (!run("taut_body_set_kind", [&] { return taut_body_set_kind(body, kind); })) break;
+                taut_body_kind now = TAUT_BODY_PARTICLE;
+                expect(taut_body_get_kind(body, &now) == TAUT_OK && now == kind, "a kind of another");
+                break;
+            }
+            case 5: {
+                const uint32_t enabled = byte() % (one_in(8) ? 3 : 2);
+                if (!run("taut_body_set_enabled", [&] { return taut_body_set_enabled(body, enabled); })) break;
+                uint32_t now = 2;
+                expect(
+                    ask("taut_body_get_enabled", [&] { return taut_body_get_enabled(body, &now); }) && now == enabled,
+                    "a switch that is not where it was put");
+                break;
+            }
+            default: {
+                char name[40];
+                const uint32_t length = byte() % 40;
+                for (uint32_t i = 0; i < length; ++i) name[i] = static_cast<char>('a' + i % 26);
+                name[length < 40 ? length : 39] = 0;
+                const bool none = one_in(8);
+                if (!run("taut_body_set_name", [&] { return taut_body_set_name(body, none ? nullptr : name); })) break;
+                char read[TAUT_BODY_NAME_SIZE];
+                uint32_t count = 0;
+                expect(ask("taut_body_get_name", [&] { return taut_body_get_name(body, read, sizeof read, &count); }) &&
+                           count == std::strlen(read) + 1 && std::strcmp(read, none ? "" : name) == 0,
+                       "a name of another");
+            }
+        }
+    }
+
+    // There and back again, and where the box about a body is.
+    void look_at_body() {
+        const taut_body body = pick_body(pick_world());
+        const taut_vec3 local = vec(2);
+        taut_pos point;
+        taut_vec3 back, along, speed;
+        if (ask("taut_body_get_world_point", [&] { return taut_body_get_world_point(body, local, &point); })) {
+            const bool within = std::abs(point.x) <= 1e7 && std::abs(point.y) <= 1e7 && std::abs(point.z) <= 1e7;
+            if (ask("taut_body_get_local_point", [&] { return taut_body_get_local_point(body, point, &back); }))
+                expect(std::abs(back.x - local.x) + std::abs(back.y - local.y) + std::abs(back.z - local.z) <=
+                           1e-5f * (1 + std::abs(local.x) + std::abs(local.y) + std::abs(local.z)),
+                       "a point that is elsewhere on its return");
+            else
+                expect(!within, "a point that has no way back");
+            if (ask("taut_body_get_point_velocity", [&] { return taut_body_get_point_velocity(body, point, &speed); }))
+                expect(finite(speed), "a velocity that is not finite");
+        }
+        if (ask("taut_body_get_world_vector", [&] { return taut_body_get_world_vector(body, local, &along); }))
+            ask("taut_body_get_local_vector", [&] { return taut_body_get_local_vector(body, along, &back); });
+        taut_pos low, high;
+        if (ask("taut_body_get_bounds", [&] { return taut_body_get_bounds(body, &low, &high); }))
+            expect(low.x <= high.x && low.y <= high.y && low.z <= high.z, "a box that is none");
+    }
+
+    // Of what lists name everything lives, and nothing else does.
+    void read_lists() {
+        const size_t w = pick_world();
+        std::vector<taut_body> bodies(1024);
+        std::vector<taut_joint> joints(256), own(256);
+        std::vector<taut_shape> shapes(256);
+        uint32_t count = 0, all = 0;
+        if (ask("taut_world_get_bodies",
+                [&] { return taut_world_get_bodies(worlds_[w], bodies.data(), 1024, &count); }))
+            for (uint32_t i = 0; i < count; ++i) expect(taut_body_is_valid(bodies[i]) == 1, "a dead body is listed");
+        taut_world_get_counts(worlds_[w], &all, nullptr, nullptr);
+        expect(count == all, "a list of bodies that is another's");
+        count = 0;
+        if (ask("taut_world_get_joints", [&] { return taut_world_get_joints(worlds_[w], joints.data(), 256, &count); }))
+            for (uint32_t i = 0; i < count; ++i) expect(taut_joint_is_valid(joints[i]) == 1, "a dead joint is listed");
+        if (ask("taut_world_get_shapes", [&] { return taut_world_get_shapes(worlds_[w], shapes.data(), 256, &count); }))
+            for (uint32_t i = 0; i < count; ++i) expect(taut_shape_is_valid(shapes[i]) == 1, "a dead shape is listed");
+        const taut_body body = pick_body(w);
+        if (ask("taut_body_get_joints", [&] { return taut_body_get_joints(body, own.data(), 256, &count); }))
+            for (uint32_t i = 0; i < count; ++i) {
+                taut_body a, b;
+                expect(taut_joint_get_bodies(own[i], &a, &b) == TAUT_OK && (a.bits == body.bits || b.bits == body.bits),
+                       "a joint of another");
+            }
+        std::vector<taut_contact> contacts(1024);
+        if (ask("taut_body_get_contacts", [&] { return taut_body_get_contacts(body, contacts.data(), 1024, &count); }))
+            for (uint32_t i = 0; i < count; ++i)
+                expect(contacts[i].body_a.bits == body.bits || contacts[i].body_b.bits == body.bits,
+                       "a contact of another");
+    }
+
     void push_body() {
         const taut_body body = pick_body(pick_world());
         const taut_vec3 push = vec(one_in(16) ? 1e8 : 100), turn = one_in(2) ? taut_vec3{0, 0, 0} : vec(100);
@@ -198,6 +327,7 @@ protected:
     }
 
 private:
+    float damping() { return one_in(8) ? scale(1e-3, 1e6) : real(0, 10); }
     // A live body of a world, null if there is none.
     taut_body one_of(size_t w) {
         for (int attempt = 0; attempt < 8 && !bodies_.empty(); ++attempt) {

@@ -68,7 +68,16 @@ protected:
         run("taut_joint_set_compliance", [&] { return taut_joint_set_compliance(joint, a, b); });
         run("taut_joint_set_length", [&] { return taut_joint_set_length(joint, length); });
         const uint32_t axis = byte() % 6;
-        switch (byte() % 8) {
+        switch (byte() % 9) {
+            case 7: {
+                const uint32_t enabled = byte() % (one_in(8) ? 3 : 2);
+                if (!run("taut_joint_set_enabled", [&] { return taut_joint_set_enabled(joint, enabled); })) break;
+                uint32_t now = 2;
+                expect(ask("taut_joint_get_enabled", [&] { return taut_joint_get_enabled(joint, &now); }) &&
+                           now == enabled,
+                       "a switch that is not where it was put");
+                break;
+            }
             case 0: {
                 const taut_axis_def def = axis_def(true);
                 run("taut_joint_set_axis", [&] { return taut_joint_set_axis(joint, axis, &def); });

@@ -68,6 +68,32 @@ protected:
             expect(finite(lines[i].from) && finite(lines[i].to), "a line is not finite");
     }
 
+    void ask_one() {
+        const size_t w = pick_world();
+        const taut_collider collider = pick(colliders_, w);
+        taut_pos low, high;
+        const bool known =
+            ask("taut_collider_get_bounds", [&] { return taut_collider_get_bounds(collider, &low, &high); });
+        if (known) expect(low.x <= high.x && low.y <= high.y && low.z <= high.z, "a box that is none");
+        taut_ray ray{};
+        ray.origin = pos(10);
+        ray.translation = vec(20);
+        taut_query_hit hit;
+        if (ask("taut_collider_cast_ray", [&] { return taut_collider_cast_ray(collider, &ray, &hit); }))
+            expect(hit.fraction >= 0 && hit.fraction <= 1 &&
+                       (hit.collider.bits == collider.bits || hit.collider.bits == 0),
+                   "a hit of another");
+        const taut_pos point = pos(5);
+        int32_t inside = 2;
+        if (ask("taut_collider_overlap_point", [&] { return taut_collider_overlap_point(collider, point, &inside); }))
+            expect(inside == 0 || inside == 1, "an answer that is none");
+        const taut_shape shape = pick(shapes_, w);
+        const taut_pose at = pose();
+        if (ask("taut_collider_overlap_shape",
+                [&] { return taut_collider_overlap_shape(collider, shape, &at, &inside); }))
+            expect(inside == 0 || inside == 1, "an answer that is none");
+    }
+
     void measure() {
         const size_t w = pick_world();
         const taut_collider a = pick(colliders_, w), b = pick(colliders_, w);
@@ -114,7 +140,9 @@ private:
         for (const Known<taut_collider>& one : colliders_) {
             taut_distance out;
             if (one.world != w || taut_collider_closest_point(one.handle, point, &out) != TAUT_OK) continue;
-            if (std::abs(out.distance) < 1e-3f) continue;
+            uint32_t enabled = 0;
+            if (std::abs(out.distance) < 1e-3f || taut_body_get_enabled(out.body, &enabled) != TAUT_OK || !enabled)
+                continue;
             taut_collider_def def;
             taut_shape_kind kind = TAUT_SHAPE_SURFACE;
             if (taut_collider_get_def(one.handle, &def) == TAUT_OK) taut_shape_get_kind(def.shape, &kind);
