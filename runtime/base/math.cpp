@@ -91,7 +91,7 @@ Quat rotation_from_vector(const Vec3& theta) {
     }
     if (!std::isfinite(half)) return Quat(half, half, half, half);  // for quarantine to find
     const Quat q = rotation_from_vector(0.5 * theta);
-    return q * q;
+    return (q * q).normalized();  // else each doubling doubles what rounding adds to its length
 }
 
 Quat turn_between(const Vec3& from, const Vec3& to) {

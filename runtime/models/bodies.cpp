@@ -105,7 +105,8 @@ uint32_t add_collider(World& world, const ColliderPlan& collider) {
     record.next = kNone;
     const bool enabled = world.nodes.enabled(record.node);
     try {
-        if (enabled) enter(world, index);
+        enter(world, index);
+        if (!enabled) world.broadphase.remove(index);  // which leaves its box, that all colliders have
     } catch (...) {
         world.colliders.remove(index);
         throw;

@@ -20,7 +20,7 @@ _Static_assert(sizeof(taut_body) == 8 && sizeof(taut_world) == 8, "handles are o
 _Static_assert(sizeof(taut_result) == 4 && sizeof(taut_body_kind) == 4, "enums are 32 bits");
 _Static_assert(sizeof(taut_pos) == 24 && sizeof(taut_vec3) == 12 && sizeof(taut_quat) == 16, "plain values");
 _Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
-_Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 40, "plain values");
+_Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 72, "plain values");
 _Static_assert(sizeof(taut_ball_joint_def) == 96 && sizeof(taut_distance_joint_def) == 152, "no hidden padding");
 _Static_assert(sizeof(taut_fixed_joint_def) == 144 && sizeof(taut_hinge_joint_def) == 200, "no hidden padding");
 _Static_assert(sizeof(taut_joint_break_event) == 48 && sizeof(taut_events) == 192, "no hidden padding");

@@ -122,8 +122,12 @@ TEST_P(Damping, KeepsSpeedsWithinTheirLimits) {
         const double free = std::hypot(0.3, 9.81 * time);
         for (const taut_body body : {falls, point}) {
             EXPECT_LE(norm(velocity(body)), 2.5 * (1 + kRound));
-            if (free < 2.4) EXPECT_NEAR(norm(velocity(body)), free, 1e-5);
-            if (free > 2.6) EXPECT_NEAR(norm(velocity(body)), 2.5, 1e-6);
+            if (free < 2.4) {
+                EXPECT_NEAR(norm(velocity(body)), free, 1e-5);
+            }
+            if (free > 2.6) {
+                EXPECT_NEAR(norm(velocity(body)), 2.5, 1e-6);
+            }
         }
         EXPECT_LT(norm(state(turns).spin - Vec(0, 6, 8)), 1e-5);
     });
