@@ -14,22 +14,26 @@
 extern "C" {
 #endif
 
-/** Bits of taut_draw_def.what. */
-#define TAUT_DRAW_SHAPES                                                                                              \
-    1u                     /**< lines: edges of colliders, and of the triangles of cloths and solids. Of round shapes \
-                                circles and four lines along the axis, of meshes the edges between facets, of a plane \
-                                a square of 20 m and 1 m of its normal */
-#define TAUT_DRAW_FACES 2u /**< triangles of the same, counter-clockwise from outside; of round shapes of 24 sides */
-#define TAUT_DRAW_CONTACTS 4u /**< lines: the normal of each contact that touches, 0.1 m long */
-#define TAUT_DRAW_JOINTS                                                                                          \
-    8u                       /**< lines: of joints and attachments from the centres of bodies to the anchors, and \
-                                  between the anchors */
-#define TAUT_DRAW_BOUNDS 16u /**< lines: axis-aligned boxes of colliders, without planes */
-#define TAUT_DRAW_CENTRES \
-    32u /**< lines: the axes of dynamic bodies at their centres of mass, 0.1 m, red, green, blue */
-#define TAUT_DRAW_FORCES \
-    64u /**< lines: of contacts that touch and of joints and attachments, to the scale of the def */
-#define TAUT_DRAW_LABELS 128u /**< with centres the masses of bodies, with forces their sizes */
+/**
+ * Bits of taut_draw_def.what.
+ * Shapes, as lines: the edges of colliders, and of the triangles of cloths and solids; of round shapes circles and four
+ * lines along the axis, of meshes the edges between facets, of a plane a square of 20 m and 1 m of its normal.
+ */
+#define TAUT_DRAW_SHAPES 1u
+/** Triangles of the same, counter-clockwise from outside; of round shapes of 24 sides. */
+#define TAUT_DRAW_FACES 2u
+/** Lines: the normal of each contact that touches, 0.1 m long. */
+#define TAUT_DRAW_CONTACTS 4u
+/** Lines: of joints and attachments from the centres of bodies to the anchors, and between the anchors. */
+#define TAUT_DRAW_JOINTS 8u
+/** Lines: axis-aligned boxes of colliders, without planes. */
+#define TAUT_DRAW_BOUNDS 16u
+/** Lines: the axes of dynamic bodies at their centres of mass, 0.1 m, red, green, blue. */
+#define TAUT_DRAW_CENTRES 32u
+/** Lines: of contacts that touch and of joints and attachments, to the scale of the def. */
+#define TAUT_DRAW_FORCES 64u
+/** Labels: with centres the masses of bodies, with forces their sizes. */
+#define TAUT_DRAW_LABELS 128u
 #define TAUT_DRAW_ALL 255u
 
 /** How colliders, cloths and solids are coloured. */
