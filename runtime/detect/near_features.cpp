@@ -81,7 +81,7 @@ private:
                                      one.spread[lane],
                                      reach_,
                                      one.left[lane]};
-            float moved[kLanes];
+            alignas(64) float moved[kLanes];
             unsigned met = may_meet & triangle_pair_kernel().passes(other, by, moved);
             if (itself) met &= ~((2u << lane) - 1);  // those after it
             for (; met != 0; met &= met - 1) {
