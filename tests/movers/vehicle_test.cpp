@@ -276,7 +276,6 @@ TEST_P(Vehicle, CrossesABridgeOfJointedBoards) {
     }
     const taut_shape board = world.box({length / 2 - 0.01, 0.05, 2});
     taut_body before{};
-    Vec before_at;
     std::vector<taut_joint> joints;
     std::vector<taut_body> boards;
     for (int i = 0; i < kBoards; ++i) {

@@ -16,7 +16,7 @@ void PrintTo(const Steps& s, std::ostream* out) { *out << s.hz << "_hz_" << s.su
 class Damping : public testing::TestWithParam<Steps> {
 protected:
     std::function<void(taut_world_def&)> paced(const Vec& gravity) const {
-        return [this, gravity](taut_world_def& def) {
+        return [gravity](taut_world_def& def) {
             def.time_step = 1.0f / static_cast<float>(GetParam().hz);
             def.substeps = GetParam().substeps;
             def.fixed_substeps = 1;
