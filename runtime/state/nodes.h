@@ -347,7 +347,8 @@ void describe(Visitor& visitor, Of& of) {
     // load: within a step; the list of active ones follows.
     auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, restraints, spares, before, history,
            rest, sleep, active, lists, movable, listed, all] = of;
-    OrNone loads_applied{applied}, loads_owed{owed}, histories{history};
+    OrNone loads_applied{applied}, loads_owed{owed};
+    OrNone histories{history};
     TAUT_ASIDE(visitor, ids, names);
     TAUT_ROWS(visitor, ids, info, motion, mass, loads_applied, loads_owed, before, histories, rest, sleep);
     TAUT_FIELDS(visitor, paths);
