@@ -137,12 +137,13 @@ FaceView view_of(const PolytopePair& pair, Axis axis, int nearest = -1) {
     return {pair.b, axis.j, pair.a, pair.a_in_b, nearest};
 }
 
+// None of edges that turned parallel since their axis was chosen.
 void edge_point(const PolytopePair& pair, Axis axis, float margin, Manifold& out) {
     const auto [a, b] = pair.edges(axis);
     const SegmentPair nearest = nearest_points(a, b);
     const Vec3f normal = pair.normal(axis);
     const float separation = normal.dot(b.from - a.from);
-    if (separation > margin) return;
+    if (normal == Vec3f::Zero() || separation > margin) return;
     out.normal = normal;
     out.count = 1;
     out.points[0] = {0.5f * (a.at(nearest.s) + b.at(nearest.t)), separation, edge_feature(axis.i, axis.j)};

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "starts.h"
 #include "collision/manifold.h"
 #include "collision_oracle.h"
+#include "starts.h"
 
 namespace taut::collision {
 namespace {
@@ -336,6 +336,33 @@ TEST(CollisionContacts, PairThatStandsKeepsAllItsPoints) {
     }
     EXPECT_GT(touching, runs(1000));
     EXPECT_GT(on_many, runs(250));
+}
+
+// Ridges that cross turn parallel, less at a time than the pair would look anew for, and have no normal of their own.
+TEST(CollisionContacts, EdgesThatTurnParallelLeaveTheirContact) {
+    Random random(23);
+    int touching = 0;
+    for (int run = 0; run < 200; ++run) {
+        const float steep = float(random.uniform(1, 4)), length = float(random.uniform(0.3, 2));
+        std::vector<Vec3f> points;
+        for (const float x : {-length, length})
+            for (const Vec3f& corner : {Vec3f(x, 0, 0), Vec3f(x, -0.2f * steep, 0.2f), Vec3f(x, -0.2f * steep, -0.2f)})
+                points.push_back(corner);
+        const Shape roof = oracle::hull(points);
+        const Vec3 at(0, random.uniform(-0.01, 0.015), 0);
+        const Quat over(Eigen::AngleAxisd(3.14159265358979, Vec3::UnitX()));
+        PairCache cache;
+        Manifold out;
+        for (double angle = 2e-3; angle > -2e-3; angle -= random.uniform(0, 2e-5)) {
+            const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+            collide(roof, {Vec3::Zero(), kUpright}, roof, {at, (turn * over).toRotationMatrix().cast<float>()}, kMargin,
+                    cache, out);
+            if (out.count == 0) continue;
+            ++touching;
+            ASSERT_NEAR(out.normal.norm(), 1, 1e-5) << "seed 23 run " << run << " angle " << angle;
+        }
+    }
+    EXPECT_GT(touching, 20000);
 }
 
 // The cache is a hint: whatever it holds, the same overlap is found.
