@@ -55,8 +55,8 @@ int main(void) {
     taut_vehicle car;
     taut_vehicle_init(&car);
 
-    taut_vehicle_input input = {0};
-    input.gear = TAUT_VEHICLE_AUTOMATIC;
+    taut_vehicle_input input;
+    taut_vehicle_input_init(&input);
     for (int step = 0; step < 900; ++step) {
         float time = (float)step * world_def.time_step;
         input.throttle = time < 8 ? 0.8f : 0;

@@ -49,6 +49,9 @@ typedef struct taut_anchor {
     float weights[TAUT_ANCHOR_BODIES];    /**< [-8, 8], of sum 1 within 1e-3; they are brought to 1 */
 } taut_anchor;
 
+/** The origin of the world. */
+TAUT_API void taut_anchor_init(taut_anchor* anchor);
+
 /** What an attachment holds. */
 typedef enum taut_attachment_kind {
     TAUT_ATTACHMENT_BALL = 0,

@@ -163,6 +163,9 @@ typedef struct taut_hooks {
     uint32_t reserved;     /**< zero */
 } taut_hooks;
 
+/** None of them. Nothing where hooks is null. Thread safety: any thread. */
+TAUT_API void taut_hooks_init(taut_hooks* hooks);
+
 #ifdef __cplusplus
 }
 #endif

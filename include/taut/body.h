@@ -78,6 +78,10 @@ typedef struct taut_pose {
     uint32_t reserved[2]; /**< zero; keeps the size a multiple of 16 */
 } taut_pose;
 
+/** The origin, unturned. Nothing where pose is null. Thread safety: any thread; so too of the like functions of other
+    headers that have no struct_size. */
+TAUT_API void taut_pose_init(taut_pose* pose);
+
 /** Why a step froze a body or particle. */
 typedef enum taut_quarantine_reason {
     TAUT_QUARANTINE_NONE = 0,       /**< it did not */

@@ -61,6 +61,10 @@ typedef struct taut_filter {
     uint32_t reserved; /**< zero */
 } taut_filter;
 
+/** The defaults that a def has. */
+TAUT_API void taut_material_init(taut_material* material);
+TAUT_API void taut_filter_init(taut_filter* filter);
+
 /** Bits of taut_collider_def.flags. */
 #define TAUT_COLLIDER_SENSOR 1u        /**< detects what overlaps it and collides with nothing; see sensor.h */
 #define TAUT_COLLIDER_SENSES_STATIC 2u /**< a sensor that detects colliders of static bodies too */

@@ -325,6 +325,10 @@ typedef struct taut_axis_forces {
 } taut_axis_forces;
 
 /** Writes the defaults of a free axis. */
+/** The origin, unturned. */
+TAUT_API void taut_frame_init(taut_frame* frame);
+/** No drive: the defaults of its fields. */
+TAUT_API void taut_drive_init(taut_drive* drive);
 TAUT_API void taut_axis_def_init_sized(taut_axis_def* def, uint32_t size);
 static inline void taut_axis_def_init(taut_axis_def* def) { taut_axis_def_init_sized(def, (uint32_t)sizeof(*def)); }
 TAUT_API void taut_ball_joint_def_init_sized(taut_ball_joint_def* def, uint32_t size);

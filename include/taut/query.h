@@ -80,6 +80,11 @@ typedef struct taut_shape_cast {
     uint32_t reserved;     /**< zero */
 } taut_shape_cast;
 
+/** All zero: where the ray begins and where it goes is to be said. */
+TAUT_API void taut_ray_init(taut_ray* ray);
+/** At the origin, unturned; shape and way are to be said. */
+TAUT_API void taut_shape_cast_init(taut_shape_cast* cast);
+
 /** Where a ray or a shape on its way meets a collider. */
 typedef struct taut_query_hit {
     taut_body body; /**< null: nothing is met, fraction is 1 and all else 0 */

@@ -31,7 +31,7 @@ extern "C" {
  * events; its body's mass stays as it is. Thread safety: one thread at a time per world, not inside a step.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_IN_USE (of a cable), TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
-TAUT_API taut_result taut_collider_set_sensor(taut_collider collider, int32_t sensor);
+TAUT_API taut_result taut_collider_set_sensor(taut_collider collider, uint32_t sensor);
 
 /**
  * Copies the colliders that overlapped a sensor after the last step and live, in the order of their slots; none if the

@@ -48,10 +48,10 @@ TAUT_API taut_result taut_body_set_can_sleep(taut_body body, uint32_t can_sleep)
 /**
  * Wakes each island of which a collider's bounds meet a box; for what no call tells the world, and for what a query
  * found. In a world without sleeping it does nothing.
- * @param lo, hi corners [m], each within 1e7, lo at most hi.
+ * @param low, high corners [m], each within 1e7, low at most high.
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED.
  */
-TAUT_API taut_result taut_world_wake_box(taut_world world, taut_pos lo, taut_pos hi);
+TAUT_API taut_result taut_world_wake_box(taut_world world, taut_pos low, taut_pos high);
 
 #ifdef __cplusplus
 }

@@ -111,6 +111,9 @@ typedef struct taut_vehicle_input {
     uint32_t reserved; /**< zero */
 } taut_vehicle_input;
 
+/** Nothing pressed, steering straight, TAUT_VEHICLE_AUTOMATIC. */
+TAUT_API void taut_vehicle_input_init(taut_vehicle_input* input);
+
 /** A wheel now. speed, turn and slip go on from call to call; the rest is told anew by each. */
 typedef struct taut_wheel {
     float speed;             /**< about its axle, positive forwards [rad/s], within 1e5 */

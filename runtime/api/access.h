@@ -272,6 +272,7 @@ inline uint64_t held_bytes(const World& world) {
     return world.memory.bytes() + Memory::whole(sizeof(World), alignof(World));
 }
 
+constexpr taut_quat kUnturned{0, 0, 0, 1};
 inline Vec3 to_vec(const taut_vec3& v) { return {v.x, v.y, v.z}; }
 inline Vec3 to_vec(const taut_pos& p) { return {p.x, p.y, p.z}; }
 inline Quat to_quat(const taut_quat& q) { return Quat(q.w, q.x, q.y, q.z).normalized(); }

@@ -106,7 +106,7 @@ void taut_body_def_init_sized(taut_body_def* def, uint32_t size) {
         own = {};
         own.struct_size = sizeof own;
         own.kind = TAUT_BODY_DYNAMIC;
-        own.rotation = {0, 0, 0, 1};
+        own.rotation = kUnturned;
         own.material = kDefaultMaterial;
         own.filter = kDefaultFilter;
         own.density = 1000;

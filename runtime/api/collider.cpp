@@ -125,7 +125,7 @@ void taut_collider_def_init_sized(taut_collider_def* def, uint32_t size) {
         own = {};
         own.struct_size = sizeof own;
         own.density = 1000;
-        own.rotation = {0, 0, 0, 1};
+        own.rotation = kUnturned;
         own.material = kDefaultMaterial;
         own.filter = kDefaultFilter;
     });

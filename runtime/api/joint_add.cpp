@@ -11,8 +11,6 @@ using namespace taut;
 
 namespace {
 
-constexpr taut_quat kUnturned{0, 0, 0, 1};
-
 // ---------------------------------------------------------------- what the defs have in common
 
 template <class Def>

@@ -7,9 +7,9 @@
 
 using namespace taut;
 
-taut_result taut_collider_set_sensor(taut_collider handle, int32_t sensor) {
+taut_result taut_collider_set_sensor(taut_collider handle, uint32_t sensor) {
     Check check(__func__);
-    if (!check.boolean("sensor", static_cast<uint32_t>(sensor))) return check.result();
+    if (!check.boolean("sensor", sensor)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         Collider& collider = world.colliders.record[index];
         check.require(!world.nodes.info[collider.node].is_part(), "the body is part of a cable, cloth or solid",

@@ -52,13 +52,13 @@ taut_result taut_body_set_can_sleep(taut_body handle, uint32_t can_sleep) {
     });
 }
 
-taut_result taut_world_wake_box(taut_world handle, taut_pos lo, taut_pos hi) {
+taut_result taut_world_wake_box(taut_world handle, taut_pos low, taut_pos high) {
     Check check(__func__);
-    check.vector("lo", lo, kPosition).vector("hi", hi, kPosition);
-    check.require(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z, "lo is above hi");
+    check.vector("low", low, kPosition).vector("high", high, kPosition);
+    check.require(low.x <= high.x && low.y <= high.y && low.z <= high.z, "low is above high");
     if (!check) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
-        wake_box(world, {to_vec(lo).cast<float>(), to_vec(hi).cast<float>()});
+        wake_box(world, {to_vec(low).cast<float>(), to_vec(high).cast<float>()});
         return TAUT_OK;
     });
 }

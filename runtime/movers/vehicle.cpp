@@ -394,6 +394,12 @@ taut_result Drive::run() {
 
 }  // namespace
 
+void taut_vehicle_input_init(taut_vehicle_input* input) {
+    if (!input) return;
+    *input = {};
+    input->gear = TAUT_VEHICLE_AUTOMATIC;
+}
+
 void taut_wheel_def_init(taut_wheel_def* def) {
     if (!def) return;
     *def = {};

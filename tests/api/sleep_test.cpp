@@ -44,9 +44,9 @@ TEST(SleepCalls, RefuseBadInputAndChangeNothing) {
     refused(taut_body_set_awake(s.ball, 2), TAUT_INVALID_ARGUMENT, "awake");
     refused(taut_body_set_can_sleep(s.ball, 2), TAUT_INVALID_ARGUMENT, "can_sleep");
     refused(taut_body_set_awake(s.wall, 0), TAUT_INVALID_ARGUMENT, "static");
-    refused(taut_world_wake_box(s.world, {0, 1, 0}, {1, 0, 1}), TAUT_INVALID_ARGUMENT, "lo is above hi");
-    refused(taut_world_wake_box(s.world, {std::nan(""), 0, 0}, {1, 1, 1}), TAUT_INVALID_ARGUMENT, "lo.x");
-    refused(taut_world_wake_box(s.world, {0, 0, 0}, {1, 1, 1.1e7}), TAUT_INVALID_ARGUMENT, "hi.z");
+    refused(taut_world_wake_box(s.world, {0, 1, 0}, {1, 0, 1}), TAUT_INVALID_ARGUMENT, "low is above high");
+    refused(taut_world_wake_box(s.world, {std::nan(""), 0, 0}, {1, 1, 1}), TAUT_INVALID_ARGUMENT, "low.x");
+    refused(taut_world_wake_box(s.world, {0, 0, 0}, {1, 1, 1.1e7}), TAUT_INVALID_ARGUMENT, "high.z");
 }
 
 TEST(SleepCalls, ARefusedCallWakesNobody) {

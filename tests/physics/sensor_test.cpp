@@ -200,7 +200,7 @@ public:
                 ok(taut_body_remove(body)), bodies_.erase(bodies_.begin() + static_cast<long>(which));
                 break;
             case 1:
-                ok(taut_collider_set_sensor(collider, static_cast<int32_t>(below(2))));
+                ok(taut_collider_set_sensor(collider, below(2)));
                 break;
             case 2:
                 ok(taut_collider_set_filter(collider, &filters[below(4)]));

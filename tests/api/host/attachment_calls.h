@@ -87,7 +87,8 @@ private:
     static constexpr size_t kMostAttachments = 12;
 
     taut_anchor anchor(size_t w) {
-        taut_anchor out{};
+        taut_anchor out;
+        taut_anchor_init(&out);
         if (one_in(4)) {
             out.points[0] = pos(10);
             return out;

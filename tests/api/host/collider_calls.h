@@ -68,7 +68,11 @@ protected:
                 break;
             }
             case 2: {
-                const taut_filter filter = {word(), word(), static_cast<int32_t>(byte() % 5) - 2, one_in(16) ? 1u : 0u};
+                taut_filter filter;
+                taut_filter_init(&filter);
+                if (one_in(2)) filter.category = word(), filter.mask = word();
+                filter.group = byte() % 5 - 2;
+                spoil(filter.reserved);
                 run("taut_collider_set_filter", [&] { return taut_collider_set_filter(collider, &filter); });
                 break;
             }
@@ -100,7 +104,7 @@ protected:
                 break;
             }
             default: {
-                const int32_t sensor = byte() % (one_in(16) ? 3 : 2);
+                const uint32_t sensor = byte() % (one_in(16) ? 3 : 2);
                 run("taut_collider_set_sensor", [&] { return taut_collider_set_sensor(collider, sensor); });
             }
         }

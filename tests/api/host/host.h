@@ -89,7 +89,10 @@ protected:
     float scale(double lo, double hi) { return static_cast<float>(lo * std::pow(hi / lo, unit())); }
     double reach(double usual) { return one_in(32) ? 1e7 : one_in(16) ? 1e4 : usual; }
     taut_pose pose() {
-        taut_pose out = {pos(reach(20)), quat(), {0, 0}};
+        taut_pose out;
+        taut_pose_init(&out);
+        out.position = pos(reach(20));
+        out.rotation = quat();
         if (one_in(64)) out.reserved[0] = word();
         return out;
     }
@@ -119,7 +122,8 @@ protected:
     }
     taut_body pick_body(size_t world) { return one_in(6) ? pick(cable_bodies_, world) : pick(bodies_, world); }
     taut_material material(double most_friction) {
-        taut_material out{};
+        taut_material out;
+        taut_material_init(&out);
         out.friction = real(0, most_friction);
         out.restitution = real(0, 1);
         if (one_in(8)) out.friction_rule = static_cast<taut_combine>(byte() % 7);

@@ -25,7 +25,8 @@ protected:
         return def;
     }
     taut_frame joint_frame() {
-        taut_frame out = {{0, 0, 0}, {0, 0, 0, 1}};
+        taut_frame out;
+        taut_frame_init(&out);
         if (one_in(2)) out.position = pos(2);
         if (one_in(2)) out.rotation = quat();
         return out;
@@ -46,7 +47,12 @@ protected:
         return def;
     }
     taut_drive drive() {
-        taut_drive out = {real(-1, 1), real(-5, 5), 0, 0, 0, real(0, 2), real(0, 1000)};
+        taut_drive out;
+        taut_drive_init(&out);
+        out.target = real(-1, 1);
+        out.speed = real(-5, 5);
+        out.damping_ratio = real(0, 2);
+        out.max_force = real(0, 1000);
         if (one_in(2)) {
             out.frequency = real(0.1, 30);
         } else {

@@ -71,7 +71,8 @@ protected:
         if (one_in(8)) def.forward = vec(1), def.up = vec(1);
         const Filter filter = query_filter(w);
         def.filter = filter.get();
-        taut_vehicle_input input{};
+        taut_vehicle_input input;
+        taut_vehicle_input_init(&input);
         input.throttle = real(0, 1);
         if (one_in(2)) input.brake = real(0, 1), input.handbrake = real(0, 1);
         input.steering = real(-1, 1);

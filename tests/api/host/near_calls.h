@@ -75,7 +75,8 @@ protected:
         const bool known =
             ask("taut_collider_get_bounds", [&] { return taut_collider_get_bounds(collider, &low, &high); });
         if (known) expect(low.x <= high.x && low.y <= high.y && low.z <= high.z, "a box that is none");
-        taut_ray ray{};
+        taut_ray ray;
+        taut_ray_init(&ray);
         ray.origin = pos(10);
         ray.translation = vec(20);
         taut_query_hit hit;

@@ -47,7 +47,13 @@ protected:
     void cast_shape() {
         const size_t w = pick_world();
         taut_shape_cast casts[3];
-        for (taut_shape_cast& one : casts) one = {pick(shapes_, w), pose(), vec(20), one_in(64) ? 1u : 0u};
+        for (taut_shape_cast& one : casts) {
+            taut_shape_cast_init(&one);
+            one.shape = pick(shapes_, w);
+            one.pose = pose();
+            one.translation = vec(20);
+            spoil(one.reserved);
+        }
         const Filter filter = query_filter(w);
         taut_query_hit first{}, hits[3];
         const bool known = ask("taut_world_cast_shape",

@@ -190,7 +190,8 @@ private:
     };
     // An allocator, a log and a task system, each of them or none.
     taut_hooks hooks() {
-        taut_hooks out{};
+        taut_hooks out;
+        taut_hooks_init(&out);
         if (one_in(2)) {
             out.allocate = [](size_t size, size_t alignment, void*) -> void* {
                 return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
