@@ -2,7 +2,6 @@
 
 namespace taut::collision {
 
-const LaneKernels* const kLaneKernels[] = {&kLaneKernelsScalar, &kLaneKernelsSse2, &kLaneKernelsAvx2,
-                                           &kLaneKernelsAvx512};
+const LaneKernels* const kLaneKernels[] = {TAUT_BUILDS(kLaneKernels)};
 
 }  // namespace taut::collision

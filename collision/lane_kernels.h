@@ -55,7 +55,7 @@ struct LaneKernels {
     FaceFound (*best_face)(const FaceSearch& search);
 };
 
-extern const LaneKernels kLaneKernelsScalar, kLaneKernelsSse2, kLaneKernelsAvx2, kLaneKernelsAvx512;
+extern const LaneKernels kLaneKernelsScalar, kLaneKernelsBase, kLaneKernelsAvx2, kLaneKernelsAvx512;
 extern const LaneKernels* const kLaneKernels[];  // by Width
 
 // Of the build that kernels use now.

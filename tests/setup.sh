@@ -9,6 +9,8 @@ demo_packages=(pkgconf libegl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri libepox
     nlohmann-json3-dev libtinyobjloader-dev libtinyxml2-dev)
 test_packages=(pkgconf xz-utils libgtest-dev libgmock-dev libbenchmark-dev python3-pip
     python3-cffi python3-numpy swig)
+arm64_packages=(libc6-dev:arm64 libbullet-dev:arm64 libccd-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
+    libtinyobjloader-dev:arm64 libtinyxml2-dev:arm64)
 report_packages=(libode-dev gnuplot-nox fonts-dejavu-core)
 
 say() { printf '%s\n' "$*" >&2; }
@@ -19,7 +21,7 @@ fail() {
 
 # need PACKAGE... installs those that are missing; without any it touches neither network nor system.
 need() {
-    local package missing=() as_root=()
+    local package missing=()
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         command -v cmake >/dev/null && command -v ninja >/dev/null && return
         fail "this is not a Debian system. Please install what these Debian packages hold and run it again:
@@ -31,17 +33,30 @@ At least cmake 3.25 and ninja are missing; cmake will name the libraries that ar
             missing+=("$package")
     done
     ((${#missing[@]})) || return 0
-
-    if (($(id -u) != 0)); then
-        command -v sudo >/dev/null || fail "missing packages, and neither root nor sudo to install them. As root:
-  apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
-        as_root=(sudo)
-    fi
+    become_root "apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
     say "Installing ${missing[*]}"
     "${as_root[@]}" apt-get update -qq >&2 || fail "apt-get update failed: is there a network?"
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
         apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2 ||
         fail "apt-get could not install ${missing[*]}"
+}
+
+# need_architecture NAME: packages of another kind of processor can be installed from then on.
+need_architecture() {
+    command -v dpkg >/dev/null || fail "packages for $1 come from Debian alone"
+    if dpkg --print-foreign-architectures | grep -qx "$1"; then return; fi
+    become_root "dpkg --add-architecture $1"
+    say "Adding packages for $1"
+    "${as_root[@]}" dpkg --add-architecture "$1"
+}
+
+# become_root COMMAND: says it where nobody can. as_root is what comes before such a command.
+as_root=()
+become_root() {
+    if (($(id -u) == 0)); then return; fi
+    command -v sudo >/dev/null || fail "missing packages, and neither root nor sudo to install them. As root:
+  $1"
+    as_root=(sudo)
 }
 
 # Jobs at once: every core, but 1.5 GB for each.

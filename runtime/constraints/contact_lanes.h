@@ -223,7 +223,7 @@ struct ContactKernels {
                          const SweepFlight*, const ImpactTerms&, uint16_t* found);
 };
 
-extern const ContactKernels kContactKernelsScalar, kContactKernelsSse2, kContactKernelsAvx2, kContactKernelsAvx512;
+extern const ContactKernels kContactKernelsScalar, kContactKernelsBase, kContactKernelsAvx2, kContactKernelsAvx512;
 // The widest that this machine runs.
 const ContactKernels& contact_kernels();
 

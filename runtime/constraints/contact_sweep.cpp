@@ -5,8 +5,7 @@
 namespace taut {
 
 const ContactKernels& contact_kernels() {
-    static const ContactKernels* const kBuilds[] = {&kContactKernelsScalar, &kContactKernelsSse2, &kContactKernelsAvx2,
-                                                    &kContactKernelsAvx512};
+    static const ContactKernels* const kBuilds[] = {TAUT_BUILDS(kContactKernels)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

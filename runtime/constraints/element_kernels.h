@@ -20,7 +20,7 @@ struct ElementKernels {
     ElementSweep link, green_tri3, neo_hookean_tet4, dihedral, quadratic_bend;
 };
 
-extern const ElementKernels kElementKernelsScalar, kElementKernelsSse2, kElementKernelsAvx2, kElementKernelsAvx512;
+extern const ElementKernels kElementKernelsScalar, kElementKernelsBase, kElementKernelsAvx2, kElementKernelsAvx512;
 // The widest that this machine runs.
 const ElementKernels& element_kernels();
 

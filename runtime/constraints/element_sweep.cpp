@@ -5,8 +5,7 @@
 namespace taut {
 
 const ElementKernels& element_kernels() {
-    static const ElementKernels* const kBuilds[] = {&kElementKernelsScalar, &kElementKernelsSse2, &kElementKernelsAvx2,
-                                                    &kElementKernelsAvx512};
+    static const ElementKernels* const kBuilds[] = {TAUT_BUILDS(kElementKernels)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

@@ -4,8 +4,7 @@
 namespace taut {
 
 const EnergyKernels& energy_kernels() {
-    static const EnergyKernels* const kBuilds[] = {&kEnergyKernelsScalar, &kEnergyKernelsSse2, &kEnergyKernelsAvx2,
-                                                   &kEnergyKernelsAvx512};
+    static const EnergyKernels* const kBuilds[] = {TAUT_BUILDS(kEnergyKernels)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

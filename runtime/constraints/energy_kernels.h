@@ -39,7 +39,7 @@ struct EnergyKernels {
     EnergyKernel stretch_tet4, stretch_hex8, stretch_volume_tet4, stretch_volume_hex8;
 };
 
-extern const EnergyKernels kEnergyKernelsScalar, kEnergyKernelsSse2, kEnergyKernelsAvx2, kEnergyKernelsAvx512;
+extern const EnergyKernels kEnergyKernelsScalar, kEnergyKernelsBase, kEnergyKernelsAvx2, kEnergyKernelsAvx512;
 // The widest that this machine runs.
 const EnergyKernels& energy_kernels();
 

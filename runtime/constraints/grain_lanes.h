@@ -44,7 +44,7 @@ struct GrainKernels {
     void (*sweep_relaxed)(GrainGroup*, uint32_t begin, uint32_t end, SweepNode*, const SweepTerms&);
 };
 
-extern const GrainKernels kGrainKernelsScalar, kGrainKernelsSse2, kGrainKernelsAvx2, kGrainKernelsAvx512;
+extern const GrainKernels kGrainKernelsScalar, kGrainKernelsBase, kGrainKernelsAvx2, kGrainKernelsAvx512;
 // The widest that this machine runs.
 const GrainKernels& grain_kernels();
 

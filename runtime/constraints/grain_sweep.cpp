@@ -5,8 +5,7 @@
 namespace taut {
 
 const GrainKernels& grain_kernels() {
-    static const GrainKernels* const kBuilds[] = {&kGrainKernelsScalar, &kGrainKernelsSse2, &kGrainKernelsAvx2,
-                                                  &kGrainKernelsAvx512};
+    static const GrainKernels* const kBuilds[] = {TAUT_BUILDS(kGrainKernels)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

@@ -188,7 +188,7 @@ struct JointKernels {
     float (*residual)(JointView, uint32_t begin, uint32_t end, const SweepNode*);
 };
 
-extern const JointKernels kJointKernelsScalar, kJointKernelsSse2, kJointKernelsAvx2, kJointKernelsAvx512;
+extern const JointKernels kJointKernelsScalar, kJointKernelsBase, kJointKernelsAvx2, kJointKernelsAvx512;
 // The widest that this machine runs.
 const JointKernels& joint_kernels();
 

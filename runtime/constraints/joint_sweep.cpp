@@ -5,8 +5,7 @@
 namespace taut {
 
 const JointKernels& joint_kernels() {
-    static const JointKernels* const kBuilds[] = {&kJointKernelsScalar, &kJointKernelsSse2, &kJointKernelsAvx2,
-                                                  &kJointKernelsAvx512};
+    static const JointKernels* const kBuilds[] = {TAUT_BUILDS(kJointKernels)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

@@ -77,7 +77,7 @@ struct SurfaceKernels {
     void (*sweep_relaxed)(SurfaceView, uint32_t begin, uint32_t end, SweepNode*, const SweepTerms&);
 };
 
-extern const SurfaceKernels kSurfaceKernelsScalar, kSurfaceKernelsSse2, kSurfaceKernelsAvx2, kSurfaceKernelsAvx512;
+extern const SurfaceKernels kSurfaceKernelsScalar, kSurfaceKernelsBase, kSurfaceKernelsAvx2, kSurfaceKernelsAvx512;
 // The widest that this machine runs.
 const SurfaceKernels& surface_kernels();
 

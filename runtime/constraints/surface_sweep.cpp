@@ -5,8 +5,7 @@
 namespace taut {
 
 const SurfaceKernels& surface_kernels() {
-    static const SurfaceKernels* const kBuilds[] = {&kSurfaceKernelsScalar, &kSurfaceKernelsSse2, &kSurfaceKernelsAvx2,
-                                                    &kSurfaceKernelsAvx512};
+    static const SurfaceKernels* const kBuilds[] = {TAUT_BUILDS(kSurfaceKernels)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

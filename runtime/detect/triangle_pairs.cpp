@@ -4,8 +4,7 @@
 namespace taut {
 
 const TrianglePairKernel& triangle_pair_kernel() {
-    static const TrianglePairKernel* const kBuilds[] = {&kTrianglePairsScalar, &kTrianglePairsSse2, &kTrianglePairsAvx2,
-                                                        &kTrianglePairsAvx512};
+    static const TrianglePairKernel* const kBuilds[] = {TAUT_BUILDS(kTrianglePairs)};
     return *kBuilds[static_cast<size_t>(kernel_width())];
 }
 

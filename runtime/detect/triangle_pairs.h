@@ -59,7 +59,7 @@ struct TrianglePairKernel {
     unsigned (*meet_edges)(const FeatureLanes& of);
 };
 
-extern const TrianglePairKernel kTrianglePairsScalar, kTrianglePairsSse2, kTrianglePairsAvx2, kTrianglePairsAvx512;
+extern const TrianglePairKernel kTrianglePairsScalar, kTrianglePairsBase, kTrianglePairsAvx2, kTrianglePairsAvx512;
 // The widest that this machine runs.
 const TrianglePairKernel& triangle_pair_kernel();
 

@@ -6,7 +6,9 @@
 namespace taut {
 
 const MotionKernels& motion_kernels() {
-    return kernel_width() >= Width::avx2 ? kMotionKernelsAvx2 : kMotionKernelsBase;
+    if constexpr (kHasAvx)
+        if (kernel_width() >= Width::avx2) return kMotionKernelsAvx2;
+    return kMotionKernelsBase;
 }
 
 }  // namespace taut

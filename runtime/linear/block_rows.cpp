@@ -4,6 +4,10 @@
 
 namespace taut {
 
-MultiplyRows multiply_rows() { return kernel_width() >= Width::avx2 ? kMultiplyRowsAvx2 : kMultiplyRowsBase; }
+MultiplyRows multiply_rows() {
+    if constexpr (kHasAvx)
+        if (kernel_width() >= Width::avx2) return kMultiplyRowsAvx2;
+    return kMultiplyRowsBase;
+}
 
 }  // namespace taut

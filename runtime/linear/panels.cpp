@@ -4,6 +4,10 @@
 
 namespace taut {
 
-const PanelKernels& panel_kernels() { return kernel_width() >= Width::avx2 ? kPanelKernelsAvx2 : kPanelKernelsBase; }
+const PanelKernels& panel_kernels() {
+    if constexpr (kHasAvx)
+        if (kernel_width() >= Width::avx2) return kPanelKernelsAvx2;
+    return kPanelKernelsBase;
+}
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-// kDoubles numbers of double precision side by side, in four builds with the same bits, as of floats (lanes.h).
+// kDoubles numbers of double precision side by side, in builds with the same bits, as of floats (lanes.h).
 #pragma once
 
 #include "simd/lanes.h"
@@ -31,7 +31,34 @@ struct Sse2DoubleRegister {
         return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(a.f, b.f)));
     }
 };
-using Sse2Doubles = Twice<Twice<Sse2DoubleRegister>>;
+using BaseDoubles = Twice<Twice<Sse2DoubleRegister>>;
+#elif defined(__aarch64__)
+struct NeonDoubleRegister {
+    using Number = double;
+    using Register = NeonDoubleRegister;
+    static constexpr int kWidth = 2;
+    float64x2_t f;
+
+    static Register load(const double* p) { return {vld1q_f64(p)}; }
+    static Register all(double x) { return {vdupq_n_f64(x)}; }
+    void store(double* p) const { vst1q_f64(p, f); }
+    friend Register operator+(Register a, Register b) { return {vaddq_f64(a.f, b.f)}; }
+    friend Register operator-(Register a, Register b) { return {vsubq_f64(a.f, b.f)}; }
+    friend Register operator*(Register a, Register b) { return {vmulq_f64(a.f, b.f)}; }
+    friend Register operator/(Register a, Register b) { return {vdivq_f64(a.f, b.f)}; }
+    static Register max(Register a, Register b) { return if_greater(a, b, a, b); }
+    static Register sqrt(Register a) { return {vsqrtq_f64(a.f)}; }
+    static Register if_greater(Register a, Register b, Register yes, Register no) {
+        return {vbslq_f64(vcgtq_f64(a.f, b.f), yes.f, no.f)};
+    }
+    static unsigned greater(Register a, Register b) {
+        const uint64x2_t mask = vcgtq_f64(a.f, b.f);
+        return static_cast<unsigned>((vgetq_lane_u64(mask, 0) & 1) | (vgetq_lane_u64(mask, 1) & 2));
+    }
+};
+using BaseDoubles = Twice<Twice<NeonDoubleRegister>>;
+#else
+using BaseDoubles = ScalarDoubles;
 #endif
 
 #if defined(__AVX2__)

@@ -1,5 +1,5 @@
-// kLanes floats side by side, in four builds with the same bits: scalar, SSE2, AVX2 and AVX-512. Only IEEE operations
-// (add, sub, mul, div, sqrt, compare), no fused multiply-add, so each lane computes what the scalar does.
+// kLanes floats side by side, in builds with the same bits: scalar, SSE2 or NEON, AVX2 and AVX-512. Only IEEE
+// operations (add, sub, mul, div, sqrt, compare), no fused multiply-add, so each lane computes what the scalar does.
 // One register of the widest build, which has 32 of them; two of the next: what they compute does not wait for each
 // other.
 // Used by kernels that are templates over the type: no function here is shared between builds.
@@ -7,6 +7,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #include "simd/width.h"
@@ -146,6 +148,7 @@ struct Twice {
     }
 };
 
+// BaseLanes: what every machine of this kind has, also for code that comes in one build.
 #if defined(__SSE2__)
 struct Sse2Register {
     using Number = float;
@@ -201,12 +204,73 @@ struct Sse2Register {
         }
     }
 };
-using Sse2Lanes = Twice<Twice<Sse2Register>>;
-#endif
+using BaseLanes = Twice<Twice<Sse2Register>>;
+#elif defined(__aarch64__)
+struct NeonRegister {
+    using Number = float;
+    static constexpr int kWidth = 4;
+    float32x4_t f;
 
-// What every machine of this kind has, for code that comes in one build.
-#if defined(__SSE2__)
-using BaseLanes = Sse2Lanes;
+    static NeonRegister load(const float* p) { return {vld1q_f32(p)}; }
+    static NeonRegister all(float x) { return {vdupq_n_f32(x)}; }
+    void store(float* p) const { vst1q_f32(p, f); }
+    friend NeonRegister operator+(NeonRegister a, NeonRegister b) { return {vaddq_f32(a.f, b.f)}; }
+    friend NeonRegister operator-(NeonRegister a, NeonRegister b) { return {vsubq_f32(a.f, b.f)}; }
+    friend NeonRegister operator*(NeonRegister a, NeonRegister b) { return {vmulq_f32(a.f, b.f)}; }
+    friend NeonRegister operator/(NeonRegister a, NeonRegister b) { return {vdivq_f32(a.f, b.f)}; }
+    // The instruction for it takes not-a-number from either side.
+    static NeonRegister max(NeonRegister a, NeonRegister b) { return if_greater(a, b, a, b); }
+    static NeonRegister sqrt(NeonRegister a) { return {vsqrtq_f32(a.f)}; }
+    static NeonRegister if_greater(NeonRegister a, NeonRegister b, NeonRegister yes, NeonRegister no) {
+        return {vbslq_f32(vcgtq_f32(a.f, b.f), yes.f, no.f)};
+    }
+    static unsigned greater(NeonRegister a, NeonRegister b) {
+        constexpr uint32_t kBits[4] = {1, 2, 4, 8};
+        return vaddvq_u32(vandq_u32(vcgtq_f32(a.f, b.f), vld1q_u32(kBits)));
+    }
+    static float largest(NeonRegister a) {
+        const NeonRegister two = max(a, {vextq_f32(a.f, a.f, 2)});
+        return vgetq_lane_f32(max(two, {vextq_f32(two.f, two.f, 1)}).f, 0);
+    }
+    template <class... More>
+    static bool any(NeonRegister a, More... more) {
+        uint32x4_t bits = vreinterpretq_u32_f32(a.f);
+        ((bits = vorrq_u32(bits, vreinterpretq_u32_f32(more.f))), ...);
+        return vmaxvq_u32(vshlq_n_u32(bits, 1)) != 0;  // all but the sign
+    }
+    template <int Columns>
+    static void transpose(const float* const row[4], NeonRegister (&out)[Columns]) {
+        for (int half = 0; half < Columns / 4; ++half) {
+            float32x4_t r[4];
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) r[i] = vld1q_f32(row[i] + 4 * half);
+            transpose4(r);
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) out[4 * half + i].f = r[i];
+        }
+    }
+    template <int Columns>
+    static void transpose_back(const NeonRegister (&in)[Columns], float* const row[4]) {
+        for (int half = 0; half < Columns / 4; ++half) {
+            float32x4_t r[4];
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) r[i] = in[4 * half + i].f;
+            transpose4(r);
+#pragma GCC unroll 4
+            for (int i = 0; i < 4; ++i) vst1q_f32(row[i] + 4 * half, r[i]);
+        }
+    }
+
+private:
+    static void transpose4(float32x4_t (&r)[4]) {
+        const float32x4x2_t low = vtrnq_f32(r[0], r[1]), high = vtrnq_f32(r[2], r[3]);
+        r[0] = vcombine_f32(vget_low_f32(low.val[0]), vget_low_f32(high.val[0]));
+        r[1] = vcombine_f32(vget_low_f32(low.val[1]), vget_low_f32(high.val[1]));
+        r[2] = vcombine_f32(vget_high_f32(low.val[0]), vget_high_f32(high.val[0]));
+        r[3] = vcombine_f32(vget_high_f32(low.val[1]), vget_high_f32(high.val[1]));
+    }
+};
+using BaseLanes = Twice<Twice<NeonRegister>>;
 #else
 using BaseLanes = ScalarLanes;
 #endif

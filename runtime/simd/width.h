@@ -10,7 +10,17 @@ constexpr int kLanes = 16;                          // floats that a kernel work
 constexpr uint32_t kAllLanes = (1u << kLanes) - 1;  // a bit for each
 constexpr int kDoubles = 8;                         // numbers of double precision, likewise
 
-enum class Width : uint8_t { scalar, sse2, avx2, avx512 };
+// base: what every processor of a kind has, SSE2 or NEON; of others the compiler's own.
+enum class Width : uint8_t { scalar, base, avx2, avx512 };
+
+// The builds of some kernels that there are on this kind of processor, by width.
+#if defined(__x86_64__) || defined(__i386__)
+constexpr bool kHasAvx = true;
+#define TAUT_BUILDS(kernels) &kernels##Scalar, &kernels##Base, &kernels##Avx2, &kernels##Avx512
+#else
+constexpr bool kHasAvx = false;
+#define TAUT_BUILDS(kernels) &kernels##Scalar, &kernels##Base
+#endif
 
 Width widest();  // that this processor runs
 

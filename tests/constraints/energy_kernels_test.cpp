@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "continuum_lab.h"
+#include "widths.h"
 
 namespace taut::test {
 namespace {
@@ -134,10 +135,7 @@ TEST(EnergyKernels, SayWhatElementsSay) {
 }
 
 TEST(EnergyKernels, HaveTheSameBitsInEachBuild) {
-    std::vector<const EnergyKernels*> builds;
-    if (widest() >= Width::sse2) builds.push_back(&kEnergyKernelsSse2);
-    if (widest() >= Width::avx2) builds.push_back(&kEnergyKernelsAvx2);
-    if (widest() >= Width::avx512) builds.push_back(&kEnergyKernelsAvx512);
+    const std::vector<const EnergyKernels*> builds = builds_here({TAUT_BUILDS(kEnergyKernels)});
     for_cells([&](const Cells& cells, uint64_t seed, bool) {
         const Found expected = by_lanes(cells, kEnergyKernelsScalar);
         for (const EnergyKernels* build : builds) {

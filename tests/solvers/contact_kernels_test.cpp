@@ -10,6 +10,7 @@
 #include "constraints/soft_contact.h"
 #include "rig.h"
 #include "solvers/projected_gauss_seidel.h"
+#include "widths.h"
 
 namespace taut::test {
 namespace {
@@ -209,28 +210,26 @@ void expect_same_bits(const ContactKernels& kernels) {
     }
 }
 
-TEST(ContactKernels, Sse2HasTheBitsOfTheScalarBuild) { expect_same_bits(kContactKernelsSse2); }
-
-TEST(ContactKernels, Avx2HasTheBitsOfTheScalarBuild) {
-    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
-    expect_same_bits(kContactKernelsAvx2);
-}
-
-TEST(ContactKernels, Avx512HasTheBitsOfTheScalarBuild) {
-    if (!__builtin_cpu_supports("avx512dq")) GTEST_SKIP() << "this processor has no AVX-512";
-    expect_same_bits(kContactKernelsAvx512);
+TEST(ContactKernels, EveryBuildHasTheBitsOfTheScalarOne) {
+    for (const ContactKernels* build : builds_here({TAUT_BUILDS(kContactKernels)})) {
+        SCOPED_TRACE(build->name);
+        expect_same_bits(*build);
+    }
 }
 
 TEST(ContactKernels, TheWidestOfTheMachineIsChosen) {
-    const char* const names[] = {"scalar", "sse2", "avx2", "avx512"};
-    EXPECT_STREQ(contact_kernels().name, names[static_cast<size_t>(widest())]);
-    EXPECT_GE(widest(), __builtin_cpu_supports("avx2") ? Width::avx2 : Width::sse2);
+    EXPECT_EQ(&contact_kernels(), builds_here({TAUT_BUILDS(kContactKernels)}).back());
+#if defined(__x86_64__)
+    EXPECT_GE(widest(), __builtin_cpu_supports("avx2") ? Width::avx2 : Width::base);
+#else
+    EXPECT_EQ(widest(), Width::base);
+#endif
 }
 
 // Lanes and places without a contact stay as they are, and so does the world.
 TEST(ContactKernels, EmptyPlacesStayEmpty) {
     Data data(9);
-    data.run(kContactKernelsSse2);
+    data.run(kContactKernelsBase);
     for (const LaneGroup& g : data.group)
         for (uint32_t k = 0; k < g.points; ++k)
             for (int lane = 0; lane < kLanes; ++lane) {
@@ -260,7 +259,7 @@ TEST_P(LaneDoesNotFeelTheOthers, AtSpeed) {
             alone.leave_alone(g, lane);
             for (Data* each : {&all, &alone}) {
                 each->slow_down(g, lane, GetParam());
-                each->run(kContactKernelsSse2, g, g + 1);
+                each->run(kContactKernelsBase, g, g + 1);
             }
             for (const uint32_t node : {all.group[g].a[lane], all.group[g].b[lane]})
                 ASSERT_EQ(0, std::memcmp(&all.node[node], &alone.node[node], sizeof(SweepNode)));
@@ -283,7 +282,7 @@ void add_surface(Pair& pair, Random& random) {
         pair.rolling = static_cast<float>(0.1 * random.unit());
         const Vec3 carried = 0.01 * random.vector();
         pair.torque = {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
-                        static_cast<float>(carried.z())};
+                       static_cast<float>(carried.z())};
     }
     if (random.unit() < 0.5) return;
     pair.driven = true;

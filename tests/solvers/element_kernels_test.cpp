@@ -8,6 +8,7 @@
 #include "constraints/random.h"
 #include "simd/width.h"
 #include "system/assemble.h"
+#include "widths.h"
 
 namespace taut::test {
 namespace {
@@ -144,10 +145,7 @@ TEST_P(FusedElements, GivesTheImpulsesThatItsRowsAskFor) {
 TEST_P(FusedElements, HasTheSameBitsInEachBuild) {
     Lanes scalar(*GetParam(), 11, false);
     scalar.sweep(kElementKernelsScalar);
-    std::vector<const ElementKernels*> builds{&kElementKernelsSse2};
-    if (widest() >= Width::avx2) builds.push_back(&kElementKernelsAvx2);
-    if (widest() >= Width::avx512) builds.push_back(&kElementKernelsAvx512);
-    for (const ElementKernels* build : builds) {
+    for (const ElementKernels* build : builds_here({TAUT_BUILDS(kElementKernels)})) {
         Lanes other(*GetParam(), 11, false);
         other.sweep(*build);
         ASSERT_EQ(scalar.system.sweep.size(), other.system.sweep.size());

@@ -12,6 +12,7 @@
 #include "constraints/soft_contact.h"
 #include "system/assemble.h"
 #include "system/axis_rows.h"
+#include "widths.h"
 
 namespace taut::test {
 namespace {
@@ -169,16 +170,11 @@ void expect_same_bits(const JointKernels& kernels) {
     }
 }
 
-TEST(JointKernels, Sse2HasTheBitsOfTheScalarBuild) { expect_same_bits(kJointKernelsSse2); }
-
-TEST(JointKernels, Avx2HasTheBitsOfTheScalarBuild) {
-    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
-    expect_same_bits(kJointKernelsAvx2);
-}
-
-TEST(JointKernels, Avx512HasTheBitsOfTheScalarBuild) {
-    if (!__builtin_cpu_supports("avx512dq")) GTEST_SKIP() << "this processor has no AVX-512";
-    expect_same_bits(kJointKernelsAvx512);
+TEST(JointKernels, EveryBuildHasTheBitsOfTheScalarOne) {
+    for (const JointKernels* build : builds_here({TAUT_BUILDS(kJointKernels)})) {
+        SCOPED_TRACE(build->name);
+        expect_same_bits(*build);
+    }
 }
 
 // ---------------------------------------------------------------- equations
@@ -323,7 +319,7 @@ TEST(JointKernels, SolveTheEquationsOfEachJoint) {
         std::vector<Written> written;
         for (uint32_t j = 0; j < kJoints; ++j)
             written.emplace_back(m, j, velocities_of(m.system, m.system.rows.block[j]));
-        m.run(kJointKernelsSse2, 0, 0);
+        m.run(kJointKernelsBase, 0, 0);
         for (uint32_t j = 0; j < kJoints; ++j) {
             const RowBlock& block = m.system.rows.block[j];
             SCOPED_TRACE(testing::Message() << block.type->name << ", joint " << j);
@@ -343,7 +339,7 @@ TEST(JointKernels, WhatCannotMoveIsLeftOut) {
     Mechanism m(7);
     for (SweepNode& n : m.system.sweep) n.mass = {};
     const auto before = m.system.sweep;
-    m.run(kJointKernelsSse2, 2, 2);
+    m.run(kJointKernelsBase, 2, 2);
     EXPECT_TRUE(same_bits(before, m.system.sweep));
     for (const auto& part : m.parts)
         for (double force : part.force) EXPECT_TRUE(std::isfinite(force));

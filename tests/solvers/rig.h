@@ -156,11 +156,11 @@ public:
                             true,
                             0.25,
                             9.81 * 9.81,
-                            &kContactKernelsSse2,
-                            &kJointKernelsSse2,
-                            &kElementKernelsSse2,
-                            &kGrainKernelsSse2,
-                            &kSurfaceKernelsSse2};
+                            &kContactKernelsBase,
+                            &kJointKernelsBase,
+                            &kElementKernelsBase,
+                            &kGrainKernelsBase,
+                            &kSurfaceKernelsBase};
     SolverReport report;
 
 private:

@@ -11,6 +11,7 @@
 #include "constraints/soft_contact.h"
 #include "rig.h"
 #include "solvers/projected_gauss_seidel.h"
+#include "widths.h"
 
 namespace taut::test {
 namespace {
@@ -136,14 +137,11 @@ void expect_surface_bits(const SurfaceKernels& kernels) {
     }
 }
 
-TEST(SurfaceKernels, Sse2HasTheBitsOfTheScalarBuild) { expect_surface_bits(kSurfaceKernelsSse2); }
-TEST(SurfaceKernels, Avx2HasTheBitsOfTheScalarBuild) {
-    if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
-    expect_surface_bits(kSurfaceKernelsAvx2);
-}
-TEST(SurfaceKernels, Avx512HasTheBitsOfTheScalarBuild) {
-    if (!__builtin_cpu_supports("avx512dq")) GTEST_SKIP() << "this processor has no AVX-512";
-    expect_surface_bits(kSurfaceKernelsAvx512);
+TEST(SurfaceKernels, EveryBuildHasTheBitsOfTheScalarOne) {
+    for (const SurfaceKernels* build : builds_here({TAUT_BUILDS(kSurfaceKernels)})) {
+        SCOPED_TRACE(build->name);
+        expect_surface_bits(*build);
+    }
 }
 
 TEST(SurfaceKernels, LaneDoesNotFeelTheOthers) {
@@ -153,7 +151,7 @@ TEST(SurfaceKernels, LaneDoesNotFeelTheOthers) {
             SurfaceData all(77), alone(77);
             if (all.group[g].contact[lane] == kNoLanes) continue;
             alone.leave_alone(g, lane);
-            for (SurfaceData* each : {&all, &alone}) each->run(kSurfaceKernelsSse2, g, g + 1);
+            for (SurfaceData* each : {&all, &alone}) each->run(kSurfaceKernelsBase, g, g + 1);
             for (const auto& seats : all.group[g].node)
                 ASSERT_EQ(0, std::memcmp(&all.node[seats[lane]], &alone.node[seats[lane]], sizeof(SweepNode)));
             for (int row = 0; row < 3; ++row)
@@ -366,7 +364,8 @@ TEST(SurfaceRow, HasTheEffectiveMassOfItsNodes) {
 
 // ---------------------------------------------------------------- blocks
 
-// A triangle of particles tied by rods under load, and a box without ties: solved directly with the contact between them.
+// A triangle of particles tied by rods under load, and a box without ties: solved directly with the contact between
+// them.
 struct Drum : Rig {
     Drum() {
         gravity.setZero();

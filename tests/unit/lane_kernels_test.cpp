@@ -8,6 +8,7 @@
 
 #include "collision/hull.h"
 #include "collision_oracle.h"
+#include "widths.h"
 
 namespace taut::collision {
 namespace {
@@ -164,8 +165,7 @@ TEST_P(LaneKernelsOf, BestFaceIsThatOfALoopOverAll) {
 
 std::string name_of(const testing::TestParamInfo<Width>& width) { return kLaneKernels[size_t(width.param)]->build; }
 
-INSTANTIATE_TEST_SUITE_P(Builds, LaneKernelsOf, testing::Values(Width::scalar, Width::sse2, Width::avx2, Width::avx512),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Builds, LaneKernelsOf, testing::ValuesIn(widths_here()), name_of);
 
 }  // namespace
 }  // namespace taut::collision

@@ -32,12 +32,8 @@ struct MotionRig {
     void set_mass(int i, const NodeMass& m) {
         const Sym3& I = m.inertia;
         const Sym3 J = Sym3::of(I.matrix().inverse());
-        mass[i] = {m.mass,
-                   m.inv_mass,
-                   {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz},
-                   {J.xx, J.yy, J.zz, J.xy, J.xz, J.yz},
-                   {},
-                   m.gravity_scale};
+        mass[i] = {m.mass, m.inv_mass,     {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz}, {J.xx, J.yy, J.zz, J.xy, J.xz, J.yz},
+                   {},     m.gravity_scale};
     }
     Bodies predict(const MotionKernels& kernels, double h, Bodies turning, Bodies damped = 0,
                    const Vec3& gravity = Vec3::Zero(), double turn = 0.05) {
@@ -60,7 +56,8 @@ private:
 // Those that this machine runs.
 inline std::vector<const MotionKernels*> motion_builds() {
     std::vector<const MotionKernels*> builds = {&kMotionKernelsBase};
-    if (widest() >= Width::avx2) builds.push_back(&kMotionKernelsAvx2);
+    if constexpr (kHasAvx)
+        if (widest() >= Width::avx2) builds.push_back(&kMotionKernelsAvx2);
     return builds;
 }
 
