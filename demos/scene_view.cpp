@@ -263,6 +263,15 @@ void SceneView::add_joints(render::DrawList& list, bool tension) const {
             case TAUT_JOINT_HINGE:
                 add_hinge(list, i, vec(b));
                 break;
+            case TAUT_JOINT_PULLEY: {
+                taut_frame first{}, second{};
+                scenes::check(taut_joint_get_housing_frames(world_.joints[i], &first, &second), "reading sheaves");
+                const Colour colour = tension ? scale_.colour(force_on(world_.joints[i])) : kLinkGrey;
+                // Sheaves of scenes are in the world.
+                const Vec3 way[] = {vec(a), vec(first.position), vec(second.position), vec(b)};
+                for (int k = 0; k < 3; ++k) list.instances.push_back(rod(way[k], way[k + 1], kRopeRadius, colour));
+                break;
+            }
             case TAUT_JOINT_BALL:
                 list.instances.push_back(ball(
                     vec(b), drawn ? static_cast<float>(*drawn) : 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));

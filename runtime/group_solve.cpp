@@ -162,6 +162,7 @@ void GroupSolve::commit(Substep& substep) {
         solver_.settle(substep);
         correct(system_, group_, w_.partition.blocks, w_.nodes);
     }
+    follow_joints(system_, w_.nodes);
     if (!one_step_) {
         if (solver_.lanes) store_joint_lanes(w_.team, system_);
         end_scheme(system_, group_, w_.nodes, solver_.energies);

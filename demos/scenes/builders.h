@@ -35,6 +35,8 @@ Scene build_hinges(double n, double r, const Options& options);
 Scene build_ragdolls(double n, double r, const Options& options);
 Scene build_ragdoll_liana(double n, double r, const Options& options);
 Scene build_ferris_wheel(double n, double r, const Options& options);
+Scene build_car(double n, double r, const Options& options);
+Scene build_gears(double n, double r, const Options& options);
 Scene build_tensegrity(double n, double r, const Options& options);
 Scene build_net(double n, double r, const Options& options);
 Scene build_rain(double n, double r, const Options& options);

@@ -102,6 +102,9 @@ struct Joint {
     SoftVertex vertex_a, vertex_b;
     taut_pos anchor_a{}, anchor_b{};                           // in each body's frame, in the world for kWorld
     taut_quat rotation_a{0, 0, 0, 1}, rotation_b{0, 0, 0, 1};  // from the joint's axes; not of ball and distance joints
+    int housing = kWorld;                                      // of gears, racks and pulleys, as the next
+    taut_frame housing_a{{}, {0, 0, 0, 1}}, housing_b{{}, {0, 0, 0, 1}};
+    float ratio = 1;
     std::vector<taut_axis_def> axes;          // as taut_joint_set_axis counts them; the rest keep their defaults
     float length = 0;                         // of a rod [m]
     float max_length = 0;                     // above 0: a rope instead [m]

@@ -11,9 +11,15 @@ template <typename Def>
 void fill_ends(const Joint& joint, taut_body a, taut_body b, uint64_t index, Def& def) {
     def.body_a = a;
     def.body_b = b;
-    def.compliance = joint.compliance;
-    def.damping = joint.damping;
-    def.break_force = joint.break_force;
+    if constexpr (requires { def.break_force; }) {
+        def.compliance = joint.compliance;
+        def.damping = joint.damping;
+        def.break_force = joint.break_force;
+    }
+    if constexpr (requires { def.break_torque; }) {
+        def.angular_compliance = joint.angular_compliance;
+        def.break_torque = joint.break_torque;
+    }
     def.solve = joint.solve;
     def.user_data = index;
 }
@@ -52,17 +58,49 @@ taut_result add_framed(taut_world world, const Joint& joint, taut_body a, taut_b
     fill_ends(joint, a, b, index, def);
     def.frame_a = {joint.anchor_a, joint.rotation_a};
     def.frame_b = {joint.anchor_b, joint.rotation_b};
-    def.angular_compliance = joint.angular_compliance;
-    def.break_torque = joint.break_torque;
     taut_result result = add(world, &def, out);
     for (uint32_t i = 0; result == TAUT_OK && i < joint.axes.size(); ++i)
         result = taut_joint_set_axis(*out, i, &joint.axes[i]);
     return result;
 }
 
+// A gear or rack.
+template <typename Def>
+taut_result add_gear(taut_world world, const Joint& joint, taut_body a, taut_body b, taut_body housing, uint64_t index,
+                     void (*init)(Def*), taut_result (*add)(taut_world, const Def*, taut_joint*), taut_joint* out) {
+    Def def;
+    init(&def);
+    fill_ends(joint, a, b, index, def);
+    def.housing = housing;
+    def.frame_a = {joint.anchor_a, joint.rotation_a};
+    def.frame_b = {joint.anchor_b, joint.rotation_b};
+    def.housing_frame_a = joint.housing_a;
+    def.housing_frame_b = joint.housing_b;
+    def.ratio = joint.ratio;
+    return add(world, &def, out);
+}
+
+taut_result add_pulley(taut_world world, const Joint& joint, taut_body a, taut_body b, taut_body housing,
+                       uint64_t index, taut_joint* out) {
+    taut_pulley_joint_def def;
+    taut_pulley_joint_def_init(&def);
+    fill_ends(joint, a, b, index, def);
+    def.housing = housing;
+    def.anchor_a = joint.anchor_a;
+    def.anchor_b = joint.anchor_b;
+    def.sheave_a = joint.housing_a.position;
+    def.sheave_b = joint.housing_b.position;
+    def.ratio = joint.ratio;
+    def.length = joint.length;
+    taut_result result = taut_world_add_pulley_joint(world, &def, out);
+    if (result == TAUT_OK && !joint.axes.empty()) result = taut_joint_set_axis(*out, 0, joint.axes.data());
+    return result;
+}
+
 }  // namespace
 
-taut_result add_joint(taut_world world, const Joint& joint, taut_body a, taut_body b, uint64_t index, taut_joint* out) {
+taut_result add_joint(taut_world world, const Joint& joint, taut_body a, taut_body b, taut_body housing, uint64_t index,
+                      taut_joint* out) {
     auto framed = [&](auto init, auto add) { return add_framed(world, joint, a, b, index, init, add, out); };
     switch (joint.kind) {
         case TAUT_JOINT_BALL:
@@ -83,6 +121,16 @@ taut_result add_joint(taut_world world, const Joint& joint, taut_body a, taut_bo
             return framed(taut_cone_twist_joint_def_init, taut_world_add_cone_twist_joint);
         case TAUT_JOINT_SIX_DOF:
             return framed(taut_six_dof_joint_def_init, taut_world_add_six_dof_joint);
+        case TAUT_JOINT_WHEEL:
+            return framed(taut_wheel_joint_def_init, taut_world_add_wheel_joint);
+        case TAUT_JOINT_GEAR:
+            return add_gear(world, joint, a, b, housing, index, taut_gear_joint_def_init, taut_world_add_gear_joint,
+                            out);
+        case TAUT_JOINT_RACK_PINION:
+            return add_gear(world, joint, a, b, housing, index, taut_rack_pinion_joint_def_init,
+                            taut_world_add_rack_pinion_joint, out);
+        case TAUT_JOINT_PULLEY:
+            return add_pulley(world, joint, a, b, housing, index, out);
         case TAUT_JOINT_KIND_MAX:
             break;
     }

@@ -5,6 +5,8 @@
 
 namespace scenes {
 
-taut_result add_joint(taut_world world, const Joint& joint, taut_body a, taut_body b, uint64_t index, taut_joint* out);
+// housing: null unless the kind has one.
+taut_result add_joint(taut_world world, const Joint& joint, taut_body a, taut_body b, taut_body housing, uint64_t index,
+                      taut_joint* out);
 
 }  // namespace scenes

@@ -207,7 +207,7 @@ void TautWorld::add_joints() {
     for (const Joint& joint : scene_.joints) {
         taut_joint handle{};
         check(add_joint(world, joint, end(joint.body_a, joint.vertex_a), end(joint.body_b, joint.vertex_b),
-                        joints.size(), &handle),
+                        end(joint.housing, {}), joints.size(), &handle),
               "adding a joint");
         joints.push_back(handle);
     }

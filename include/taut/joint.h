@@ -17,12 +17,22 @@
  *   universal    position; x of a square to y of b  0: angle about x of a, 1: angle about y of b [rad]
  *   cone_twist   position                           0: swing, between the x axes, [0, pi]; 1: twist about x [rad]
  *   six_dof      what its axes lock                 0 to 2: position in frame a [m], 3 to 5: Cardan angles [rad]
+ *   wheel        all but these                      0: slide along x of a [m], 1: steering about x of a,
+ *                                                   2: spin about y of b [rad]
+ *   gear         turns of b to turns of a           none
+ *   rack_pinion  slide of b to turns of a           none
+ *   pulley       a rope from a over b's and its     0: its length, less `length` [m]
+ *                own sheave to b
  *
  * An angle is read in (-pi, pi]. Two stops, up to a whole turn apart, hold it in the turn that it came to; from a
  * single stop it may turn away as often as it likes, and comes back as often. A target between two stops is reached
  * between them, any other in the turn that is nearest. Where the host places an end (taut_body_set_pose) or changes the
  * stops the angle is taken in a turn that is between them. "[N]" of an axis that is an angle reads "[N m]", "[m]"
  * "[rad]", and so on.
+ *
+ * Gears, racks and pulleys have a third end, the housing, in which bodies a and b are guided by joints of their own:
+ * hinges, sliders or wheels. It is a rigid body that may move as it likes, or the world; it bears what a and b leave
+ * over, as a gearbox does. Turns are counted, any number of them.
  *
  * A step that ends with a joint above its break_force or break_torque removes it; of several such joints in one
  * mechanism, bodies that joints tie together, the one that is furthest above, of like ones the oldest: what the others
@@ -51,6 +61,10 @@ typedef enum taut_joint_kind {
     TAUT_JOINT_CYLINDRICAL = 6,
     TAUT_JOINT_CONE_TWIST = 7,
     TAUT_JOINT_SIX_DOF = 8,
+    TAUT_JOINT_WHEEL = 9,
+    TAUT_JOINT_GEAR = 10,
+    TAUT_JOINT_RACK_PINION = 11,
+    TAUT_JOINT_PULLEY = 12,
     TAUT_JOINT_KIND_MAX = 0x7fffffff
 } taut_joint_kind;
 
@@ -314,6 +328,116 @@ typedef struct taut_six_dof_joint_def {
     uint64_t user_data;
 } taut_six_dof_joint_def;
 
+/**
+ * A wheel on a strut of a chassis: body a is the chassis, x of frame a the strut; body b is the wheel, y of frame b its
+ * axle. The wheel slides along the strut, is steered about it and spins about the axle, which stays square to the strut
+ * and does not turn with the spin. taut_joint_frames_from_two_axes gives both frames from strut and axle.
+ * A strut's spring carries a chassis: to let a mass m on it swing at f [Hz] its stiffness is m (2 pi f)^2. A drive's
+ * frequency counts the two ends alone, of which the wheel is the lighter, and gives far less.
+ */
+typedef struct taut_wheel_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected;
+    taut_body body_a;
+    taut_body body_b;
+    taut_frame frame_a;
+    taut_frame frame_b;
+    float compliance;
+    float damping;
+    float angular_compliance;
+    float angular_damping;
+    float break_force;
+    float break_torque;
+    taut_joint_solve solve;
+    uint32_t reserved;
+    taut_axis_def suspension; /**< slide along x of frame a; default locked */
+    taut_axis_def steering;   /**< angle about x of frame a; default locked */
+    taut_axis_def spin;       /**< angle about y of frame b; default free */
+    uint64_t user_data;
+} taut_wheel_joint_def;
+
+/**
+ * Two bodies that turn with each other in a housing, each about x of its frames: gears, belts, a differential's bevels
+ * (1 row). A body's two frames, on itself and on the housing, are those of the hinge that holds it there
+ * (taut_joint_get_frames); of them positions only say where it is drawn. Gears mesh as they stand when the joint is
+ * made, switched on, given frames or another ratio, or an end is placed by the host. A shaft may lean in the housing,
+ * as a steered wheel's does: it is driven evenly then, as by a joint of constant velocity.
+ */
+typedef struct taut_gear_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected; /**< 1: the three bodies still collide. Default 0 */
+    taut_body body_a;           /**< null: the world; no particle */
+    taut_body body_b;           /**< null: the world; no particle */
+    taut_body housing;          /**< null: the world; no particle. At least one of the three must be dynamic, and no two
+                                     the same */
+    taut_frame frame_a;         /**< on body_a. Default, as of the others: the origin, unturned */
+    taut_frame frame_b;         /**< on body_b */
+    taut_frame housing_frame_a; /**< on the housing, of body_a's axis */
+    taut_frame housing_frame_b; /**< on the housing, of body_b's axis */
+    float ratio;                /**< turns of b for one of a, magnitude in [1e-4, 1e4]; below 0 they turn against each
+                                     other about axes that point the same way, as spur gears do: -teeth a / teeth b.
+                                     Default -1 */
+    float angular_compliance;   /**< of b's angle [rad/(N m)], [0, 1e6]. Default 0 */
+    float angular_damping;      /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
+    float break_torque;         /**< of the torque on b [N m], [0, 1e24]; a step that ends with more removes the joint;
+                                     0: never. Default 0 */
+    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_BY_LOAD */
+    uint32_t reserved;          /**< zero */
+    uint64_t user_data;
+} taut_gear_joint_def;
+
+/**
+ * A pinion, body a, that turns in a housing, and a rack, body b, that slides there along x of its frames (1 row). All
+ * else as for gears.
+ */
+typedef struct taut_rack_pinion_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected; /**< 1: the three bodies still collide. Default 0 */
+    taut_body body_a;           /**< the pinion; null: the world; no particle */
+    taut_body body_b;           /**< the rack; null: the world; no particle */
+    taut_body housing;          /**< as of gears */
+    taut_frame frame_a;
+    taut_frame frame_b; /**< its position slides; its rotation is not looked at, but must be valid */
+    taut_frame housing_frame_a;
+    taut_frame housing_frame_b; /**< the rack slides along its x axis */
+    float ratio;                /**< slide of b for an angle of a: the pinion's radius, magnitude in [1e-4, 1e4]
+                                     [m/rad]. Default 1 */
+    float compliance;           /**< of the slide [m/N], [0, 1e6]. Default 0 */
+    float damping;              /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
+    float break_force;          /**< of the force on b [N], [0, 1e24]; 0: never. Default 0 */
+    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_BY_LOAD */
+    uint32_t reserved;          /**< zero */
+    uint64_t user_data;
+} taut_rack_pinion_joint_def;
+
+/**
+ * A rope from a point of body a over two sheaves of a housing to a point of body b (1 row): with distances d of the
+ * points from their sheaves, d_a + ratio d_b <= length. It has no mass and no friction; its tension pulls body a, ratio
+ * times that body b, and the housing bears both. Its axis 0 has the coordinate d_a + ratio d_b - length, limited above
+ * at 0: slack is below, a drive winches.
+ */
+typedef struct taut_pulley_joint_def {
+    uint32_t struct_size;
+    uint32_t collide_connected; /**< 1: the three bodies still collide. Default 1 */
+    taut_body body_a;           /**< null: the world */
+    taut_body body_b;           /**< null: the world */
+    taut_body housing;          /**< null: the world; no particle. At least one of the three must be dynamic or a
+                                     particle, and no two the same */
+    taut_pos anchor_a;          /**< as for the ball joint */
+    taut_pos anchor_b;
+    taut_pos sheave_a; /**< in the frame of the housing, within 1e4; world position if null [m] */
+    taut_pos sheave_b;
+    float ratio;            /**< falls of rope on b's side for one on a's, [1e-4, 1e4]. Default 1 */
+    float length;           /**< [m], 0 or [1e-4, 1e6]; 0: what it is at creation. Default 0 */
+    uint32_t rigid;         /**< 1: it pushes too, and axis 0 is locked. Default 0 */
+    float compliance;       /**< of the rope [m/N], [0, 1e6]. Default 0 */
+    float damping;          /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
+    float break_force;      /**< of the force on b [N], [0, 1e24]; 0: never. Default 0 */
+    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
+    uint32_t reserved;      /**< zero */
+    uint64_t user_data;
+} taut_pulley_joint_def;
+
 /** What acts along an axis, as of the last substep; zero before the first step. */
 typedef struct taut_axis_forces {
     float total;         /**< of all below and of the lock, along the coordinate [N] */
@@ -367,6 +491,22 @@ TAUT_API void taut_six_dof_joint_def_init_sized(taut_six_dof_joint_def* def, uin
 static inline void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def) {
     taut_six_dof_joint_def_init_sized(def, (uint32_t)sizeof(*def));
 }
+TAUT_API void taut_wheel_joint_def_init_sized(taut_wheel_joint_def* def, uint32_t size);
+static inline void taut_wheel_joint_def_init(taut_wheel_joint_def* def) {
+    taut_wheel_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_gear_joint_def_init_sized(taut_gear_joint_def* def, uint32_t size);
+static inline void taut_gear_joint_def_init(taut_gear_joint_def* def) {
+    taut_gear_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_rack_pinion_joint_def_init_sized(taut_rack_pinion_joint_def* def, uint32_t size);
+static inline void taut_rack_pinion_joint_def_init(taut_rack_pinion_joint_def* def) {
+    taut_rack_pinion_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
+TAUT_API void taut_pulley_joint_def_init_sized(taut_pulley_joint_def* def, uint32_t size);
+static inline void taut_pulley_joint_def_init(taut_pulley_joint_def* def) {
+    taut_pulley_joint_def_init_sized(def, (uint32_t)sizeof(*def));
+}
 
 /**
  * The frames that a world point and direction have on two ends at their present poses: what a def's frame_a and frame_b
@@ -377,11 +517,21 @@ static inline void taut_six_dof_joint_def_init(taut_six_dof_joint_def* def) {
  */
 TAUT_API taut_result taut_joint_frames_from_world(taut_world world, taut_body body_a, taut_body body_b, taut_pos pivot,
                                                   taut_vec3 axis, taut_frame* frame_a, taut_frame* frame_b);
+/**
+ * The same from two directions of the world, so that y is given as well: of a wheel joint strut and axle, of a
+ * universal joint its two axes.
+ * @param axis_x, axis_y not zero and not parallel, at least .001 rad apart; x is axis_x normalised, y is axis_y made
+ *        square to it.
+ * @return as above.
+ */
+TAUT_API taut_result taut_joint_frames_from_two_axes(taut_world world, taut_body body_a, taut_body body_b,
+                                                     taut_pos pivot, taut_vec3 axis_x, taut_vec3 axis_y,
+                                                     taut_frame* frame_a, taut_frame* frame_b);
 
 /**
  * Adds a joint.
- * @return TAUT_OK; TAUT_INVALID_ARGUMENT (both ends fixed or the same, anchor off a particle, a particle where none may
- *         be, points of a distance joint closer than 1e-4 m, range), TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE,
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (all ends fixed or two the same, anchor off a particle, a particle where none
+ * may be, points of a distance joint closer than 1e-4 m, range), TAUT_STALE_HANDLE, TAUT_FOREIGN_HANDLE,
  *         TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out);
@@ -397,6 +547,11 @@ TAUT_API taut_result taut_world_add_universal_joint(taut_world world, const taut
 TAUT_API taut_result taut_world_add_cone_twist_joint(taut_world world, const taut_cone_twist_joint_def* def,
                                                      taut_joint* out);
 TAUT_API taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_joint_def* def, taut_joint* out);
+TAUT_API taut_result taut_world_add_wheel_joint(taut_world world, const taut_wheel_joint_def* def, taut_joint* out);
+TAUT_API taut_result taut_world_add_gear_joint(taut_world world, const taut_gear_joint_def* def, taut_joint* out);
+TAUT_API taut_result taut_world_add_rack_pinion_joint(taut_world world, const taut_rack_pinion_joint_def* def,
+                                                      taut_joint* out);
+TAUT_API taut_result taut_world_add_pulley_joint(taut_world world, const taut_pulley_joint_def* def, taut_joint* out);
 TAUT_API taut_result taut_joint_remove(taut_joint joint);
 /** 1 if the handle names a live joint, else 0. */
 TAUT_API int32_t taut_joint_is_valid(taut_joint joint);
@@ -409,6 +564,16 @@ TAUT_API taut_result taut_joint_get_bodies(taut_joint joint, taut_body* body_a, 
 TAUT_API taut_result taut_joint_get_anchors(taut_joint joint, taut_pos* anchor_a, taut_pos* anchor_b);
 /** Frames on the two ends, as in the defs; unturned for ball and distance joints. */
 TAUT_API taut_result taut_joint_get_frames(taut_joint joint, taut_frame* frame_a, taut_frame* frame_b);
+
+/** Of a gear, rack or pulley, the third end; null: the world, and for other kinds. */
+TAUT_API taut_result taut_joint_get_housing(taut_joint joint, taut_body* out);
+/** Frames on the housing, as in the defs; of a pulley its sheaves, unturned. TAUT_INVALID_ARGUMENT for a kind without
+ *  housing. */
+TAUT_API taut_result taut_joint_get_housing_frames(taut_joint joint, taut_frame* frame_a, taut_frame* frame_b);
+/** Ratio of a gear [1], rack [m/rad] or pulley [1]; TAUT_INVALID_ARGUMENT for another kind. */
+TAUT_API taut_result taut_joint_get_ratio(taut_joint joint, float* out);
+/** Length of a distance joint or pulley [m]; TAUT_INVALID_ARGUMENT for another kind. */
+TAUT_API taut_result taut_joint_get_length(taut_joint joint, float* out);
 
 /** Force on end b in the last substep, world axes [N]; end a receives the opposite. Zero before the first step. */
 TAUT_API taut_result taut_joint_get_force(taut_joint joint, taut_vec3* out);
@@ -452,13 +617,20 @@ TAUT_API taut_result taut_joint_set_compliance(taut_joint joint, float complianc
 TAUT_API taut_result taut_joint_set_angular_compliance(taut_joint joint, float compliance, float damping);
 /** Changes what the joint breaks at [N], [N m], [0, 1e24]; 0: never. See taut_joint_break_event. */
 TAUT_API taut_result taut_joint_set_break(taut_joint joint, float force, float torque);
-/** Changes the length of a distance joint [m], [1e-4, 1e6]; stops and drive move along. TAUT_INVALID_ARGUMENT for
- *  another kind. */
+/** Changes the length of a distance joint or pulley [m], [1e-4, 1e6]; stops and drive move along. TAUT_INVALID_ARGUMENT
+ *  for another kind. */
 TAUT_API taut_result taut_joint_set_length(taut_joint joint, float length);
+/** Changes the ratio of a gear or rack, which mesh anew: another gear is engaged. Ranges as in the defs;
+ *  TAUT_INVALID_ARGUMENT for another kind. */
+TAUT_API taut_result taut_joint_set_ratio(taut_joint joint, float ratio);
 TAUT_API taut_result taut_joint_set_solve(taut_joint joint, taut_joint_solve solve);
 /** Moves the joint on both ends. Ball and distance joints do not look at the rotations, which must be valid all the
  *  same. @return as for adding a joint. */
 TAUT_API taut_result taut_joint_set_frames(taut_joint joint, const taut_frame* frame_a, const taut_frame* frame_b);
+/** Moves a gear, rack or pulley on its housing, of a pulley its sheaves, whose rotations are not looked at.
+ *  TAUT_INVALID_ARGUMENT for a kind without housing. @return as for adding a joint. */
+TAUT_API taut_result taut_joint_set_housing_frames(taut_joint joint, const taut_frame* frame_a,
+                                                   const taut_frame* frame_b);
 /**
  * Switches a joint off (0) or on (1, as it comes). Off, it is as if it was not there: it carries nothing, and its
  * bodies collide. On again, it begins as one just added: where its bodies came apart it pulls them together at once, so

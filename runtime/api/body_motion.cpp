@@ -9,6 +9,7 @@
 #include "models/bodies.h"
 #include "publish/publish.h"
 #include "sleep/wake.h"
+#include "state/joint_reading.h"
 
 using namespace taut;
 
@@ -106,7 +107,7 @@ taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
             if (ends_on(node)(pair)) forget_forces(pair);
         });
         for (Joint& joint : world.joints.record)
-            if (ends_on(joint, node)) forget_angles(joint);
+            if (ends_on(joint, node)) place_anew(world.nodes, joint);
         return TAUT_OK;
     });
 }
@@ -266,7 +267,7 @@ taut_result taut_body_release(taut_body handle) {
         wake_about(world, node);
         world.nodes.let_go(node);
         for (Joint& joint : world.joints.record)
-            if (ends_on(joint, node)) forget_angles(joint);
+            if (ends_on(joint, node)) place_anew(world.nodes, joint);
         ++world.joints.version;  // blocks have the node again
         return TAUT_OK;
     });

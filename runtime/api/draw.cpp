@@ -4,9 +4,12 @@
 #include <cstdio>
 
 #include "api/contacts.h"
+#include "api/joint_kinds.h"
 #include "api/sized.h"
 #include "collision/outline.h"
+#include "constraints/housed_anchors.h"
 #include "detect/detect.h"
+#include "state/joint_data.h"
 #include "state/joint_reading.h"
 
 namespace taut {
@@ -190,6 +193,10 @@ private:
     void add_joints() {
         for (const Joint& joint : world_.joints.record) {
             if (!joint.type || joint.inner) continue;
+            if (kind_of(joint).housed) {
+                add_housed(joint);
+                continue;
+            }
             tie(joint.node[0], world_anchor(world_.nodes, joint, 0), joint.node[1],
                 world_anchor(world_.nodes, joint, 1),
                 [&] { return wrench_of(joint, read_joint(world_.nodes, joint)).force; });
@@ -200,6 +207,22 @@ private:
             tie(kNone, point_of(world_.nodes, of.end[0]), kNone, point_of(world_.nodes, of.end[1]),
                 [&] { return load_of(world_.nodes, world_.elements, of).force; });
         }
+    }
+    // From each body to where the housing guides it, and between those places.
+    void add_housed(const Joint& joint) {
+        const HousedAnchors anchors = read_data<HousedAnchors>(joint);
+        const Pose housing = pose_of(world_.nodes, joint.node[2]);
+        Vec3 end[2], guide[2];
+        for (int side = 0; side < 2; ++side) {
+            end[side] = world_anchor(world_.nodes, joint, side);
+            guide[side] = housing.x + housing.R * anchors.guide(side);
+        }
+        if (!sees(end[0]) && !sees(end[1]) && !sees(guide[0]) && !sees(guide[1])) return;
+        if (asks(TAUT_DRAW_JOINTS)) {
+            for (int side = 0; side < 2; ++side) line(end[side], guide[side], kJoint);
+            line(guide[0], guide[1], kJoint);
+        }
+        if (asks(TAUT_DRAW_FORCES)) force(end[1], wrench_of(joint, read_joint(world_.nodes, joint)).force);
     }
     template <class Force>
     void tie(uint32_t node_a, const Vec3& a, uint32_t node_b, const Vec3& b, Force&& newtons) {

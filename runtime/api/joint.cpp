@@ -45,9 +45,9 @@ taut_result change(const Check& check, taut_joint handle, Change&& apply) {
 taut_result taut_joint_remove(taut_joint handle) {
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         const Joint& joint = world.joints.record[index];
-        reserve_pair_of_ends(world, joint);
+        reserve_pairs_of_ends(world, joint);
         wake_ends(world, joint);
-        if (!joint.collide_connected) forget_pair_of_ends(world, joint);
+        if (!joint.collide_connected) forget_pairs_of_ends(world, joint);
         world.joints.remove(index);
         return TAUT_OK;
     });
@@ -168,7 +168,7 @@ taut_result taut_joint_set_compliance(taut_joint handle, float compliance, float
     return change(check, handle, [&](World&, Joint& joint) {
         joint.compliance = compliance;
         joint.damping = damping;
-        if (joint.type == &kDistance && joint.axis[0].mode == AxisMode::limited) {
+        if (has_length(joint) && joint.axis[0].mode == AxisMode::limited) {
             joint.axis[0].limit_compliance = compliance;
             joint.axis[0].limit_damping = damping;
         }
@@ -201,11 +201,9 @@ taut_result taut_joint_set_length(taut_joint handle, float length) {
     Check check(__func__);
     check.number("length", length, kJointLength);
     return change(check, handle, [&](const World& world, Joint& joint) {
-        if (!check.require(joint.type == &kDistance, "joint is not a distance joint")) return check.result();
+        if (!check.require(has_length(joint), "joint is no distance joint and no pulley")) return check.result();
         Joint changed = joint;
-        DistanceData data = read_data<DistanceData>(joint);
-        data.length = length;
-        write_data(changed, data);
+        set_length(changed, length);
         replace_joint(world.nodes, joint, changed);
         return TAUT_OK;
     });
@@ -239,6 +237,7 @@ taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, 
         }
         Joint moved = joint;
         write_ends(moved, kind, ends[0], ends[1]);
+        restart(world.nodes, moved);
         if (moved.type == &kDistance && !check_distance(check, world, moved)) return check.result();
         replace_joint(world.nodes, joint, moved);
         return TAUT_OK;
@@ -250,9 +249,9 @@ taut_result taut_joint_set_enabled(taut_joint handle, uint32_t enabled) {
     check.boolean("enabled", enabled);
     return change(check, handle, [&](World& world, Joint& joint) {
         if (joint.off.off == (enabled == 0)) return TAUT_OK;
-        reserve_pair_of_ends(world, joint);
+        reserve_pairs_of_ends(world, joint);
         wake_ends(world, joint);  // while it ties them
-        if (!joint.collide_connected) forget_pair_of_ends(world, joint);
+        if (!joint.collide_connected) forget_pairs_of_ends(world, joint);
         joint.off.off = enabled == 0;
         update_idle(world, joint);
         return TAUT_OK;
@@ -274,8 +273,8 @@ taut_result taut_joint_set_collide_connected(taut_joint handle, uint32_t collide
     return change(check, handle, [&](World& world, Joint& joint) {
         const bool collide = collide_connected != 0;
         if (joint.collide_connected == collide) return TAUT_OK;
-        reserve_pair_of_ends(world, joint);
-        forget_pair_of_ends(world, joint);
+        reserve_pairs_of_ends(world, joint);
+        forget_pairs_of_ends(world, joint);
         joint.collide_connected = collide;
         ++world.joints.version;  // pairs.joined is taken from the joints anew
         return TAUT_OK;

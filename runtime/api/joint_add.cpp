@@ -3,20 +3,13 @@
 #include <array>
 #include <cmath>
 
-#include "api/joint_parts.h"
-#include "api/sized.h"
-#include "models/bodies.h"
+#include "api/joint_make.h"
 
 using namespace taut;
 
 namespace {
 
 // ---------------------------------------------------------------- what the defs have in common
-
-template <class Def>
-constexpr bool kFramed = requires(Def def) {
-    def.frame_a;
-};
 
 // The axes of each def by index, null after the last, with their names; null defs are never asked.
 struct NamedAxis {
@@ -41,6 +34,10 @@ NamedAxes axes_of(const taut_six_dof_joint_def& def) {
              {&def.axes[3], "axes[3]."},
              {&def.axes[4], "axes[4]."},
              {&def.axes[5], "axes[5]."}}};
+}
+
+NamedAxes axes_of(const taut_wheel_joint_def& def) {
+    return {{{&def.suspension, "suspension."}, {&def.steering, "steering."}, {&def.spin, "spin."}}};
 }
 
 void init_axis(taut_axis_def& def, taut_axis_mode mode) {
@@ -68,31 +65,6 @@ void init(Def* def, taut_axis_mode mode = TAUT_AXIS_FREE) {
 }
 
 // ---------------------------------------------------------------- check
-
-// def: as this library knows it.
-template <class Def>
-bool check_def(Check& check, const Def* given, void (*init)(Def*), Def* def, const taut_joint* out) {
-    if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, init, *def)) return false;
-    check.boolean("collide_connected", def->collide_connected);
-    if constexpr (kFramed<Def>) {
-        for (int end = 0; end < 2; ++end) {
-            const taut_frame& frame = end == 0 ? def->frame_a : def->frame_b;
-            check.bounded(kFrameNames[end].position, frame.position, kPosition)
-                .rotation(kFrameNames[end].rotation, frame.rotation);
-        }
-        check.number("angular_compliance", def->angular_compliance, kCompliance)
-            .number("angular_damping", def->angular_damping, kDamping)
-            .number("break_torque", def->break_torque, kJointForce);
-    } else {
-        check.bounded("anchor_a", def->anchor_a, kPosition).bounded("anchor_b", def->anchor_b, kPosition);
-    }
-    check.number("compliance", def->compliance, kCompliance)
-        .number("damping", def->damping, kDamping)
-        .number("break_force", def->break_force, kJointForce)
-        .choice("solve", def->solve, TAUT_JOINT_SOLVE_BY_LOAD);
-    if constexpr (requires { def->reserved; }) check.zero("reserved", def->reserved);
-    return static_cast<bool>(check);
-}
 
 bool check_axes(Check& check, const JointKind& kind, const NamedAxes& axes) {
     for (size_t i = 0; i < kind.axes.size(); ++i) {
@@ -122,47 +94,12 @@ bool check_range(Check& check, const taut_distance_joint_def& def) {
 
 template <class Def>
 taut_result find_ends(Check& check, const World& world, const JointKind& kind, const Def& def, JointEnd (&ends)[2]) {
-    const EndNames* names = kFramed<Def> ? kFrameNames : kAnchorNames;
-    for (int i = 0; i < 2; ++i) {
-        const taut_body body = i == 0 ? def.body_a : def.body_b;
-        if (body.bits != 0) {
-            const taut_result found = find_body(check.call(), names[i].body, world, body, ends[i].node);
-            if (found != TAUT_OK) return found;
-        }
-        taut_frame frame;
-        if constexpr (kFramed<Def>)
-            frame = i == 0 ? def.frame_a : def.frame_b;
-        else
-            frame = {i == 0 ? def.anchor_a : def.anchor_b, kUnturned};
-        if (!place_end(check, world, kind, names[i], frame, ends[i])) return check.result();
-    }
-    const auto moves = [&](const JointEnd& end) {
-        return end.node != kNone && moves_by_forces(world.nodes.info[end.node].kind);
-    };
-    check.require(moves(ends[0]) || moves(ends[1]), "body_a and body_b: neither end is dynamic or a particle");
+    const taut_result found = place_ends(check, world, kind, def, ends);
+    if (found != TAUT_OK) return found;
+    check.require(moves_by_forces(world, ends[0]) || moves_by_forces(world, ends[1]),
+                  "body_a and body_b: neither end is dynamic or a particle");
     check.require(ends[0].node != ends[1].node, "body_a and body_b are the same");
     return check.result();
-}
-
-template <class Def>
-Joint make_joint(const JointKind& kind, const Def& def, const JointEnd (&ends)[2]) {
-    Joint joint;
-    joint.type = kind.type;
-    joint.node[0] = ends[0].node;
-    joint.node[1] = ends[1].node;
-    joint.compliance = def.compliance;
-    joint.damping = def.damping;
-    joint.break_force = or_never(def.break_force);
-    if constexpr (kFramed<Def>) {
-        joint.angular_compliance = def.angular_compliance;
-        joint.angular_damping = def.angular_damping;
-        joint.break_torque = or_never(def.break_torque);
-    }
-    joint.solve = static_cast<JointSolve>(def.solve);
-    joint.collide_connected = def.collide_connected != 0;
-    joint.user_data = def.user_data;
-    write_ends(joint, kind, ends[0], ends[1]);
-    return joint;
 }
 
 void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, Joint& joint) {
@@ -175,18 +112,6 @@ void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, 
         const double inverse_mass = held_inverse_mass_of(world.nodes, joint, reading, place.row);
         change_axis(joint, place, make_axis(place, *axes[i].def, inverse_mass));
     }
-}
-
-taut_result add_joint(Check& check, World& world, const Joint& joint, taut_joint* out) {
-    const taut_result room = room_for_joints(check.call(), world, 1);
-    if (room != TAUT_OK) return room;
-    reserve_pair_of_ends(world, joint);
-    const uint32_t index = world.joints.add(joint);
-    world.joints.record[index].idle = is_idle(world.nodes, joint);
-    if (!joint.collide_connected) forget_pair_of_ends(world, joint);
-    wake_ends(world, joint);
-    *out = world.joint_handle(index);
-    return TAUT_OK;
 }
 
 template <class Def>
@@ -257,6 +182,26 @@ taut_frame frame_on(const World& world, uint32_t node, const Vec3& pivot, const 
     return {to_pos(body * (pivot - world.nodes.origin(node))), to_quat((body * rotation).normalized())};
 }
 
+// The frames of x, a unit vector, and of y made square to it.
+taut_result frames_from_axes(const Check& check, taut_world handle, taut_body body_a, taut_body body_b, taut_pos pivot,
+                             const Vec3& x, const Vec3& y, taut_frame* frame_a, taut_frame* frame_b) {
+    return with_world(check.call(), handle, Use::read, [&](const World& world) {
+        uint32_t a = kNone, b = kNone;
+        taut_result found = TAUT_OK;
+        if (body_a.bits != 0) found = find_body(check.call(), "body_a", world, body_a, a);
+        if (found == TAUT_OK && body_b.bits != 0) found = find_body(check.call(), "body_b", world, body_b, b);
+        if (found != TAUT_OK) return found;
+        Mat3 axes;
+        axes.col(0) = x;
+        axes.col(2) = x.cross(y).normalized();
+        axes.col(1) = axes.col(2).cross(x);
+        const Quat rotation(axes);
+        *frame_a = frame_on(world, a, to_vec(pivot), rotation);
+        *frame_b = frame_on(world, b, to_vec(pivot), rotation);
+        return TAUT_OK;
+    });
+}
+
 }  // namespace
 
 void taut_axis_def_init_sized(taut_axis_def* def, uint32_t size) {
@@ -293,6 +238,12 @@ void taut_universal_joint_def_init_sized(taut_universal_joint_def* def, uint32_t
 void taut_cone_twist_joint_def_init_sized(taut_cone_twist_joint_def* def, uint32_t size) {
     give_defaults(def, size, [](taut_cone_twist_joint_def& own) { init(&own); });
 }
+void taut_wheel_joint_def_init_sized(taut_wheel_joint_def* def, uint32_t size) {
+    give_defaults(def, size, [](taut_wheel_joint_def& own) {
+        init(&own);
+        own.suspension.mode = own.steering.mode = TAUT_AXIS_LOCKED;
+    });
+}
 void taut_six_dof_joint_def_init_sized(taut_six_dof_joint_def* def, uint32_t size) {
     give_defaults(def, size, [](taut_six_dof_joint_def& own) { init(&own, TAUT_AXIS_LOCKED); });
 }
@@ -321,6 +272,9 @@ taut_result taut_world_add_cone_twist_joint(taut_world world, const taut_cone_tw
 taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_joint_def* def, taut_joint* out) {
     return add(__func__, world, TAUT_JOINT_SIX_DOF, def, taut_six_dof_joint_def_init, out);
 }
+taut_result taut_world_add_wheel_joint(taut_world world, const taut_wheel_joint_def* def, taut_joint* out) {
+    return add(__func__, world, TAUT_JOINT_WHEEL, def, taut_wheel_joint_def_init, out);
+}
 
 taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* given, taut_joint* out) {
     Check check(__func__);
@@ -338,26 +292,28 @@ taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance
     });
 }
 
-taut_result taut_joint_frames_from_world(taut_world handle, taut_body body_a, taut_body body_b, taut_pos pivot,
+taut_result taut_joint_frames_from_world(taut_world world, taut_body body_a, taut_body body_b, taut_pos pivot,
                                          taut_vec3 axis, taut_frame* frame_a, taut_frame* frame_b) {
     Check check(__func__);
     if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
     check.bounded("pivot", pivot, kPosition).vector("axis", axis, kDirection);
     const double length = to_vec(axis).norm();
     if (!check.require(!check || length > 0, "axis is 0")) return check.result();
-    return with_world(check.call(), handle, Use::read, [&](const World& world) {
-        uint32_t a = kNone, b = kNone;
-        taut_result found = TAUT_OK;
-        if (body_a.bits != 0) found = find_body(check.call(), "body_a", world, body_a, a);
-        if (found == TAUT_OK && body_b.bits != 0) found = find_body(check.call(), "body_b", world, body_b, b);
-        if (found != TAUT_OK) return found;
-        Mat3 axes;
-        axes.col(0) = to_vec(axis) / length;
-        axes.col(2) = axes.col(0).cross(square_axis(axes.col(0))).normalized();
-        axes.col(1) = axes.col(2).cross(axes.col(0));
-        const Quat rotation(axes);
-        *frame_a = frame_on(world, a, to_vec(pivot), rotation);
-        *frame_b = frame_on(world, b, to_vec(pivot), rotation);
-        return TAUT_OK;
-    });
+    const Vec3 x = to_vec(axis) / length;
+    return frames_from_axes(check, world, body_a, body_b, pivot, x, square_axis(x), frame_a, frame_b);
+}
+
+taut_result taut_joint_frames_from_two_axes(taut_world world, taut_body body_a, taut_body body_b, taut_pos pivot,
+                                            taut_vec3 axis_x, taut_vec3 axis_y, taut_frame* frame_a,
+                                            taut_frame* frame_b) {
+    constexpr double kLeastAngle = 1e-3;  // between them [rad]: y comes out within 1e-4 of it in floats
+    Check check(__func__);
+    if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
+    check.bounded("pivot", pivot, kPosition).vector("axis_x", axis_x, kDirection).vector("axis_y", axis_y, kDirection);
+    const double length_x = to_vec(axis_x).norm(), length_y = to_vec(axis_y).norm();
+    check.require(!check || length_x > 0, "axis_x is 0").require(!check || length_y > 0, "axis_y is 0");
+    if (!check) return check.result();
+    const Vec3 x = to_vec(axis_x) / length_x, y = to_vec(axis_y) / length_y;
+    if (!check.require(x.cross(y).norm() >= kLeastAngle, "axis_x and axis_y are parallel")) return check.result();
+    return frames_from_axes(check, world, body_a, body_b, pivot, x, y, frame_a, frame_b);
 }

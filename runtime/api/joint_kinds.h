@@ -19,7 +19,10 @@ struct JointAxis {
 struct JointKind {
     taut_joint_kind kind;
     const ConstraintType* type;
-    bool framed;  // data is JointFrames, no end a particle; else it begins with JointAnchors
+    bool framed;  // it sits on frames, not on points, and no end is a particle
+    // Ends on a third node; data are GearData or begin with HousedAnchors. Else they are JointFrames, or begin with
+    // JointAnchors.
+    bool housed;
     std::span<const JointAxis> axes;
 };
 

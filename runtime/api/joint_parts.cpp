@@ -18,7 +18,7 @@ Check& place_end(Check& check, const World& world, const JointKind& kind, const 
     end.frame = to_quat(frame.rotation);
     if (end.node == kNone) return check;
     if (world.nodes.info[end.node].kind == NodeKind::particle) {
-        check.require(!kind.framed, "an end is a particle, which only ball and distance joints take");
+        check.require(!kind.framed, "an end is a particle, which only ball and distance joints and pulleys take");
         return check.zero(names.position,
                           {static_cast<float>(end.anchor.x()), static_cast<float>(end.anchor.y()),
                            static_cast<float>(end.anchor.z())},
@@ -29,24 +29,67 @@ Check& place_end(Check& check, const World& world, const JointKind& kind, const 
 }
 
 void write_ends(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b) {
-    if (kind.framed)
-        write_data(joint, JointFrames{a.anchor, b.anchor, a.frame, b.frame});
-    else
-        write_data(joint, JointAnchors{a.anchor, b.anchor});
+    if (kind.framed && !kind.housed) return write_data(joint, JointFrames{a.anchor, b.anchor, a.frame, b.frame});
+    write_data(joint, JointAnchors{a.anchor, b.anchor});
+    if (!kind.framed) return;
+    GearData data = read_data<GearData>(joint);
+    data.frame[0] = a.frame;
+    data.frame[1] = b.frame;
+    write_data(joint, data);
+}
+
+void write_housing(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b) {
+    HousedAnchors anchors = read_data<HousedAnchors>(joint);
+    anchors.guide_a = a.anchor;
+    anchors.apart = b.anchor - a.anchor;
+    write_data(joint, anchors);
+    if (!kind.framed) return;
+    GearData data = read_data<GearData>(joint);
+    data.housing_frame[0] = a.frame;
+    data.housing_frame[1] = b.frame;
+    write_data(joint, data);
+}
+
+namespace {
+
+taut_frame placed_on(const World& world, uint32_t node, Vec3 anchor, const Quat& rotation) {
+    if (node != kNone) anchor += world.nodes.mass[node].centre;
+    return {to_pos(anchor), to_quat(rotation)};
+}
+
+}  // namespace
+
+taut_frame frame_of(const World& world, const Joint& joint, int end) {
+    const JointKind& kind = kind_of(joint);
+    Quat rotation = Quat::Identity();
+    if (kind.framed && kind.housed)
+        rotation = read_data<GearData>(joint).frame[end];
+    else if (kind.framed)
+        rotation = end == 0 ? read_data<JointFrames>(joint).frame_a : read_data<JointFrames>(joint).frame_b;
+    return placed_on(world, joint.node[end], anchor_of(joint, end), rotation);
+}
+
+taut_frame housing_frame_of(const World& world, const Joint& joint, int side) {
+    const bool framed = kind_of(joint).framed;
+    return placed_on(world, joint.node[2], read_data<HousedAnchors>(joint).guide(side),
+                     framed ? read_data<GearData>(joint).housing_frame[side] : Quat::Identity());
+}
+
+double length_of(const Joint& joint) {
+    return joint.type == &kPulley ? read_data<PulleyData>(joint).length : read_data<DistanceData>(joint).length;
+}
+
+void set_length(Joint& joint, double length) {
+    const auto put = [&](auto data) {
+        data.length = length;
+        write_data(joint, data);
+    };
+    joint.type == &kPulley ? put(read_data<PulleyData>(joint)) : put(read_data<DistanceData>(joint));
 }
 
 Check& check_distance(Check& check, const World& world, const Joint& joint) {
     const double distance = (world_anchor(world.nodes, joint, 1) - world_anchor(world.nodes, joint, 0)).norm();
     return check.number("distance between the anchors", distance, kJointLength);
-}
-
-void reserve_pair_of_ends(World& world, const Joint& joint) {
-    if (joint.node[0] != kNone) reserve_ended(world.pairs, ends_on(joint.node[0]));
-}
-
-void forget_pair_of_ends(World& world, const Joint& joint) {
-    if (joint.node[0] == kNone || joint.node[1] == kNone) return;
-    forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(joint.node[0], joint.node[1]));
 }
 
 void replace_joint(const Nodes& nodes, Joint& joint, const Joint& changed) {

@@ -6,7 +6,9 @@
 #include "api/access.h"
 #include "api/joint_kinds.h"
 #include "constraints/distance.h"
+#include "constraints/gear.h"
 #include "constraints/joint_frames.h"
+#include "constraints/pulley.h"
 #include "sleep/wake.h"
 #include "state/joint_data.h"
 #include "state/joint_reading.h"
@@ -26,6 +28,9 @@ struct EndNames {
     const char *body, *position, *rotation;
 };
 constexpr EndNames kAnchorNames[2] = {{"body_a", "anchor_a", ""}, {"body_b", "anchor_b", ""}};
+constexpr EndNames kSheaveNames[2] = {{"housing", "sheave_a", ""}, {"housing", "sheave_b", ""}};
+constexpr EndNames kHousingNames[2] = {{"housing", "housing_frame_a.position", "housing_frame_a.rotation"},
+                                       {"housing", "housing_frame_b.position", "housing_frame_b.rotation"}};
 constexpr EndNames kFrameNames[2] = {{"body_a", "frame_a.position", "frame_a.rotation"},
                                      {"body_b", "frame_b.position", "frame_b.rotation"}};
 
@@ -33,13 +38,17 @@ constexpr EndNames kFrameNames[2] = {{"body_a", "frame_a.position", "frame_a.rot
 Check& place_end(Check& check, const World& world, const JointKind& kind, const EndNames& names,
                  const taut_frame& frame, JointEnd& end);
 void write_ends(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b);
+// Where the housing guides a and b.
+void write_housing(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b);
+// What place_end() placed, but for its node: in the end's frame, in the world's if that is null.
+taut_frame frame_of(const World& world, const Joint& joint, int end);
+taut_frame housing_frame_of(const World& world, const Joint& joint, int side);
+// Whether its axis 0 counts from a length.
+inline bool has_length(const Joint& joint) { return joint.type == &kDistance || joint.type == &kPulley; }
+double length_of(const Joint& joint);
+void set_length(Joint& joint, double length);
 // Between points that are closer than a distance joint can be long there is no direction.
 Check& check_distance(Check& check, const World& world, const Joint& joint);
-
-// A change of what the joint's bodies may collide with: their pair is found anew by the next step. The first may
-// throw, the second does not.
-void reserve_pair_of_ends(World& world, const Joint& joint);
-void forget_pair_of_ends(World& world, const Joint& joint);
 
 // What a joint holds goes on in another way.
 inline void wake_ends(World& world, const Joint& joint) {

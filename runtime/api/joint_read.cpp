@@ -18,21 +18,6 @@ taut_result reading(const Check& check, taut_joint handle, Act&& act) {
     });
 }
 
-taut_frame frame_of(const World& world, const Joint& joint, int end) {
-    Vec3 anchor;
-    Quat rotation = Quat::Identity();
-    if (kind_of(joint).framed) {
-        const JointFrames data = read_data<JointFrames>(joint);
-        anchor = end == 0 ? data.anchor_a : data.anchor_b;
-        rotation = end == 0 ? data.frame_a : data.frame_b;
-    } else {
-        const JointAnchors data = read_data<JointAnchors>(joint);
-        anchor = end == 0 ? data.a : data.b;
-    }
-    if (joint.node[end] != kNone) anchor += world.nodes.mass[joint.node[end]].centre;
-    return {to_pos(anchor), to_quat(rotation)};
-}
-
 }  // namespace
 
 taut_result taut_joint_get_anchors(taut_joint handle, taut_pos* anchor_a, taut_pos* anchor_b) {

@@ -68,13 +68,18 @@ struct ConstraintType {
     // Where K resists the turning of a line between its nodes, which their own rotations do not describe; else null.
     Line (*line)(const void* data, const Pose* x) = nullptr;
     // Of types whose data are JointFrames, or BallData where they have no angles, and whose angles, the last rows, turn
-    // their nodes against each other alone: J_b = -J_a = (0, g). C and J of kLanes instances at once, in floats; else null. pose: of both ends in each lane,
-    // a SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn are not written.
+    // their nodes against each other alone: J_b = -J_a = (0, g). C and J of kLanes instances at once, in floats; else
+    // null. pose: of both ends in each lane, a SweepPose. jacobian: [2][rows][6], of which the zeros of rows that turn
+    // are not written.
     void (*evaluate_lanes)(const LaneFrames& frames, const float* const (&pose)[2][kLanes], LaneScalar* error,
                            LaneScalar* jacobian) = nullptr;
     // Bit r: sweeps leave out stops, drives and friction along row r. Its direction may turn about from one substep to
     // the next, and what they carry over is then a push.
     uint8_t unswept = 0;
+    // Of types whose coordinates count turns, which poses do not tell: their past, within data; else null. restart: C
+    // is 0 at these poses. follow: the nodes came to these by turns within the last substep [rad, world axes], [nodes].
+    void (*restart)(void* data, const Pose* x) = nullptr;
+    void (*follow)(void* data, const Pose* x, const Vec3* turned) = nullptr;
 
     bool swept(uint32_t r) const { return (unswept >> r & 1) == 0; }
 };
@@ -96,5 +101,10 @@ extern const ConstraintType kCylindrical;
 extern const ConstraintType kUniversal;
 extern const ConstraintType kConeTwist;
 extern const ConstraintType kSixDof;
+extern const ConstraintType kWheel;
+// Between two bodies and the one that guides both, the third node (coupled_pair.h).
+extern const ConstraintType kGear;
+extern const ConstraintType kRackPinion;
+extern const ConstraintType kPulley;
 
 }  // namespace taut

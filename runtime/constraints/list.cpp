@@ -6,8 +6,8 @@ namespace taut {
 
 std::span<const ConstraintType* const> constraint_types() {
     static const ConstraintType* const types[] = {
-        &kBall,   &kDistance,    &kBend,      &kContact,   &kSpanContact, &kFixed,   &kHinge,
-        &kSlider, &kCylindrical, &kUniversal, &kConeTwist, &kSixDof,      &kRolling,
+        &kBall,      &kDistance,  &kBend,   &kContact, &kSpanContact, &kFixed, &kHinge,      &kSlider, &kCylindrical,
+        &kUniversal, &kConeTwist, &kSixDof, &kRolling, &kWheel,       &kGear,  &kRackPinion, &kPulley,
     };
     return types;
 }

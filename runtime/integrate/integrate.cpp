@@ -345,6 +345,13 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
     restrain_velocities(team, system, group, nodes, gravity);
 }
 
+Pose pose_between(const System& system, const Nodes& nodes, uint32_t at) {
+    const uint32_t node = system.node_at[at];
+    if (node == kNone || !moves_by_forces(nodes.info[node].kind)) return system.pose[at];
+    const NodeMotion& m = system.lent ? system.motion[at] : nodes.motion[node];
+    return {m.x, m.q.toRotationMatrix()};
+}
+
 void commit_strikes(System& system, const Impacts& impacts, Nodes& nodes) {
     for (const Impacts::Struck& struck : impacts.struck) {
         const uint32_t at = system.at(struck.node);
@@ -375,6 +382,20 @@ void correct(System& system, const Group& group, const Array<Block>& blocks, Nod
     for (uint32_t b : group.blocks)
         if (blocks[b].corrected)
             for_batches(system, blocks[b].nodes, [&](const Batch& batch) { kernels.commit(rows, batch, 1, rotate); });
+}
+
+void follow_joints(const System& system, const Nodes& nodes) {
+    for (const FollowedJoint& joint : system.rows.followed) {
+        const RowBlock& block = system.rows.block[joint.block];
+        Pose poses[kMaxEnds];
+        Vec3 turned[kMaxEnds];
+        for (int n = 0; n < block.type->nodes; ++n) {
+            const uint32_t at = block.node[n];
+            poses[n] = pose_between(system, nodes, at);
+            turned[n] = system.scheme.h * system.exact[at].w;
+        }
+        block.type->follow(joint.data, poses, turned);
+    }
 }
 
 // Kept in the world, what contacts changed of a spin since the body was moved would turn about axes of another inertia

@@ -47,6 +47,11 @@ void commit(Team& team, System& system, const Group& group, Nodes& nodes);
 // x += dx, q = exp(dq) q for nodes of blocks marked corrected.
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes);
 
+// Pose at a seat where a substep begins or ends: as it is in the state, or that of a kinematic node now.
+Pose pose_between(const System& system, const Nodes& nodes, uint32_t at);
+// Joints whose types follow the turns of their nodes, which commit() made.
+void follow_joints(const System& system, const Nodes& nodes);
+
 // The kept velocity back into the state; s += kappa (v - s) for nodes in blocks. False: some motion is not sane.
 bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes, double velocity_filter);
 

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "integrate/integrate.h"
 #include "system/operators.h"
 
 namespace taut {
@@ -31,13 +32,6 @@ void renew(NodeHistory& of, const Speed& velocity, double length, const Speed& e
     of.before = sum(velocity, -length, acceleration);
 }
 
-// Pose of a block's node: as it is in the state, which is where substeps begin and end, or that of a kinematic one now.
-Pose pose_of(const System& system, const Nodes& nodes, uint32_t at) {
-    const uint32_t node = system.node_at[at];
-    if (node == kNone || !moves_by_forces(nodes.info[node].kind)) return system.pose[at];
-    return {nodes.motion[node].x, nodes.motion[node].q.toRotationMatrix()};
-}
-
 // Forces of a joint's springs alone, for only those have a past: what a rigid row does within a substep is an impulse,
 // as a contact's (with it Newmark's is an unstable solution of the constraint's equations). Of a joint that was not
 // solved yet from its error: C lambda = -error.
@@ -63,7 +57,7 @@ void find_spring_accelerations(System& system, const Group& group, const Nodes& 
         const ConstraintType& type = *block.type;
         double error[kMaxRows], jacobian[kMaxNodes * kMaxRows * kDof] = {};
         Pose poses[kMaxNodes];
-        for (int n = 0; n < type.nodes; ++n) poses[n] = pose_of(system, nodes, block.node[n]);
+        for (int n = 0; n < type.nodes; ++n) poses[n] = pose_between(system, nodes, block.node[n]);
         type.evaluate(block.data, poses, error, jacobian);
         const RowVector force = spring_force(block, error, are_new);
         for (int n = 0; n < type.nodes; ++n) {

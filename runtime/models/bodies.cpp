@@ -167,7 +167,30 @@ void update_idle(World& world, Joint& joint) {
     std::ranges::fill(joint.lambda, 0.0);
     std::ranges::fill(joint.drift, 0.0);
     std::ranges::fill(joint.memory, AxisMemory{});
+    if (!idle) restart(world.nodes, joint);
     ++world.joints.version;
+}
+
+// Pairs that a joint's bodies have with each other.
+static auto between_ends(const Joint& joint) {
+    return [&joint](const PairEnds& pair) {
+        const auto ends = joint.ends();
+        for (size_t b = 0; b < ends.size(); ++b)
+            for (size_t a = 0; a < b; ++a)
+                if (ends[a] != kNone && ends[b] != kNone && between_nodes(ends[a], ends[b])(pair)) return true;
+        return false;
+    };
+}
+static bool ties_bodies(const Joint& joint) {
+    return std::ranges::count_if(joint.ends(), [](uint32_t end) { return end != kNone; }) > 1;
+}
+
+void reserve_pairs_of_ends(World& world, const Joint& joint) {
+    if (ties_bodies(joint)) reserve_ended(world.pairs, between_ends(joint));
+}
+
+void forget_pairs_of_ends(World& world, const Joint& joint) {
+    if (ties_bodies(joint)) forget_pairs(world.pairs, world.nodes, world.colliders, between_ends(joint));
 }
 
 static void update_joints(World& world, uint32_t node) {

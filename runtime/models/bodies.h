@@ -44,6 +44,11 @@ inline bool is_idle(const Nodes& nodes, const Joint& joint) {
     return joint.off.off || std::ranges::any_of(joint.ends(), disabled);
 }
 
+// A change of what a joint's bodies may collide with: their pairs are found anew by the next step. The first may throw,
+// the second does not.
+void reserve_pairs_of_ends(World& world, const Joint& joint);
+void forget_pairs_of_ends(World& world, const Joint& joint);
+
 // Moves a body's centre of mass by an offset [m], world axes: what the body does, and where its joints and attachments
 // hold it, stays.
 void shift_centre(World& world, uint32_t node, const Vec3& offset);

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "models/attachments.h"
+#include "models/bodies.h"
 #include "publish/publish.h"
 #include "sleep/wake.h"
 #include "state/joint_reading.h"
@@ -137,8 +138,7 @@ void break_joint(World& world, uint32_t index) {
     world.broken.push_back({world.joint_handle(index), joint.user_data, public_vector(load.force),
                             public_vector(load.torque), world.window.steps, 0});
     // The two bodies may collide from the next step on: a pair that was filtered is found anew, and touched nobody.
-    if (!joint.collide_connected && joint.node[0] != kNone && joint.node[1] != kNone)
-        forget_pairs(world.pairs, world.nodes, world.colliders, between_nodes(joint.node[0], joint.node[1]));
+    if (!joint.collide_connected) forget_pairs_of_ends(world, joint);
     for (uint32_t node : joint.nodes()) wake(world, node);
     world.joints.remove(index);
 }

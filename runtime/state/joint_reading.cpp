@@ -82,6 +82,18 @@ JointReading read_joint(const Nodes& nodes, const Joint& joint) {
     return reading;
 }
 
+void restart(const Nodes& nodes, Joint& joint) {
+    if (!joint.type->restart) return;
+    Pose pose[kMaxEnds];
+    poses_of(nodes, joint, pose);
+    joint.type->restart(joint.data, pose);
+}
+
+void place_anew(const Nodes& nodes, Joint& joint) {
+    for (AxisMemory& memory : joint.memory) memory.angle = AxisMemory{}.angle;
+    restart(nodes, joint);
+}
+
 double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
     double rate = 0;
     for (int end = 0; end < joint.type->nodes; ++end) {

@@ -25,6 +25,11 @@ struct JointReading {
 
 JointReading read_joint(const Nodes& nodes, const Joint& joint);
 
+// Of a joint whose type counts turns: it begins anew where it is.
+void restart(const Nodes& nodes, Joint& joint);
+// The joint's ends did not come to their poses by motion: it begins anew there, angles between stops are read anew.
+void place_anew(const Nodes& nodes, Joint& joint);
+
 inline bool is_angle(const Joint& joint, int row) { return (joint.type->angular >> row & 1) != 0; }
 inline bool is_locked(const Joint& joint, int row) { return joint.axis[row].mode == AxisMode::locked; }
 // Of a locked row [m/N or rad/(N m)].

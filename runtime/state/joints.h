@@ -19,7 +19,7 @@ enum class JointSolve : uint8_t {
 };
 
 struct Joint {
-    static constexpr size_t kDataSize = 128;
+    static constexpr size_t kDataSize = 256;
 
     const ConstraintType* type = nullptr;                    // null: dead slot
     uint32_t node[kMaxEnds] = {kNone, kNone, kNone, kNone};  // as many as the type has; kNone: the world
@@ -83,11 +83,6 @@ void describe(Visitor& visitor, Of& of) {
 inline bool ends_on(const Joint& joint, uint32_t node) {
     const auto ends = joint.ends();
     return std::find(ends.begin(), ends.end(), node) != ends.end();
-}
-
-// Angles between stops are read anew: the joint's ends did not come to their poses by motion.
-inline void forget_angles(Joint& joint) {
-    for (AxisMemory& memory : joint.memory) memory.angle = AxisMemory{}.angle;
 }
 
 // Between nodes that sleep; worlds without sleeping have none.

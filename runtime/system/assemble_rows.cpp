@@ -42,6 +42,8 @@ void add_joint(System& system, Joint& joint, bool in_lanes) {
     block.memory = joint.memory;
     block.fresh = joint.fresh;
     joint.fresh = false;
+    if (joint.type->follow)
+        system.rows.followed.push_back({static_cast<uint32_t>(system.rows.block.size()) - 1, joint.data});
 }
 
 void add_element(System& system, ElementSet& set, uint32_t e, bool in_lanes) {
@@ -366,6 +368,7 @@ void build_rows(System& system, const Group& group, Array<Block>& blocks, Joints
                 Pairs& pairs, const Nodes& nodes, bool contacts_as_rows, bool energies) {
     Rows& rows = system.rows;
     rows.block.clear();
+    rows.followed.clear();
     rows.run.clear();
     rows.elastic.clear();
     rows.element.clear();

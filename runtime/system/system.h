@@ -100,9 +100,16 @@ struct ElasticRun {
     uint32_t node;     // first in Rows::element_node
 };
 
+// A joint whose type follows the turns of its nodes.
+struct FollowedJoint {
+    uint32_t block;  // in Rows::block
+    void* data;
+};
+
 struct Rows {
     explicit Rows(Memory& memory)
         : block(memory),
+          followed(memory),
           run(memory),
           elastic(memory),
           sorted(memory),
@@ -120,6 +127,7 @@ struct Rows {
     uint32_t direct = 0, joints = 0, lasting = 0;  // in block: where each of these ends
     uint32_t lasting_spans = 0;                    // in span_data
     Array<RowBlock> block;
+    Array<FollowedJoint> followed;
     Array<ElementRun> run;
     Array<ElasticRun> elastic;              // of blocks, or of a group whose solver takes energies
     Array<ElementRef> sorted;               // scratch of build_rows()

@@ -262,6 +262,38 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
              return add_framed<taut_six_dof_joint_def, taut_six_dof_joint_def_init, taut_world_add_six_dof_joint>(
                  w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
          }},
+        {"taut_world_add_wheel_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_wheel_joint_def, taut_wheel_joint_def_init, taut_world_add_wheel_joint>(
+                 w, p.crate, {0}, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_world_add_gear_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_gear_joint_def, taut_gear_joint_def_init, taut_world_add_gear_joint>(
+                 w, p.crate, p.wedge, frame(0, 0, 0), frame(0, 0.5, 0), &out);
+         }},
+        {"taut_world_add_rack_pinion_joint",
+         [&p](taut_world w) {
+             taut_joint out;
+             return add_framed<taut_rack_pinion_joint_def, taut_rack_pinion_joint_def_init,
+                               taut_world_add_rack_pinion_joint>(w, p.crate, p.wedge, frame(0, 0, 0), frame(0, 0.5, 0),
+                                                                 &out);
+         }},
+        {"taut_world_add_pulley_joint",
+         [&p](taut_world w) {
+             taut_pulley_joint_def def;
+             taut_pulley_joint_def_init(&def);
+             def.body_a = p.crate, def.body_b = p.wedge;
+             taut_joint out;
+             return taut_world_add_pulley_joint(w, &def, &out);
+         }},
+        {"taut_joint_frames_from_two_axes",
+         [&p](taut_world w) {
+             taut_frame a, b;
+             return taut_joint_frames_from_two_axes(w, p.crate, {0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, &a, &b);
+         }},
         {"taut_joint_frames_from_world",
          [&p](taut_world w) {
              taut_frame a, b;
@@ -716,6 +748,32 @@ inline std::vector<Call<taut_joint>> joint_calls() {
          [](taut_joint j) {
              const taut_frame a = frame(0, 0, 0), b = frame(0, 1, 0);
              return taut_joint_set_frames(j, &a, &b);
+         }},
+        {"taut_joint_get_housing",
+         [](taut_joint j) {
+             taut_body out;
+             return taut_joint_get_housing(j, &out);
+         }},
+        {"taut_joint_get_housing_frames",
+         [](taut_joint j) {
+             taut_frame a, b;
+             return taut_joint_get_housing_frames(j, &a, &b);
+         }},
+        {"taut_joint_set_housing_frames",
+         [](taut_joint j) {
+             const taut_frame a = frame(0, 0, 0), b = frame(0, 1, 0);
+             return taut_joint_set_housing_frames(j, &a, &b);
+         }},
+        {"taut_joint_get_ratio",
+         [](taut_joint j) {
+             float out;
+             return taut_joint_get_ratio(j, &out);
+         }},
+        {"taut_joint_set_ratio", [](taut_joint j) { return taut_joint_set_ratio(j, 2); }},
+        {"taut_joint_get_length",
+         [](taut_joint j) {
+             float out;
+             return taut_joint_get_length(j, &out);
          }},
         {"taut_joint_get_torque",
          [](taut_joint j) {

@@ -225,6 +225,132 @@ TEST_F(JointRefusals, SixDof) {
                  AXIS(six_dof, axes[3], true), AXIS(six_dof, axes[4], true), AXIS(six_dof, axes[5], true));
 }
 
+TEST_F(JointRefusals, Wheel) {
+    HOLD_AGAINST(wheel, AXIS(wheel, suspension, false), AXIS(wheel, steering, true), AXIS(wheel, spin, true));
+}
+
+// What defs with a housing forbid of their ends and frames.
+template <class Def>
+void refuse_housed(Populated& p, const Def& def, DefCheck<Def, taut_joint>& check) {
+    const auto refuse = [&](const char* word, auto change, taut_result code = TAUT_INVALID_ARGUMENT) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, code, word);
+    };
+    refuse("collide_connected", [](Def& d) { d.collide_connected = 2; });
+    refuse("reserved", [](Def& d) { d.reserved = 1; });
+    refuse("solve", [](Def& d) { d.solve = static_cast<taut_joint_solve>(3); });
+    refuse("two are the same", [](Def& d) { d.body_b = d.body_a; });
+    refuse("two are the same", [](Def& d) { d.housing = d.body_a; });
+    refuse("two are the same", [](Def& d) { d.housing = d.body_b; });
+    refuse("two are the same", [](Def& d) { d.body_a = d.housing = {0}; });
+    refuse("none is dynamic", [&](Def& d) { d.body_a = p.ground, d.body_b = p.lift, d.housing = {0}; });
+    refuse("housing is a particle", [&](Def& d) { d.housing = p.bob; });
+    refuse(
+        "housing", [](Def& d) { d.housing = {0x1234}; }, TAUT_STALE_HANDLE);
+}
+
+template <class Def>
+std::vector<Field> geared_fields() {
+    return {FIELD3(Def, frame_a.position, -1e4, 1e4),
+            FIELD3(Def, frame_b.position, -1e4, 1e4),
+            FIELD3(Def, housing_frame_a.position, -1e7, 1e7),
+            FIELD3(Def, housing_frame_b.position, -1e7, 1e7),
+            FIELD(Def, frame_a.rotation.x, 0, 0, Field::unchecked),
+            FIELD(Def, frame_b.rotation.w, 0, 0, Field::unchecked),
+            FIELD(Def, housing_frame_a.rotation.y, 0, 0, Field::unchecked),
+            FIELD(Def, housing_frame_b.rotation.z, 0, 0, Field::unchecked),
+            FIELD(Def, ratio, 1e-4, 1e4, Field::unchecked)};
+}
+
+taut_result add_any(taut_world world, const taut_gear_joint_def* def, taut_joint* out) {
+    return taut_world_add_gear_joint(world, def, out);
+}
+taut_result add_any(taut_world world, const taut_rack_pinion_joint_def* def, taut_joint* out) {
+    return taut_world_add_rack_pinion_joint(world, def, out);
+}
+
+template <class Def>
+void refuse_geared(Populated& p, const Def& def, DefCheck<Def, taut_joint>& check) {
+    refuse_housed(p, def, check);
+    const auto refuse = [&](const char* word, auto change) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, word);
+    };
+    refuse("particle", [&](Def& d) { d.body_b = p.bob; });
+    refuse("housing_frame_a.rotation has length", [](Def& d) { d.housing_frame_a.rotation.w = 0; });
+    refuse("housing_frame_b.position", [&](Def& d) { d.housing = p.lift, d.housing_frame_b.position.y = 2e4; });
+    for (const float ratio : {0.0f, 9e-5f, -9e-5f, 1.1e4f, -1.1e4f, NAN, INFINITY})
+        refuse("ratio", [&](Def& d) { d.ratio = ratio; });
+    for (const float ratio : {1e-4f, -1e-4f, 1e4f, -1e4f}) {
+        Def good = def;
+        good.ratio = ratio;
+        taut_joint out;
+        EXPECT_OK(add_any(p.world, &good, &out));
+    }
+}
+
+TEST_F(JointRefusals, Gear) {
+    using Def = taut_gear_joint_def;
+    taut_gear_joint_def_init(nullptr);
+    Def def;
+    taut_gear_joint_def_init(&def);
+    EXPECT_EQ(def.ratio, -1);
+    EXPECT_EQ(def.housing_frame_b.rotation.w, 1);
+    def.body_a = p.crate, def.body_b = p.wedge;
+    DefCheck<Def, taut_joint> check(p.world, "taut_world_add_gear_joint", taut_world_add_gear_joint);
+    std::vector<Field> fields = geared_fields<Def>();
+    fields.push_back(FIELD(Def, angular_compliance, 0, 1e6));
+    fields.push_back(FIELD(Def, angular_damping, 0, 1e12));
+    fields.push_back(FIELD(Def, break_torque, 0, 1e24));
+    check.run(def, fields);
+    refuse_geared(p, def, check);
+}
+
+TEST_F(JointRefusals, RackPinion) {
+    using Def = taut_rack_pinion_joint_def;
+    taut_rack_pinion_joint_def_init(nullptr);
+    Def def;
+    taut_rack_pinion_joint_def_init(&def);
+    EXPECT_EQ(def.ratio, 1);
+    def.body_a = p.crate, def.body_b = p.wedge;
+    DefCheck<Def, taut_joint> check(p.world, "taut_world_add_rack_pinion_joint", taut_world_add_rack_pinion_joint);
+    std::vector<Field> fields = geared_fields<Def>();
+    fields.push_back(FIELD(Def, compliance, 0, 1e6));
+    fields.push_back(FIELD(Def, damping, 0, 1e12));
+    fields.push_back(FIELD(Def, break_force, 0, 1e24));
+    check.run(def, fields);
+    refuse_geared(p, def, check);
+}
+
+TEST_F(JointRefusals, Pulley) {
+    using Def = taut_pulley_joint_def;
+    taut_pulley_joint_def_init(nullptr);
+    Def def;
+    taut_pulley_joint_def_init(&def);
+    EXPECT_EQ(def.collide_connected, 1u);
+    def.body_a = p.crate, def.body_b = p.wedge;
+    def.sheave_a = {0, 9, 0}, def.sheave_b = {1, 9, 0};
+    DefCheck<Def, taut_joint> check(p.world, "taut_world_add_pulley_joint", taut_world_add_pulley_joint);
+    check.run(def,
+              {FIELD3(Def, anchor_a, -1e4, 1e4), FIELD3(Def, anchor_b, -1e4, 1e4),
+               FIELD3(Def, sheave_a, -1e5, 1e5, Field::unchecked), FIELD3(Def, sheave_b, -1e5, 1e5, Field::unchecked),
+               FIELD(Def, ratio, 1e-4, 1e4), FIELD(Def, length, 1e-4, 1e6), FIELD(Def, compliance, 0, 1e6),
+               FIELD(Def, damping, 0, 1e12), FIELD(Def, break_force, 0, 1e24)});
+    refuse_housed(p, def, check);
+    const auto refuse = [&](const char* word, auto change) {
+        Def bad = def;
+        change(bad);
+        check.expect_refused(&bad, TAUT_INVALID_ARGUMENT, word);
+    };
+    refuse("rigid", [](Def& d) { d.rigid = 2; });
+    refuse("ratio", [](Def& d) { d.ratio = -1; });
+    refuse("anchor_a", [&](Def& d) { d.body_a = p.bob, d.anchor_a = {0, 0.1, 0}; });
+    refuse("length of the rope", [](Def& d) { d.sheave_a = {2e6, 0, 0}; });
+    refuse("sheave_b", [&](Def& d) { d.housing = p.lift, d.sheave_b = {0, 2e4, 0}; });
+}
+
 TEST(JointInit, TakesNullAndWritesDefaults) {
     taut_axis_def_init(nullptr);
     taut_ball_joint_def_init(nullptr);

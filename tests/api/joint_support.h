@@ -47,6 +47,7 @@ inline const std::vector<FramedKind>& framed_kinds() {
         TAUT_TEST_FRAMED(cylindrical, CYLINDRICAL, false, true),
         TAUT_TEST_FRAMED(cone_twist, CONE_TWIST, true, true),
         TAUT_TEST_FRAMED(six_dof, SIX_DOF, false, false, false, true, true, true),
+        TAUT_TEST_FRAMED(wheel, WHEEL, false, true, true),
     };
     return kinds;
 }

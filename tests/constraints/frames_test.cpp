@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kFrameSamples = 300;
 
 const ConstraintType* const kFrameTypes[] = {&kFixed,     &kHinge,     &kSlider, &kCylindrical,
-                                             &kUniversal, &kConeTwist, &kSixDof};
+                                             &kUniversal, &kConeTwist, &kSixDof, &kWheel};
 
 // Coordinates of a type where frame b is turned by a_from_b and shifted by offset [m] in frame a, wherever a is.
 Vector coordinates(const ConstraintType& type, const Mat3& a_from_b, const Vec3& offset = Vec3::Zero(),
@@ -36,7 +36,11 @@ Vector coordinates(const ConstraintType& type, const Mat3& a_from_b, const Vec3&
 Mat3 rotation(int axis, double angle) { return Eigen::AngleAxisd(angle, Vec3::Unit(axis)).toRotationMatrix(); }
 
 // Rows 0-2 along a's axes.
-bool slides(const ConstraintType& type) { return &type == &kSlider || &type == &kCylindrical || &type == &kSixDof; }
+bool slides(const ConstraintType& type) {
+    return &type == &kSlider || &type == &kCylindrical || &type == &kSixDof || &type == &kWheel;
+}
+// Axes of both ends are held square to each other.
+bool has_cross(const ConstraintType& type) { return &type == &kUniversal || &type == &kWheel; }
 
 class EveryFrameType : public testing::TestWithParam<const ConstraintType*> {};
 INSTANTIATE_TEST_SUITE_P(List, EveryFrameType, testing::ValuesIn(kFrameTypes),
@@ -157,7 +161,7 @@ double four_tangents(double angle) { return 4 * std::tan(angle / 4); }
 
 // Opposed frames, exactly and nearly, are as far off as can be: a joint that was torn there is pulled back.
 TEST_P(EveryFrameType, IsFarFromZeroWhereTheFramesOpposeEachOther) {
-    if (GetParam() == &kUniversal) GTEST_SKIP() << "its axes stay square when both of them turn over";
+    if (has_cross(*GetParam())) GTEST_SKIP() << "its axes stay square when both of them turn over";
     for (int axis = 1; axis < 3; ++axis)
         for (int other = 0; other < 3; ++other)
             for (double beside : {0.0, 1e-300, 1e-16, 1e-9, 1e-5, 1e-3, -1e-7}) {
@@ -170,7 +174,7 @@ TEST_P(EveryFrameType, IsFarFromZeroWhereTheFramesOpposeEachOther) {
 bool jumps(const Instance& at) {
     const Vector angles = at.error().tail(at.type.rows - 3);
     if (&at.type == &kFixed || &at.type == &kSlider) return angles.norm() > 3.9;
-    if (&at.type == &kUniversal) return std::abs(angles[0]) > 1.4 || angles.cwiseAbs().maxCoeff() > 3.1;
+    if (has_cross(at.type)) return std::abs(angles[0]) > 1.4 || angles.cwiseAbs().maxCoeff() > 3.1;
     return &at.type == &kSixDof && (std::abs(angles[1]) > 1.4 || angles.cwiseAbs().maxCoeff() > 3.1);
 }
 
@@ -206,6 +210,21 @@ TEST(Fixed, MisalignmentIsAlongTheAxisAndTheRotationVectorToFirstOrder) {
             EXPECT_NEAR(c.head<3>().norm(), offset.norm(), 1e-14);
         }
     }
+}
+
+// Steering and spin are read apart, and the axle's camber is the third angle, whatever the others are.
+TEST(Wheel, AnglesAreThoseOfSteeringCamberAndSpin) {
+    for (const double steering : {-2.5, -0.4, 0.0, 0.7})
+        for (const double camber : {-0.5, 0.0, 0.2})
+            for (const double spin : {-3.1, -1.6, 0.0, 0.3, 1.5707963, 2.9}) {
+                const Vec3 offset(0.3, -0.1, 0.2);
+                const Vector c =
+                    coordinates(kWheel, rotation(0, steering) * rotation(2, camber) * rotation(1, spin), offset);
+                EXPECT_LE((c.head<3>() - offset).norm(), 1e-14);
+                EXPECT_NEAR(c[3], -camber, 1e-14);
+                EXPECT_NEAR(c[4], steering, 1e-14);
+                EXPECT_NEAR(c[5], spin, 1e-14);
+            }
 }
 
 TEST(Hinge, AngleIsTheTurnAboutItsAxis) {

@@ -9,7 +9,7 @@ class JointAddCalls : protected virtual JointDefs {
 protected:
     bool add_framed(size_t w, taut_joint& out) {
         const taut_world world = worlds_[w];
-        switch (byte() % 7) {
+        switch (byte() % 10) {
             case 0: {
                 const auto def = framed_def(w, taut_fixed_joint_def_init);
                 return run("taut_world_add_fixed_joint", [&] { return taut_world_add_fixed_joint(world, &def, &out); });
@@ -47,6 +47,22 @@ protected:
                 return run("taut_world_add_cone_twist_joint",
                            [&] { return taut_world_add_cone_twist_joint(world, &def, &out); });
             }
+            case 6: {
+                auto def = framed_def(w, taut_wheel_joint_def_init);
+                def.suspension = axis_def(true);
+                def.steering = axis_def(true);
+                def.spin = axis_def(true);
+                return run("taut_world_add_wheel_joint", [&] { return taut_world_add_wheel_joint(world, &def, &out); });
+            }
+            case 7: {
+                const auto def = framed_def(w, taut_gear_joint_def_init);
+                return run("taut_world_add_gear_joint", [&] { return taut_world_add_gear_joint(world, &def, &out); });
+            }
+            case 8: {
+                const auto def = framed_def(w, taut_rack_pinion_joint_def_init);
+                return run("taut_world_add_rack_pinion_joint",
+                           [&] { return taut_world_add_rack_pinion_joint(world, &def, &out); });
+            }
             default: {
                 auto def = framed_def(w, taut_six_dof_joint_def_init);
                 for (taut_axis_def& axis : def.axes)
@@ -66,6 +82,18 @@ protected:
         } else if (one_in(2)) {
             const auto def = joint_def(w, taut_ball_joint_def_init);
             added = run("taut_world_add_ball_joint", [&] { return taut_world_add_ball_joint(worlds_[w], &def, &out); });
+        } else if (one_in(3)) {
+            auto def = joint_def(w, taut_pulley_joint_def_init);
+            def.housing = one_in(2) ? taut_body{0} : pick_body(w);
+            def.sheave_a = pos(4);
+            def.sheave_b = pos(4);
+            if (one_in(2)) def.ratio = real(0.1, 4);
+            if (one_in(2)) def.length = real(0, 9);
+            def.rigid = byte() & 1;
+            spoil(def.rigid);
+            spoil(def.reserved);
+            added =
+                run("taut_world_add_pulley_joint", [&] { return taut_world_add_pulley_joint(worlds_[w], &def, &out); });
         } else {
             auto def = joint_def(w, taut_distance_joint_def_init);
             if (one_in(2)) def.length = real(0, 3);

@@ -41,6 +41,17 @@ protected:
         taut_frame frame_a, frame_b;
         if (ask("taut_joint_get_frames", [&] { return taut_joint_get_frames(joint, &frame_a, &frame_b); }))
             expect(finite(frame_a.position) && finite(frame_b.position), "a frame that is not finite");
+        taut_body housing;
+        if (ask("taut_joint_get_housing", [&] { return taut_joint_get_housing(joint, &housing); }))
+            expect(housing.bits == 0 || taut_body_is_valid(housing), "a joint in a dead housing");
+        if (ask("taut_joint_get_housing_frames",
+                [&] { return taut_joint_get_housing_frames(joint, &frame_a, &frame_b); }))
+            expect(finite(frame_a.position) && finite(frame_b.position), "a housing frame that is not finite");
+        float number;
+        if (ask("taut_joint_get_ratio", [&] { return taut_joint_get_ratio(joint, &number); }))
+            expect(std::isfinite(number) && number != 0, "a ratio that is none");
+        if (ask("taut_joint_get_length", [&] { return taut_joint_get_length(joint, &number); }))
+            expect(number > 0, "a length that is none");
         uint32_t axes = 0;
         const bool known = ask("taut_joint_get_axis_count", [&] { return taut_joint_get_axis_count(joint, &axes); });
         const uint32_t axis = byte() % 8;
@@ -68,7 +79,21 @@ protected:
         run("taut_joint_set_compliance", [&] { return taut_joint_set_compliance(joint, a, b); });
         run("taut_joint_set_length", [&] { return taut_joint_set_length(joint, length); });
         const uint32_t axis = byte() % 6;
-        switch (byte() % 9) {
+        switch (byte() % 11) {
+            case 8: {
+                const float ratio = real(-3, 3);
+                if (!run("taut_joint_set_ratio", [&] { return taut_joint_set_ratio(joint, ratio); })) break;
+                float now = 0;
+                expect(ask("taut_joint_get_ratio", [&] { return taut_joint_get_ratio(joint, &now); }) && now == ratio,
+                       "a ratio that is not what was set");
+                break;
+            }
+            case 9: {
+                const taut_frame frame_a = joint_frame(), frame_b = joint_frame();
+                run("taut_joint_set_housing_frames",
+                    [&] { return taut_joint_set_housing_frames(joint, &frame_a, &frame_b); });
+                break;
+            }
             case 7: {
                 const uint32_t enabled = byte() % (one_in(8) ? 3 : 2);
                 if (!run("taut_joint_set_enabled", [&] { return taut_joint_set_enabled(joint, enabled); })) break;

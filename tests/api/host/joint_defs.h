@@ -73,19 +73,37 @@ protected:
         def.frame_a = joint_frame();
         def.frame_b = joint_frame();
         if (one_in(4)) {
-            const taut_vec3 axis = vec(1);
+            const taut_vec3 axis = vec(1), second = vec(1);
             const taut_pos pivot = pos(5);
-            run("taut_joint_frames_from_world", [&] {
-                return taut_joint_frames_from_world(worlds_[w], def.body_a, def.body_b, pivot, axis, &def.frame_a,
-                                                    &def.frame_b);
-            });
+            if (one_in(2))
+                run("taut_joint_frames_from_world", [&] {
+                    return taut_joint_frames_from_world(worlds_[w], def.body_a, def.body_b, pivot, axis, &def.frame_a,
+                                                        &def.frame_b);
+                });
+            else
+                run("taut_joint_frames_from_two_axes", [&] {
+                    return taut_joint_frames_from_two_axes(worlds_[w], def.body_a, def.body_b, pivot, axis, second,
+                                                           &def.frame_a, &def.frame_b);
+                });
         }
-        if (one_in(4)) def.compliance = real(0, 0.01);
-        if (one_in(4)) def.damping = real(0, 10);
-        if (one_in(4)) def.angular_compliance = real(0, 0.01);
-        if (one_in(4)) def.angular_damping = real(0, 10);
-        if (one_in(4)) def.break_force = real(0, 1e4);
-        if (one_in(4)) def.break_torque = real(0, 1e4);
+        if constexpr (requires { def.break_force; }) {
+            if (one_in(4)) def.compliance = real(0, 0.01);
+            if (one_in(4)) def.damping = real(0, 10);
+        }
+        if constexpr (requires { def.break_torque; }) {
+            if (one_in(4)) def.angular_compliance = real(0, 0.01);
+            if (one_in(4)) def.angular_damping = real(0, 10);
+        }
+        if constexpr (requires { def.break_force; })
+            if (one_in(4)) def.break_force = real(0, 1e4);
+        if constexpr (requires { def.break_torque; })
+            if (one_in(4)) def.break_torque = real(0, 1e4);
+        if constexpr (requires { def.housing; }) {
+            def.housing = one_in(2) ? taut_body{0} : pick_body(w);
+            def.housing_frame_a = joint_frame();
+            def.housing_frame_b = joint_frame();
+            if (one_in(2)) def.ratio = real(-3, 3);
+        }
         if (one_in(4)) def.solve = static_cast<taut_joint_solve>(byte() % (one_in(16) ? 4 : 3));
         spoil(def.reserved);
         return def;
