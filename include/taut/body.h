@@ -23,6 +23,27 @@ typedef enum taut_body_kind {
     TAUT_BODY_KIND_MAX = 0x7fffffff
 } taut_body_kind;
 
+/** Bits of locked_axes: motions along and about the world's axes that a body does not make; see
+ * taut_body_set_locked_axes. */
+/** Motion of the centre of mass along x. */
+#define TAUT_LOCK_X 1u
+/** Likewise along y. */
+#define TAUT_LOCK_Y 2u
+/** Likewise along z. */
+#define TAUT_LOCK_Z 4u
+/** Spin about the world's x axis. */
+#define TAUT_LOCK_ANGULAR_X 8u
+/** Likewise about y. */
+#define TAUT_LOCK_ANGULAR_Y 16u
+/** Likewise about z. */
+#define TAUT_LOCK_ANGULAR_Z 32u
+/** Spin about any axis: the rotation stays as it is, to the bit. */
+#define TAUT_LOCK_ROTATION 56u
+/** All but motion in the plane of x and y and the spin about z. */
+#define TAUT_LOCK_TO_PLANE_XY 28u
+/** All axes. */
+#define TAUT_LOCK_ALL 63u
+
 /** A rigid body. Its shape, if any, becomes its first collider; the colliders of the def follow in their order. */
 typedef struct taut_body_def {
     uint32_t struct_size;
@@ -49,6 +70,7 @@ typedef struct taut_body_def {
     float angular_damping;              /**< likewise */
     float max_linear_speed;             /**< [m/s], (0, 1e6], see taut_body_set_max_speed; 0: none. Default 0 */
     float max_angular_speed;            /**< [rad/s], likewise */
+    uint32_t locked_axes;               /**< sum of TAUT_LOCK_ bits, see taut_body_set_locked_axes. Default 0 */
 } taut_body_def;
 
 /** Room for the name of a body with its final 0 [bytes]. */
@@ -189,6 +211,25 @@ TAUT_API taut_result taut_body_get_gravity_scale(taut_body body, float* out);
 TAUT_API taut_result taut_body_set_max_speed(taut_body body, float linear, float angular);
 /** Either pointer may be null. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_body_get_max_speed(taut_body body, float* linear, float* angular);
+/**
+ * Locks a body's motion along and about axes of the world: the velocity of its centre of mass along a locked axis, and
+ * the component of its spin about one, are zero from now on. It is as if the body had an infinite mass or moment about
+ * these axes: contacts, joints and forces there meet something immovable, and move it along the others as they would.
+ * With M the mass matrix and P what is free, the inverse that all solvers see is (P M P)^+: of one free angular axis
+ * the spin changes by T t / I, I the moment about that axis of the world. No joint does this and no position drifts: a
+ * locked coordinate keeps its bits. Two free angular axes keep a spin about both, which carries the body's own axes out
+ * of any plane: bodies that are to stay in one lock two. A body with all axes locked is still dynamic, and no contact
+ * moves it.
+ * Velocities along what is locked are dropped, when it is locked and when they are set; so is what forces and impulses
+ * would give. taut_body_set_pose places the body anywhere. Only a dynamic body is held; another keeps its locks for
+ * when it is one.
+ * @param locked_axes sum of TAUT_LOCK_ bits; 0: none, as it comes.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (other bits; a particle), TAUT_IN_USE (a body of a cable, cloth or solid),
+ *         TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
+ */
+TAUT_API taut_result taut_body_set_locked_axes(taut_body body, uint32_t locked_axes);
+/** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
+TAUT_API taut_result taut_body_get_locked_axes(taut_body body, uint32_t* out);
 /** Material of the first collider. @return TAUT_INVALID_ARGUMENT for a body without colliders. */
 TAUT_API taut_result taut_body_get_material(taut_body body, taut_material* out);
 /** Material of all colliders of the body. */

@@ -44,6 +44,8 @@ typedef enum taut_lint_kind {
                                         joined, over its size: the mesh comes apart there; body: the first of them */
     TAUT_LINT_SOFT_NOT_MANIFOLD = 21, /**< triangles of a solid's boundary that meet at an edge: cells that touch along
                                            it alone; body: a vertex of the first such edge */
+    TAUT_LINT_JOINT_LOCKED = 22, /**< error [m or rad] of a rigid row of a joint that locked axes leave nothing to move:
+                                      stays, and its force means nothing; body: one that is locked */
     TAUT_LINT_KIND_MAX = 0x7fffffff
 } taut_lint_kind;
 

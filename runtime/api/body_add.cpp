@@ -42,7 +42,8 @@ Check& check_def(Check& check, const taut_body_def& def) {
         .number("linear_damping", def.linear_damping, kDampingRate)
         .number("angular_damping", def.angular_damping, kDampingRate)
         .zero_or("max_linear_speed", def.max_linear_speed, kSpeedLimit)
-        .zero_or("max_angular_speed", def.max_angular_speed, kSpeedLimit);
+        .zero_or("max_angular_speed", def.max_angular_speed, kSpeedLimit)
+        .count("locked_axes", def.locked_axes, 0, TAUT_LOCK_ALL);
     if (def.collider_count > 0) check.pointer("colliders", def.colliders);
     if (!check) return check;
     char scope[32];
@@ -55,15 +56,18 @@ Check& check_def(Check& check, const taut_body_def& def) {
 }
 
 taut_result add_body(Check& check, World& world, const NodeInfo& info, const NodeMotion& motion, const NodeMass& mass,
-                     std::span<const ColliderPlan> colliders, Restraint restraint, taut_body* out) {
+                     std::span<const ColliderPlan> colliders, Restraint restraint, Locks locks, taut_body* out) {
     taut_result room = room_for_bodies(check.call(), world, 1);
     if (room == TAUT_OK) room = room_for_colliders(check.call(), world, colliders.size());
     if (room != TAUT_OK) return room;
     NodeInfo own = info;
     own.continuous = world.def.continuous != 0;
     if (restraint.any()) reserve_more(world.nodes.restraints, 1);  // what may fail comes first
+    if (locks.any()) reserve_more(world.nodes.locked, 1);
     restraint.node = add_node(world, own, motion, mass, colliders);
     world.nodes.set_restraint(restraint);
+    world.nodes.set_locks(restraint.node, locks);
+    world.nodes.hold(restraint.node);
     *out = world.body_handle(restraint.node);
     return TAUT_OK;
 }
@@ -150,7 +154,7 @@ taut_result taut_world_add_body(taut_world handle, const taut_body_def* given, t
         set_velocity(motion, to_vec(def.linear_velocity), to_vec(def.angular_velocity));
         return add_body(check, world, info, motion, mass, colliders,
                         {kNone, def.linear_damping, def.angular_damping, def.max_linear_speed, def.max_angular_speed},
-                        out);
+                        {static_cast<uint8_t>(def.locked_axes)}, out);
     });
 }
 
@@ -187,7 +191,7 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
         info.kind = NodeKind::particle;
         info.user_data = def.user_data;
         return add_body(check, world, info, motion, mass, {&collider, has_shape ? 1u : 0u},
-                        {kNone, def.damping, 0, def.max_speed, 0}, out);
+                        {kNone, def.damping, 0, def.max_speed, 0}, {}, out);
     });
 }
 

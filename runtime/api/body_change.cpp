@@ -178,6 +178,32 @@ taut_result taut_body_get_damping(taut_body handle, float* linear, float* angula
     });
 }
 
+taut_result taut_body_set_locked_axes(taut_body handle, uint32_t locked_axes) {
+    Check check(__func__);
+    if (!check.count("locked_axes", locked_axes, 0, TAUT_LOCK_ALL)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
+        Nodes& nodes = world.nodes;
+        check_whole(check, world, node)
+            .require(nodes.info[node].kind != NodeKind::particle, "body is a particle, whose axes are not locked");
+        if (!check || nodes.info[node].locks == locked_axes) return check.result();
+        nodes.set_locks(node, {static_cast<uint8_t>(locked_axes)});
+        nodes.hold(node);
+        if (node < nodes.history.size()) nodes.history[node] = {};
+        wake(world, node);
+        ++world.joints.version;  // blocks order what they solve by what is free
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_body_get_locked_axes(taut_body handle, uint32_t* out) {
+    Check check(__func__);
+    if (!check.pointer("out", out)) return check.result();
+    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {
+        *out = world.nodes.info[node].locks;
+        return TAUT_OK;
+    });
+}
+
 taut_result taut_body_set_gravity_scale(taut_body handle, float gravity_scale) {
     Check check(__func__);
     if (!check.number("gravity_scale", gravity_scale, kGravityScale)) return check.result();

@@ -59,8 +59,12 @@ void add_load(World& world, uint32_t node, const Vec3& force, const Vec3& torque
 taut_result push(Check& check, World& world, uint32_t node, const Vec3& impulse, const Vec3& angular_impulse) {
     NodeMotion& motion = world.nodes.motion[node];
     const NodeMass& mass = world.nodes.mass[node];
-    const Vec3 v = motion.v + mass.inv_mass * impulse;
-    const Vec3 w = motion.w + motion.q * (mass.inv_inertia.matrix() * (motion.q.conjugate() * angular_impulse));
+    const Locks locks = world.nodes.locks_of(node);
+    Vec3 v = motion.v + mass.inv_mass * impulse;
+    Vec3 w = motion.w + (locks.any_angular()
+                             ? world.nodes.spin_by(node, motion.q.toRotationMatrix(), angular_impulse)
+                             : Vec3(motion.q * (mass.inv_inertia.matrix() * (motion.q.conjugate() * angular_impulse))));
+    locks.hold(v, w);
     // A body beyond the limit may still be slowed.
     const auto within = [](double speed, double before) { return speed <= std::max(kSpeed.hi, before); };
     check.require(within(v.norm(), motion.v.norm()), "impulse gives a speed beyond 1e4 m/s");
@@ -179,6 +183,7 @@ taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3
         if (!check) return check.result();
         forget_path(world.nodes, node);
         give_velocity(world, node, to_vec(linear), to_vec(angular));
+        world.nodes.hold(node);
         return TAUT_OK;
     });
 }

@@ -33,6 +33,7 @@ constexpr const char* kText[] = {
     "a swept cloth or solid is stiffer than its substeps hold and will act softer: solve it directly",
     "two vertices in one place are not joined, and the mesh comes apart there: weld them",
     "a solid hangs together by an edge alone, about which it turns: join its cells by faces",
+    "a joint is off along what locked axes hold, and stays off: place the bodies, free an axis, or give it compliance",
 };
 
 }  // namespace

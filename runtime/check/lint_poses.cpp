@@ -1,4 +1,5 @@
 // How joints fit the present poses, and how much room their stops leave.
+#include <algorithm>
 #include <cmath>
 
 #include "check/lint_context.h"
@@ -21,6 +22,14 @@ constexpr struct {
      kNarrowAngle},
 };
 
+// The first end with locked axes of a row that moves nothing for them; kNone: it moves something, or none is locked.
+uint32_t blocked_by(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
+    const auto ends = joint.nodes();
+    const auto end =
+        std::ranges::find_if(ends, [&](uint32_t node) { return node != kNone && nodes.locks_of(node).any(); });
+    return end != ends.end() && is_blocked(nodes, joint, reading, row) ? *end : kNone;
+}
+
 // Of the rows of one unit [m or rad].
 struct Fit {
     double off = 0;  // of what is rigid, squared
@@ -37,6 +46,11 @@ void lint_poses(const LintContext& context) {
             Fit& of = fit[is_angle(joint, row)];
             const Axis& axis = joint.axis[row];
             if (is_rigid(joint, row)) of.off += reading.value[row] * reading.value[row];
+            if (const double error = std::abs(reading.value[row]), far = kUnit[is_angle(joint, row)].far;
+                is_rigid(joint, row) && error > far) {
+                const uint32_t locked = blocked_by(context.nodes, joint, reading, row);
+                if (locked != kNone) context.add(TAUT_LINT_JOINT_LOCKED, locked, j, error, far);
+            }
             if (axis.mode != AxisMode::limited) continue;
             if (axis.limit_compliance == 0) of.overrun = std::max(of.overrun, overrun_of(joint, reading.value, row));
             of.room = std::min(of.room, static_cast<double>(axis.upper) - axis.lower);

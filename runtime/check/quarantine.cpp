@@ -18,6 +18,7 @@ Divergence divergence_of(const Nodes& nodes, uint32_t node, double h) {
     NodeMotion after = m;
     after.v += h * mass.inv_mass * load.force;
     after.w += h * (m.q * (mass.inv_inertia.matrix() * (m.q.conjugate() * load.torque)));
+    nodes.locks_of(node).hold(after.v, after.w);
     return divergence_of(after);
 }
 

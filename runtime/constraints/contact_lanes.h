@@ -12,19 +12,45 @@ namespace taut {
 
 // Eight gather as an 8x8 transpose.
 struct alignas(32) SweepVelocity {  // [m/s, rad/s]; no component is -0: what bears nothing changes no bit
-    float v[3] = {0, 0, 0}, pad0 = 0;
-    float w[3] = {0, 0, 0}, pad1 = 0;
+    float v[3] = {0, 0, 0}, inv_mass_y = 0;
+    float w[3] = {0, 0, 0}, inv_mass_z = 0;
 };
 struct alignas(32) SweepMass {
-    float inv_mass = 0;
+    float inv_mass = 0;                         // along axes of the world that are not locked; 0: nothing moves it
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
-    float joint_share = 1;                      // within inv_inertia: what stiffen_joints() left of it
-};
+    float inv_mass_x = 0;                       // along each axis of the world, 0 where it is locked; y and z lie in
+};                                              // what SweepVelocity has left
+// Share of what a row would move with no axis locked, below which locks leave it nothing but rounding: k in floats, and
+// a normal off the locked axis by less than a milliradian, along which a body would have to go a thousand times as far.
+constexpr float kLeastFree = 0x1p-20f;
+
 // By seat (system/system.h). A cache line each: who gathers fetches one, and threads that write to neighbours do not
 // meet.
 struct alignas(64) SweepNode {
     SweepVelocity velocity;
     SweepMass mass;
+
+    void set_inv_mass(float inv_mass, float x, float y, float z) {
+        mass.inv_mass = inv_mass;
+        mass.inv_mass_x = x;
+        velocity.inv_mass_y = y;
+        velocity.inv_mass_z = z;
+    }
+    void set_inv_mass(float inv_mass) { set_inv_mass(inv_mass, inv_mass, inv_mass, inv_mass); }
+    bool locked() const {  // along some axis
+        return mass.inv_mass_x != mass.inv_mass || velocity.inv_mass_y != mass.inv_mass ||
+               velocity.inv_mass_z != mass.inv_mass;
+    }
+    // As SweepSide::held().
+    bool held() const {
+        const auto& i = mass.inv_inertia;
+        const bool turns = i[0] > 0 || i[1] > 0 || i[2] > 0, turns_about_all = i[0] > 0 && i[1] > 0 && i[2] > 0;
+        return locked() || (turns && !turns_about_all);
+    }
+    void stop() {  // no impulse moves it
+        mass = {};
+        set_inv_mass(0);
+    }
 };
 struct alignas(32) SweepShift {        // since the contacts were found
     float dx[3] = {0, 0, 0}, pad = 0;  // translation [m]

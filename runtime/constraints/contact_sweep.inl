@@ -162,11 +162,17 @@ struct ContactSweep {
         const F largest = mean + F::sqrt(diff * diff + k12 * k12);
         const F det = k11 * k22 - k12 * k12;
         const F inv_det = F::if_greater(det, tiny, one / F::max(det, tiny), zero);
-        put(F::if_greater(k0, tiny, one / F::max(k0, tiny), zero), r.spin_mass);
-        put(k22 * inv_det, r.roll_mass[0]);
-        put(k11 * inv_det, r.roll_mass[1]);
-        put(zero - k12 * inv_det, r.roll_mass[2]);
-        put(F::if_greater(largest, tiny, one / F::max(largest, tiny), zero), r.isotropic_mass);
+        F spin = F::if_greater(k0, tiny, one / F::max(k0, tiny), zero);
+        F roll[3] = {k22 * inv_det, k11 * inv_det, zero - k12 * inv_det};
+        F isotropic = F::if_greater(largest, tiny, one / F::max(largest, tiny), zero);
+        if (const F held = F::max(a.held(), b.held()); F::greater(held, zero) != 0) {
+            const F least = F::all(kLeastFree) * (a.most_turn() + b.most_turn());
+            spin = F::if_greater(held, zero, F::if_greater(k0, least, spin, zero), spin);
+            invert_held(held, {k11, k22, k12}, largest, least, roll, isotropic);
+        }
+        put(spin, r.spin_mass);
+        for (int i = 0; i < 3; ++i) put(roll[i], r.roll_mass[i]);
+        put(isotropic, r.isotropic_mass);
     }
 
     [[gnu::noinline]] static void warm_start_rolling(const LaneRolling& r, const Frame& f, Side& a, Side& b) {
@@ -195,6 +201,9 @@ struct ContactSweep {
         a.gather(g.a, nodes);
         b.gather(g.b, nodes);
         const F inv_mass = a.inv_mass + b.inv_mass, stiffness = F::load(g.stiffness);
+        const F held = F::max(a.held(), b.held()), least = F::all(kLeastFree) * inv_mass;
+        const bool any_held = F::greater(held, zero) != 0;
+        const auto linear = [&](const V& p, const V& q) { return a.moved(p, q) + b.moved(p, q); };
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
             const V ra = load(p.ra), rb = load(p.rb);
@@ -202,22 +211,36 @@ struct ContactSweep {
             const V a2 = cross(ra, f.t2), b2 = cross(rb, f.t2), wa1 = a.turn(a1), wb1 = b.turn(b1);
             const V wan = a.turn(an), wbn = b.turn(bn);
             const F used = F::if_greater(F::load(p.normal_mass), zero, one, zero);  // 1 in a filled place
-            const F kn = inv_mass + dot(an, wan) + dot(bn, wbn);
-            const F k11 = inv_mass + dot(a1, wa1) + dot(b1, wb1);
-            const F k22 = inv_mass + dot(a2, a.turn(a2)) + dot(b2, b.turn(b2));
-            const F k12 = dot(a2, wa1) + dot(b2, wb1);
+            F kn = inv_mass + dot(an, wan) + dot(bn, wbn);
+            F k11 = inv_mass + dot(a1, wa1) + dot(b1, wb1);
+            F k22 = inv_mass + dot(a2, a.turn(a2)) + dot(b2, b.turn(b2));
+            F k12 = dot(a2, wa1) + dot(b2, wb1);
+            F c1 = dot(a1, wan) + dot(b1, wbn), c2 = dot(a2, wan) + dot(b2, wbn);
+            if (any_held) {
+                const auto choose = [&](F& of, const F& other) { of = F::if_greater(held, zero, other, of); };
+                choose(kn, linear(f.n, f.n) + dot(an, wan) + dot(bn, wbn));
+                choose(k11, linear(f.t1, f.t1) + dot(a1, wa1) + dot(b1, wb1));
+                choose(k22, linear(f.t2, f.t2) + dot(a2, a.turn(a2)) + dot(b2, b.turn(b2)));
+                choose(k12, k12 + linear(f.t1, f.t2));
+                choose(c1, c1 + linear(f.t1, f.n));
+                choose(c2, c2 + linear(f.t2, f.n));
+            }
             const F mean = half * (k11 + k22), diff = half * (k11 - k22);
             const F largest = mean + F::sqrt(diff * diff + k12 * k12);
             const F det = k11 * k22 - k12 * k12, inv_det = used / F::max(det, tiny);
-            const F mass = stiffness * used / F::max(kn, tiny), approach = dot(b.at(rb) - a.at(ra), f.n);
+            F mass = stiffness * used / F::max(kn, tiny), isotropic = used / F::max(largest, tiny);
+            F tangents[3] = {k22 * inv_det, k11 * inv_det, zero - k12 * inv_det};
+            if (any_held) {
+                mass = F::if_greater(held, zero, F::if_greater(kn, least, mass, zero), mass);
+                invert_held(used * held, {k11, k22, k12}, largest, least, tangents, isotropic);
+            }
+            const F approach = dot(b.at(rb) - a.at(ra), f.n);
             before(p, mass);
             put(mass, p.normal_mass);
-            put(k22 * inv_det, p.friction_mass[0]);
-            put(k11 * inv_det, p.friction_mass[1]);
-            put(zero - k12 * inv_det, p.friction_mass[2]);
-            put(used / F::max(largest, tiny), p.isotropic_mass);
-            put(dot(a1, wan) + dot(b1, wbn), p.coupling[0]);
-            put(dot(a2, wan) + dot(b2, wbn), p.coupling[1]);
+            for (int i = 0; i < 3; ++i) put(tangents[i], p.friction_mass[i]);
+            put(isotropic, p.isotropic_mass);
+            put(c1, p.coupling[0]);
+            put(c2, p.coupling[1]);
             put(F::if_greater(F::load(p.peak), zero, F::load(p.approach), approach), p.approach);
         }
         if (g.rolling != kNoLanes) prepare_rolling(contacts.rolling[g.rolling], f, a, b, put);
@@ -235,14 +258,15 @@ struct ContactSweep {
     // cylinders that hit a wall at 100 m/s one in four gained energy, up to 6 times).
     static constexpr float kOtherMass = 0.2f;
 
-    // How the axes of one side turn with its bodies, and with them where circles reach furthest along the outward normal;
-    // gain: how much further a circle of radius 1 reaches. See state/levers.h.
+    // How the axes of one side turn with its bodies, and with them where circles reach furthest along the outward
+    // normal; gain: how much further a circle of radius 1 reaches. See state/levers.h.
     struct AxleTurn {
         V axis, across;
         F gain;
 
         AxleTurn(const LaneRolling& axles, int side, const V& outward, const ShiftLanes& at) {
-            const V old_axis = ContactSweep::load(axles.axis[side]), old_across = ContactSweep::load(axles.across[side]);
+            const V old_axis = ContactSweep::load(axles.axis[side]),
+                    old_across = ContactSweep::load(axles.across[side]);
             axis = old_axis + at.turning(old_axis);
             const V beside = outward - dot(axis, outward) * axis;
             const F least = F::all(0.05f), sine = F::sqrt(dot(beside, beside));

@@ -27,9 +27,6 @@ struct JointSweep {
 
         Joints(const JointView& view, const JointGroup& group)
             : g(group), jacobian(view.jacobian + group.first_jacobian) {}
-        void gather_masses(const SweepNode* nodes) {
-            for (uint32_t n = 0; n < g.nodes; ++n) side[n].gather_masses(g.node[n], nodes);
-        }
         void gather(const SweepNode* nodes) {
             for (uint32_t n = 0; n < g.nodes; ++n) side[n].gather(g.node[n], nodes);
         }
@@ -66,20 +63,46 @@ struct JointSweep {
         }
         // S = J W J^T, of which rows that turn need only the diagonal unless they are held.
         void couplings(F (&s)[21]) const {
+            const F zero = F::all(0);
+            bool any_held = false;
             for (uint32_t n = 0; n < g.nodes; ++n) {
+                const F held = side[n].held();
+                const bool is_held = F::greater(held, zero) != 0;
+                any_held = any_held || is_held;
                 for (uint32_t c = 0; c < g.rows; ++c) {
                     const V turned = side[n].turn(angular(n, c));
                     const uint32_t end = c < g.held ? g.held : c + 1;
                     for (uint32_t r = c; r < end; ++r) {
                         F both = dot(angular(n, r), turned);
-                        if (r < g.first_turn) both = both + side[n].inv_mass * dot(linear(n, r), linear(n, c));
+                        if (r < g.first_turn) {
+                            F moved = side[n].inv_mass * dot(linear(n, r), linear(n, c));
+                            if (is_held)
+                                moved = F::if_greater(held, zero, side[n].moved(linear(n, r), linear(n, c)), moved);
+                            both = both + moved;
+                        }
                         s[triangle(r, c)] = n == 0 ? both : s[triangle(r, c)] + both;
                     }
                 }
             }
+            if (any_held) drop_held(s);
         }
 
     private:
+        // What locks leave a row but rounding is nothing.
+        void drop_held(F (&s)[21]) const {
+            const F zero = F::all(0);
+            for (uint32_t r = 0; r < g.rows; ++r) {
+                F whole = zero, held = zero;
+                for (uint32_t n = 0; n < g.nodes; ++n) {
+                    const V turn = angular(n, r);
+                    whole = whole + side[n].most_turn() * dot(turn, turn);
+                    if (r < g.first_turn) whole = whole + side[n].inv_mass * dot(linear(n, r), linear(n, r));
+                    held = F::max(held, side[n].held());
+                }
+                F& own = s[triangle(r, r)];
+                own = F::if_greater(held, zero, F::if_greater(own, F::all(kLeastFree) * whole, own, zero), own);
+            }
+        }
         V part(uint32_t n, uint32_t r, uint32_t first) const {
             const LaneScalar* j = jacobian + 6 * (n * g.rows + r) + first;
             return {F::load(j[0].value), F::load(j[1].value), F::load(j[2].value)};
@@ -211,7 +234,7 @@ struct JointSweep {
         for (uint32_t i = begin; i < end; ++i) {
             const JointGroup& g = view.group[i];
             Joints joints(view, g);
-            joints.gather_masses(nodes);
+            joints.gather(nodes);
             F s[21];
             joints.couplings(s);
             for (uint32_t r = 0; r < g.rows; ++r) s[triangle(r, r)].store(view.row[g.first_row + r].own);

@@ -82,14 +82,16 @@ struct SurfaceSweep {
 
     // ------------------------------------------------------------ masses
 
+    // held: lanes with a locked axis; least: of a k that is not nothing there.
     template <class Put>
-    static void prepare_tangents(SurfaceTurning& t, const F& k11, const F& k22, const F& k12, const Put& put) {
+    static void prepare_tangents(SurfaceTurning& t, const F& k11, const F& k22, const F& k12, const F& held,
+                                 const F& least, const Put& put) {
         const F half = F::all(0.5f), mean = half * (k11 + k22), diff = half * (k11 - k22);
-        const F inv_det = inverse(k11 * k22 - k12 * k12);
-        put(k22 * inv_det, t.friction_mass[0]);
-        put(k11 * inv_det, t.friction_mass[1]);
-        put(F::all(0) - k12 * inv_det, t.friction_mass[2]);
-        put(inverse(mean + F::sqrt(diff * diff + k12 * k12)), t.isotropic_mass);
+        const F inv_det = inverse(k11 * k22 - k12 * k12), largest = mean + F::sqrt(diff * diff + k12 * k12);
+        F mass[3] = {k22 * inv_det, k11 * inv_det, F::all(0) - k12 * inv_det}, isotropic = inverse(largest);
+        if (F::greater(held, F::all(0)) != 0) invert_held(held, {k11, k22, k12}, largest, least, mass, isotropic);
+        for (int i = 0; i < 3; ++i) put(mass[i], t.friction_mass[i]);
+        put(isotropic, t.isotropic_mass);
     }
 
     // before(new mass) comes ahead, put(value, array) writes a value of all lanes. What was hit already keeps the
@@ -110,11 +112,29 @@ struct SurfaceSweep {
             const F weight = F::load(g.weight[0]), square = weight * weight;
             const V a0 = cross(ends.lever, f.n), a1 = cross(ends.lever, f.t1), a2 = cross(ends.lever, f.t2);
             const V w0 = ends.first.turn(a0), w1 = ends.first.turn(a1), w2 = ends.first.turn(a2);
+            const F zero = F::all(0), held = ends.first.held(), least = F::all(kLeastFree) * linear;
             k = linear + square * dot(a0, w0);
-            prepare_tangents(t, linear + square * dot(a1, w1), linear + square * dot(a2, w2), square * dot(a2, w1),
-                             put);
-            put(square * dot(a1, w0), t.coupling[0]);
-            put(square * dot(a2, w0), t.coupling[1]);
+            F k11 = linear + square * dot(a1, w1), k22 = linear + square * dot(a2, w2), k12 = square * dot(a2, w1);
+            F c1 = square * dot(a1, w0), c2 = square * dot(a2, w0);
+            if (F::greater(held, zero) != 0) {
+                // What the locked node does not move of these.
+                const auto lost = [&](const V& p, const V& q) {
+                    return square * (ends.first.inv_mass * dot(p, q) - ends.first.moved(p, q));
+                };
+                const auto lose = [&](F& of, const V& p, const V& q) {
+                    of = F::if_greater(held, zero, of - lost(p, q), of);
+                };
+                lose(k, f.n, f.n);
+                lose(k11, f.t1, f.t1);
+                lose(k22, f.t2, f.t2);
+                lose(k12, f.t1, f.t2);
+                lose(c1, f.t1, f.n);
+                lose(c2, f.t2, f.n);
+                k = F::if_greater(held, zero, F::if_greater(k, least, k, zero), k);
+            }
+            prepare_tangents(t, k11, k22, k12, held, least, put);
+            put(c1, t.coupling[0]);
+            put(c2, t.coupling[1]);
         }
         const F mass = inverse(k);
         before(mass);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/contact_lanes.h"
 #include "detect/mechanism.h"
 #include "state/constraint_view.h"
 
@@ -62,24 +63,26 @@ private:
             return jacobian + (end * static_cast<size_t>(joint_.type->rows) + static_cast<size_t>(row)) * kDof;
         };
         const auto moves = [&](uint32_t node) { return node != kNone && nodes_.solved(node); };
-        double inverse = 0;  // J W J^T
+        double inverse = 0, least = 0;  // J W J^T, and what of it is rounding where axes are locked
         for (size_t end = 0; end < joint_.nodes.size(); ++end) {
             if (!moves(joint_.nodes[end])) continue;
-            const NodeMass& mass = nodes_.mass[joint_.nodes[end]];
-            const Vec3 j = Vec3::Map(along(end)), turn = pose[end].R.transpose() * Vec3::Map(along(end) + 3);
-            inverse += mass.inv_mass * j.dot(j) + turn.dot(mass.inv_inertia.matrix() * turn);
+            const uint32_t node = joint_.nodes[end];
+            const NodeMass& mass = nodes_.mass[node];
+            const Vec3 j = Vec3::Map(along(end)), own = Vec3::Map(along(end) + 3), turn = pose[end].R.transpose() * own;
+            const bool held = nodes_.locks_of(node).any();
+            const double whole = mass.inv_mass * j.dot(j) + turn.dot(mass.inv_inertia.matrix() * turn);
+            inverse += held ? nodes_.move_by(node, j).dot(j) + nodes_.spin_by(node, pose[end].R, own).dot(own) : whole;
+            least += held ? static_cast<double>(kLeastFree) * whole : 0;
         }
-        if (!(inverse > 0)) return;
+        if (!(inverse > least)) return;
         const double impulse = -value[row] / inverse;
         for (size_t end = 0; end < joint_.nodes.size(); ++end) {
             const uint32_t node = joint_.nodes[end];
             if (!moves(node)) continue;
             const double* j = along(end);
-            const NodeMass& mass = nodes_.mass[node];
-            const Mat3& R = pose[end].R;
-            const Vec3 turn = R * (mass.inv_inertia.matrix() * (R.transpose() * Vec3::Map(j + 3)));
+            const Vec3 turn = nodes_.spin_by(node, pose[end].R, Vec3::Map(j + 3));
             NodeMotion& m = nodes_.motion[node];
-            m.x += impulse * mass.inv_mass * Vec3::Map(j);
+            nodes_.shift(node, impulse * nodes_.mass[node].inv_mass * Vec3::Map(j));
             if (turn != Vec3::Zero()) m.q = (rotation_from_vector(impulse * turn) * m.q).normalized();
         }
     }

@@ -59,7 +59,7 @@ public:
             return close_joints();
         }
         const Vec3 back = share * (all_.ties[root_] & kJointed ? Vec3(normal.dot(way) * normal) : way);
-        for_each(round, [&](uint32_t node) { nodes_.motion[node].x -= back; });
+        for_each(round, [&](uint32_t node) { nodes_.shift(node, -back); });
     }
     // By what it drives others [kg]: its mass, or a share of what it is driven by, so that both drive it on.
     float drive() const { return kinematic_ ? kKinematic : moves_ ? all_.drive[root_] : 0; }
@@ -75,7 +75,7 @@ public:
         all_.drive[root_] = other.drive() / (2 * kDrives);
         const bool across = (all_.ties[root_] & kJointed) || round < kRounds;
         const Vec3 on = across ? Vec3(normal.dot(way) * normal) : way;
-        for_each(round, [&](uint32_t node) { nodes_.motion[node].x += on; });
+        for_each(round, [&](uint32_t node) { nodes_.shift(node, on); });
     }
     // Not in frame after frame: whose joints pull it into what it may not pass would hang there for good.
     bool may_stay();
@@ -92,7 +92,8 @@ private:
             Quat turn = m.q * before.rotation.conjugate();
             if (turn.w() < 0) turn.coeffs() *= -1;
             const Vec3 was = before.position + before.rotation * nodes_.mass[node].centre, way = m.x - was;
-            m.x = was + (1 - share) * (way - share * turn.vec().cross(way));
+            nodes_.place(node, was + (1 - share) * (way - share * turn.vec().cross(way)));
+            if (nodes_.locks_of(node).all_angular()) return;
             turn.coeffs() *= 1 - share;
             turn.w() += share;
             m.q = turn.normalized() * before.rotation;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "integrate/gyroscopic.h"
+#include "integrate/locked_axes.h"
 #include "integrate/motion_kernels.h"
 #include "state/levers.h"
 #include "state/sane.h"
@@ -15,11 +16,18 @@
 namespace taut {
 namespace {
 
-void set_inverse_mass(SweepMass& out, const NodeMass& mass, const Mat3& R) {
-    out.joint_share = 1;
-    out.inv_mass = static_cast<float>(mass.inv_mass);
-    const Mat3 inverse =
-        mass.isotropic ? mass.inv_inertia.matrix() : Mat3(R * mass.inv_inertia.matrix() * R.transpose());
+void set_inverse_mass(System& system, uint32_t at, const Nodes& nodes, uint32_t node, const Mat3& R) {
+    const NodeMass& mass = nodes.mass[node];
+    const Locks locks = nodes.locks_of(node);
+    SweepNode& to = system.sweep[at];
+    SweepMass& out = to.mass;
+    if (!system.joint_share.empty()) system.joint_share[at] = 1;
+    const auto inv_mass = static_cast<float>(mass.inv_mass);
+    const auto along = [&](int axis) { return locks.linear(axis) ? 0 : inv_mass; };
+    to.set_inv_mass(inv_mass, along(0), along(1), along(2));
+    const Mat3 inverse = locks.any_angular() ? nodes.free_inverse_inertia(node, R)
+                         : mass.isotropic    ? mass.inv_inertia.matrix()
+                                             : Mat3(R * mass.inv_inertia.matrix() * R.transpose());
     const Sym3 packed = Sym3::of(inverse);
     const double values[6] = {packed.xx, packed.yy, packed.zz, packed.xy, packed.xz, packed.yz};
     for (int i = 0; i < 6; ++i) out.inv_inertia[i] = static_cast<float>(values[i]);
@@ -137,8 +145,8 @@ void begin_node(System& system, const Nodes& nodes, uint32_t node, uint32_t at) 
     system.found[at] = {m.x, m.q};
     set_sweep_pose(system, at, Vec3::Zero(), m.q);
     system.exact[at] = {m.v, m.w};
-    set_inverse_mass(system.sweep[at].mass, nodes.mass[node], system.pose[at].R);
-    if (nodes.sleeps(node)) system.sweep[at].mass = {};  // what comes near stops at it until it wakes
+    set_inverse_mass(system, at, nodes, node, system.pose[at].R);
+    if (nodes.sleeps(node)) system.sweep[at].stop();  // what comes near stops at it until it wakes
     if (!system.sweep_pose.empty()) system.sweep_pose[at].inv_mass = system.sweep[at].mass.inv_mass;
     set_sweep_velocity(system.sweep[at].velocity, {m.v, m.w});
 }
@@ -166,9 +174,11 @@ void take_seats(System& system, const Partition& partition, const Nodes& nodes) 
     for (const uint32_t node : system.reached) take_seat(system, node);
 }
 
-// A dynamic node with a spin of its own: not one whose inertia is the same about all axes.
+// A dynamic node with a spin of its own: not one whose inertia is the same about all axes, or that does not turn about
+// some; see turn_held().
 bool turns_freely(const Nodes& nodes, uint32_t node) {
-    return nodes.info[node].kind == NodeKind::dynamic && !nodes.mass[node].isotropic;
+    return nodes.info[node].kind == NodeKind::dynamic && !nodes.mass[node].isotropic &&
+           !nodes.locks_of(node).any_angular();
 }
 
 // Masses of a batch's bodies.
@@ -192,22 +202,31 @@ bool are_points(const Nodes& nodes, const Batch& batch) {
     return std::ranges::all_of(batch.node, [&](uint32_t n) { return nodes.info[n].kind == NodeKind::particle; });
 }
 
-// What a node's turn in the substep before changes.
-void turn_axes(System& system, const NodeMass& mass, const NodeMotion& motion, uint32_t at, bool turned) {
+// What a node's turn in the substep before changes. Inverse masses beside its velocities come as if nothing was locked.
+void turn_axes(System& system, const Nodes& nodes, uint32_t node, const NodeMotion& motion, uint32_t at, bool turned) {
     const Mat3& R = system.pose[at].R;
+    const NodeMass& mass = nodes.mass[node];
+    const Locks locks = nodes.locks_of(node);
     const bool in_block = system.in_block[at];
     system.turned[at] = turned;
     if (turned) system.found[at].q = motion.q;
-    if (!mass.isotropic && (turned || in_block)) set_inverse_mass(system.sweep[at].mass, mass, R);
-    if (in_block) system.inertia[at] = R * mass.inertia.matrix() * R.transpose();
+    if (locks.any() || (!mass.isotropic && (turned || in_block))) set_inverse_mass(system, at, nodes, node, R);
+    if (!in_block) return;
+    Mat3& inertia = system.inertia[at];
+    inertia = R * mass.inertia.matrix() * R.transpose();
+    for (int i = 0; i < 3; ++i) {
+        if (!locks.angular(i)) continue;
+        inertia.row(i).setZero();
+        inertia.col(i).setZero();
+        inertia(i, i) = kHeldMass;
+    }
 }
 
 void add_torque(System& system, const Nodes& nodes, uint32_t node, uint32_t at) {
     const Vec3& torque = nodes.load_of(node).torque;
     if (torque == Vec3::Zero() || nodes.info[node].kind != NodeKind::dynamic) return;
     Velocity& u = system.exact[at];
-    const Mat3& R = system.pose[at].R;
-    u.w += system.scheme.h * (R * (nodes.mass[node].inv_inertia.matrix() * (R.transpose() * torque)));
+    u.w += system.scheme.h * nodes.spin_by(node, system.pose[at].R, torque);
     set_sweep_velocity(system.sweep[at].velocity, u);
 }
 
@@ -251,11 +270,10 @@ void restrain_velocities(Team& team, System& system, const Group& group, const N
         const uint32_t at = system.at(node);
         Velocity& u = system.exact[at];
         u.v -= (1 - decay_over(h * by.damping).mean) * h * (mass.gravity_scale * gravity + mass.inv_mass * load.force);
-        if (load.torque != Vec3::Zero()) {
-            const Mat3& R = system.pose[at].R;
-            u.w -= (1 - decay_over(h * by.angular_damping).mean) * h *
-                   (R * (mass.inv_inertia.matrix() * (R.transpose() * load.torque)));
-        }
+        if (load.torque != Vec3::Zero())
+            u.w -=
+                (1 - decay_over(h * by.angular_damping).mean) * h * nodes.spin_by(node, system.pose[at].R, load.torque);
+        nodes.locks_of(node).hold(u.v, u.w);
         shorten(u.v, by.most_speed);
         shorten(u.w, by.most_spin);
         set_sweep_velocity(system.sweep[at].velocity, u);
@@ -271,9 +289,19 @@ void limit_velocities(Team& team, System& system, const Group& group, Nodes& nod
     });
 }
 
+// At the velocities of the rows over h.
+void move(System& system, Nodes& nodes, const NodeRows& rows, const Batch& batch, double h) {
+    NodeMotion* const motion = motions_of(system, nodes);
+    const HeldTurns held(nodes, batch, motion);
+    motion_kernels().commit(rows, batch, h, rotate);
+    held.put(batch, motion);
+}
+
 void make_room_by_seat(System& system, bool tied) {
     grow_to(system.start, system.pose.size());
-    if (tied) grow_to(system.sweep_pose, system.pose.size());
+    if (!tied) return;
+    grow_to(system.sweep_pose, system.pose.size());
+    grow_to(system.joint_share, system.pose.size());
 }
 
 }  // namespace
@@ -282,7 +310,7 @@ void begin_frame(Team& team, System& system, const Partition& partition, const N
     take_seats(system, partition, nodes);
     const auto others = static_cast<uint32_t>(system.node_at.size()) - 1;  // than the world
     system.make_room(nodes.slots(), others);
-    if (!tied) system.sweep_pose.clear();
+    if (!tied) system.sweep_pose.clear(), system.joint_share.clear();
     make_room_by_seat(system, tied);
     system.kinematic.clear();
     for (const uint32_t node : nodes.active)
@@ -337,11 +365,12 @@ void predict(Team& team, System& system, const Group& group, Nodes& nodes, const
             const uint32_t node = batch.node[i], at = batch.seat[i];
             const NodeMotion& m = motion[batch.motion[i]];
             const NodeKind kind = nodes.info[node].kind;
-            if (kind == NodeKind::dynamic) turn_axes(system, nodes.mass[node], m, at, (turned >> i & 1) != 0);
+            if (kind == NodeKind::dynamic) turn_axes(system, nodes, node, m, at, (turned >> i & 1) != 0);
             if (kind == NodeKind::fixed) stop(system, at);
             if (rows.load) add_torque(system, nodes, node, at);
         }
     });
+    hold_velocities(team, system, group, nodes, motion);
     restrain_velocities(team, system, group, nodes, gravity);
 }
 
@@ -368,20 +397,25 @@ void drop_strikes(System& system, const Impacts& impacts) {
 }
 
 void commit(Team& team, System& system, const Group& group, Nodes& nodes) {
+    hold_solution(team, system, group, nodes, system.exact);
     const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.exact);
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         if (are_points(nodes, batch)) return kernels.commit_points(rows, batch, system.scheme.h);
-        kernels.commit(rows, batch, system.scheme.h, rotate);
+        move(system, nodes, rows, batch, system.scheme.h);
     });
 }
 
 void correct(System& system, const Group& group, const Array<Block>& blocks, Nodes& nodes) {
-    const MotionKernels& kernels = motion_kernels();
     const NodeRows rows = rows_of(system, nodes, system.correction);
-    for (uint32_t b : group.blocks)
-        if (blocks[b].corrected)
-            for_batches(system, blocks[b].nodes, [&](const Batch& batch) { kernels.commit(rows, batch, 1, rotate); });
+    for (uint32_t b : group.blocks) {
+        if (!blocks[b].corrected) continue;
+        for (const uint32_t node : blocks[b].nodes) {
+            Velocity& way = system.correction[system.at(node)];
+            nodes.locks_of(node).hold(way.v, way.w);
+        }
+        for_batches(system, blocks[b].nodes, [&](const Batch& batch) { move(system, nodes, rows, batch, 1); });
+    }
 }
 
 void follow_joints(const System& system, const Nodes& nodes) {
@@ -406,6 +440,7 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
     const Keeping keeping{system.scheme.h, kStill, velocity_filter, kMaxSpeed, rotate};
     constexpr Bodies kAll = (1u << kBodies) - 1;
     std::atomic<bool> all_sane{true};
+    hold_solution(team, system, group, nodes, system.exact);
     for_batches(team, system, group.nodes, [&](const Batch& batch) {
         const Bodies in_block = which(batch.seat, [&](uint32_t at) { return system.in_block[at] != 0; });
         const Bodies slow = which(batch.seat, [&](uint32_t at) { return system.filtered[at] != 0; }) | in_block;
@@ -415,8 +450,10 @@ bool store_velocity(Team& team, System& system, const Group& group, Nodes& nodes
             return;
         }
         const Bodies turning = which(batch.node, [&](uint32_t node) { return turns_freely(nodes, node); });
+        const HeldSpins held(system, nodes, batch, motions_of(system, nodes));
         if (kernels.store(rows, batch, Masses(nodes, batch).of, keeping, turning, in_block, slow) != kAll)
             all_sane.store(false, std::memory_order_relaxed);
+        held.put(batch, motions_of(system, nodes));
     });
     limit_velocities(team, system, group, nodes);
     return all_sane.load(std::memory_order_relaxed);

@@ -73,9 +73,9 @@ struct Keeping {
 };
 
 struct MotionKernels {
-    // Poses from motions; v* = v + h (g + f/m); of `turning` w* = m, the mean spin of the substep, by the implicit
-    // midpoint rule in body axes, I (w - w0) + h m x I m = 0, m = (w + w0)/2, or w by damp(). Starts: v and w*. Gives
-    // those that turned by more than `turn` from where their contacts were found.
+    // Poses from motions; v* = v + h (g + f/m), beside it in the sweeps the inverse mass; of `turning` w* = m, the mean
+    // spin of the substep, by the implicit midpoint rule in body axes, I (w - w0) + h m x I m = 0, m = (w + w0)/2, or w
+    // by damp(). Starts: v and w*. Gives those that turned by more than `turn` from where their contacts were found.
     Bodies (*predict)(const NodeRows&, const Batch&, const MassRow* const mass[kBodies], const Prediction&,
                       Bodies turning, Bodies damped);
     // x += h v, q = exp(h w) q, and how far that is from where contacts were found.

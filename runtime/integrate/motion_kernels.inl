@@ -174,6 +174,7 @@ struct Floats {
     FourFloats of[4];
 
     explicit Floats(const Vector& a) : of{narrow(a.x), narrow(a.y), narrow(a.z), {}} {}
+    Floats(const Vector& a, const Four& last) : of{narrow(a.x), narrow(a.y), narrow(a.z), narrow(last)} {}
     explicit Floats(const Quaternion& q) : of{narrow(q.x), narrow(q.y), narrow(q.z), narrow(q.w)} {}
     void put(FloatRow* const (&row)[kBodies], float (FloatRow::*half)[4]) {
         transpose(of);
@@ -292,7 +293,8 @@ Bodies predict(const NodeRows& rows, const Batch& batch, const MassRow* const ma
     const Vector none = {};  // sweeps want no -0
     FloatRow* const sweep[kBodies] = {&rows.sweep[batch.seat[0]].velocity, &rows.sweep[batch.seat[1]].velocity,
                                       &rows.sweep[batch.seat[2]].velocity, &rows.sweep[batch.seat[3]].velocity};
-    put_floats(u.v + none, u.w + none, sweep);
+    Floats(u.v + none, masses.of[1]).put(sweep, &FloatRow::linear);
+    Floats(u.w + none, masses.of[1]).put(sweep, &FloatRow::angular);
     const Found found(rows.found, batch);
     const Vector moved = found.to(m.place());
     if (rows.sweep_pose) put_floats(Quaternion{moved.x, moved.y, moved.z, masses.of[1]}, q, rows.sweep_pose, batch);

@@ -62,7 +62,7 @@ void find_spring_accelerations(System& system, const Group& group, const Nodes& 
         const RowVector force = spring_force(block, error, are_new);
         for (int n = 0; n < type.nodes; ++n) {
             const Eigen::Map<const RowJacobian> j(jacobian + n * type.rows * kDof, type.rows, kDof);
-            const NodeVector a = response(system.sweep[block.node[n]].mass, j.transpose() * force);
+            const NodeVector a = response(system.sweep[block.node[n]], j.transpose() * force);
             Velocity& to = system.by_springs[block.node[n]];
             to.v += a.head<3>();
             to.w += a.tail<3>();

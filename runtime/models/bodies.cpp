@@ -268,6 +268,7 @@ void change_kind(World& world, uint32_t node, NodeKind kind, const NodeMass& mas
     if (const KinematicPath* path = nodes.find_path(node))
         nodes.paths.erase(nodes.paths.begin() + (path - nodes.paths.data()));
     if (kind == NodeKind::fixed) set_velocity(nodes.motion[node], Vec3::Zero(), Vec3::Zero());
+    nodes.hold(node);
     if (node < nodes.history.size()) nodes.history[node] = {};
     nodes.sleep[node].quiet = 0;
     if (enabled) nodes.set_rest(node, Rest::awake);
@@ -280,6 +281,7 @@ void shift_centre(World& world, uint32_t node, const Vec3& offset) {
     m.x += offset;
     m.v += m.w.cross(offset);
     m.slow_v += m.slow_w.cross(offset);
+    world.nodes.hold(node);
     const Vec3 local = m.q.conjugate() * offset;
     for (Joint& joint : world.joints.record) {
         for (int side = 0; side < static_cast<int>(joint.ends().size()); ++side) {

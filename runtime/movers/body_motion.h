@@ -13,14 +13,18 @@ struct BodyMotion {
     Quat rotation = Quat::Identity();
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // of the centre of mass [m/s], [rad/s]
     double inv_mass = 0;                                 // [1/kg]
-    Mat3 inv_inertia = Mat3::Zero();                     // about the centre, world axes
+    Vec3 unlocked = Vec3::Ones();                        // 0 along axes that are locked, else 1
+    Mat3 inv_inertia = Mat3::Zero();                     // about the centre, world axes, without those that are locked
 
     bool is_pushed() const { return inv_mass > 0; }
     Vec3 velocity_of(const Vec3& point) const { return linear + angular.cross(point - centre); }
     // Inverse of the mass that a point has along a unit direction: 1/m + (r x n) I^-1 (r x n).
     double inv_mass_of(const Vec3& point, const Vec3& direction) const {
         const Vec3 turn = (point - centre).cross(direction);
-        return inv_mass + turn.dot(inv_inertia * turn);
+        return linear_inv_mass(direction) + turn.dot(inv_inertia * turn);
+    }
+    double linear_inv_mass(const Vec3& direction) const {
+        return unlocked == Vec3::Ones() ? inv_mass : inv_mass * direction.cwiseProduct(unlocked).squaredNorm();
     }
 };
 

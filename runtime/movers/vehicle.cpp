@@ -385,7 +385,7 @@ taut_result Drive::run() {
     turn_wheels();
     VehicleSolve solve(chassis_, seconds_);
     const Vec3 drag = air();
-    solve.velocity += seconds_ * (to_vec(about_.gravity) + chassis_.inv_mass * drag);
+    solve.velocity += seconds_ * (to_vec(about_.gravity) + chassis_.inv_mass * drag).cwiseProduct(chassis_.unlocked);
     solve.run(wheel_.data(), wheel_.data() + def_.wheel_count);
     for (uint32_t i = 0; i < def_.wheel_count; ++i) publish_wheel(i);
     apply(drag);

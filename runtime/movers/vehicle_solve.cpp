@@ -17,7 +17,7 @@ WheelRow VehicleSolve::row(const Vec3& point, const Vec3& direction, const BodyM
     out.direction = direction;
     out.turn = (point - chassis_.centre).cross(direction);
     out.response = chassis_.inv_inertia * out.turn;
-    out.inv_mass = chassis_.inv_mass + out.turn.dot(out.response);
+    out.inv_mass = chassis_.linear_inv_mass(direction) + out.turn.dot(out.response);
     if (ground.is_pushed()) out.ground_inv_mass = ground.inv_mass_of(point, direction);
     out.ground_speed = ground.velocity_of(point).dot(direction);
     return out;
@@ -25,7 +25,7 @@ WheelRow VehicleSolve::row(const Vec3& point, const Vec3& direction, const BodyM
 
 void VehicleSolve::push(WheelRow& row, double change) {
     row.impulse += change;
-    velocity += change * chassis_.inv_mass * row.direction;
+    velocity += (change * chassis_.inv_mass * row.direction).cwiseProduct(chassis_.unlocked);
     spin += change * row.response;
     impulse += change * row.direction;
     angular_impulse += change * row.turn;

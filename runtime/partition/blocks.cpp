@@ -370,6 +370,8 @@ void Partition::fill_blocks(const Nodes& nodes, const Joints& joints, const Elem
             least = std::min(least, nodes.mass[node].mass);
             most = std::max(most, nodes.mass[node].mass);
             block.identity.push_back(static_cast<uint64_t>(node) << 32 | nodes.ids.generation(node));
+            if (const Locks locks = nodes.locks_of(node); locks.any())  // which no other mark is
+                block.identity.push_back(~(static_cast<uint64_t>(node) << 8 | locks.axes));
         }
         if (!block.surfaces.empty()) keep_once(block.links);  // the same nodes meet in many contacts
         block.identity.insert(block.identity.end(), block.links.begin(), block.links.end());

@@ -48,15 +48,18 @@ BoundedRow& ActiveSet::add(Kind kind, uint32_t index, int row, double sign, doub
     r.jacobian = &sys_.rows.jacobian[block.jacobian + static_cast<uint32_t>(row * kDof)];
     r.stride = static_cast<uint32_t>(block.type->rows * kDof);
     r.begin = 3;
+    double whole = 0;
     for (int n = 0; n < block.type->nodes; ++n) {
         const uint32_t node = block.node[n];
         const double* j = r.jacobian + static_cast<size_t>(n) * r.stride;
         r.place[n] = sys_.place[node];
         if (j[0] != 0 || j[1] != 0 || j[2] != 0) r.begin = 0;
-        r.k += inverse_mass_along(sys_.sweep[node].mass, j);
+        r.k += inverse_mass_along(sys_.sweep[node], j);
+        whole += unlocked_along(sys_.sweep[node], j);
         if (r.place[n] != kNone) continue;
         r.known += sign * along(j, sys_.exact[node]);
     }
+    if (!(r.k > 0)) r.k = whole;  // of one that locks leave nothing: it pushes against what does not yield
     r.least = r.c = softness * r.k;
     return r;
 }

@@ -266,6 +266,8 @@ void BlockSolve::find_parts() {
         for (uint32_t i = 0; i < batch.at.count; ++i) take(batch.seats(i), batch.nodes());
     });
     for (uint32_t j = 0; j < ties(); ++j) take(row(j).node, row(j).type->nodes);
+    for (uint32_t i = 0; i < nodes_; ++i)
+        if (s_.nodes.locks_of(b_.nodes[i]).any()) b_.hold[first_of(i)] = NodeHold::anchored;
     for (uint32_t i = 0; i < nodes_; ++i) b_.hold[i] = b_.hold[first_of(i)];
     uint32_t parts = 0;
     for (uint32_t i = 0; i < nodes_; ++i) {  // the first of each comes before the others

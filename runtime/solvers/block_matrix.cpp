@@ -21,8 +21,9 @@ uint32_t coupling(const ConstraintType& type, int n, int m) {  // m < n
     return static_cast<uint32_t>(1 + type.nodes + n * (n - 1) / 2 + m);
 }
 
-// Of a node that is held within a frame [kg, kg m^2]: above any mass, and far within what squares of double hold.
-constexpr double kHeldMass = 1e30;
+double unlocked(const SweepNode& node, const double* j) {
+    return node.held() ? unlocked_along(node, j) : inverse_mass_along(node, j);
+}
 
 int locked_rows(const RowBlock& block) {
     int count = 0;
@@ -130,7 +131,7 @@ void BlockSolve::list_links(Array<uint64_t>& out, Array<uint64_t>& slight) const
 bool BlockSolve::holds(const RowBlock& block, int n) const {
     const double* j = jacobian_of(sys_, block, n).data();
     for (int r = 0; r < block.type->rows; ++r, j += kDof)
-        if (block.locked(r) && !(inverse_mass_along(sys_.sweep[block.node[n]].mass, j) > loop_compliance(block, r)))
+        if (block.locked(r) && !(inverse_mass_along(sys_.sweep[block.node[n]], j) > loop_compliance(block, r)))
             return false;
     return true;
 }
@@ -210,6 +211,11 @@ void BlockSolve::add_mass(uint32_t i) {
     const double mass = held ? kHeldMass : s_.nodes.mass[node].mass;
     const double diagonal[9] = {mass, 0, 0, 0, mass, 0, 0, 0, mass};
     b_.matrix.add(b_.places[i], {diagonal, 3, 3, 3});
+    if (const Locks locks = s_.nodes.locks_of(node); locks.any()) {
+        double locked[9] = {};
+        for (int k = 0; k < 3; ++k) locked[4 * k] = locks.linear(k) ? kHeldMass : 0;
+        b_.matrix.add(b_.places[i], {locked, 3, 3, 3});
+    }
     if (size_of(i) == 6 && held)
         b_.matrix.add(b_.places[i], {diagonal, 3, 3, 3, 3, 3});
     else if (size_of(i) == 6)
@@ -261,8 +267,13 @@ double BlockSolve::loop_compliance(const RowBlock& block, int r) const {
     double k = 0;
     const double* j = &sys_.rows.jacobian[block.jacobian] + r * kDof;
     for (int n = 0; n < block.type->nodes; ++n, j += block.type->rows * kDof)
-        if (local(block.node[n]) != kNone) k += inverse_mass_along(sys_.sweep[block.node[n]].mass, j);
+        if (local(block.node[n]) != kNone) k += unlocked(sys_.sweep[block.node[n]], j);
     return kLoopCompliance * k;
+}
+
+// Whether an end has locked axes, which may leave rows nothing to do, or several the same.
+bool BlockSolve::has_locks(const RowBlock& block) const {
+    return std::any_of(block.node, block.node + block.type->nodes, [&](uint32_t at) { return sys_.sweep[at].held(); });
 }
 
 // Whether a tie ends on nothing that moves, as one on held nodes does: it asks for nothing.
@@ -275,7 +286,7 @@ bool BlockSolve::stands(const RowBlock& block) const {
 void BlockSolve::add_rows(uint32_t j) {
     const RowBlock& block = row(j);
     const int rows = block.held(), padded = size_of(nodes_ + j);
-    const bool idle = stands(block);
+    const bool idle = stands(block), locks = has_locks(block);
     for (int n = 0; n < block.type->nodes && !idle; ++n) {
         const uint32_t i = local(block.node[n]);
         if (i == kNone) continue;
@@ -293,7 +304,7 @@ void BlockSolve::add_rows(uint32_t j) {
     for (int r = 0; r < rows; ++r) {
         if (!block.locked(r) || idle) continue;
         for (int k = 0; k < rows; ++k) diagonal[r * padded + k] = -c(r, k);
-        if (b_.looped) diagonal[r * padded + r] = -std::max(c(r, r), loop_compliance(block, r));
+        if (b_.looped || locks) diagonal[r * padded + r] = -std::max(c(r, r), loop_compliance(block, r));
     }
     b_.matrix.add(place(j, kDiagonal), {diagonal, padded, padded, padded});
 }

@@ -70,6 +70,7 @@ private:
     void assemble(bool with_old);
     void add_new_stiffness();
     void add_mass(uint32_t i);
+    bool has_locks(const RowBlock& block) const;
     void stiffness_of(const RowBlock& block, const double* force, double* k) const;
     void add_stiffness(uint32_t j, const double* force);
     void add_rows(uint32_t j);

@@ -9,7 +9,7 @@ namespace taut {
 namespace {
 
 constexpr int kMostSweeps = 40, kFrictionSweeps = 3;
-constexpr int kPressSweeps = 4;  // as many for all, so that no cluster feels another
+constexpr int kPressSweeps = 4;       // as many for all, so that no cluster feels another
 constexpr double kCompressed = 1e-4;  // compression ends where a sweep changes no rate by this share of an approach
 
 double rate(const Impact& impact, int row, const Array<ImpactBody>& bodies) {
@@ -51,7 +51,7 @@ public:
         for (int sweep = 0; sweep < most && change > kCompressed * fastest; ++sweep) {
             change = 0;
             for (Impact& impact : impacts_) {
-                if (supports_only && !impact.supports) continue;
+                if ((supports_only && !impact.supports) || !(impact.k > 0)) continue;
                 const double step = std::max(-impact.impulse[0], -rate(impact, 0, bodies_) / impact.k);
                 push(impact, 0, step, bodies_);
                 change = std::max(change, impact.k * std::abs(step));

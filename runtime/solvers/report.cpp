@@ -40,7 +40,7 @@ public:
     double inverse_mass(int r) const {  // J W J^T
         double sum = 0;
         for (int n = 0; n < block_.type->nodes; ++n)
-            sum += inverse_mass_along(system_.sweep[block_.node[n]].mass, jacobian_ + (n * rows_ + r) * kDof);
+            sum += inverse_mass_along(system_.sweep[block_.node[n]], jacobian_ + (n * rows_ + r) * kDof);
         return sum;
     }
     // Largest |C(x + h v) - C(x) - h J v| of the first rows that are lengths [m].
@@ -84,8 +84,9 @@ struct SweptPoint {
 };
 
 SweptPoint point_of(const System& system, const RowBlock& block, const Evaluated& at) {
-    return {impulse_of(system, block).head<3>(), system.rows.error[block.row], 1 / at.inverse_mass(0),
-            1 / std::max(at.inverse_mass(1), at.inverse_mass(2)), block.hits};
+    const auto mass = [](double inverse) { return inverse > 0 ? 1 / inverse : 0; };
+    return {impulse_of(system, block).head<3>(), system.rows.error[block.row], mass(at.inverse_mass(0)),
+            mass(std::max(at.inverse_mass(1), at.inverse_mass(2))), block.hits};
 }
 
 // A point of a lane.
@@ -116,7 +117,7 @@ double normal_change(const SweptPoint& at, double vn, const SweepTerms& terms) {
     const double scale = soft ? static_cast<double>(terms.mass_scale) : 1;
     const double kept = soft ? 1 - static_cast<double>(terms.impulse_scale) : 1;
     const double next = std::max(0.0, kept * at.p[0] - scale * at.mass * (vn + bias));
-    return std::abs(next - at.p[0]) / at.mass;
+    return at.mass > 0 ? std::abs(next - at.p[0]) / at.mass : 0;  // else nothing yields
 }
 
 // Likewise over the tangents, isotropic.
@@ -125,7 +126,7 @@ double friction_change(const SweptPoint& at, const Eigen::Vector2d& slip, double
     const double most = friction * at.p[0];
     Eigen::Vector2d next = p - at.tangent_mass * slip;
     if (next.norm() > most) next *= most / next.norm();
-    return (next - p).norm() / at.tangent_mass;
+    return at.tangent_mass > 0 ? (next - p).norm() / at.tangent_mass : 0;
 }
 
 // h^2/2 n . w x (w x r) of the levers' cores, which turn; their skins do not (state/levers.h) [m].

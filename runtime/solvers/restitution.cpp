@@ -348,8 +348,8 @@ private:
             impact.impulse[r] = impact.known[r] = 0;
             for (int n = 0; n < impact.sides; ++n) add_side(impact, impact.side[n], r, k);
         }
-        impact.k = k(0, 0);
-        impact.k_across = 0.5 * (k(1, 1) + k(2, 2)) + std::hypot(0.5 * (k(1, 1) - k(2, 2)), k(1, 2));
+        impact.k = yields(impact, 0, k(0, 0));
+        impact.k_across = yields(impact, 1, 0.5 * (k(1, 1) + k(2, 2)) + std::hypot(0.5 * (k(1, 1) - k(2, 2)), k(1, 2)));
         impact.approach = impact.known[0];
         for (const Impact::Side* side = impact.side; side < impact.side + impact.sides; ++side) {
             if (side->body == kNone) continue;
@@ -359,6 +359,20 @@ private:
         }
         if (!moves && fall.gap > 0)
             impact.restitution = restitution_above(impact, fall.gained / sys_.scheme.h * fall.gap);
+    }
+
+    // k of a row, or 0 where locked axes leave rounding alone.
+    double yields(const Impact& impact, int r, double k) const {
+        double whole = 0;
+        bool held = false;
+        for (const Impact::Side* side = impact.side; side < impact.side + impact.sides; ++side) {
+            if (side->body == kNone) continue;
+            NodeVector j;
+            j << side->linear[r], side->angular[r];
+            whole += unlocked_along(sys_.sweep[side->at], j.data());
+            held = held || sys_.sweep[side->at].held();
+        }
+        return held && !(k > static_cast<double>(kLeastFree) * whole) ? 0 : k;
     }
 
     // Levers are of when the contact was found, and its sides have moved on since or have a way to go until they meet:
@@ -381,7 +395,8 @@ private:
     // half each and not what rounding leaves them; of what does not turn, 0 [m^2].
     double arm_of(const Impact::Side& side) const {
         constexpr double kLeastArm = 1e-3;  // of the lever: floats lose 1e-7
-        const bool turns = s_.nodes.mass[sys_.node_at[side.at]].inv_inertia.xx > 0;
+        const uint32_t node = sys_.node_at[side.at];
+        const bool turns = s_.nodes.mass[node].inv_inertia.xx > 0 && !s_.nodes.locks_of(node).all_angular();
         return turns ? side.angular[0].squaredNorm() + kLeastArm * kLeastArm * lever_of(side).squaredNorm() : 0;
     }
     // Where its path takes a side.
@@ -410,10 +425,10 @@ private:
         }
         const double before = bodies_[side.body].moves * impact.time / sys_.scheme.h;
         impact.known[r] -= (0.5 - before) * side.linear[r].dot(wide(all_.flight[side.at].gained));
-        const NodeMass& mass = s_.nodes.mass[sys_.node_at[side.at]];
-        const Mat3& R = sys_.pose[side.at].R;  // of now: those of the sweeps may be old
-        side.response[r].v = mass.inv_mass * side.linear[r];
-        side.response[r].w = R * (mass.inv_inertia.matrix() * (R.transpose() * side.angular[r]));
+        const uint32_t node = sys_.node_at[side.at];
+        side.response[r].v = s_.nodes.move_by(node, side.linear[r]);
+        side.response[r].w =
+            s_.nodes.spin_by(node, sys_.pose[side.at].R, side.angular[r]);  // those of sweeps may be old
         for (int c = 0; c <= r; ++c) k(c, r) += side.rate(c, side.response[r]);
     }
 

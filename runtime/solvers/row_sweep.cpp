@@ -26,7 +26,7 @@ public:
         for (int i = 0; i < block_.type->nodes; ++i) {
             const uint32_t node = block_.node[i];
             if (!(system_.sweep[node].mass.inv_mass > 0)) continue;  // others read it
-            const NodeVector dv = response(system_.sweep[node].mass, jacobian(i).transpose() * impulse);
+            const NodeVector dv = response(system_.sweep[node], jacobian(i).transpose() * impulse);
             SweepVelocity& u = system_.sweep[node].velocity;
             for (int k = 0; k < 3; ++k) {
                 u.v[k] += static_cast<float>(dv[k]);
@@ -42,6 +42,12 @@ public:
         for (int i = 0; i < block_.type->nodes; ++i) s += effective_mass(system_, block_, i);
         return s;
     }
+    double inverse_mass(int r) const {
+        double sum = 0;
+        for (int i = 0; i < block_.type->nodes; ++i)
+            sum += inverse_mass_along(system_.sweep[block_.node[i]], row_of(system_, block_, i, r));
+        return sum;
+    }
     RowVector impulse() const { return impulse_of(system_, block_); }
     void move_to(const RowVector& next) {
         apply(next - impulse());
@@ -53,6 +59,7 @@ public:
     void solve_cone(const SweepTerms& soft, bool biased) {
         const double gap = system_.rows.error[block_.row];
         const RowMatrix s = effective();
+        if (!(inverse_mass(0) > 0)) return;  // neither end moves
         RowVector p = impulse();
         const bool open = gap > 0;
         const double bias = open ? gap * soft.inv_h : biased ? std::max<double>(soft.bias_rate * gap, -soft.push) : 0.0;
@@ -90,12 +97,14 @@ private:
         RowVector p = impulse();
         const RowVector v = velocity();
         const Eigen::Matrix2d k = s.bottomRightCorner<2, 2>();
+        if (!(inverse_mass(1) > 0) && !(inverse_mass(2) > 0)) return;
         const Eigen::Vector2d slip(v[1] - block_.drive[0], v[2] - block_.drive[1]), old(p[1], p[2]);
-        Eigen::Vector2d q = old - k.inverse() * slip;
-        if (q.norm() > limit) {
-            const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
-            q = old - slip / (half + std::sqrt(diff * diff + k(0, 1) * k(0, 1)));
-        }
+        const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
+        const double largest = half + std::sqrt(diff * diff + k(0, 1) * k(0, 1));
+        // Locked axes may leave one direction alone.
+        const bool flat = has_locks() && !(k.determinant() > static_cast<double>(kLeastFree) * largest * largest);
+        Eigen::Vector2d q = flat ? Eigen::Vector2d(old - slip / largest) : Eigen::Vector2d(old - k.inverse() * slip);
+        if (q.norm() > limit) q = old - slip / largest;
         double t[2] = {q[0], q[1]};
         project_disc(t, limit);
         p[1] = t[0];
@@ -103,6 +112,10 @@ private:
         move_to(p);
     }
 
+    bool has_locks() const {
+        return std::any_of(block_.node, block_.node + block_.type->nodes,
+                           [&](uint32_t node) { return system_.sweep[node].held(); });
+    }
     Eigen::Map<const RowJacobian> jacobian(int node) const { return jacobian_of(system_, block_, node); }
 
     System& system_;

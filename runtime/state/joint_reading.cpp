@@ -15,8 +15,8 @@ const double* row_of(const Joint& joint, const JointReading& reading, int end, i
 Vec3 linear_part(const double* row) { return {row[0], row[1], row[2]}; }
 Vec3 angular_part(const double* row) { return {row[3], row[4], row[5]}; }
 
-// J_i W J_k^T of two rows.
-double coupling(const Nodes& nodes, const Joint& joint, const JointReading& reading, int i, int k) {
+// J_i W J_k^T of two rows; of the masses that bodies have, or would have with no axis locked.
+double coupling(const Nodes& nodes, const Joint& joint, const JointReading& reading, int i, int k, bool locks = true) {
     double sum = 0;
     for (int end = 0; end < joint.type->nodes; ++end) {
         const uint32_t node = joint.node[end];
@@ -24,6 +24,11 @@ double coupling(const Nodes& nodes, const Joint& joint, const JointReading& read
         const double *ji = row_of(joint, reading, end, i), *jk = row_of(joint, reading, end, k);
         const Mat3 to_body = reading.pose[end].R.transpose();
         const NodeMass& mass = nodes.mass[node];
+        if (locks && nodes.locks_of(node).any()) {
+            sum += nodes.move_by(node, linear_part(ji)).dot(linear_part(jk)) +
+                   nodes.spin_by(node, reading.pose[end].R, angular_part(ji)).dot(angular_part(jk));
+            continue;
+        }
         sum += mass.inv_mass * linear_part(ji).dot(linear_part(jk)) +
                (to_body * angular_part(ji)).dot(mass.inv_inertia.matrix() * (to_body * angular_part(jk)));
     }
@@ -107,6 +112,10 @@ double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& readi
 
 double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
     return coupling(nodes, joint, reading, row, row);
+}
+
+bool is_blocked(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {
+    return inverse_mass_of(nodes, joint, reading, row) <= kLeast * coupling(nodes, joint, reading, row, row, false);
 }
 
 double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row) {

@@ -42,6 +42,8 @@ inline bool is_rigid(const Joint& joint, int row) { return is_locked(joint, row)
 double rate_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
 // J W J^T of one row: inverse of the mass that its nodes alone set against it [1/kg or 1/(kg m^2)].
 double inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
+// Whether a row moves nothing of what it would without locked axes.
+bool is_blocked(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);
 // The same while the joint's locked rows hold: what is left of J W J^T when they are eliminated. Of a hinge's angle:
 // the inertia about the hinge, not that about the centre of mass.
 double held_inverse_mass_of(const Nodes& nodes, const Joint& joint, const JointReading& reading, int row);

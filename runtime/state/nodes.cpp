@@ -1,5 +1,6 @@
 #include "state/nodes.h"
 
+#include <Eigen/LU>
 #include <cstring>
 #include <utility>
 
@@ -77,6 +78,7 @@ void Nodes::remove(uint32_t node) {
     if (const FrozenNode* held = find_frozen(node)) frozen.erase(frozen.begin() + (held - frozen.data()));
     drop(names, node);
     drop(restraints, node);
+    drop(locked, node);
     drop(spares, node);
     ids.destroy(node);
 }
@@ -156,6 +158,33 @@ void Nodes::set_name(uint32_t node, const std::array<char, TAUT_BODY_NAME_SIZE>&
 void Nodes::set_restraint(const Restraint& restraint) {
     restraint.any() ? put(restraints, restraint) : drop(restraints, restraint.node);
     info[restraint.node].restrained = restraint.any();
+}
+
+void Nodes::set_locks(uint32_t node, Locks locks) {
+    locks.any() ? put(locked, LockedNode{node, locks.axes}) : drop(locked, node);
+    info[node].locks = locks.axes;
+}
+
+Mat3 Nodes::free_inverse_inertia(uint32_t node, const Mat3& R) const {
+    return free_inverse(R * mass[node].inertia.matrix() * R.transpose(), locks_of(node));
+}
+
+Mat3 free_inverse(Mat3 inertia, Locks locks) {
+    // With nothing but a diagonal entry in what is locked, the rest of the inverse is that of the free block.
+    const double size = inertia.trace();
+    for (int i = 0; i < 3; ++i) {
+        if (!locks.angular(i)) continue;
+        inertia.row(i).setZero();
+        inertia.col(i).setZero();
+        inertia(i, i) = size;
+    }
+    Mat3 inverse = inertia.inverse();
+    for (int i = 0; i < 3; ++i) {
+        if (!locks.angular(i)) continue;
+        inverse.row(i).setZero();
+        inverse.col(i).setZero();
+    }
+    return inverse;
 }
 
 void Nodes::set_spare(const SpareMass& spare) { put(spares, spare); }

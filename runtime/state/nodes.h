@@ -82,6 +82,38 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, node, damping, angular_damping, most_speed, most_spin);
 }
 
+// Motions along and about the world's axes that a dynamic node does not make: a bit for each, linear x, y, z, then
+// angular, as TAUT_LOCK_.
+struct Locks {
+    uint8_t axes = 0;
+
+    bool any() const { return axes != 0; }
+    bool linear(int axis) const { return (axes >> axis & 1) != 0; }
+    bool angular(int axis) const { return (axes >> (3 + axis) & 1) != 0; }
+    bool any_angular() const { return axes >> 3 != 0; }
+    bool all_angular() const { return axes >> 3 == 7; }
+    // v and w without what is locked; +0 there.
+    void hold(Vec3& v, Vec3& w) const {
+        for (int i = 0; i < 3; ++i) {
+            if (linear(i)) v[i] = 0;
+            if (angular(i)) w[i] = 0;
+        }
+    }
+};
+
+// (P I P)^+ of an inertia in world axes, P the projection on angular axes that are free.
+Mat3 free_inverse(Mat3 inertia, Locks locks);
+
+struct LockedNode {
+    uint32_t node = kNone;
+    uint8_t axes = 0;  // as Locks
+};
+template <class Visitor, Like<LockedNode> Of>
+void describe(Visitor& visitor, Of& of) {
+    auto& [node, axes] = of;
+    TAUT_FIELDS(visitor, node, axes);
+}
+
 // The mass that a node which forces do not move has once they do.
 struct SpareMass {
     uint32_t node = kNone;
@@ -127,6 +159,7 @@ struct NodeInfo {
     bool continuous = true;     // what moves past its own thickness is looked for along its way; detect/impact.h
     Switch disabled;            // asleep until it is enabled: no box, no pair and no joint of it is there meanwhile
     bool restrained = false;    // Nodes::restraints has it
+    uint8_t locks = 0;          // as Nodes::locked has it; of Locks
     uint64_t user_data = 0;
 
     // What the host knows as a whole, and changes as one.
@@ -134,10 +167,10 @@ struct NodeInfo {
 };
 template <class Visitor, Like<NodeInfo> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [kind, collider, cable, soft, continuous, disabled, restrained, user_data] = of;
+    auto& [kind, collider, cable, soft, continuous, disabled, restrained, locks, user_data] = of;
     TAUT_FIELDS(visitor, kind, collider, cable, soft, continuous);
     TAUT_RARE(visitor, disabled);
-    TAUT_ASIDE(visitor, restrained, user_data);
+    TAUT_ASIDE(visitor, restrained, locks, user_data);
 }
 
 struct NodeSleep {
@@ -245,6 +278,7 @@ struct Nodes {
           frozen(memory),
           names(memory),
           restraints(memory),
+          locked(memory),
           spares(memory),
           before(memory),
           history(memory),
@@ -278,10 +312,42 @@ struct Nodes {
     const SpareMass* find_spare(uint32_t node) const { return find_in(spares, node); }
     // Their nodes say whose they are; one of nothing is dropped. Throw std::bad_alloc with nothing changed.
     void set_restraint(const Restraint& restraint);
+    void set_locks(uint32_t node, Locks locks);
     void set_spare(const SpareMass& spare);
     void drop_spare(uint32_t node);
     // How strongly gravity pulls; of one in quarantine, once it is let go. Throws std::bad_alloc with nothing changed.
     void set_gravity_scale(uint32_t node, double scale);
+    // Of a node that forces move, else none.
+    Locks locks_of(uint32_t node) const {
+        return {info[node].kind == NodeKind::dynamic ? info[node].locks : uint8_t{0}};
+    }
+    // Drops the velocity along what is locked.
+    void hold(uint32_t node) {
+        const Locks locks = locks_of(node);
+        if (!locks.any()) return;
+        locks.hold(motion[node].v, motion[node].w);
+        locks.hold(motion[node].slow_v, motion[node].slow_w);
+    }
+    // Moves its centre of mass by a way, or to a place, but not along what is locked.
+    void shift(uint32_t node, const Vec3& way) { place(node, motion[node].x + way); }
+    void place(uint32_t node, const Vec3& at) {
+        const Locks locks = locks_of(node);
+        for (int i = 0; i < 3; ++i)
+            if (!locks.linear(i)) motion[node].x[i] = at[i];
+    }
+    // W p: what an impulse at the centre of mass [N s], and an angular one [N m s], change of a node's velocities where
+    // its rotation is R.
+    Vec3 move_by(uint32_t node, const Vec3& impulse) const {
+        Vec3 v = mass[node].inv_mass * impulse, none = Vec3::Zero();
+        locks_of(node).hold(v, none);
+        return v;
+    }
+    Vec3 spin_by(uint32_t node, const Mat3& R, const Vec3& angular_impulse) const {
+        if (locks_of(node).any_angular()) return free_inverse_inertia(node, R) * angular_impulse;
+        return R * (mass[node].inv_inertia.matrix() * (R.transpose() * angular_impulse));
+    }
+    // Of a node with locked angular axes, world axes: (P I P)^+, P the projection on those that are free.
+    Mat3 free_inverse_inertia(uint32_t node, const Mat3& R) const;
     const char* name_of(uint32_t node) const;  // null: it has none
     // Empty: none from now on. Throws std::bad_alloc with nothing changed.
     void set_name(uint32_t node, const std::array<char, TAUT_BODY_NAME_SIZE>& text);
@@ -315,6 +381,7 @@ struct Nodes {
     Array<FrozenNode> frozen;     // likewise
     Array<NodeName> names;        // likewise
     Array<Restraint> restraints;  // likewise
+    Array<LockedNode> locked;     // likewise
     Array<SpareMass> spares;      // likewise
     Array<NodePose> before;       // origin pose before the last step
     Array<NodeHistory> history;   // of all, or of none in worlds whose scheme has one step
@@ -345,8 +412,8 @@ private:
 template <class Visitor, Like<Nodes> Of>
 void describe(Visitor& visitor, Of& of) {
     // load: within a step; the list of active ones follows.
-    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, restraints, spares, before, history,
-           rest, sleep, active, lists, movable, listed, all] = of;
+    auto& [ids, info, motion, mass, applied, owed, load, paths, frozen, names, restraints, locked, spares, before,
+           history, rest, sleep, active, lists, movable, listed, all] = of;
     OrNone loads_applied{applied}, loads_owed{owed};
     OrNone histories{history};
     TAUT_ASIDE(visitor, ids, names);
@@ -354,6 +421,7 @@ void describe(Visitor& visitor, Of& of) {
     TAUT_FIELDS(visitor, paths);
     TAUT_RARE(visitor, frozen);
     TAUT_RARE(visitor, restraints);
+    TAUT_RARE(visitor, locked);
     TAUT_RARE(visitor, spares);
 }
 

@@ -53,12 +53,12 @@ void stiffen(System& system, const Nodes& nodes, uint32_t at, float k, bool filt
     SweepNode& node = system.sweep[at];
     if (system.in_block[at] || node.mass.inv_mass == 0) return;
     float(&i)[6] = node.mass.inv_inertia;
-    for (float& each : i) each /= node.mass.joint_share;  // of the last substep
+    for (float& each : i) each /= system.joint_share[at];  // of the last substep
     const float xy = std::abs(i[3]), xz = std::abs(i[4]), yz = std::abs(i[5]);
     const float most = std::max({i[0] + xy + xz, i[1] + xy + yz, i[2] + xz + yz});
     const auto h = static_cast<float>(system.scheme.h), act = static_cast<float>(system.scheme.act);
     const float share = 1 / (1 + h * act * k * most);
-    node.mass.joint_share = share;
+    system.joint_share[at] = share;
     for (float& each : i) each *= share;
     const uint32_t from = system.node_at[at];
     const Vec3& slow = system.lent ? system.motion[at].slow_w : nodes.motion[from].slow_w;

@@ -2,6 +2,8 @@
 // row block by row block uses these; lanes have them fused (constraints/*_sweep.inl).
 #pragma once
 
+#include <algorithm>
+
 #include "system/axis_rows.h"
 
 namespace taut {
@@ -89,19 +91,34 @@ inline RowVector error_rate_of(const System& system, const RowBlock& block) {
 }
 
 // W p: what an impulse [N s, N m s] changes of a node's velocity.
-inline NodeVector response(const SweepMass& m, const NodeVector& p) {
-    const float* i = m.inv_inertia;
+inline NodeVector response(const SweepNode& node, const NodeVector& p) {
+    const float* i = node.mass.inv_inertia;
     NodeVector v;
-    v << m.inv_mass * p[0], m.inv_mass * p[1], m.inv_mass * p[2], i[0] * p[3] + i[3] * p[4] + i[4] * p[5],
-        i[3] * p[3] + i[1] * p[4] + i[5] * p[5], i[4] * p[3] + i[5] * p[4] + i[2] * p[5];
+    v << node.mass.inv_mass_x * p[0], node.velocity.inv_mass_y * p[1], node.velocity.inv_mass_z * p[2],
+        i[0] * p[3] + i[3] * p[4] + i[4] * p[5], i[3] * p[3] + i[1] * p[4] + i[5] * p[5],
+        i[4] * p[3] + i[5] * p[4] + i[2] * p[5];
     return v;
 }
 
-// j W j^T of one row [6] on one node.
-inline double inverse_mass_along(const SweepMass& m, const double* j) {
+// j W j^T of one row [6] on one node, were no linear axis locked; of one that turns about some axes no less than if it
+// turned about all as about the one that it turns about most easily.
+inline double unlocked_along(const SweepNode& node, const double* j) {
+    const float* i = node.mass.inv_inertia;
+    return node.mass.inv_mass * (j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) +
+           std::max({i[0], i[1], i[2]}) * (j[3] * j[3] + j[4] * j[4] + j[5] * j[5]);
+}
+
+// j W j^T of one row [6] on one node; nothing where locks leave rounding alone.
+inline double inverse_mass_along(const SweepNode& node, const double* j) {
+    const SweepMass& m = node.mass;
+    const SweepVelocity& of = node.velocity;
     const float* i = m.inv_inertia;
-    return m.inv_mass * (j[0] * j[0] + j[1] * j[1] + j[2] * j[2]) + i[0] * j[3] * j[3] + i[1] * j[4] * j[4] +
-           i[2] * j[5] * j[5] + 2 * (i[3] * j[3] * j[4] + i[4] * j[3] * j[5] + i[5] * j[4] * j[5]);
+    const double moved = node.locked()
+                             ? m.inv_mass_x * j[0] * j[0] + of.inv_mass_y * j[1] * j[1] + of.inv_mass_z * j[2] * j[2]
+                             : m.inv_mass * (j[0] * j[0] + j[1] * j[1] + j[2] * j[2]);
+    const double sum = moved + i[0] * j[3] * j[3] + i[1] * j[4] * j[4] + i[2] * j[5] * j[5] +
+                       2 * (i[3] * j[3] * j[4] + i[4] * j[3] * j[5] + i[5] * j[4] * j[5]);
+    return !node.held() || sum > static_cast<double>(kLeastFree) * unlocked_along(node, j) ? sum : 0;
 }
 
 // J W J^T of one of the block's nodes.
@@ -109,7 +126,7 @@ inline RowMatrix effective_mass(const System& system, const RowBlock& block, int
     const auto j = jacobian_of(system, block, node);
     RowMatrix s(block.type->rows, block.type->rows);
     for (int r = 0; r < block.type->rows; ++r)
-        s.col(r) = j * response(system.sweep[block.node[node]].mass, j.row(r).transpose());
+        s.col(r) = j * response(system.sweep[block.node[node]], j.row(r).transpose());
     return s;
 }
 

@@ -263,8 +263,7 @@ RowMatrix Problem::effective(const Unit& unit, Masses masses) const {
         const uint32_t seat = block(unit).node[n];
         const auto j = jacobian(unit, n);
         const double parts = masses == Masses::split ? m_.count[seat] : 1;
-        for (int r = 0; r < unit.rows; ++r)
-            s.col(r) += parts * (j * response(s_.sweep[seat].mass, j.row(r).transpose()));
+        for (int r = 0; r < unit.rows; ++r) s.col(r) += parts * (j * response(s_.sweep[seat], j.row(r).transpose()));
     }
     return s;
 }
@@ -274,18 +273,48 @@ void Problem::find_inverses(Masses masses) {
     for (const Unit& unit : m_.unit) {
         RowMatrix d = effective(unit, masses);
         d.diagonal().array() += 1e-12 * d.trace();
+        const bool held = masses != Masses::none && has_locks(unit);
+        if (held) soften_locked(unit, d);
         d += matrix(m_.compliance, unit);
+        const auto is_idle = [&](int r) {  // it moves nothing
+            return held && inverse_mass(unit, r) == 0 && matrix(m_.compliance, unit)(r, r) == 0;
+        };
         if (unit.law == Unit::Law::disc) {  // the same along both, so that friction stays opposed to the slip
             const double half = 0.5 * (d(0, 0) + d(1, 1));
             d = (half + std::hypot(0.5 * (d(0, 0) - d(1, 1)), d(0, 1))) * RowMatrix::Identity(2, 2);
         }
         for (int r = 0; r < unit.rows; ++r) {
-            if (is_solved(unit, r) && d(r, r) > 0) continue;
+            if (is_solved(unit, r) && d(r, r) > 0 && !is_idle(r)) continue;
             d.row(r).setZero();
             d.col(r).setZero();
             d(r, r) = 1;
         }
-        Eigen::Map<Eigen::MatrixXd>(&m_.inverse[unit.matrix], unit.rows, unit.rows) = d.inverse();
+        Eigen::Map<Eigen::MatrixXd> inverse(&m_.inverse[unit.matrix], unit.rows, unit.rows);
+        inverse = d.inverse();
+        for (int r = 0; r < unit.rows; ++r)
+            if (is_idle(r)) inverse(r, r) = 0;
+    }
+}
+
+bool Problem::has_locks(const Unit& unit) const {
+    return std::ranges::any_of(nodes(unit), [&](uint32_t seat) { return s_.sweep[seat].held(); });
+}
+
+double Problem::inverse_mass(const Unit& unit, int r) const {
+    double sum = 0;
+    for (int n = 0; n < block(unit).type->nodes; ++n)
+        sum += inverse_mass_along(s_.sweep[block(unit).node[n]], row_of(s_, block(unit), n, unit.row + r));
+    return sum;
+}
+
+// Locked axes may leave rows nothing to do, or several the same: their diagonal has a share of what it would be
+// without.
+void Problem::soften_locked(const Unit& unit, RowMatrix& d) const {
+    for (int r = 0; r < unit.rows; ++r) {
+        double whole = 0;
+        for (int n = 0; n < block(unit).type->nodes; ++n)
+            whole += unlocked_along(s_.sweep[block(unit).node[n]], row_of(s_, block(unit), n, unit.row + r));
+        d(r, r) += static_cast<double>(kLeastFree) * whole;
     }
 }
 

@@ -136,7 +136,7 @@ public:
     using NodeVectors = Array<NodeVector>;
     void apply_transpose(const Vector& mu, NodeVectors& out) const;
     void apply(const NodeVectors& u, Vector& out) const;
-    NodeVector response_of(uint32_t seat, const NodeVector& p) const { return response(s_.sweep[seat].mass, p); }
+    NodeVector response_of(uint32_t seat, const NodeVector& p) const { return response(s_.sweep[seat], p); }
     NodeVectors& node_scratch(int i) { return m_.node_vector[i]; }
     // A d = (J W J^T + c) d.
     void apply_system(const Vector& d, Vector& out);
@@ -198,6 +198,9 @@ private:
     enum class Masses : uint8_t { none, whole, split };  // in the diagonal
     void find_inverses(Masses masses);
     RowMatrix effective(const Unit& unit, Masses masses = Masses::whole) const;
+    bool has_locks(const Unit& unit) const;
+    double inverse_mass(const Unit& unit, int r) const;
+    void soften_locked(const Unit& unit, RowMatrix& d) const;
     RowVector masked(const Unit& unit, RowVector values) const;
     RowVector miss(const Unit& unit) const;  // target - rate
     // J_n of a unit's rows.

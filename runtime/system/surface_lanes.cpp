@@ -7,11 +7,13 @@
 namespace taut {
 namespace {
 
-// Whether the lever of the first node matters: it turns, or may be turned.
+// Whether the first node is not as a particle is: its lever matters, for it turns or may be turned, or has a locked
+// axis.
 bool turns(const System& system, const SurfaceContact& contact) {
+    const SweepNode& node = system.sweep[system.at(contact.node[0])];
+    if (node.locked()) return true;
     if (contact.lever == Vec3f::Zero()) return false;
-    const auto& [velocity, mass] = system.sweep[system.at(contact.node[0])];
-    return mass.inv_mass > 0 || Vec3f::Map(velocity.w) != Vec3f::Zero();
+    return node.mass.inv_mass > 0 || Vec3f::Map(node.velocity.w) != Vec3f::Zero();
 }
 
 // Of one that is swept from now on; see leave_block() of pairs.

@@ -171,6 +171,10 @@ inline void set_sweep_velocity(SweepVelocity& out, const Velocity& u) {
     }
 }
 
+// Of a node that is held within a frame, and about a locked axis [kg, kg m^2]: above any mass, and far within what
+// squares of double hold.
+constexpr double kHeldMass = 1e30;
+
 struct System {
     struct Found {  // place at which contacts were found, rotation that their levers belong to
         Vec3 x = Vec3::Zero();
@@ -203,6 +207,7 @@ struct System {
           sweep(memory),
           shift(memory),
           sweep_pose(memory),
+          joint_share(memory),
           gases(memory),
           rows(memory),
           joints(memory),
@@ -248,7 +253,7 @@ struct System {
     Array<Velocity> start;       // v before forces, w after the gyroscopic torque, for energy balances; predict()
     // Of schemes of more than one step, see scheme.h: u*, v~, v_n and accelerations by springs [m/s^2, rad/s^2].
     Array<Velocity> ahead, coast, began, by_springs;
-    Array<Mat3> inertia;          // world axes [kg m^2], of nodes in blocks only; predict()
+    Array<Mat3> inertia;          // world axes [kg m^2], kHeldMass about locked ones, of nodes in blocks; predict()
     Array<Found> found;           // begin_frame(), predict()
     Array<uint8_t> turned;        // 1: so far that levers turn in this substep; predict(), turn_kinematic()
     Array<uint32_t> kinematic;    // nodes; begin_frame()
@@ -258,6 +263,7 @@ struct System {
     Array<SweepNode> sweep;       // velocities in floats and inverse masses, world axes
     Array<SweepShift> shift;      // motion since contacts were found; commit()
     Array<SweepPose> sweep_pose;  // pose in floats, where there are joints; begin_frame(), predict()
+    Array<float> joint_share;     // likewise, within inv_inertia: what stiffen_joints() left of it
 
     Gases gases;            // of the group being solved
     Rows rows;              // likewise

@@ -148,6 +148,73 @@ TEST(BodyRestraint, IsWhatTheDefSays) {
 // ---------------------------------------------------------------- kind
 
 // Held in the air as a static one, let fall, held again.
+// What is locked takes no velocity, by whatever means, and a pose is set as ever.
+TEST(LockedAxes, TakeNoVelocity) {
+    CrateOnGround s;
+    taut_body_def def = body_def(TAUT_BODY_DYNAMIC, s.box, 20, 20, 0);
+    def.linear_velocity = {1, 2, 3};
+    def.angular_velocity = {4, 5, 6};
+    def.locked_axes = TAUT_LOCK_TO_PLANE_XY;
+    const taut_body body = add_body(s.world, def);
+    const auto expect_motion = [&](taut_vec3 linear, taut_vec3 angular) {
+        taut_vec3 v, w;
+        ASSERT_OK(taut_body_get_velocity(body, &v, &w));
+        EXPECT_EQ(std::memcmp(&v, &linear, sizeof v), 0) << v.x << " " << v.y << " " << v.z;
+        EXPECT_EQ(std::memcmp(&w, &angular, sizeof w), 0) << w.x << " " << w.y << " " << w.z;
+    };
+    uint32_t axes = 0;
+    ASSERT_OK(taut_body_get_locked_axes(body, &axes));
+    EXPECT_EQ(axes, TAUT_LOCK_TO_PLANE_XY);
+    expect_motion({1, 2, 0}, {0, 0, 6});
+    ASSERT_OK(taut_body_set_velocity(body, {-1, -2, -3}, {-4, -5, -6}));
+    expect_motion({-1, -2, 0}, {0, 0, -6});
+    ASSERT_OK(taut_body_set_locked_axes(body, TAUT_LOCK_X | TAUT_LOCK_ROTATION));
+    expect_motion({0, -2, 0}, {0, 0, 0});
+    ASSERT_OK(taut_body_apply_impulse(body, {1e6f, 3000, 0}, {7, 8, 9}));  // a tonne
+    expect_motion({0, 1, 0}, {0, 0, 0});
+    ASSERT_OK(set_pose(body, at(-3, 40, 5)));
+    EXPECT_EQ(place_of(body).x, -3);
+    step_on(s.world, 10);
+    EXPECT_EQ(place_of(body).x, -3);
+    EXPECT_NE(place_of(body).y, 40);
+    ASSERT_OK(taut_body_set_locked_axes(body, 0));
+    ASSERT_OK(taut_body_apply_impulse(body, {2000, 0, 0}, {0, 0, 0}));
+    EXPECT_EQ(speed_of(body).x, 2);
+}
+
+// Locks are of dynamic bodies, and wait while a body is none.
+TEST(LockedAxes, WaitWhileABodyIsNotDynamic) {
+    CrateOnGround s;
+    ASSERT_OK(taut_body_set_kind(s.crate, TAUT_BODY_KINEMATIC));
+    ASSERT_OK(taut_body_set_locked_axes(s.crate, TAUT_LOCK_X | TAUT_LOCK_Y));
+    ASSERT_OK(taut_body_set_velocity(s.crate, {3, 0, 4}, {0, 0, 0}));
+    step_on(s.world, 60);
+    EXPECT_NEAR(place_of(s.crate).x, 3, 1e-6);
+    ASSERT_OK(taut_body_set_kind(s.crate, TAUT_BODY_DYNAMIC));
+    EXPECT_EQ(speed_of(s.crate).x, 0);
+    EXPECT_EQ(speed_of(s.crate).z, 4);
+    const taut_pos before = place_of(s.crate);
+    step_on(s.world, 60);
+    EXPECT_EQ(place_of(s.crate).x, before.x);
+    EXPECT_EQ(place_of(s.crate).y, before.y);
+    EXPECT_NE(place_of(s.crate).z, before.z);
+}
+
+TEST(LockedAxes, RefuseWhatCannotBeLocked) {
+    Populated p;
+    const Watch watch(p.world);
+    EXPECT_EQ(taut_body_set_locked_axes(p.crate, 64), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "locked_axes is 64")) << taut_last_error();
+    EXPECT_EQ(taut_body_set_locked_axes(p.bob, TAUT_LOCK_X), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "particle")) << taut_last_error();
+    EXPECT_EQ(taut_body_get_locked_axes(p.crate, nullptr), TAUT_NULL_POINTER);
+    taut_body_def def = body_def(TAUT_BODY_DYNAMIC, p.box, 9, 9, 9);
+    def.locked_axes = 1u << 31;
+    taut_body out;
+    EXPECT_EQ(taut_world_add_body(p.world, &def, &out), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "locked_axes")) << taut_last_error();
+}
+
 TEST(BodyKind, ChangesAtRunTime) {
     CrateOnGround s;
     const taut_body body = add_body(s.world, body_def(TAUT_BODY_STATIC, s.box, 0, 5, 0));
@@ -531,6 +598,7 @@ TEST(Snapshot, HoldsWhatBodiesWereChangedTo) {
     };
     changes(taut_body_set_damping(top, 0.5f, 0.25f));
     changes(taut_body_set_max_speed(top, 4, 5));
+    changes(taut_body_set_locked_axes(top, TAUT_LOCK_X | TAUT_LOCK_ANGULAR_Y));
     changes(taut_joint_set_enabled(rod, 0));
     changes(taut_body_set_enabled(s.crate, 0));
     const uint64_t hash = changes(taut_body_set_kind(top, TAUT_BODY_KINEMATIC));

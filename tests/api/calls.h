@@ -477,6 +477,12 @@ inline std::vector<Call<taut_body>> body_calls() {
          }},
         {"taut_body_set_damping", [](taut_body b) { return taut_body_set_damping(b, 1, 0); }},
         {"taut_body_get_damping", [](taut_body b) { return taut_body_get_damping(b, nullptr, nullptr); }},
+        {"taut_body_set_locked_axes", [](taut_body b) { return taut_body_set_locked_axes(b, TAUT_LOCK_X); }},
+        {"taut_body_get_locked_axes",
+         [](taut_body b) {
+             uint32_t out;
+             return taut_body_get_locked_axes(b, &out);
+         }},
         {"taut_body_set_gravity_scale", [](taut_body b) { return taut_body_set_gravity_scale(b, 1); }},
         {"taut_body_get_gravity_scale",
          [](taut_body b) {

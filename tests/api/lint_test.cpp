@@ -246,6 +246,19 @@ TEST_F(LintWorld, JointApart) {
     EXPECT_TRUE(kinds(world).empty());
 }
 
+TEST_F(LintWorld, JointLocked) {
+    const taut_body one = body(1, 0, 0);
+    const taut_joint joint = ball({0}, one);
+    ASSERT_OK(taut_body_set_locked_axes(one, TAUT_LOCK_X | TAUT_LOCK_ROTATION));
+    EXPECT_TRUE(kinds(world).empty());
+    ASSERT_OK(set_pose(one, at(0, 0.03, 0)));  // closes
+    EXPECT_EQ(kinds(world), std::set<int>{TAUT_LINT_JOINT_APART});
+    ASSERT_OK(set_pose(one, at(0.03, 0, 0)));
+    EXPECT_EQ(kinds(world), (std::set<int>{TAUT_LINT_JOINT_APART, TAUT_LINT_JOINT_LOCKED}));
+    ASSERT_OK(taut_joint_set_compliance(joint, 1e-3f, 0));  // a spring may be stretched
+    EXPECT_TRUE(kinds(world).empty());
+}
+
 TEST(Lint, JointsAndStopsThatJump) {
     TwoBoxes boxes;
     const taut_quat turned = {0.14943813f, 0, 0, 0.98877108f};  // 0.3 rad about x
@@ -509,9 +522,9 @@ TEST_F(LintWorld, ArgumentsAndTexts) {
     EXPECT_EQ(taut_world_lint(world, nullptr, 0, &count), TAUT_TOO_SMALL);
     EXPECT_EQ(count, 1u);
     std::set<std::string> texts;
-    for (int kind = 0; kind <= TAUT_LINT_SOFT_NOT_MANIFOLD; ++kind)
+    for (int kind = 0; kind <= TAUT_LINT_JOINT_LOCKED; ++kind)
         texts.insert(taut_lint_text(static_cast<taut_lint_kind>(kind)));
-    EXPECT_EQ(texts.size(), static_cast<size_t>(TAUT_LINT_SOFT_NOT_MANIFOLD) + 1);
+    EXPECT_EQ(texts.size(), static_cast<size_t>(TAUT_LINT_JOINT_LOCKED) + 1);
     EXPECT_FALSE(texts.contains("unknown"));
     EXPECT_STREQ(taut_lint_text(TAUT_LINT_KIND_MAX), "unknown");
 }

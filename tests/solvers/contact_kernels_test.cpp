@@ -49,8 +49,10 @@ struct Data {
             }
             const Quat q = rotation_from_vector(0.02 * Vec3(number(engine), number(engine), number(engine)));
             for (int k = 0; k < 4; ++k) shift[i].dq[k] = static_cast<float>(q.coeffs()[k]);
-            mass.inv_mass = decade();
-            for (int k = 0; k < 6; ++k) mass.inv_inertia[k] = mass.inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
+            const float inv_mass = decade();
+            const auto along = [&](uint32_t axis) { return i % 5 == 4 && i % 3 == axis ? 0 : inv_mass; };
+            node[i].set_inv_mass(inv_mass, along(0), along(1), along(2));  // some have a locked axis
+            for (int k = 0; k < 6; ++k) mass.inv_inertia[k] = inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
         }
         std::vector<uint32_t> order(kNodes - 1);
         std::iota(order.begin(), order.end(), 1);

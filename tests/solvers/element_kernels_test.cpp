@@ -53,7 +53,7 @@ struct Lanes {
                     system.sweep[at].velocity.w[k] = static_cast<float>(random.between(-1, 1));
                 }
                 const bool stays = n == 0 && random.unit() < 0.3;
-                system.sweep[at].mass.inv_mass = stays ? 0 : static_cast<float>(random.between(0.5, 5));
+                system.sweep[at].set_inv_mass(stays ? 0 : static_cast<float>(random.between(0.5, 5)));
                 system.sweep_pose[at].inv_mass = system.sweep[at].mass.inv_mass;
             }
             elements.insert(set, e, {node, nodes}, random.between(0.5, 2));

@@ -97,7 +97,10 @@ struct Mechanism {
             system.sweep[node].velocity.w[k] = static_cast<float>(w[k]);
         }
         const double inv_mass = std::pow(10.0, 2 * random.unit() - 1);
-        system.sweep[node].mass.inv_mass = static_cast<float>(inv_mass);
+        const auto along = [&](uint32_t axis) {
+            return node % 7 == 6 && node % 3 == axis ? 0 : static_cast<float>(inv_mass);
+        };
+        system.sweep[node].set_inv_mass(static_cast<float>(inv_mass), along(0), along(1), along(2));  // some are locked
         for (int k = 0; k < 6; ++k)
             system.sweep[node].mass.inv_inertia[k] =
                 static_cast<float>(inv_mass * (k < 3 ? 2 + random.unit() : 0.5 * random.unit()));
@@ -183,9 +186,11 @@ Matrix inverse_masses(const System& system, const RowBlock& block) {
     const int size = kDof * block.type->nodes;
     Matrix w = Matrix::Zero(size, size);
     for (int n = 0; n < block.type->nodes; ++n) {
-        const SweepMass& m = system.sweep[block.node[n]].mass;
+        const auto& [velocity, m] = system.sweep[block.node[n]];
         const float* i = m.inv_inertia;
-        w.block<3, 3>(kDof * n, kDof * n) = m.inv_mass * Mat3::Identity();
+        w(kDof * n, kDof * n) = m.inv_mass_x;
+        w(kDof * n + 1, kDof * n + 1) = velocity.inv_mass_y;
+        w(kDof * n + 2, kDof * n + 2) = velocity.inv_mass_z;
         w.block<3, 3>(kDof * n + 3, kDof * n + 3) << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
     }
     return w;

@@ -41,8 +41,10 @@ struct SurfaceData {
             }
             const Quat q = rotation_from_vector(0.02 * random.vector());
             for (int k = 0; k < 4; ++k) shift[i].dq[k] = static_cast<float>(q.coeffs()[k]);
-            mass.inv_mass = std::pow(10.0f, 3 * any());
-            for (int k = 0; k < 6; ++k) mass.inv_inertia[k] = mass.inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
+            const float inv_mass = std::pow(10.0f, 3 * any());
+            const auto along = [&](uint32_t axis) { return i % 5 == 4 && i % 3 == axis ? 0 : inv_mass; };
+            node[i].set_inv_mass(inv_mass, along(0), along(1), along(2));  // some have a locked axis
+            for (int k = 0; k < 6; ++k) mass.inv_inertia[k] = inv_mass * (k < 3 ? 3 + any() : 0.3f * any());
         }
         std::mt19937_64 engine(seed);
         std::vector<uint32_t> order(kSurfaceSeats - 1);

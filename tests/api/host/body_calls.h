@@ -33,6 +33,7 @@ protected:
         if (one_in(8)) def.contact_events = byte() % (one_in(16) ? 32 : 16);
         def.gravity_scale = real(-2, 2);
         if (one_in(4)) def.linear_damping = damping(), def.angular_damping = damping();
+        if (one_in(6)) def.locked_axes = byte() % (one_in(16) ? 256 : 64);
         if (one_in(8)) def.max_linear_speed = real(0, 20), def.max_angular_speed = real(0, 20);
         taut_collider_def colliders[2];
         for (taut_collider_def& collider : colliders) collider = collider_def(w);
@@ -174,7 +175,16 @@ protected:
         const taut_body body = pick_body(pick_world());
         const float a = damping(), b = one_in(2) ? 0 : damping();
         float linear = 0, angular = 0;
-        switch (byte() % 7) {
+        switch (byte() % 8) {
+            case 7: {
+                const uint32_t axes = one_in(2) ? 0 : byte() % (one_in(16) ? 256 : 64);
+                uint32_t read = 0;
+                if (!run("taut_body_set_locked_axes", [&] { return taut_body_set_locked_axes(body, axes); })) break;
+                expect(ask("taut_body_get_locked_axes", [&] { return taut_body_get_locked_axes(body, &read); }) &&
+                           read == axes,
+                       "locked axes of another");
+                break;
+            }
             case 0:
                 if (!run("taut_body_set_damping", [&] { return taut_body_set_damping(body, a, b); })) break;
                 expect(ask("taut_body_get_damping", [&] { return taut_body_get_damping(body, &linear, &angular); }) &&
