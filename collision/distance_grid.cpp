@@ -7,7 +7,7 @@
 #include "collision/box_tree.h"
 #include "collision/sorting.h"
 #include "collision/surface.h"
-#include "constraints/point_penalty.h"
+#include "collision/triangle_distance.h"
 
 namespace taut::collision {
 namespace {
@@ -96,10 +96,7 @@ private:
     }
     double distance_squared(uint32_t t, const Vec3& point) const {
         const Vec3 triangle[3] = {corner(t, 0), corner(t, 1), corner(t, 2)};
-        const TrianglePoint nearest = nearest_on_triangle(point, triangle);
-        Vec3 apart = point;
-        for (int i = 0; i < 3; ++i) apart -= nearest.weight[i] * triangle[i];
-        return apart.squaredNorm();
+        return collision::distance_squared(point, triangle);
     }
 
     std::span<const Vec3f> corners_;

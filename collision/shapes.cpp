@@ -5,6 +5,7 @@
 
 #include "collision/collide.h"
 #include "collision/hull.h"
+#include "collision/polyhedron_mass.h"
 #include "collision/revolution.h"
 #include "collision/surface.h"
 
@@ -76,34 +77,15 @@ MassProperties tapered_capsule_mass(const Shape& shape, double density) {
     return mass_of_revolution(slices, density);
 }
 
-// Sum over tetrahedra from a point p to the surface's triangles (a, b, c), relative to p:
-// V = a . (b x c) / 6;  integral of x = V (a + b + c) / 4;
-// integral of x x^T = V / 20 (a a^T + b b^T + c c^T + s s^T), s = a + b + c.
 MassProperties hull_mass(const Shape& shape, double density) {
     const Hull& hull = *shape.hull;
-    const Vec3 from = hull.centre.cast<double>();
-    double volume = 0;
-    Vec3 first = Vec3::Zero();
-    Mat3 second = Mat3::Zero();
+    PolyhedronMass mass(hull.centre.cast<double>());
     for (const Face& face : hull.faces) {
         const auto loop = hull.loop_of(face);
-        const auto at = [&](size_t i) { return Vec3(hull.vertices[loop[i]].cast<double>() - from); };
-        for (size_t i = 2; i < loop.size(); ++i) {
-            const Vec3 a = at(0), b = at(i - 1), c = at(i);
-            const Vec3 s = a + b + c;
-            const double v = a.dot(b.cross(c)) / 6;
-            volume += v;
-            first += v / 4 * s;
-            second += v / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
-        }
+        const auto at = [&](size_t i) { return Vec3(hull.vertices[loop[i]].cast<double>()); };
+        for (size_t i = 2; i < loop.size(); ++i) mass.add(at(0), at(i - 1), at(i));
     }
-    const Vec3 centre = first / volume;
-    second -= volume * centre * centre.transpose();
-    MassProperties out;
-    out.mass = density * volume;
-    out.centre = from + centre;
-    out.inertia = Sym3::of(density * (second.trace() * Mat3::Identity() - second));
-    return out;
+    return mass.properties(density);
 }
 
 // ---------------------------------------------------------------- bounds

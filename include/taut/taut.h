@@ -12,6 +12,7 @@
 #include <taut/character.h>
 #include <taut/cloth.h>
 #include <taut/collider.h>
+#include <taut/decomposition.h>
 #include <taut/draw.h>
 #include <taut/event.h>
 #include <taut/joint.h>

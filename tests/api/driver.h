@@ -114,6 +114,7 @@ public:
             &Driver::read_attached,
             &Driver::write_attached,
             &Driver::bake_any,
+            &Driver::decompose_any,
             &Driver::add_baked_shape,
             &Driver::add_soft,
             &Driver::remove_soft,

@@ -233,6 +233,33 @@ protected:
             expect(bytes > 0, "bytes that are none");
     }
 
+    // Tetrahedra, which are closed, and now and then what is not.
+    void decompose_any() {
+        if (live(baked_, taut_baked_is_valid) >= kMostBaked) return release_baked();
+        std::vector<taut_vec3> points(4);
+        for (taut_vec3& point : points) point = vec(2);
+        std::vector<uint32_t> indices = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+        if (one_in(8)) indices[word() % 12] = word() % 5;
+        taut_decomposition_def def;
+        taut_decomposition_def_init(&def);
+        spoil(def.struct_size);
+        def.vertices = points.data();
+        def.vertex_count = 4;
+        def.indices = indices.data();
+        def.triangle_count = 4;
+        def.max_parts = 1 + byte() % (one_in(16) ? 255 : 2);
+        def.close_holes = one_in(8);
+        if (one_in(4)) def.tolerance = real(0.2, 1);
+        taut_baked out[2] = {{0}, {0}};
+        uint32_t count = 0;
+        taut_decomposition_info info;
+        if (!run("taut_bake_decomposition",
+                 [&] { return taut_bake_decomposition(&def, nullptr, out, 2, &count, &info); }))
+            return;
+        expect(count > 0 && count <= def.max_parts, "parts that are none or too many");
+        for (uint32_t i = 0; i < count; ++i) keep(baked_, out[i], 0);
+    }
+
     void add_baked_shape() {
         if (live(shapes_, taut_shape_is_valid) >= kMostShapes) return;
         const size_t w = pick_world();
