@@ -21,6 +21,7 @@
 #include <taut/pre_solve.h>
 #include <taut/profile.h>
 #include <taut/query.h>
+#include <taut/ragdoll.h>
 #include <taut/sensor.h>
 #include <taut/shape.h>
 #include <taut/sleep.h>

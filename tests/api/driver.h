@@ -125,6 +125,7 @@ public:
             &Driver::let_go,
             &Driver::move_character,
             &Driver::drive_vehicle,
+            &Driver::use_ragdoll,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

@@ -1,4 +1,4 @@
-// Calls of character.h and vehicle.h.
+// Calls of character.h, vehicle.h and ragdoll.h.
 #pragma once
 
 #include <cstddef>
@@ -95,6 +95,67 @@ protected:
         if (one_in(16)) spoil_bytes(&vehicle_[w], sizeof vehicle_[w]);
     }
 
+    void use_ragdoll() {
+        const size_t w = pick_world();
+        taut_ragdoll& ragdoll = ragdoll_[w];
+        taut_bone_def bones[3];
+        for (uint32_t i = 0; i < 3; ++i) {
+            taut_bone_def_init(&bones[i]);
+            bones[i].parent = i == 0 || one_in(4) ? -1 : static_cast<int32_t>(i) - 1;
+            if (one_in(16)) bones[i].parent = static_cast<int32_t>(word());
+            bones[i].shape = pick(shapes_, w);
+            bones[i].pose = pose();
+            bones[i].joint = pose();
+            if (one_in(2)) bones[i].mass = real(0.1, 10);
+            if (one_in(4)) bones[i].lower = {real(-3, 0), real(-1.5, 0), 0}, bones[i].upper = {real(0, 3), 0, 0};
+            if (one_in(4)) bones[i].frequency = real(0, 100), bones[i].max_torque = real(0, 1e6);
+            spoil(bones[i].struct_size);
+        }
+        taut_ragdoll_def def;
+        taut_ragdoll_def_init(&def);
+        spoil(def.struct_size);
+        def.bones = bones;
+        def.bone_count = 1 + byte() % 3;
+        if (one_in(4)) def.pose = pose();
+        const taut_ragdoll before = ragdoll;
+        const auto unchanged = [&] {
+            expect(std::memcmp(&before, &ragdoll, sizeof before) == 0, "a refused call changed a ragdoll");
+        };
+        taut_pose poses[3] = {pose(), pose(), pose()};
+        switch (byte() % 5) {
+            case 0:
+                if (live(bodies_, taut_body_is_valid, w) + 3 > kMostBodies) return;
+                if (!run("taut_world_add_ragdoll", [&] { return taut_world_add_ragdoll(worlds_[w], &def, &ragdoll); }))
+                    return unchanged();
+                for (uint32_t i = 0; i < ragdoll.bone_count; ++i) {
+                    keep(bodies_, ragdoll.bodies[i], w);
+                    keep_colliders(ragdoll.bodies[i], w);
+                    if (ragdoll.joints[i].bits != 0) keep(joints_, ragdoll.joints[i], w);
+                }
+                return;
+            case 1:
+                if (one_in(4)) run("taut_ragdoll_remove", [&] { return taut_ragdoll_remove(&ragdoll); });
+                return;
+            case 2:
+                if (ask("taut_ragdoll_get_poses", [&] { return taut_ragdoll_get_poses(&ragdoll, poses, 3); }))
+                    for (uint32_t i = 0; i < ragdoll.bone_count; ++i) expect_finite(poses[i]);
+                return;
+            case 3:
+                if (ragdoll.bone_count > 3) return;
+                if (run("taut_ragdoll_set_poses", [&] { return taut_ragdoll_set_poses(&ragdoll, poses); }))
+                    expect_all_finite();
+                return;
+            default: {
+                const auto mode = static_cast<taut_ragdoll_mode>(byte() % (one_in(16) ? 8 : 4));
+                const float seconds = one_in(8) ? real(0, 1) : 1 / 60.0f;
+                if (run("taut_ragdoll_drive", [&] { return taut_ragdoll_drive(&def, mode, poses, seconds, &ragdoll); }))
+                    expect_all_finite();
+                else
+                    unchanged();
+            }
+        }
+    }
+
 private:
     // Anything may be in a host's memory but a size beyond it.
     void spoil_bytes(void* at, size_t size) {
@@ -113,8 +174,15 @@ private:
         return out;
     }
 
+    static taut_ragdoll new_ragdoll() {
+        taut_ragdoll out;
+        taut_ragdoll_init(&out);
+        return out;
+    }
+
     taut_character character_[2] = {new_character(), new_character()};
     taut_vehicle vehicle_[2] = {new_vehicle(), new_vehicle()};
+    taut_ragdoll ragdoll_[2] = {new_ragdoll(), new_ragdoll()};
 };
 
 }  // namespace taut_test
