@@ -63,9 +63,9 @@ typedef enum taut_attachment_kind {
 /** An attachment between two anchors; of all their bodies together at least one must be dynamic or a particle. */
 typedef struct taut_attachment_def {
     uint32_t struct_size;
-    taut_attachment_kind kind; /**< default TAUT_ATTACHMENT_BALL */
-    taut_anchor a;
-    taut_anchor b;
+    taut_attachment_kind kind;  /**< default TAUT_ATTACHMENT_BALL */
+    taut_anchor a;              /**< on it acts the opposite of the force that is told */
+    taut_anchor b;              /**< on it acts that force */
     float length;               /**< of a distance [m], 0 or [1e-4, 1e6]; 0: that at creation. Default 0 */
     float compliance;           /**< [m/N], [0, 1e6]. Default 0 */
     float damping;              /**< [N s/m], [0, 1e12]. Default 0 */
@@ -81,12 +81,12 @@ typedef struct taut_attachment_def {
 
 /** An attachment as of the last step. */
 typedef struct taut_attachment_state {
-    taut_attachment attachment;
+    taut_attachment attachment; /**< that it is of */
     uint64_t user_data;
     taut_pos point_a; /**< of the anchors, in the world [m] */
-    taut_pos point_b;
-    taut_vec3 force; /**< on b, world axes [N]; a receives the opposite. Zero before the first step */
-    float error;     /**< [m], as taut_attachment_get_error */
+    taut_pos point_b; /**< likewise */
+    taut_vec3 force;  /**< on b, world axes [N]; a receives the opposite. Zero before the first step */
+    float error;      /**< [m], as taut_attachment_get_error */
 } taut_attachment_state;
 
 TAUT_API void taut_attachment_def_init_sized(taut_attachment_def* def, uint32_t size);
@@ -137,6 +137,7 @@ TAUT_API taut_result taut_solid_find_anchor(taut_solid solid, taut_pos point, ta
  *         TAUT_FOREIGN_HANDLE, TAUT_STRUCT_SIZE, TAUT_NULL_POINTER, TAUT_LIMIT, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_world_add_attachment(taut_world world, const taut_attachment_def* def, taut_attachment* out);
+/** Removes an attachment. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_attachment_remove(taut_attachment attachment);
 /** 1 if the handle names a live attachment, else 0. */
 TAUT_API int32_t taut_attachment_is_valid(taut_attachment attachment);
@@ -146,6 +147,7 @@ TAUT_API taut_result taut_attachment_get_def_sized(taut_attachment attachment, t
 static inline taut_result taut_attachment_get_def(taut_attachment attachment, taut_attachment_def* out) {
     return taut_attachment_get_def_sized(attachment, out, (uint32_t)sizeof(*out));
 }
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_attachment_get_user_data(taut_attachment attachment, uint64_t* out);
 TAUT_API taut_result taut_attachment_set_user_data(taut_attachment attachment, uint64_t value);
 /** World positions of the two anchors after the last step [m]. */

@@ -38,6 +38,7 @@
 extern "C" {
 #endif
 
+/** Version of this header; before 1.0 a minor version may change the interface. */
 #define TAUT_VERSION_MAJOR 0
 #define TAUT_VERSION_MINOR 1
 #define TAUT_VERSION_PATCH 0
@@ -151,16 +152,16 @@ typedef void (*taut_finish_task_fn)(void* token, void* user_data);
  * calls the API.
  */
 typedef struct taut_hooks {
-    taut_log_fn log;
-    void* log_user_data;
-    taut_allocate_fn allocate; /**< allocate and free: both or neither */
-    taut_free_fn free;
-    void* memory_user_data;
+    taut_log_fn log;                   /**< told what a step could not do as asked */
+    void* log_user_data;               /**< passed to it */
+    taut_allocate_fn allocate;         /**< allocate and free: both or neither */
+    taut_free_fn free;                 /**< gives back what allocate gave */
+    void* memory_user_data;            /**< passed to both */
     taut_enqueue_task_fn enqueue_task; /**< enqueue_task and finish_task: both or neither */
-    taut_finish_task_fn finish_task;
-    void* task_user_data;
-    uint32_t worker_count; /**< workers of the host's task system that may help, [0, 63]; 0 without one */
-    uint32_t reserved;     /**< zero */
+    taut_finish_task_fn finish_task;   /**< waits for them */
+    void* task_user_data;              /**< passed to both */
+    uint32_t worker_count;             /**< workers of the host's task system that may help, [0, 63]; 0 without one */
+    uint32_t reserved;                 /**< zero */
 } taut_hooks;
 
 /** None of them. Nothing where hooks is null. Thread safety: any thread. */

@@ -136,7 +136,9 @@ TAUT_API taut_result taut_body_remove(taut_body body);
 /** 1 if the handle names a live body or particle, else 0. */
 TAUT_API int32_t taut_body_is_valid(taut_body body);
 
+/** What moves it. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_body_get_kind(taut_body body, taut_body_kind* out);
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_body_get_user_data(taut_body body, uint64_t* out);
 TAUT_API taut_result taut_body_set_user_data(taut_body body, uint64_t value);
 /**

@@ -48,30 +48,30 @@ typedef struct taut_cable_end_def {
  */
 typedef struct taut_cable_def {
     uint32_t struct_size;
-    taut_cable_kind kind; /**< default TAUT_CABLE_LINKS */
-    taut_cable_end_def end[2];
-    const taut_pos* points;   /**< point_count points of the path, from end 0 to end 1 [m]; copied. The path's own ends
-                                   give way to the anchors of attached ends */
-    uint32_t point_count;     /**< 0 (both ends attached: straight from one to the other) or at least 2 */
-    uint32_t segment_count;   /**< the path is cut into so many; at most TAUT_CABLE_MAX_SEGMENTS. Default 0 */
-    float segment_length;     /**< or into segments of about this length [m], [0.01, 1000]. Default 0. Both 0: each
-                                   stretch of the path is a segment, and a straight path is cut into 16 */
-    float length;             /**< [m], 0: the path's own. More than the distance of the ends: it sags, as a parabola;
-                                   straight paths only. Default 0 */
-    float diameter;           /**< [m], [0.002, 1000]. Default 0.02 */
-    float mass_per_metre;     /**< [kg/m], [1e-3, 1e9]. Default 1 */
-    float stretch_compliance; /**< strain per force [1/N], [0, 1000]. Default 0: does not stretch */
-    float stretch_damping;    /**< force per rate of strain [N s], [0, 1e9]; of a compliant cable. Default 0 */
-    float bending_stiffness;  /**< [N m^2], 0 or [1e-9, 1e12]. Default 0: limp */
-    float bending_damping;    /**< [N m^2 s], [0, 1e9]. Default 0 */
-    taut_material material;
-    taut_filter filter;      /**< mask 0: no contacts */
-    uint32_t self_collision; /**< 1: segments collide with all others of the cable but the next; of particles but the
-                                  next two. 0: they do not; they then share a negative group of their own (below -1e9)
-                                  where filter.group is 0, and it may not be positive. 1 asks for filter.group >= 0.
-                                  Default 0 */
-    float gravity_scale;     /**< [-1000, 1000]. Default 1 */
-    uint64_t user_data;      /**< of the cable and of each of its bodies */
+    taut_cable_kind kind;      /**< default TAUT_CABLE_LINKS */
+    taut_cable_end_def end[2]; /**< where its first and last point go */
+    const taut_pos* points;    /**< point_count points of the path, from end 0 to end 1 [m]; copied. The path's own ends
+                                    give way to the anchors of attached ends */
+    uint32_t point_count;      /**< 0 (both ends attached: straight from one to the other) or at least 2 */
+    uint32_t segment_count;    /**< the path is cut into so many; at most TAUT_CABLE_MAX_SEGMENTS. Default 0 */
+    float segment_length;      /**< or into segments of about this length [m], [0.01, 1000]. Default 0. Both 0: each
+                                    stretch of the path is a segment, and a straight path is cut into 16 */
+    float length;              /**< [m], 0: the path's own. More than the distance of the ends: it sags, as a parabola;
+                                    straight paths only. Default 0 */
+    float diameter;            /**< [m], [0.002, 1000]. Default 0.02 */
+    float mass_per_metre;      /**< [kg/m], [1e-3, 1e9]. Default 1 */
+    float stretch_compliance;  /**< strain per force [1/N], [0, 1000]. Default 0: does not stretch */
+    float stretch_damping;     /**< force per rate of strain [N s], [0, 1e9]; of a compliant cable. Default 0 */
+    float bending_stiffness;   /**< [N m^2], 0 or [1e-9, 1e12]. Default 0: limp */
+    float bending_damping;     /**< [N m^2 s], [0, 1e9]. Default 0 */
+    taut_material material;    /**< of the surface */
+    taut_filter filter;        /**< mask 0: no contacts */
+    uint32_t self_collision;   /**< 1: segments collide with all others of the cable but the next; of particles but the
+                                    next two. 0: they do not; they then share a negative group of their own (below -1e9)
+                                    where filter.group is 0, and it may not be positive. 1 asks for filter.group >= 0.
+                                    Default 0 */
+    float gravity_scale;       /**< [-1000, 1000]. Default 1 */
+    uint64_t user_data;        /**< of the cable and of each of its bodies */
 } taut_cable_def;
 
 TAUT_API void taut_cable_def_init_sized(taut_cable_def* def, uint32_t size);
@@ -100,6 +100,7 @@ TAUT_API taut_result taut_cable_remove(taut_cable cable);
 TAUT_API taut_result taut_cable_cut(taut_cable cable, uint32_t segment);
 /** 1 if the handle names a live cable, else 0. */
 TAUT_API int32_t taut_cable_is_valid(taut_cable cable);
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_cable_get_user_data(taut_cable cable, uint64_t* out);
 /** The cable that a body is part of; null for any other body. */
 TAUT_API taut_result taut_body_get_cable(taut_body body, taut_cable* out);

@@ -59,19 +59,19 @@ typedef struct taut_character_def {
  */
 typedef struct taut_character {
     uint32_t struct_size;
-    taut_character_state state;
-    taut_pos position;         /**< of the capsule's centre [m], within 9e6 of the origin */
-    taut_vec3 velocity;        /**< relative to ground_velocity [m/s], within 1e4; on the ground horizontal */
-    taut_vec3 ground_velocity; /**< of the ground beneath it; in the air and sliding, as it left the ground [m/s] */
-    taut_vec3 ground_normal;   /**< unit, of the surface that carries it, against which it slides; 0 in the air */
-    float ground_turn;         /**< by which the ground turned about up within the call, for the direction that the
-                                    character looks in [rad] */
-    taut_pos ground_point;     /**< where that touches the capsule [m]; 0 in the air */
-    taut_pose ground_pose;     /**< of ground_body at the end of the call */
-    taut_body ground_body;     /**< that carries it; null in the air. It may be removed since */
-    taut_collider ground_collider;
-    float overlap;   /**< how deep it is within what leaves it no room [m]; 0: it is free */
-    uint32_t pushed; /**< dynamic bodies that were in its way and got a force */
+    taut_character_state state;    /**< what carries it */
+    taut_pos position;             /**< of the capsule's centre [m], within 9e6 of the origin */
+    taut_vec3 velocity;            /**< relative to ground_velocity [m/s], within 1e4; on the ground horizontal */
+    taut_vec3 ground_velocity;     /**< of the ground beneath it; in the air and sliding, as it left the ground [m/s] */
+    taut_vec3 ground_normal;       /**< unit, of the surface that carries it, against which it slides; 0 in the air */
+    float ground_turn;             /**< by which the ground turned about up within the call, for the direction that the
+                                        character looks in [rad] */
+    taut_pos ground_point;         /**< where that touches the capsule [m]; 0 in the air */
+    taut_pose ground_pose;         /**< of ground_body at the end of the call */
+    taut_body ground_body;         /**< that carries it; null in the air. It may be removed since */
+    taut_collider ground_collider; /**< likewise */
+    float overlap;                 /**< how deep it is within what leaves it no room [m]; 0: it is free */
+    uint32_t pushed;               /**< dynamic bodies that were in its way and got a force */
 } taut_character;
 
 TAUT_API void taut_character_def_init_sized(taut_character_def* def, uint32_t size);

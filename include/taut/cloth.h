@@ -115,10 +115,10 @@ typedef struct taut_cloth_def {
     float stretch_tolerance;     /**< of a swept cloth: by which it may stretch beyond what its stiffness lets it, and
                                       for which it and what it touches take substeps, up to 64 a step, [1e-4, 10].
                                       Default 0.2 */
-    taut_material material;
-    uint32_t self_collision; /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
-    taut_filter filter;      /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
-    uint64_t user_data;      /**< of the cloth and of each of its vertices */
+    taut_material material;      /**< of the surface */
+    uint32_t self_collision;     /**< 1: it touches itself, see deformable.h; 0: it goes through itself. Default 0 */
+    taut_filter filter;          /**< mask 0: no contacts; group may not be positive, 0: the cloth has a negative one */
+    uint64_t user_data;          /**< of the cloth and of each of its vertices */
 } taut_cloth_def;
 
 TAUT_API void taut_cloth_def_init_sized(taut_cloth_def* def, uint32_t size);
@@ -141,6 +141,7 @@ TAUT_API taut_result taut_world_add_cloth(taut_world world, const taut_cloth_def
 TAUT_API taut_result taut_cloth_remove(taut_cloth cloth);
 /** 1 if the handle names a live cloth, else 0. */
 TAUT_API int32_t taut_cloth_is_valid(taut_cloth cloth);
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_cloth_get_user_data(taut_cloth cloth, uint64_t* out);
 /** How the world's default solver takes its elements: TAUT_DEFORMABLE_DIRECT or TAUT_DEFORMABLE_SWEPT. */
 TAUT_API taut_result taut_cloth_get_solve(taut_cloth cloth, taut_deformable_solve* out);

@@ -82,17 +82,18 @@ TAUT_API void taut_filter_init(taut_filter* filter);
 #define TAUT_CONTACT_EVENTS_PERSIST 2u   /**< that it goes on, in each step */
 #define TAUT_CONTACT_EVENTS_POINTS 4u    /**< the points of those that began or go on */
 #define TAUT_CONTACT_EVENTS_HIT 8u       /**< that it closed faster than the world's hit_speed */
+/** All of these. */
 #define TAUT_CONTACT_EVENTS_ALL 15u
 
 /** A shape on a body. */
 typedef struct taut_collider_def {
     uint32_t struct_size;
-    float density;      /**< its share in a mass taken from colliders [kg/m^3], [0, 1e8]; 0: none. Default 1000 */
-    taut_shape shape;   /**< of the body's world; not null */
-    taut_vec3 position; /**< of the shape's origin in the body's frame [m], within TAUT_SHAPE_MAX_SIZE. Default 0 */
-    taut_quat rotation; /**< of the shape in the body's frame. Default identity */
-    taut_material material;
-    taut_filter filter;
+    float density;          /**< its share in a mass taken from colliders [kg/m^3], [0, 1e8]; 0: none. Default 1000 */
+    taut_shape shape;       /**< of the body's world; not null */
+    taut_vec3 position;     /**< of the shape's origin in the body's frame [m], within TAUT_SHAPE_MAX_SIZE. Default 0 */
+    taut_quat rotation;     /**< of the shape in the body's frame. Default identity */
+    taut_material material; /**< of the surface */
+    taut_filter filter;     /**< who collides with it */
     uint64_t user_data;
     uint32_t flags;          /**< sum of TAUT_COLLIDER_ bits. Default 0 */
     uint32_t contact_events; /**< sum of TAUT_CONTACT_EVENTS_ bits, beside the world's. Default 0 */
@@ -143,9 +144,11 @@ TAUT_API taut_result taut_collider_get_def_sized(taut_collider collider, taut_co
 static inline taut_result taut_collider_get_def(taut_collider collider, taut_collider_def* out) {
     return taut_collider_get_def_sized(collider, out, (uint32_t)sizeof(*out));
 }
+/** The body that it is on. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_collider_get_body(taut_collider collider, taut_body* out);
 /** Its least axis-aligned box [m], as taut_body_get_bounds. */
 TAUT_API taut_result taut_collider_get_bounds(taut_collider collider, taut_pos* low, taut_pos* high);
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_collider_get_user_data(taut_collider collider, uint64_t* out);
 TAUT_API taut_result taut_collider_set_user_data(taut_collider collider, uint64_t value);
 /**
@@ -154,6 +157,8 @@ TAUT_API taut_result taut_collider_set_user_data(taut_collider collider, uint64_
  */
 TAUT_API taut_result taut_collider_set_shape(taut_collider collider, taut_shape shape, taut_vec3 position,
                                              taut_quat rotation);
+/** Changes its surface, from the next step on. @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_NULL_POINTER,
+ *  TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_collider_set_material(taut_collider collider, const taut_material* material);
 /** Changes who collides with it, from the next step on. */
 TAUT_API taut_result taut_collider_set_filter(taut_collider collider, const taut_filter* filter);

@@ -34,6 +34,7 @@ extern "C" {
 #define TAUT_DRAW_FORCES 64u
 /** Labels: with centres the masses of bodies, with forces their sizes. */
 #define TAUT_DRAW_LABELS 128u
+/** All of these. */
 #define TAUT_DRAW_ALL 255u
 
 /** How colliders, cloths and solids are coloured. */
@@ -47,22 +48,25 @@ typedef enum taut_draw_colours {
 /** Colours are 0xRRGGBBAA. */
 typedef struct taut_draw_line {
     taut_pos from, to; /**< [m] */
-    uint32_t colour;
+    uint32_t colour;   /**< 0xRRGGBBAA */
     uint32_t reserved; /**< zero */
 } taut_draw_line;
 
+/** Corners go round counter-clockwise as seen from outside. */
 typedef struct taut_draw_triangle {
     taut_pos corners[3]; /**< [m] */
     uint32_t colour;
     uint32_t reserved; /**< zero */
 } taut_draw_triangle;
 
+/** A word at a place. */
 typedef struct taut_draw_label {
     taut_pos position; /**< [m] */
     uint32_t colour;
     char text[20]; /**< ends with a zero byte: a number of three digits and its unit */
 } taut_draw_label;
 
+/** What is drawn, and how. */
 typedef struct taut_draw_def {
     uint32_t struct_size;
     uint32_t what;             /**< sum of TAUT_DRAW_ bits. Default shapes, contacts and joints */
@@ -76,10 +80,10 @@ typedef struct taut_draw_def {
 /** Where it goes: the host's arrays and how long they are, and what came. */
 typedef struct taut_drawing {
     uint32_t struct_size;
-    uint32_t line_capacity, triangle_capacity, label_capacity;
-    taut_draw_line* lines; /**< may be null where its capacity is 0; so may the others */
-    taut_draw_triangle* triangles;
-    taut_draw_label* labels;
+    uint32_t line_capacity, triangle_capacity, label_capacity; /**< entries that the arrays have room for */
+    taut_draw_line* lines;         /**< may be null where its capacity is 0; so may the others */
+    taut_draw_triangle* triangles; /**< likewise */
+    taut_draw_label* labels;       /**< likewise */
     uint32_t line_count, triangle_count,
         label_count;   /**< out: what there is to draw, as far as the arrays reach in them */
     uint32_t reserved; /**< zero */

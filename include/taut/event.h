@@ -31,8 +31,8 @@ extern "C" {
  * began touches in it, and who was pushed within it, be it off again by its end.
  */
 typedef struct taut_contact_event {
-    taut_body body_a;
-    taut_body body_b;
+    taut_body body_a;         /**< one of the pair, that whose collider's slot comes first */
+    taut_body body_b;         /**< the other one */
     taut_collider collider_a; /**< of body_a */
     taut_collider collider_b; /**< of body_b */
     uint32_t first_point;     /**< of its points in taut_events.points */
@@ -71,17 +71,17 @@ typedef struct taut_hit_event {
 
 /** A collider came into a sensor or left it; see sensor.h. */
 typedef struct taut_sensor_event {
-    taut_collider sensor;
-    taut_collider visitor;
-    taut_body sensor_body;
-    taut_body visitor_body;
-    uint32_t step;     /**< as of a contact event */
-    uint32_t reserved; /**< zero */
+    taut_collider sensor;   /**< that detects */
+    taut_collider visitor;  /**< that is detected */
+    taut_body sensor_body;  /**< of sensor */
+    taut_body visitor_body; /**< of visitor */
+    uint32_t step;          /**< as of a contact event */
+    uint32_t reserved;      /**< zero */
 } taut_sensor_event;
 
 /** A dynamic, kinematic or particle body that a step moved, once with its newest pose. */
 typedef struct taut_moved_event {
-    taut_body body;
+    taut_body body; /**< that it tells of */
     uint64_t user_data;
     taut_pose pose; /**< after the last step */
 } taut_moved_event;
@@ -116,7 +116,7 @@ typedef struct taut_attachment_break_event {
 } taut_attachment_break_event;
 /** A vertex of a cloth that a step split, as an edge on it was stretched too far; see taut_cloth_def::tear_strain. */
 typedef struct taut_tear_event {
-    taut_cloth cloth;
+    taut_cloth cloth;    /**< that tore */
     uint64_t user_data;  /**< of the cloth */
     uint32_t edge[2];    /**< vertices of the edge that was stretched too far */
     uint32_t vertex;     /**< that was split: one of these, or one beside it that the tear parted in two */
@@ -130,12 +130,12 @@ typedef struct taut_tear_event {
  * the strain at which it yields; see taut_solid_def::yield_stress.
  */
 typedef struct taut_yield_event {
-    taut_solid solid;
+    taut_solid solid;   /**< that it is of */
     uint64_t user_data; /**< of the solid */
-    uint32_t cell;
-    float stress;  /**< von Mises', of what is left after it has flowed, as taut_solid_get_stresses says [Pa] */
-    float strain;  /**< plastic, as taut_solid_get_plastic_strains says */
-    uint32_t step; /**< as of a contact event */
+    uint32_t cell;      /**< that yielded, as the def numbers them */
+    float stress;       /**< von Mises', of what is left after it has flowed, as taut_solid_get_stresses says [Pa] */
+    float strain;       /**< plastic, as taut_solid_get_plastic_strains says */
+    uint32_t step;      /**< as of a contact event */
 } taut_yield_event;
 
 /** A body or particle that fell asleep or woke; see sleep.h. */
@@ -154,10 +154,10 @@ typedef struct taut_sleep_event {
  * before enters: where a call changed a collider, both may come in one step.
  */
 typedef struct taut_events {
-    const taut_contact_event* begin;
-    const taut_contact_event* end;
-    const taut_moved_event* moved;
-    const taut_quarantine_event* quarantined;
+    const taut_contact_event* begin;          /**< pairs that touch and did not before */
+    const taut_contact_event* end;            /**< pairs that touch no more */
+    const taut_moved_event* moved;            /**< bodies that moved, each once */
+    const taut_quarantine_event* quarantined; /**< bodies that were frozen */
     uint32_t begin_count;
     uint32_t end_count;
     uint32_t moved_count;
@@ -169,7 +169,7 @@ typedef struct taut_events {
     const taut_hit_event* hit;             /**< of pairs that began or go on */
     const taut_contact_point* points;      /**< of begin and persist */
     const taut_sensor_event* sensor_enter; /**< into sensors; for each there comes one of sensor_leave */
-    const taut_sensor_event* sensor_leave;
+    const taut_sensor_event* sensor_leave; /**< out of sensors */
     uint32_t persist_count;
     uint32_t hit_count;
     uint32_t point_count;

@@ -126,14 +126,14 @@ typedef struct taut_drive {
 /** One axis of a joint. Drive and friction act on free and limited axes; a locked one takes none. */
 typedef struct taut_axis_def {
     uint32_t struct_size;
-    taut_axis_mode mode;
+    taut_axis_mode mode;   /**< what its coordinate may do */
     float lower;           /**< stop of a limited axis [m], within 1e6, or -INFINITY: none. Of an angle, each within
                                 2 pi and not more than 2 pi apart [rad]. Default -INFINITY */
     float upper;           /**< not below lower, or INFINITY: none. Default INFINITY */
     float stop_compliance; /**< of the stops [m/N], [0, 1e6]; 0: rigid. Default 0 */
     float stop_damping;    /**< of compliant stops [N s/m], [0, 1e12]. Default 0 */
-    taut_drive drive;
-    float friction; /**< force at most, against the motion [N], [0, 1e24]. Default 0 */
+    taut_drive drive;      /**< motor or spring */
+    float friction;        /**< force at most, against the motion [N], [0, 1e24]. Default 0 */
 } taut_axis_def;
 
 /**
@@ -190,15 +190,15 @@ typedef struct taut_fixed_joint_def {
     taut_body body_a;           /**< null: the world; no particle */
     taut_body body_b;           /**< null: the world; no particle; at least one end must be dynamic */
     taut_frame frame_a;         /**< default: the origin, unturned */
-    taut_frame frame_b;
-    float compliance;         /**< of the locked positions [m/N], [0, 1e6]. Default 0 */
-    float damping;            /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
-    float angular_compliance; /**< of the locked angles [rad/(N m)], [0, 1e6]. Default 0 */
-    float angular_damping;    /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
-    float break_force;        /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
-    float break_torque;       /**< the same of the torque about the anchor of end b [N m] */
-    taut_joint_solve solve;   /**< default TAUT_JOINT_SOLVE_BY_LOAD */
-    uint32_t reserved;        /**< zero */
+    taut_frame frame_b;         /**< likewise */
+    float compliance;           /**< of the locked positions [m/N], [0, 1e6]. Default 0 */
+    float damping;              /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
+    float angular_compliance;   /**< of the locked angles [rad/(N m)], [0, 1e6]. Default 0 */
+    float angular_damping;      /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
+    float break_force;      /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
+    float break_torque;     /**< the same of the torque about the anchor of end b [N m] */
+    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
+    uint32_t reserved;      /**< zero */
     uint64_t user_data;
 } taut_fixed_joint_def;
 
@@ -552,13 +552,17 @@ TAUT_API taut_result taut_world_add_gear_joint(taut_world world, const taut_gear
 TAUT_API taut_result taut_world_add_rack_pinion_joint(taut_world world, const taut_rack_pinion_joint_def* def,
                                                       taut_joint* out);
 TAUT_API taut_result taut_world_add_pulley_joint(taut_world world, const taut_pulley_joint_def* def, taut_joint* out);
+/** Removes a joint. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_joint_remove(taut_joint joint);
 /** 1 if the handle names a live joint, else 0. */
 TAUT_API int32_t taut_joint_is_valid(taut_joint joint);
 
+/** Which joint it is. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_joint_get_kind(taut_joint joint, taut_joint_kind* out);
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_joint_get_user_data(taut_joint joint, uint64_t* out);
 TAUT_API taut_result taut_joint_set_user_data(taut_joint joint, uint64_t value);
+/** Its ends; null: the world. Either pointer may be null. @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_joint_get_bodies(taut_joint joint, taut_body* body_a, taut_body* body_b);
 /** World positions of the two anchors after the last step [m]. */
 TAUT_API taut_result taut_joint_get_anchors(taut_joint joint, taut_pos* anchor_a, taut_pos* anchor_b);

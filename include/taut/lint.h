@@ -51,7 +51,7 @@ typedef enum taut_lint_kind {
 
 /** One finding. */
 typedef struct taut_lint_entry {
-    taut_lint_kind kind;
+    taut_lint_kind kind;                 /**< what is the matter */
     uint32_t reserved;                   /**< zero */
     taut_body body;                      /**< null where none is meant */
     taut_joint joint;                    /**< null where none is meant */

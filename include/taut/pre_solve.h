@@ -28,15 +28,15 @@ typedef struct taut_pre_solve_point {
 
 /** A contact before it is solved. */
 typedef struct taut_pre_solve {
-    taut_body body_a;
-    taut_body body_b;
-    taut_collider collider_a;
-    taut_collider collider_b;
-    taut_pre_solve_point points[4];
-    uint32_t point_count; /**< 1 to 4 of points; the others are zero */
-    uint32_t touching;    /**< 1 if the colliders touched in the last step, else 0 */
-    taut_vec3 normal;     /**< unit, from a to b */
-    uint32_t reserved;    /**< zero */
+    taut_body body_a;               /**< of collider_a */
+    taut_body body_b;               /**< of collider_b */
+    taut_collider collider_a;       /**< one of the pair, that whose slot comes first */
+    taut_collider collider_b;       /**< the other one */
+    taut_pre_solve_point points[4]; /**< where they are near */
+    uint32_t point_count;           /**< 1 to 4 of points; the others are zero */
+    uint32_t touching;              /**< 1 if the colliders touched in the last step, else 0 */
+    taut_vec3 normal;               /**< unit, from a to b */
+    uint32_t reserved;              /**< zero */
 } taut_pre_solve;
 
 /** What an accepted contact is solved with. */

@@ -15,25 +15,25 @@ extern "C" {
 typedef struct taut_profile {
     uint32_t struct_size; /**< set by the caller to sizeof(taut_profile) */
     /* time [us] */
-    float step_us; /**< the whole step */
-    float broadphase_us;
-    float narrowphase_us;
-    float partition_us; /**< islands, blocks, colours */
-    float predict_us;   /**< forces, world inertia, contact preparation */
-    float assemble_us;  /**< rows and geometric stiffness */
-    float factor_us;    /**< direct solves */
-    float sweep_us;     /**< iterative sweeps, biased and relaxed */
-    float commit_us;    /**< positions */
-    float publish_us;   /**< restitution, quarantine, events */
+    float step_us;        /**< the whole step */
+    float broadphase_us;  /**< which colliders are near */
+    float narrowphase_us; /**< where they touch */
+    float partition_us;   /**< islands, blocks, colours */
+    float predict_us;     /**< forces, world inertia, contact preparation */
+    float assemble_us;    /**< rows and geometric stiffness */
+    float factor_us;      /**< direct solves */
+    float sweep_us;       /**< iterative sweeps, biased and relaxed */
+    float commit_us;      /**< positions */
+    float publish_us;     /**< restitution, quarantine, events */
     /* counts */
-    uint32_t bodies;   /**< dynamic bodies and particles */
-    uint32_t pairs;    /**< overlapping fat boxes */
-    uint32_t touching; /**< pairs with contact points, those between grains too */
-    uint32_t points;   /**< contact points */
-    uint32_t joints;
-    uint32_t islands;
-    uint32_t blocks; /**< joint-connected components solved directly */
-    uint32_t colours;
+    uint32_t bodies;      /**< dynamic bodies and particles */
+    uint32_t pairs;       /**< overlapping fat boxes */
+    uint32_t touching;    /**< pairs with contact points, those between grains too */
+    uint32_t points;      /**< contact points */
+    uint32_t joints;      /**< those of cables of links included */
+    uint32_t islands;     /**< bodies that touch or are tied together */
+    uint32_t blocks;      /**< joint-connected components solved directly */
+    uint32_t colours;     /**< groups of rows of which no two share a body */
     uint32_t substeps;    /**< largest number of substeps that an island took */
     uint32_t solves;      /**< direct block solves, or steps of Newton's method of TAUT_SOLVER_MINIMISATION, all
                                substeps together */
@@ -47,7 +47,7 @@ typedef struct taut_profile {
     uint64_t bytes;       /**< held from the allocator */
     uint64_t allocations; /**< calls of the allocator during the step */
     uint32_t awake;       /**< of the bodies; counts and quality above, but for bodies and joints, are theirs alone */
-    uint32_t sleeping_islands;
+    uint32_t sleeping_islands; /**< that rest asleep */
     uint32_t dropped_contacts; /**< not solved: in a crowd, or beyond taut_world_def.max_contacts */
     uint32_t elements;         /**< of cables of particles, cloths and solids */
     /* what the solves of the step left, largest of all islands and substeps; 0 unless taut_world_def.report is 1 */

@@ -87,12 +87,12 @@ TAUT_API void taut_shape_cast_init(taut_shape_cast* cast);
 
 /** Where a ray or a shape on its way meets a collider. */
 typedef struct taut_query_hit {
-    taut_body body; /**< null: nothing is met, fraction is 1 and all else 0 */
-    taut_collider collider;
-    taut_pos point;   /**< on the collider [m] */
-    taut_vec3 normal; /**< unit, out of the collider */
-    float fraction;   /**< of the translation, [0, 1] */
-    uint32_t feature; /**< triangle of a mesh or height field, as it counts them; 0 of other shapes */
+    taut_body body;         /**< null: nothing is met, fraction is 1 and all else 0 */
+    taut_collider collider; /**< that is met */
+    taut_pos point;         /**< on the collider [m] */
+    taut_vec3 normal;       /**< unit, out of the collider */
+    float fraction;         /**< of the translation, [0, 1] */
+    uint32_t feature;       /**< triangle of a mesh or height field, as it counts them; 0 of other shapes */
     /** 1 if it overlaps the collider at the start. fraction is 0 then; of a ray, point is its origin and normal points
      * against it; of a shape, they are those of the least push out of the collider. Else 0. */
     uint32_t inside;
@@ -223,8 +223,8 @@ static inline taut_result taut_world_nearest_collider(taut_world world, taut_sha
 
 /** A point of a triangle of a cloth, or of the boundary of a solid. */
 typedef struct taut_surface_hit {
-    taut_cloth cloth; /**< null: it is a solid's. Both null: nothing is met or near, and all else is 0 */
-    taut_solid solid;
+    taut_cloth cloth;  /**< null: it is a solid's. Both null: nothing is met or near, and all else is 0 */
+    taut_solid solid;  /**< null: it is a cloth's */
     taut_pos point;    /**< [m] */
     taut_vec3 normal;  /**< unit, of the triangle as its corners go round; 0 where it has no area */
     uint32_t triangle; /**< as taut_cloth_get_triangles and taut_solid_get_triangles number them */

@@ -148,7 +148,7 @@ typedef struct taut_height_field_def {
 /** Where the memory of what is baked comes from. Both null: the C runtime. */
 typedef struct taut_allocator {
     taut_allocate_fn allocate; /**< allocate and free: both or neither */
-    taut_free_fn free;
+    taut_free_fn free;         /**< gives back what allocate gave */
     void* user_data;
 } taut_allocator;
 

@@ -129,6 +129,7 @@ TAUT_API taut_result taut_world_add_solid(taut_world world, const taut_solid_def
 TAUT_API taut_result taut_solid_remove(taut_solid solid);
 /** 1 if the handle names a live solid, else 0. */
 TAUT_API int32_t taut_solid_is_valid(taut_solid solid);
+/** Number of the host's own. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_solid_get_user_data(taut_solid solid, uint64_t* out);
 /** As taut_cloth_get_solve. */
 TAUT_API taut_result taut_solid_get_solve(taut_solid solid, taut_deformable_solve* out);

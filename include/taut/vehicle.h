@@ -28,6 +28,7 @@
 extern "C" {
 #endif
 
+/** Most wheels, and most forward gears, of a vehicle. */
 #define TAUT_VEHICLE_MAX_WHEELS 16
 #define TAUT_VEHICLE_MAX_GEARS 16
 
@@ -129,7 +130,7 @@ typedef struct taut_wheel {
     taut_pose pose;          /**< of its centre: x forwards, y along the chassis' up, z the axle; steered, not turned */
     taut_pos ground_point;   /**< where it touches [m]; 0 in the air */
     taut_body ground_body;   /**< null in the air; it may be removed since */
-    taut_collider ground_collider;
+    taut_collider ground_collider; /**< likewise */
 } taut_wheel;
 
 /** A vehicle, made by taut_vehicle_init. All of it is told by taut_vehicle_drive, which needs it again. */

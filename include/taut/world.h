@@ -247,7 +247,10 @@ TAUT_API taut_result taut_world_set_time_step(taut_world world, float time_step)
  * @return as taut_world_set_time_step.
  */
 TAUT_API taut_result taut_world_set_substeps(taut_world world, uint32_t substeps);
+/** Gravity [m/s^2]. @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_world_get_gravity(taut_world world, taut_vec3* out);
+/** Gravity from the next step on [m/s^2], each within 1e4; wakes all that sleeps.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_world_set_gravity(taut_world world, taut_vec3 gravity);
 /** Velocity of the air, everywhere the same [m/s]. */
 TAUT_API taut_result taut_world_get_wind(taut_world world, taut_vec3* out);
