@@ -87,11 +87,44 @@ private:
     double joint_error_ = 0, worst_ = 0;  // [m]
 };
 
+// What a world goes through, as a file.
+class RecordFile {
+public:
+    RecordFile(const std::string& path) : path_(path) {
+        if (!path.empty() && !file_.open(path, std::ios::binary | std::ios::out | std::ios::trunc))
+            throw std::runtime_error("cannot write " + path);
+    }
+    void begin(taut_world world) {
+        if (path_.empty()) return;
+        taut_record_def def;
+        taut_record_def_init(&def);
+        def.write = [](const void* bytes, uint64_t size, void* self) -> int32_t {
+            const auto count = static_cast<std::streamsize>(size);
+            return static_cast<RecordFile*>(self)->file_.sputn(static_cast<const char*>(bytes), count) == count;
+        };
+        def.user_data = this;
+        scenes::check(taut_world_record(world, &def), "recording");
+    }
+    void end(taut_world world) {
+        if (path_.empty()) return;
+        scenes::check(taut_world_end_recording(world), "ending the recording");
+        if (!file_.close()) throw std::runtime_error("cannot write " + path_);
+    }
+
+private:
+    std::string path_;
+    std::filebuf file_;
+};
+
 // One film: world, renderer and files.
 class Run {
 public:
     Run(const Options& options, const scenes::Scene& scene)
-        : options_(options), scene_(scene), frames_(options.frames.value_or(scene.steps)), world_(scene) {
+        : options_(options),
+          scene_(scene),
+          frames_(options.frames.value_or(scene.steps)),
+          record_file_(options.record),
+          world_(scene, [this](taut_world world) { record_file_.begin(world); }) {
         if (!options.gltf.empty()) gltf_ = std::make_unique<GltfExport>(scene, world_);
         if (!options.csv.empty()) table_ = std::make_unique<PoseTable>(options.csv, world_);
         record(0);
@@ -120,6 +153,7 @@ public:
         if (video_) video_->finish();
         if (gltf_) gltf_->write(options_.gltf);
         if (table_) table_->finish();
+        record_file_.end(world_.world);
     }
 
     nlohmann::ordered_json json() const;
@@ -243,6 +277,7 @@ private:
     const Options& options_;
     const scenes::Scene& scene_;
     uint32_t frames_;
+    RecordFile record_file_;
     scenes::TautWorld world_;
     std::unique_ptr<render::Renderer> renderer_;
     std::unique_ptr<SceneView> view_;

@@ -53,6 +53,7 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_option("--gltf", options.gltf,
                    "animated glTF 2.0 file (.glb) of the drawn frames; draws none without --out or --video");
     app.add_option("--csv", options.csv, "table of the poses of bodies and vertices in those frames");
+    app.add_option("--record", options.record, "recording of the run, for taut-replay");
     app.add_option("--threads", options.threads, "threads of a step")->check(CLI::Range(1, 64));
     app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
     app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");

@@ -18,6 +18,7 @@ struct Options {
     std::string out;                 // folder of the PNG frames, empty: none
     std::string video, json;         // files, empty: none
     std::string gltf, csv;           // likewise
+    std::string record;              // file of a recording, likewise
     int width = 1280, height = 720;
     uint32_t threads = 1;
     uint64_t seed = 0;

@@ -22,6 +22,7 @@
 #include <taut/profile.h>
 #include <taut/query.h>
 #include <taut/ragdoll.h>
+#include <taut/record.h>
 #include <taut/sensor.h>
 #include <taut/shape.h>
 #include <taut/sleep.h>

@@ -170,15 +170,17 @@ uint32_t take_slot() {
 
 Hold::Hold(uint32_t world, Use use) noexcept : slot_(world_slot_of(world)), use_(use) {
     WorldSlot& slot = slots[slot_];
-    const WorldSlot::Lock lock = slot.lock(world, use == Use::write);
-    if (lock == WorldSlot::Lock::held)
+    const WorldSlot::Lock lock = slot.lock(world, use != Use::read);
+    if (lock == WorldSlot::Lock::held) {
         world_ = slot.world;
-    else
+        if (use == Use::write) slot.changed = true;
+    } else {
         refusal_ = lock == WorldSlot::Lock::busy ? TAUT_LOCKED : TAUT_STALE_HANDLE;
+    }
 }
 
 Hold::~Hold() {
-    if (world_) slots[slot_].unlock(use_ == Use::write);
+    if (world_) slots[slot_].unlock(use_ != Use::read);
 }
 
 uint32_t create_world(const taut_world_def& checked_def) {
@@ -191,6 +193,7 @@ uint32_t create_world(const taut_world_def& checked_def) {
     try {
         room = memory.allocate(sizeof(World), alignof(World));
         slot.world = new (room) World(checked_def, id);
+        slot.changed = false;
     } catch (...) {
         memory.release(room, sizeof(World), alignof(World));
         slot.give_back();
@@ -212,6 +215,8 @@ void destroy_world(Hold& hold) {
 }
 
 bool world_lives(uint32_t world) noexcept { return slots[world_slot_of(world)].lives(world); }
+
+bool is_as_created(const World& world) noexcept { return !slots[world_slot_of(world.id)].changed; }
 
 // ---------------------------------------------------------------- find
 

@@ -11,6 +11,7 @@
 
 #include "base/float_environment.h"
 #include "base/result.h"
+#include "record/recorded.h"
 #include "world.h"
 
 namespace taut {
@@ -128,8 +129,8 @@ taut_result room_for_attachments(const char* call, const World& world, size_t mo
 // ---------------------------------------------------------------- find
 
 // Readers share a world; a writer holds it alone. Whoever comes in between is refused, not kept waiting: he is a
-// callback inside a step or breaks the rule of one thread at a time.
-enum class Use { read, write };
+// callback inside a step or breaks the rule of one thread at a time. Alone: a reader that works in the world's memory.
+enum class Use { read, alone, write };
 
 // Holds a world while it lives. The lock stands in a static table, not in the world, so that looking up a handle
 // whose world is being destroyed by another thread touches no freed memory.
@@ -157,6 +158,8 @@ uint32_t create_world(const taut_world_def& checked_def);
 // Destroys a world held for writing.
 void destroy_world(Hold& hold);
 bool world_lives(uint32_t world) noexcept;
+// Whether nobody has held it for writing.
+bool is_as_created(const World& world) noexcept;
 
 // 20 bits of a world's handle; 0 (no world) for anything else.
 inline uint32_t world_of(taut_world handle) {
@@ -215,7 +218,9 @@ template <class Act>
 taut_result contain(const char* call, Act&& act) noexcept {
     const FloatEnvironment standard;
     try {
-        return act();
+        const taut_result result = act();
+        if (recording()) tell_result(result);
+        return result;
     } catch (const std::bad_alloc&) {
         return refuse(TAUT_OUT_OF_MEMORY, "%s: out of memory", call);
     } catch (const std::length_error&) {
@@ -227,13 +232,21 @@ taut_result contain(const char* call, Act&& act) noexcept {
     }
 }
 
+// act() on a world held so. What writes it is in its recording, if it has one, or is noted there as missing.
+template <class Act>
+taut_result changing(const char* call, Use use, const World& world, Act&& act) {
+    const taut_result result = act();
+    if (use == Use::write && result == TAUT_OK && recording()) note_change(call, world.id);
+    return result;
+}
+
 // act(World&) with the world held.
 template <class Act>
 taut_result with_world(const char* call, taut_world handle, Use use, Act&& act) noexcept {
     return contain(call, [&] {
         const Hold hold(world_of(handle), use);
         if (!hold.world()) return refuse_hold(call, "world", hold.refusal());
-        return act(*hold.world());
+        return changing(call, use, *hold.world(), [&] { return act(*hold.world()); });
     });
 }
 
@@ -249,7 +262,7 @@ taut_result with(const char* call, Handle handle, Use use, Act&& act) noexcept {
         const Hold hold(bits.world, use);
         if (!hold.world()) return refuse_hold(call, name_of(handle), hold.refusal());
         if (!names(*hold.world(), handle, bits)) return refuse_stale(call, name_of(handle), handle.bits);
-        const taut_result result = act(*hold.world(), bits.index);
+        const taut_result result = changing(call, use, *hold.world(), [&] { return act(*hold.world(), bits.index); });
         if constexpr (std::is_same_v<Handle, taut_body>)
             if (result != TAUT_OK) tell_name(*hold.world(), bits.index);
         return result;

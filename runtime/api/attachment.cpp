@@ -312,6 +312,7 @@ taut_result taut_solid_find_anchor(taut_solid solid, taut_pos point, taut_anchor
 }
 
 taut_result taut_world_add_attachment(taut_world handle, const taut_attachment_def* given, taut_attachment* out) {
+    TAUT_RECORD(taut_world_add_attachment, handle, given, out);
     Check check(__func__);
     taut_attachment_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_attachment_def_init, def))
@@ -321,6 +322,7 @@ taut_result taut_world_add_attachment(taut_world handle, const taut_attachment_d
 }
 
 taut_result taut_attachment_remove(taut_attachment handle) {
+    TAUT_RECORD(taut_attachment_remove, handle);
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         remove_attachment(world, index);
         return TAUT_OK;
@@ -361,6 +363,7 @@ taut_result taut_attachment_get_user_data(taut_attachment handle, uint64_t* out)
 }
 
 taut_result taut_attachment_set_user_data(taut_attachment handle, uint64_t value) {
+    TAUT_RECORD(taut_attachment_set_user_data, handle, value);
     return with(__func__, handle, Use::write, [&](World& world, uint32_t index) {
         world.attachments.record[index].user_data = value;
         return TAUT_OK;
@@ -422,6 +425,7 @@ taut_result taut_world_get_attachments_sized(taut_world handle, taut_attachment_
 }
 
 taut_result taut_attachment_set_compliance(taut_attachment handle, float compliance, float damping) {
+    TAUT_RECORD(taut_attachment_set_compliance, handle, compliance, damping);
     Check check(__func__);
     if (!check_law(check, compliance, damping)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
@@ -431,6 +435,7 @@ taut_result taut_attachment_set_compliance(taut_attachment handle, float complia
 }
 
 taut_result taut_attachment_set_length(taut_attachment handle, float length) {
+    TAUT_RECORD(taut_attachment_set_length, handle, length);
     Check check(__func__);
     if (!check.number("length", length, kJointLength)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
@@ -443,6 +448,7 @@ taut_result taut_attachment_set_length(taut_attachment handle, float length) {
 }
 
 taut_result taut_attachment_set_break(taut_attachment handle, float force, float torque) {
+    TAUT_RECORD(taut_attachment_set_break, handle, force, torque);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         Attachment& of = world.attachments.record[index];

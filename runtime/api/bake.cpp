@@ -4,16 +4,20 @@
 
 #include "api/shape_build.h"
 #include "api/shape_def.h"
+#include "record/codec.h"
+#include "record/format.h"
+#include "record/recorder.h"
 
 using namespace taut;
 
 namespace {
 
 struct Baked {
-    explicit Baked(const taut_hooks& hooks) : memory(hooks) {}
+    explicit Baked(const taut_hooks& hooks) : memory(hooks), def(memory) {}
 
     Memory memory;  // first: the shape is in it
     collision::Shape shape;
+    Array<std::byte> def;              // as recordings hold it, behind its kind; empty: not kept
     std::atomic<uint32_t> holders{1};  // its handle, and the shapes of worlds
 };
 
@@ -29,8 +33,16 @@ void let_go(Baked* baked) {
 // Of one shape of a world: what is baked outlives it.
 struct BakedHolder {
     Baked* baked;
-    void operator()(const void*) const { let_go(baked); }
+    void operator()(const void*) const {
+        if (baked) let_go(baked);
+    }
 };
+
+std::atomic<bool> keeps_defs{false};
+
+constexpr BakedDef kind_of(const taut_hull_def&) { return BakedDef::hull; }
+constexpr BakedDef kind_of(const taut_mesh_def&) { return BakedDef::mesh; }
+constexpr BakedDef kind_of(const taut_height_field_def&) { return BakedDef::height_field; }
 
 template <class T>
 std::shared_ptr<const T> share(const std::shared_ptr<const T>& data, Baked* baked, Memory& memory) {
@@ -109,6 +121,10 @@ taut_result bake(const char* call, const Def* given, const taut_allocator* alloc
         const std::unique_ptr<Baked, BakedHolder> holder(baked, BakedHolder{baked});
         baked->shape = build_shape(check, def, baked->memory);
         if (!check) return check.result();
+        if (keeps_defs.load(std::memory_order_relaxed)) {
+            Encoder encoder(baked->def, 0, {});
+            encoder(kind_of(def), def);
+        }
         baked->holders.fetch_add(1, std::memory_order_relaxed);
         const uint64_t bits = list_baked(baked);
         if (bits == 0) {
@@ -132,7 +148,25 @@ taut_result taut_bake_height_field(const taut_height_field_def* def, const taut_
     return bake(__func__, def, allocator, out);
 }
 
+taut_result taut_bake_keep_defs(uint32_t keep) {
+    Check check(__func__);
+    if (check.boolean("keep", keep)) keeps_defs.store(keep != 0, std::memory_order_relaxed);
+    return check.result();
+}
+
+void taut::append_baked_def(taut_baked handle, Array<std::byte>& out) {
+    Baked* const baked = hold_baked(handle);
+    const std::unique_ptr<Baked, BakedHolder> holder(baked, BakedHolder{baked});
+    const BakedDef none = BakedDef::not_kept;
+    const auto* const first = reinterpret_cast<const std::byte*>(&none);
+    if (baked && !baked->def.empty())
+        out.insert(out.end(), baked->def.begin(), baked->def.end());
+    else
+        out.insert(out.end(), first, first + sizeof none);
+}
+
 taut_result taut_world_add_baked(taut_world world, taut_baked handle, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_baked, world, handle, out);
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with_world(check.call(), world, Use::write, [&](World& target) {

@@ -40,6 +40,7 @@ taut_result taut_body_get_user_data(taut_body handle, uint64_t* out) {
 }
 
 taut_result taut_body_set_user_data(taut_body handle, uint64_t value) {
+    TAUT_RECORD(taut_body_set_user_data, handle, value);
     return with(__func__, handle, Use::write, [&](World& world, uint32_t node) {
         world.nodes.info[node].user_data = value;
         return TAUT_OK;
@@ -47,6 +48,7 @@ taut_result taut_body_set_user_data(taut_body handle, uint64_t value) {
 }
 
 taut_result taut_body_set_name(taut_body handle, const char* name) {
+    TAUT_RECORD(taut_body_set_name, handle, name);
     Check check(__func__);
     std::array<char, TAUT_BODY_NAME_SIZE> text{};
     const size_t length = name ? strnlen(name, text.size()) : 0;
@@ -100,6 +102,7 @@ taut_result taut_body_get_material(taut_body handle, taut_material* out) {
 }
 
 taut_result taut_body_set_material(taut_body handle, const taut_material* material) {
+    TAUT_RECORD(taut_body_set_material, handle, material);
     Check check(__func__);
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
@@ -116,6 +119,7 @@ taut_result taut_body_set_material(taut_body handle, const taut_material* materi
 }
 
 taut_result taut_body_set_contact_events(taut_body handle, uint32_t contact_events) {
+    TAUT_RECORD(taut_body_set_contact_events, handle, contact_events);
     Check check(__func__);
     if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -126,6 +130,7 @@ taut_result taut_body_set_contact_events(taut_body handle, uint32_t contact_even
 }
 
 taut_result taut_body_set_continuous(taut_body handle, uint32_t continuous) {
+    TAUT_RECORD(taut_body_set_continuous, handle, continuous);
     Check check(__func__);
     if (!check.boolean("continuous", continuous)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {

@@ -130,6 +130,7 @@ void taut_particle_def_init_sized(taut_particle_def* def, uint32_t size) {
 }
 
 taut_result taut_world_add_body(taut_world handle, const taut_body_def* given, taut_body* out) {
+    TAUT_RECORD(taut_world_add_body, handle, given, out);
     Check check(__func__);
     taut_body_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_body_def_init, def))
@@ -159,6 +160,7 @@ taut_result taut_world_add_body(taut_world handle, const taut_body_def* given, t
 }
 
 taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* given, taut_body* out) {
+    TAUT_RECORD(taut_world_add_particle, handle, given, out);
     Check check(__func__);
     taut_particle_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_particle_def_init, def))
@@ -196,6 +198,7 @@ taut_result taut_world_add_particle(taut_world handle, const taut_particle_def* 
 }
 
 taut_result taut_body_remove(taut_body handle) {
+    TAUT_RECORD(taut_body_remove, handle);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         check.require(!world.nodes.info[node].is_part(),

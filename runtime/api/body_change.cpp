@@ -80,6 +80,7 @@ bool is_zero(const taut_sym3& m, const taut_vec3& v) {
 }  // namespace
 
 taut_result taut_body_set_kind(taut_body handle, taut_body_kind kind) {
+    TAUT_RECORD(taut_body_set_kind, handle, kind);
     constexpr NodeKind kKinds[] = {NodeKind::fixed, NodeKind::kinematic, NodeKind::dynamic};
     Check check(__func__);
     if (!check.choice("kind", kind, TAUT_BODY_DYNAMIC)) return check.result();
@@ -109,6 +110,7 @@ taut_result taut_body_set_kind(taut_body handle, taut_body_kind kind) {
 }
 
 taut_result taut_body_set_enabled(taut_body handle, uint32_t enabled) {
+    TAUT_RECORD(taut_body_set_enabled, handle, enabled);
     Check check(__func__);
     if (!check.boolean("enabled", enabled)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -131,6 +133,7 @@ taut_result taut_body_get_enabled(taut_body handle, uint32_t* out) {
 }
 
 taut_result taut_body_set_mass(taut_body handle, float mass, taut_vec3 centre_of_mass, taut_sym3 inertia) {
+    TAUT_RECORD(taut_body_set_mass, handle, mass, centre_of_mass, inertia);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         const NodeKind kind = world.nodes.info[node].kind;
@@ -161,6 +164,7 @@ taut_result taut_body_set_mass(taut_body handle, float mass, taut_vec3 centre_of
 }
 
 taut_result taut_body_set_damping(taut_body handle, float linear, float angular) {
+    TAUT_RECORD(taut_body_set_damping, handle, linear, angular);
     Check check(__func__);
     check.number("linear", linear, kDampingRate).number("angular", angular, kDampingRate);
     return restrain(check, handle, angular != 0, [&](Restraint& of) {
@@ -205,6 +209,7 @@ taut_result taut_body_get_locked_axes(taut_body handle, uint32_t* out) {
 }
 
 taut_result taut_body_set_gravity_scale(taut_body handle, float gravity_scale) {
+    TAUT_RECORD(taut_body_set_gravity_scale, handle, gravity_scale);
     Check check(__func__);
     if (!check.number("gravity_scale", gravity_scale, kGravityScale)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -226,6 +231,7 @@ taut_result taut_body_get_gravity_scale(taut_body handle, float* out) {
 }
 
 taut_result taut_body_set_max_speed(taut_body handle, float linear, float angular) {
+    TAUT_RECORD(taut_body_set_max_speed, handle, linear, angular);
     Check check(__func__);
     check.zero_or("linear", linear, kSpeedLimit).zero_or("angular", angular, kSpeedLimit);
     return restrain(check, handle, angular != 0, [&](Restraint& of) {

@@ -88,6 +88,7 @@ taut_result taut_body_get_pose(taut_body handle, taut_pose* out) {
 }
 
 taut_result taut_body_set_pose(taut_body handle, const taut_pose* pose) {
+    TAUT_RECORD(taut_body_set_pose, handle, pose);
     Check check(__func__);
     if (!check.pointer("pose", pose)) return check.result();
     if (!check.pose("position", "rotation", *pose)) return check.result();
@@ -174,6 +175,7 @@ taut_result taut_world_get_body_states(taut_world handle, const taut_body* bodie
 }
 
 taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3 angular) {
+    TAUT_RECORD(taut_body_set_velocity, handle, linear, angular);
     Check check(__func__);
     if (!check.bounded("linear", linear, kSpeed).bounded("angular", angular, kSpeed)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -189,6 +191,7 @@ taut_result taut_body_set_velocity(taut_body handle, taut_vec3 linear, taut_vec3
 }
 
 taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) {
+    TAUT_RECORD(taut_body_move_kinematic, handle, target);
     Check check(__func__);
     if (!check.pointer("target", target)) return check.result();
     if (!check.pose("target.position", "target.rotation", *target)) return check.result();
@@ -208,6 +211,7 @@ taut_result taut_body_move_kinematic(taut_body handle, const taut_pose* target) 
 }
 
 taut_result taut_body_apply_force(taut_body handle, taut_vec3 force, taut_vec3 torque) {
+    TAUT_RECORD(taut_body_apply_force, handle, force, torque);
     Check check(__func__);
     if (!check.vector("force", force, kForce).vector("torque", torque, kForce)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -219,6 +223,7 @@ taut_result taut_body_apply_force(taut_body handle, taut_vec3 force, taut_vec3 t
 }
 
 taut_result taut_body_apply_force_at(taut_body handle, taut_vec3 force, taut_pos point) {
+    TAUT_RECORD(taut_body_apply_force_at, handle, force, point);
     Check check(__func__);
     if (!check.vector("force", force, kForce).bounded("point", point, kPosition)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -232,6 +237,7 @@ taut_result taut_body_apply_force_at(taut_body handle, taut_vec3 force, taut_pos
 }
 
 taut_result taut_body_apply_impulse(taut_body handle, taut_vec3 impulse, taut_vec3 angular_impulse) {
+    TAUT_RECORD(taut_body_apply_impulse, handle, impulse, angular_impulse);
     Check check(__func__);
     check.vector("impulse", impulse, kForce).vector("angular_impulse", angular_impulse, kForce);
     if (!check) return check.result();
@@ -243,6 +249,7 @@ taut_result taut_body_apply_impulse(taut_body handle, taut_vec3 impulse, taut_ve
 }
 
 taut_result taut_body_apply_impulse_at(taut_body handle, taut_vec3 impulse, taut_pos point) {
+    TAUT_RECORD(taut_body_apply_impulse_at, handle, impulse, point);
     Check check(__func__);
     if (!check.vector("impulse", impulse, kForce).bounded("point", point, kPosition)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -263,6 +270,7 @@ taut_result taut_body_get_quarantine(taut_body handle, taut_quarantine_reason* o
 }
 
 taut_result taut_body_release(taut_body handle) {
+    TAUT_RECORD(taut_body_release, handle);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         if (!check.require(world.nodes.find_frozen(node), "body is in no quarantine")) return check.result();

@@ -182,6 +182,7 @@ void taut_cable_def_init_sized(taut_cable_def* def, uint32_t size) {
 }
 
 taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* given, taut_cable* out) {
+    TAUT_RECORD(taut_world_add_cable, handle, given, out);
     Check check(__func__);
     taut_cable_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_cable_def_init, def))
@@ -215,6 +216,7 @@ taut_result taut_world_add_cable(taut_world handle, const taut_cable_def* given,
 }
 
 taut_result taut_cable_remove(taut_cable handle) {
+    TAUT_RECORD(taut_cable_remove, handle);
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         remove_cable(world, index);
         return TAUT_OK;
@@ -222,6 +224,7 @@ taut_result taut_cable_remove(taut_cable handle) {
 }
 
 taut_result taut_cable_cut(taut_cable handle, uint32_t segment) {
+    TAUT_RECORD(taut_cable_cut, handle, segment);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
         const Cable& cable = world.cables.record[index];
@@ -302,6 +305,7 @@ taut_result taut_cable_get_end_joint(taut_cable handle, uint32_t end, taut_joint
 }
 
 taut_result taut_cable_set_reel_speed(taut_cable handle, uint32_t end, float speed, float acceleration) {
+    TAUT_RECORD(taut_cable_set_reel_speed, handle, end, speed, acceleration);
     Check check(__func__);
     check.count("end", end, 0, 1).number("speed", speed, kSpeed).number("acceleration", acceleration, kAcceleration);
     if (!check) return check.result();
@@ -327,6 +331,7 @@ taut_result taut_cable_get_reel_speed(taut_cable handle, uint32_t end, float* ou
 }
 
 taut_result taut_cable_reel(taut_cable handle, uint32_t end, float metres) {
+    TAUT_RECORD(taut_cable_reel, handle, end, metres);
     Check check(__func__);
     if (!check.count("end", end, 0, 1).number("metres", metres, kMetres)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {

@@ -172,6 +172,7 @@ taut_result taut_cloth_def_set_fabric(taut_cloth_def* def, taut_fabric fabric) {
 }
 
 taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* given, taut_cloth* out) {
+    TAUT_RECORD(taut_world_add_cloth, handle, given, out);
     Check check(__func__);
     taut_cloth_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_cloth_def_init, def))
@@ -206,6 +207,7 @@ taut_result taut_world_add_cloth(taut_world handle, const taut_cloth_def* given,
 }
 
 taut_result taut_cloth_remove(taut_cloth handle) {
+    TAUT_RECORD(taut_cloth_remove, handle);
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         remove_soft(world, index);
         return TAUT_OK;
@@ -225,11 +227,13 @@ taut_result taut_cloth_get_solve(taut_cloth handle, taut_deformable_solve* out) 
 }
 
 taut_result taut_cloth_set_contact_events(taut_cloth handle, uint32_t contact_events) {
+    TAUT_RECORD(taut_cloth_set_contact_events, handle, contact_events);
     Check check(__func__);
     return set_soft_contact_events(check, handle, contact_events);
 }
 
 taut_result taut_cloth_set_pre_solve(taut_cloth handle, int32_t pre_solve) {
+    TAUT_RECORD(taut_cloth_set_pre_solve, handle, pre_solve);
     Check check(__func__);
     return set_soft_pre_solve(check, handle, pre_solve);
 }
@@ -240,6 +244,7 @@ taut_result taut_body_get_cloth(taut_body handle, taut_cloth* out) {
 }
 
 taut_result taut_cloth_pin(taut_cloth handle, uint32_t vertex, uint32_t pinned) {
+    TAUT_RECORD(taut_cloth_pin, handle, vertex, pinned);
     Check check(__func__);
     return pin_soft(check, handle, vertex, pinned);
 }
@@ -291,6 +296,7 @@ taut_result taut_cloth_get_pressure(taut_cloth handle, float* out) {
 }
 
 taut_result taut_cloth_set_pressure(taut_cloth handle, float pressure) {
+    TAUT_RECORD(taut_cloth_set_pressure, handle, pressure);
     Check check(__func__);
     if (!check.number("pressure", pressure, kPressure)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {

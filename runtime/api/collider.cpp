@@ -132,6 +132,7 @@ void taut_collider_def_init_sized(taut_collider_def* def, uint32_t size) {
 }
 
 taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* given, taut_collider* out) {
+    TAUT_RECORD(taut_body_add_collider, handle, given, out);
     Check check(__func__);
     taut_collider_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_collider_def_init, def))
@@ -154,6 +155,7 @@ taut_result taut_body_add_collider(taut_body handle, const taut_collider_def* gi
 }
 
 taut_result taut_collider_remove(taut_collider handle) {
+    TAUT_RECORD(taut_collider_remove, handle);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
@@ -181,6 +183,7 @@ taut_result taut_body_get_colliders(taut_body handle, taut_collider* colliders, 
 }
 
 taut_result taut_body_set_mass_from_colliders(taut_body handle) {
+    TAUT_RECORD(taut_body_set_mass_from_colliders, handle);
     Check check(__func__);
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
         check.require(world.nodes.info[node].kind == NodeKind::dynamic, "body is not dynamic");
@@ -240,6 +243,7 @@ taut_result taut_collider_get_user_data(taut_collider handle, uint64_t* out) {
 }
 
 taut_result taut_collider_set_user_data(taut_collider handle, uint64_t value) {
+    TAUT_RECORD(taut_collider_set_user_data, handle, value);
     return with(__func__, handle, Use::write, [&](World& world, uint32_t collider) {
         world.colliders.record[collider].user_data = value;
         return TAUT_OK;
@@ -247,6 +251,7 @@ taut_result taut_collider_set_user_data(taut_collider handle, uint64_t value) {
 }
 
 taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut_vec3 position, taut_quat rotation) {
+    TAUT_RECORD(taut_collider_set_shape, handle, shape, position, rotation);
     Check check(__func__);
     check.vector("position", position, kShapeCoordinate).rotation("rotation", rotation);
     if (!check) return check.result();
@@ -277,6 +282,7 @@ taut_result taut_collider_set_shape(taut_collider handle, taut_shape shape, taut
 }
 
 taut_result taut_collider_set_material(taut_collider handle, const taut_material* material) {
+    TAUT_RECORD(taut_collider_set_material, handle, material);
     Check check(__func__);
     if (!check.pointer("material", material)) return check.result();
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
@@ -288,6 +294,7 @@ taut_result taut_collider_set_material(taut_collider handle, const taut_material
 }
 
 taut_result taut_collider_set_filter(taut_collider handle, const taut_filter* filter) {
+    TAUT_RECORD(taut_collider_set_filter, handle, filter);
     Check check(__func__);
     if (!check.pointer("filter", filter)) return check.result();
     if (!check.zero("reserved", filter->reserved)) return check.result();
@@ -302,6 +309,7 @@ taut_result taut_collider_set_filter(taut_collider handle, const taut_filter* fi
 }
 
 taut_result taut_collider_set_density(taut_collider handle, float density) {
+    TAUT_RECORD(taut_collider_set_density, handle, density);
     Check check(__func__);
     if (!check.zero_or("density", density, kDensity)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
@@ -311,6 +319,7 @@ taut_result taut_collider_set_density(taut_collider handle, float density) {
 }
 
 taut_result taut_collider_set_surface_velocity(taut_collider handle, taut_vec3 velocity, taut_vec3 spin) {
+    TAUT_RECORD(taut_collider_set_surface_velocity, handle, velocity, spin);
     Check check(__func__);
     if (!check.bounded("velocity", velocity, kSpeed).bounded("spin", spin, kSpeed)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
@@ -336,6 +345,7 @@ taut_result taut_collider_get_surface_velocity(taut_collider handle, taut_vec3* 
 }
 
 taut_result taut_collider_set_contact_events(taut_collider handle, uint32_t contact_events) {
+    TAUT_RECORD(taut_collider_set_contact_events, handle, contact_events);
     Check check(__func__);
     if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
@@ -345,6 +355,7 @@ taut_result taut_collider_set_contact_events(taut_collider handle, uint32_t cont
 }
 
 taut_result taut_collider_set_pre_solve(taut_collider handle, int32_t pre_solve) {
+    TAUT_RECORD(taut_collider_set_pre_solve, handle, pre_solve);
     Check check(__func__);
     if (!check.boolean("pre_solve", static_cast<uint32_t>(pre_solve))) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
@@ -355,6 +366,7 @@ taut_result taut_collider_set_pre_solve(taut_collider handle, int32_t pre_solve)
 }
 
 taut_result taut_collider_set_one_way(taut_collider handle, taut_vec3 direction) {
+    TAUT_RECORD(taut_collider_set_one_way, handle, direction);
     Check check(__func__);
     if (!check.vector("direction", direction, kOneWay)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {

@@ -123,7 +123,7 @@ template <class Handle>
 taut_result read_normals(Check& check, Handle handle, taut_vec3* out, uint32_t capacity, uint32_t* count) {
     if (!check.pointer("count", count)) return check.result();
     // Scratch of the world's memory: a reader holds it alone in that.
-    return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {
+    return with(check.call(), handle, Use::alone, [&](World& world, uint32_t index) {
         const Soft& soft = world.softs.record[index];
         Array<Vec3> normal(world.memory);
         soft_normals(world, soft, normal);

@@ -43,6 +43,7 @@ taut_result change(const Check& check, taut_joint handle, Change&& apply) {
 }  // namespace
 
 taut_result taut_joint_remove(taut_joint handle) {
+    TAUT_RECORD(taut_joint_remove, handle);
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         const Joint& joint = world.joints.record[index];
         reserve_pairs_of_ends(world, joint);
@@ -74,6 +75,7 @@ taut_result taut_joint_get_user_data(taut_joint handle, uint64_t* out) {
 }
 
 taut_result taut_joint_set_user_data(taut_joint handle, uint64_t value) {
+    TAUT_RECORD(taut_joint_set_user_data, handle, value);
     return with(__func__, handle, Use::write, [&](World& world, uint32_t index) {
         world.joints.record[index].user_data = value;
         return TAUT_OK;
@@ -127,6 +129,7 @@ taut_result taut_joint_get_axis_sized(taut_joint handle, uint32_t axis, taut_axi
 }
 
 taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axis_def* def) {
+    TAUT_RECORD(taut_joint_set_axis, handle, axis, def);
     Check check(__func__);
     if (!check.pointer("def", def)) return check.result();
     return with_axis(check, handle, axis, Use::write, [&](World& world, Joint& joint, const JointAxis& place) {
@@ -145,6 +148,7 @@ taut_result taut_joint_set_axis(taut_joint handle, uint32_t axis, const taut_axi
 }
 
 taut_result taut_joint_set_target(taut_joint handle, uint32_t axis, float target, float speed) {
+    TAUT_RECORD(taut_joint_set_target, handle, axis, target, speed);
     Check check(__func__);
     if (!check.number("speed", speed, kSpeed)) return check.result();
     return with_axis(check, handle, axis, Use::write, [&](World& world, Joint& joint, const JointAxis& place) {
@@ -163,6 +167,7 @@ taut_result taut_joint_set_target(taut_joint handle, uint32_t axis, float target
 // ---------------------------------------------------------------- all else
 
 taut_result taut_joint_set_compliance(taut_joint handle, float compliance, float damping) {
+    TAUT_RECORD(taut_joint_set_compliance, handle, compliance, damping);
     Check check(__func__);
     check.number("compliance", compliance, kCompliance).number("damping", damping, kDamping);
     return change(check, handle, [&](World&, Joint& joint) {
@@ -177,6 +182,7 @@ taut_result taut_joint_set_compliance(taut_joint handle, float compliance, float
 }
 
 taut_result taut_joint_set_angular_compliance(taut_joint handle, float compliance, float damping) {
+    TAUT_RECORD(taut_joint_set_angular_compliance, handle, compliance, damping);
     Check check(__func__);
     check.number("compliance", compliance, kCompliance).number("damping", damping, kDamping);
     return change(check, handle, [&](World&, Joint& joint) {
@@ -188,6 +194,7 @@ taut_result taut_joint_set_angular_compliance(taut_joint handle, float complianc
 }
 
 taut_result taut_joint_set_break(taut_joint handle, float force, float torque) {
+    TAUT_RECORD(taut_joint_set_break, handle, force, torque);
     Check check(__func__);
     check.number("force", force, kJointForce).number("torque", torque, kJointForce);
     return change(check, handle, [&](World&, Joint& joint) {
@@ -198,6 +205,7 @@ taut_result taut_joint_set_break(taut_joint handle, float force, float torque) {
 }
 
 taut_result taut_joint_set_length(taut_joint handle, float length) {
+    TAUT_RECORD(taut_joint_set_length, handle, length);
     Check check(__func__);
     check.number("length", length, kJointLength);
     return change(check, handle, [&](const World& world, Joint& joint) {
@@ -210,6 +218,7 @@ taut_result taut_joint_set_length(taut_joint handle, float length) {
 }
 
 taut_result taut_joint_set_solve(taut_joint handle, taut_joint_solve solve) {
+    TAUT_RECORD(taut_joint_set_solve, handle, solve);
     Check check(__func__);
     check.choice("solve", solve, TAUT_JOINT_SOLVE_BY_LOAD);
     return change(check, handle, [&](World& world, Joint& joint) {
@@ -221,6 +230,7 @@ taut_result taut_joint_set_solve(taut_joint handle, taut_joint_solve solve) {
 }
 
 taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, const taut_frame* frame_b) {
+    TAUT_RECORD(taut_joint_set_frames, handle, frame_a, frame_b);
     Check check(__func__);
     if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
     const taut_frame* frames[2] = {frame_a, frame_b};
@@ -245,6 +255,7 @@ taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, 
 }
 
 taut_result taut_joint_set_enabled(taut_joint handle, uint32_t enabled) {
+    TAUT_RECORD(taut_joint_set_enabled, handle, enabled);
     Check check(__func__);
     check.boolean("enabled", enabled);
     return change(check, handle, [&](World& world, Joint& joint) {
@@ -268,6 +279,7 @@ taut_result taut_joint_get_enabled(taut_joint handle, uint32_t* out) {
 }
 
 taut_result taut_joint_set_collide_connected(taut_joint handle, uint32_t collide_connected) {
+    TAUT_RECORD(taut_joint_set_collide_connected, handle, collide_connected);
     Check check(__func__);
     check.boolean("collide_connected", collide_connected);
     return change(check, handle, [&](World& world, Joint& joint) {

@@ -249,27 +249,35 @@ void taut_six_dof_joint_def_init_sized(taut_six_dof_joint_def* def, uint32_t siz
 }
 
 taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_ball_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_BALL, def, taut_ball_joint_def_init, out);
 }
 taut_result taut_world_add_fixed_joint(taut_world world, const taut_fixed_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_fixed_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_FIXED, def, taut_fixed_joint_def_init, out);
 }
 taut_result taut_world_add_hinge_joint(taut_world world, const taut_hinge_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_hinge_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_HINGE, def, taut_hinge_joint_def_init, out);
 }
 taut_result taut_world_add_slider_joint(taut_world world, const taut_slider_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_slider_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_SLIDER, def, taut_slider_joint_def_init, out);
 }
 taut_result taut_world_add_cylindrical_joint(taut_world world, const taut_cylindrical_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_cylindrical_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_CYLINDRICAL, def, taut_cylindrical_joint_def_init, out);
 }
 taut_result taut_world_add_universal_joint(taut_world world, const taut_universal_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_universal_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_UNIVERSAL, def, taut_universal_joint_def_init, out);
 }
 taut_result taut_world_add_cone_twist_joint(taut_world world, const taut_cone_twist_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_cone_twist_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_CONE_TWIST, def, taut_cone_twist_joint_def_init, out);
 }
 taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_six_dof_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_SIX_DOF, def, taut_six_dof_joint_def_init, out);
 }
 taut_result taut_world_add_wheel_joint(taut_world world, const taut_wheel_joint_def* def, taut_joint* out) {
@@ -277,6 +285,7 @@ taut_result taut_world_add_wheel_joint(taut_world world, const taut_wheel_joint_
 }
 
 taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* given, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_distance_joint, handle, given, out);
     Check check(__func__);
     taut_distance_joint_def def;
     if (!check_def(check, given, taut_distance_joint_def_init, &def, out) || !check_range(check, def))

@@ -44,8 +44,7 @@ taut_result taut_world_lint_sized(taut_world handle, taut_lint_entry* first, uin
     Check check("taut_world_lint");
     if (!check.pointer("count", count)) return check.result();
     if (capacity > 0 && !check.pointer("entries", entries)) return check.result();
-    // For writing: what it works with comes from the world's memory, which has one user at a time.
-    return with_world(check.call(), handle, Use::write, [&](World& world) {
+    return with_world(check.call(), handle, Use::alone, [&](World& world) {
         const Array<taut_lint_entry> found = lint(world);
         *count = static_cast<uint32_t>(found.size());
         if (found.size() > capacity) {

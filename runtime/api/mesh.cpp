@@ -61,16 +61,20 @@ void taut_height_field_def_init_sized(taut_height_field_def* def, uint32_t size)
 }
 
 taut_result taut_world_add_hull(taut_world world, const taut_hull_def* def, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_hull, world, def, out);
     return add_built(__func__, world, def, out);
 }
 taut_result taut_world_add_mesh(taut_world world, const taut_mesh_def* def, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_mesh, world, def, out);
     return add_built(__func__, world, def, out);
 }
 taut_result taut_world_add_height_field(taut_world world, const taut_height_field_def* def, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_height_field, world, def, out);
     return add_built(__func__, world, def, out);
 }
 
 taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* out) {
+    TAUT_RECORD(taut_shape_add_scaled, mesh, scale, out);
     Check check(__func__);
     check.pointer("out", out).vector("scale", scale, kScale);
     const Vec3f factor = to_vec(scale).cast<float>();
@@ -114,6 +118,7 @@ taut_result taut_shape_triangles(taut_shape handle, taut_vec3* positions, uint32
 }
 
 taut_result taut_shape_sample_distance(taut_shape mesh, float cell_size) {
+    TAUT_RECORD(taut_shape_sample_distance, mesh, cell_size);
     Check check(__func__);
     if (cell_size != 0) check.number("cell_size", cell_size, kShapeSize);
     if (!check) return check.result();

@@ -8,6 +8,7 @@
 using namespace taut;
 
 taut_result taut_collider_set_sensor(taut_collider handle, uint32_t sensor) {
+    TAUT_RECORD(taut_collider_set_sensor, handle, sensor);
     Check check(__func__);
     if (!check.boolean("sensor", sensor)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {

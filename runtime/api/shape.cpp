@@ -53,6 +53,7 @@ void taut_scaled_hull_def_init_sized(taut_scaled_hull_def* def, uint32_t size) {
 }
 
 taut_result taut_world_add_plane(taut_world world, const taut_plane_def* given, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_plane, world, given, out);
     Check check(__func__);
     taut_plane_def def;
     if (!take_shape_def(check, given, taut_plane_def_init, def, out)) return check.result();
@@ -63,6 +64,7 @@ taut_result taut_world_add_plane(taut_world world, const taut_plane_def* given, 
 }
 
 taut_result taut_world_add_box(taut_world world, const taut_box_def* given, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_box, world, given, out);
     Check check(__func__);
     taut_box_def def;
     if (!take_shape_def(check, given, taut_box_def_init, def, out)) return check.result();
@@ -71,6 +73,7 @@ taut_result taut_world_add_box(taut_world world, const taut_box_def* given, taut
 }
 
 taut_result taut_world_add_sphere(taut_world world, const taut_sphere_def* given, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_sphere, world, given, out);
     Check check(__func__);
     taut_sphere_def def;
     if (!take_shape_def(check, given, taut_sphere_def_init, def, out)) return check.result();
@@ -79,18 +82,22 @@ taut_result taut_world_add_sphere(taut_world world, const taut_sphere_def* given
 }
 
 taut_result taut_world_add_capsule(taut_world world, const taut_capsule_def* def, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_capsule, world, def, out);
     return add_round(__func__, collision::ShapeKind::capsule, world, def, taut_capsule_def_init, out);
 }
 
 taut_result taut_world_add_cylinder(taut_world world, const taut_cylinder_def* def, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_cylinder, world, def, out);
     return add_round(__func__, collision::ShapeKind::cylinder, world, def, taut_cylinder_def_init, out);
 }
 
 taut_result taut_world_add_cone(taut_world world, const taut_cone_def* def, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_cone, world, def, out);
     return add_round(__func__, collision::ShapeKind::cone, world, def, taut_cone_def_init, out);
 }
 
 taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_capsule_def* given, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_tapered_capsule, world, given, out);
     Check check(__func__);
     taut_tapered_capsule_def def;
     if (!take_shape_def(check, given, taut_tapered_capsule_def_init, def, out)) return check.result();
@@ -105,6 +112,7 @@ taut_result taut_world_add_tapered_capsule(taut_world world, const taut_tapered_
 }
 
 taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull_def* given, taut_shape* out) {
+    TAUT_RECORD(taut_world_add_scaled_hull, handle, given, out);
     Check check(__func__);
     taut_scaled_hull_def def;
     if (!take_shape_def(check, given, taut_scaled_hull_def_init, def, out)) return check.result();
@@ -132,6 +140,7 @@ taut_result taut_world_add_scaled_hull(taut_world handle, const taut_scaled_hull
 }
 
 taut_result taut_shape_remove(taut_shape handle) {
+    TAUT_RECORD(taut_shape_remove, handle);
     const char* call = __func__;
     return with(call, handle, Use::write, [&](World& world, uint32_t shape) {
         const uint32_t users = world.shapes[shape].users;

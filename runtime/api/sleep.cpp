@@ -18,6 +18,7 @@ taut_result taut_body_is_awake(taut_body handle, uint32_t* out) {
 }
 
 taut_result taut_body_set_awake(taut_body handle, uint32_t awake) {
+    TAUT_RECORD(taut_body_set_awake, handle, awake);
     Check check(__func__);
     if (!check.boolean("awake", awake)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -43,6 +44,7 @@ taut_result taut_body_get_can_sleep(taut_body handle, uint32_t* out) {
 }
 
 taut_result taut_body_set_can_sleep(taut_body handle, uint32_t can_sleep) {
+    TAUT_RECORD(taut_body_set_can_sleep, handle, can_sleep);
     Check check(__func__);
     if (!check.boolean("can_sleep", can_sleep)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {
@@ -53,6 +55,7 @@ taut_result taut_body_set_can_sleep(taut_body handle, uint32_t can_sleep) {
 }
 
 taut_result taut_world_wake_box(taut_world handle, taut_pos low, taut_pos high) {
+    TAUT_RECORD(taut_world_wake_box, handle, low, high);
     Check check(__func__);
     check.vector("low", low, kPosition).vector("high", high, kPosition);
     check.require(low.x <= high.x && low.y <= high.y && low.z <= high.z, "low is above high");

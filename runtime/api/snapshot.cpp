@@ -15,6 +15,7 @@ taut_result taut_world_snapshot_size(taut_world handle, uint64_t* bytes) {
 }
 
 taut_result taut_world_save(taut_world handle, void* buffer, uint64_t capacity, uint64_t* bytes) {
+    TAUT_RECORD(taut_world_save, handle, buffer, capacity, bytes);
     Check check(__func__);
     if (!check.pointer("bytes", bytes)) return check.result();
     return with_world(check.call(), handle, Use::read, [&](const World& world) {
@@ -32,6 +33,7 @@ taut_result taut_world_save(taut_world handle, void* buffer, uint64_t capacity, 
 }
 
 taut_result taut_world_restore(taut_world handle, const void* buffer, uint64_t bytes) {
+    TAUT_RECORD(taut_world_restore, handle, buffer, bytes);
     Check check(__func__);
     if (!check.pointer("buffer", buffer)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {

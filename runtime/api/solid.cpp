@@ -198,6 +198,7 @@ taut_result taut_solid_def_set_substance(taut_solid_def* def, taut_substance sub
 }
 
 taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* given, taut_solid* out) {
+    TAUT_RECORD(taut_world_add_solid, handle, given, out);
     Check check(__func__);
     taut_solid_def def;
     if (!check.pointer("def", given).pointer("out", out) || !take_def(check, given, taut_solid_def_init, def))
@@ -246,6 +247,7 @@ taut_result taut_world_add_solid(taut_world handle, const taut_solid_def* given,
 }
 
 taut_result taut_solid_remove(taut_solid handle) {
+    TAUT_RECORD(taut_solid_remove, handle);
     return with(__func__, handle, Use::write, [](World& world, uint32_t index) {
         remove_soft(world, index);
         return TAUT_OK;
@@ -265,11 +267,13 @@ taut_result taut_solid_get_solve(taut_solid handle, taut_deformable_solve* out) 
 }
 
 taut_result taut_solid_set_contact_events(taut_solid handle, uint32_t contact_events) {
+    TAUT_RECORD(taut_solid_set_contact_events, handle, contact_events);
     Check check(__func__);
     return set_soft_contact_events(check, handle, contact_events);
 }
 
 taut_result taut_solid_set_pre_solve(taut_solid handle, int32_t pre_solve) {
+    TAUT_RECORD(taut_solid_set_pre_solve, handle, pre_solve);
     Check check(__func__);
     return set_soft_pre_solve(check, handle, pre_solve);
 }
@@ -280,6 +284,7 @@ taut_result taut_body_get_solid(taut_body handle, taut_solid* out) {
 }
 
 taut_result taut_solid_pin(taut_solid handle, uint32_t vertex, uint32_t pinned) {
+    TAUT_RECORD(taut_solid_pin, handle, vertex, pinned);
     Check check(__func__);
     return pin_soft(check, handle, vertex, pinned);
 }
@@ -328,6 +333,7 @@ taut_result taut_solid_get_volumes(taut_solid handle, float* ratios, uint32_t ca
 }
 
 taut_result taut_solid_recover(taut_solid handle, uint32_t max_steps, uint32_t* inverted) {
+    TAUT_RECORD(taut_solid_recover, handle, max_steps, inverted);
     constexpr uint32_t kMostSteps = 1000;  // as of a minimisation that nobody bounds
     Check check(__func__);
     if (!check.count("max_steps", max_steps, 1, kMostSteps)) return check.result();

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "advance.h"
+#include "api/replay.h"
 #include "api/sized.h"
 #include "check/minimised.h"
 #include "integrate/scheme.h"
+#include "record/recorder.h"
 #include "sleep/wake.h"
 #include "solvers/minimisation.h"
 
@@ -164,6 +166,8 @@ taut_result taut_world_destroy(taut_world handle) {
         Hold hold(world_of(handle), Use::write);
         if (!hold.world()) return refuse_hold(call, "world", hold.refusal());
         destroy_world(hold);
+        end_recording(world_of(handle));
+        close_replay(world_of(handle));
         return TAUT_OK;
     });
 }
@@ -171,6 +175,7 @@ taut_result taut_world_destroy(taut_world handle) {
 int32_t taut_world_is_valid(taut_world handle) { return world_lives(world_of(handle)) ? 1 : 0; }
 
 taut_result taut_world_step(taut_world handle) {
+    TAUT_RECORD(taut_world_step, handle);
     const char* call = __func__;
     return with_world(call, handle, Use::write, [&](World& world) {
         if (const char* why = why_not_minimised(world)) return refuse(TAUT_UNSUPPORTED, "%s: %s", call, why);
@@ -180,6 +185,7 @@ taut_result taut_world_step(taut_world handle) {
 }
 
 taut_result taut_world_advance_sized(taut_world handle, double seconds, taut_advance* first, uint32_t size) {
+    TAUT_RECORD(taut_world_advance_sized, handle, seconds, first, size);
     const RecordOut<taut_advance> out(first, size);
     Check check("taut_world_advance");
     if (!check.number("seconds", seconds, kAdvance)) return check.result();
@@ -196,6 +202,7 @@ taut_result taut_world_advance_sized(taut_world handle, double seconds, taut_adv
 
 taut_result taut_world_relax_sized(taut_world handle, float tolerance, uint32_t max_steps, taut_relaxation* first,
                                    uint32_t size) {
+    TAUT_RECORD(taut_world_relax_sized, handle, tolerance, max_steps, first, size);
     const RecordOut<taut_relaxation> out(first, size);
     Check check("taut_world_relax");
     if (!check.number("tolerance", tolerance, kRestTolerance).count("max_steps", max_steps, 1, kMostRestSteps))
@@ -220,6 +227,7 @@ taut_result taut_world_get_def_sized(taut_world handle, taut_world_def* first, u
 }
 
 taut_result taut_world_set_time_step(taut_world handle, float time_step) {
+    TAUT_RECORD(taut_world_set_time_step, handle, time_step);
     Check check(__func__);
     if (!check.number("time_step", time_step, kTimeStep)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -229,6 +237,7 @@ taut_result taut_world_set_time_step(taut_world handle, float time_step) {
 }
 
 taut_result taut_world_set_substeps(taut_world handle, uint32_t substeps) {
+    TAUT_RECORD(taut_world_set_substeps, handle, substeps);
     Check check(__func__);
     if (!check.count("substeps", substeps, 1, kMaxSubsteps)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -248,6 +257,7 @@ taut_result taut_world_get_gravity(taut_world handle, taut_vec3* out) {
 }
 
 taut_result taut_world_set_gravity(taut_world handle, taut_vec3 gravity) {
+    TAUT_RECORD(taut_world_set_gravity, handle, gravity);
     Check check(__func__);
     if (!check.vector("gravity", gravity, kGravity)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -268,6 +278,7 @@ taut_result taut_world_get_wind(taut_world handle, taut_vec3* out) {
 }
 
 taut_result taut_world_set_wind(taut_world handle, taut_vec3 wind) {
+    TAUT_RECORD(taut_world_set_wind, handle, wind);
     Check check(__func__);
     if (!check.vector("wind", wind, kWind)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -279,6 +290,7 @@ taut_result taut_world_set_wind(taut_world handle, taut_vec3 wind) {
 }
 
 taut_result taut_world_set_contact_events(taut_world handle, uint32_t contact_events) {
+    TAUT_RECORD(taut_world_set_contact_events, handle, contact_events);
     Check check(__func__);
     if (!check.count("contact_events", contact_events, 0, TAUT_CONTACT_EVENTS_ALL)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -290,6 +302,7 @@ taut_result taut_world_set_contact_events(taut_world handle, uint32_t contact_ev
 }
 
 taut_result taut_world_set_hit_speed(taut_world handle, float hit_speed) {
+    TAUT_RECORD(taut_world_set_hit_speed, handle, hit_speed);
     Check check(__func__);
     if (!check.number("hit_speed", hit_speed, kHitSpeed)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -299,6 +312,7 @@ taut_result taut_world_set_hit_speed(taut_world handle, float hit_speed) {
 }
 
 taut_result taut_world_set_restitution_threshold(taut_world handle, float restitution_threshold) {
+    TAUT_RECORD(taut_world_set_restitution_threshold, handle, restitution_threshold);
     Check check(__func__);
     if (!check.number("restitution_threshold", restitution_threshold, kRestitutionThreshold)) return check.result();
     return with_world(check.call(), handle, Use::write, [&](World& world) {
@@ -308,8 +322,9 @@ taut_result taut_world_set_restitution_threshold(taut_world handle, float restit
 }
 
 taut_result taut_world_set_pre_solve(taut_world handle, taut_pre_solve_fn pre_solve, void* user_data) {
+    TAUT_RECORD(taut_world_set_pre_solve, handle, pre_solve, user_data);
     return with_world(__func__, handle, Use::write, [&](World& world) {
-        world.pre_solve = {pre_solve, user_data};
+        world.pre_solve = recorded_pre_solve(world, {pre_solve, user_data});
         for (const Collider& collider : world.colliders.record)
             if (collider.node != kNone && (collider.asks & kAsksPreSolve) != 0) wake_about(world, collider.node);
         return TAUT_OK;

@@ -8,6 +8,7 @@ namespace taut {
 namespace {
 
 thread_local char text[512] = "";
+thread_local taut_result told = TAUT_OK;
 
 }  // namespace
 
@@ -16,6 +17,7 @@ taut_result refuse(taut_result code, const char* format, ...) noexcept {
     va_start(values, format);
     std::vsnprintf(text, sizeof text, format, values);
     va_end(values);
+    told = code;
     return code;
 }
 
@@ -28,5 +30,8 @@ void add_to_error(const char* format, ...) noexcept {
 }
 
 const char* last_error() noexcept { return text; }
+
+void tell_result(taut_result result) noexcept { told = result; }
+taut_result told_result() noexcept { return told; }
 
 }  // namespace taut

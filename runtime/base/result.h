@@ -13,4 +13,8 @@ namespace taut {
 
 const char* last_error() noexcept;
 
+// What the calling thread's call comes to, for its recording: the last code refused or told.
+void tell_result(taut_result result) noexcept;
+taut_result told_result() noexcept;
+
 }  // namespace taut

@@ -18,6 +18,7 @@ constexpr uint32_t make_world_id(uint32_t slot, uint32_t generation) { return sl
 class WorldSlot {
 public:
     World* world = nullptr;  // written before it lives, read by who holds the slot
+    bool changed = false;    // whether anyone has held it for writing; of who holds it alone
 
     // Takes the slot for a world of its next generation. False where it is taken or retired.
     bool take() noexcept {

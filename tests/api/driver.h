@@ -11,6 +11,7 @@
 #include "host/mover_calls.h"
 #include "host/near_calls.h"
 #include "host/query_calls.h"
+#include "host/record_calls.h"
 #include "host/shape_calls.h"
 #include "host/sleep_calls.h"
 #include "host/soft_calls.h"
@@ -30,12 +31,15 @@ class Driver : private CableCalls,
                private NearCalls,
                private MoverCalls,
                private SleepCalls,
-               private SoftCalls {
+               private SoftCalls,
+               private RecordCalls {
 public:
-    // broken: told the call and what is wrong with it.
-    Driver(ByteSource source, std::function<void(const char* call, const char* what)> broken) {
+    // broken: told the call and what is wrong with it. created: told each world when nothing has happened to it yet.
+    Driver(ByteSource source, std::function<void(const char* call, const char* what)> broken,
+           std::function<void(taut_world)> created = nullptr) {
         source_ = std::move(source);
         broken_ = std::move(broken);
+        created_ = std::move(created);
         for (size_t w = 0; w < 2; ++w) create(w);
     }
     ~Driver() {
@@ -126,6 +130,8 @@ public:
             &Driver::move_character,
             &Driver::drive_vehicle,
             &Driver::use_ragdoll,
+            &Driver::record_any,
+            &Driver::replay_any,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

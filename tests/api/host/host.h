@@ -28,6 +28,7 @@ public:
 
 protected:
     Host() = default;
+    ~Host() = default;
 
     static constexpr size_t kMostBodies = 30, kMostShapes = 12, kMostJoints = 30, kMostCables = 4;
 
@@ -231,8 +232,12 @@ protected:
         for (uint32_t i = 0; i < count; ++i) keep(colliders_, colliders[i], world);
     }
 
+    // What may be done with a world as created alone.
+    virtual void record_new(size_t) {}
+
     ByteSource source_;
     std::function<void(const char*, const char*)> broken_;
+    std::function<void(taut_world)> created_;
     bool dry_ = false;
     const char* call_ = "";
     taut_world worlds_[2] = {};
@@ -259,8 +264,9 @@ private:
             return std::any_of(names.begin(), names.end(),
                                [&](const char* one) { return std::strcmp(name, one) == 0; });
         };
-        const bool may_be_of_others = is_one_of({"taut_world_restore", "taut_world_relax", "taut_shape_sample_distance",
-                                                 "taut_solid_recover", "taut_world_add_cloth", "taut_world_add_solid"});
+        const bool may_be_of_others =
+            is_one_of({"taut_world_restore", "taut_world_relax", "taut_shape_sample_distance", "taut_solid_recover",
+                       "taut_world_add_cloth", "taut_world_add_solid", "taut_replay_open", "taut_replay_next"});
         expect(result != TAUT_LOCKED && (result != TAUT_UNSUPPORTED || may_be_of_others),
                "a result that nothing here calls for");
         if (result != TAUT_OK)
