@@ -26,8 +26,8 @@ extern "C" {
 #endif
 
 /** Takes size bytes of a recording, which follow those of the last call. Called on the thread that calls the world,
- *  also before a call is done; calls on the world from inside return TAUT_LOCKED or are not recorded. Returns 1; after
- *  anything else, or what it throws, the recording ends there, with a warning to the log. */
+ *  also before a call is done. Returns 1; after anything else, what it throws, or a call from inside that changes the
+ *  world, the recording ends there, with a warning to the log. */
 typedef int32_t (*taut_record_fn)(const void* bytes, uint64_t size, void* user_data);
 
 /** When a recording holds the hash of the world's state, by which a replay tells where it parts. */

@@ -22,6 +22,7 @@ taut_result taut_world_record(taut_world handle, const taut_record_def* given) {
              .require(def.write != nullptr, "write is null", TAUT_NULL_POINTER))
         return check.result();
     return with_world(check.call(), handle, Use::alone, [&](World& world) {
+        if (is_within_recording(world.id)) return refuse_hold(check.call(), "world", TAUT_LOCKED);
         check.require(!is_recorded(world), "the world is recorded already")
             .require(is_as_created(world), "calls have changed the world, or tried to, since it was created");
         if (!check) return check.result();
@@ -34,6 +35,7 @@ taut_result taut_world_record(taut_world handle, const taut_record_def* given) {
 taut_result taut_world_end_recording(taut_world handle) {
     Check check(__func__);
     return with_world(check.call(), handle, Use::alone, [&](World& world) {
+        if (is_within_recording(world.id)) return refuse_hold(check.call(), "world", TAUT_LOCKED);
         if (!check.require(is_recorded(world), "the world is not recorded")) return check.result();
         end_recording(world);
         return TAUT_OK;

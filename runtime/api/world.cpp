@@ -163,6 +163,7 @@ taut_result taut_world_create(const taut_world_def* given, taut_world* out) {
 taut_result taut_world_destroy(taut_world handle) {
     const char* call = __func__;
     return contain(call, [&] {
+        if (is_within_recording(world_of(handle))) return refuse_hold(call, "world", TAUT_LOCKED);
         Hold hold(world_of(handle), Use::write);
         if (!hold.world()) return refuse_hold(call, "world", hold.refusal());
         destroy_world(hold);

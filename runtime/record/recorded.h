@@ -43,8 +43,7 @@ private:
     void begin(Call call, uint64_t handle) noexcept;
     void end() noexcept;
 
-    uint32_t seat_ = 0;  // slot of the world, 0: not recorded
-    uint64_t handle_ = 0;
+    uint32_t seat_ = 0, outer_ = 0;  // slots of worlds, 0: not recorded; of the call around this one
     Call call_{};
     const void* at_[kMostParameters];
 };

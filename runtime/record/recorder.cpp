@@ -65,7 +65,6 @@ public:
           baked_(memory_) {}
 
     uint32_t world() const { return world_; }
-    bool failed() const { return failed_; }
     PreSolve& host() { return host_; }
     const taut_hooks& hooks() const { return memory_.hooks(); }
 
@@ -103,6 +102,10 @@ public:
     void unrecorded(const char* call) {
         put(Record::unrecorded, [&](Encoder& encoder) { name(encoder, call); });
     }
+    // By this thread, as it has the recorder: a call that is recorded, or one of the host's function.
+    void note_change_within() {
+        if (writing_) fail("write changed the world");
+    }
     void finish() {
         put(Record::end, [](Encoder&) {});
     }
@@ -127,15 +130,21 @@ private:
             std::memcpy(bytes_.data() + sizeof prefix, &checks[0], sizeof checks[0]);
             bytes_.resize(bytes_.size() + sizeof checks[1]);
             std::memcpy(bytes_.data() + bytes_.size() - sizeof checks[1], &checks[1], sizeof checks[1]);
-            if (kind == Record::head && write_(kRecordMagic, sizeof kRecordMagic, user_data_) != 1)
-                return fail("the host's function did not write");
-            if (write_(bytes_.data(), bytes_.size(), user_data_) == 1) return true;
-            return fail("the host's function did not write");
+            if (kind == Record::head && !write(kRecordMagic, sizeof kRecordMagic)) return false;
+            return write(bytes_.data(), bytes_.size());
         } catch (const std::bad_alloc&) {
             return fail("out of memory");
-        } catch (...) {
-            return fail("the host's function threw an exception");
         }
+    }
+    bool write(const void* bytes, uint64_t size) noexcept {
+        bool written = false;
+        writing_ = true;
+        try {
+            written = write_(bytes, size, user_data_) == 1;
+        } catch (...) {  // as good as one that did not write
+        }
+        writing_ = false;
+        return !failed_ && (written || fail("write did not write"));
     }
     bool fail(const char* why) noexcept {
         failed_ = true;
@@ -186,7 +195,7 @@ private:
     void* user_data_;
     taut_record_hashes hashes_;
     PreSolve host_;
-    bool failed_ = false;
+    bool failed_ = false, writing_ = false;
     uint64_t calls_ = 0;
     Array<std::byte> bytes_;
     Array<Snapshot> snapshots_;
@@ -201,33 +210,41 @@ struct Seat {
     Recorder* recorder = nullptr;
 };
 constinit std::array<Seat, kWorldSlots> seats;
-// The slot of the world whose call this thread is recording.
+// The slot of the world whose seat this thread holds, 0: none.
 thread_local uint32_t seat_of_thread = 0;
 
 // The recorder of a world, for as long as this lives; null: there is none, or another call has it.
 class SeatHold {
 public:
-    SeatHold(uint32_t world, bool waits) noexcept : seat_(seats[world_slot_of(world)]) {
+    SeatHold(uint32_t world, bool waits) noexcept : seat_(seats[world_slot_of(world)]), outer_(seat_of_thread) {
+        if (outer_ == world_slot_of(world)) return;
         while (seat_.busy.exchange(true, std::memory_order_acquire)) {
             if (!waits) return;
             std::this_thread::yield();
         }
         held_ = true;
+        seat_of_thread = world_slot_of(world);
         if (seat_.recorder && seat_.recorder->world() == world) recorder_ = seat_.recorder;
     }
     ~SeatHold() {
-        if (held_) seat_.busy.store(false, std::memory_order_release);
+        if (!held_) return;
+        seat_of_thread = outer_;
+        seat_.busy.store(false, std::memory_order_release);
     }
     SeatHold(const SeatHold&) = delete;
     SeatHold& operator=(const SeatHold&) = delete;
 
     Recorder* recorder() const { return recorder_; }
     Seat& seat() const { return seat_; }
-    // Goes on holding it.
-    void leave() { held_ = false; }
+    // Goes on holding it. Returns what seat_of_thread was before.
+    uint32_t leave() {
+        held_ = false;
+        return outer_;
+    }
 
 private:
     Seat& seat_;
+    uint32_t outer_;
     bool held_ = false;
     Recorder* recorder_ = nullptr;
 };
@@ -260,21 +277,24 @@ int32_t ask_recorded(const taut_pre_solve* contact, taut_pre_solve_answer* answe
 void Recorded::begin(Call call, uint64_t handle) noexcept {
     SeatHold hold(static_cast<uint32_t>(handle & kThisWorld), false);
     if (!hold.recorder() || !hold.recorder()->begin(call, at_)) return;
-    hold.leave();
+    outer_ = hold.leave();
     call_ = call;
-    seat_ = seat_of_thread = world_slot_of(hold.recorder()->world());
+    seat_ = seat_of_thread;
     tell_result(TAUT_OK);
 }
 
 void Recorded::end() noexcept {
     Seat& seat = seats[seat_];
     seat.recorder->end(call_, at_, told_result());
-    seat_of_thread = 0;
+    seat_of_thread = outer_;
     seat.busy.store(false, std::memory_order_release);
 }
 
 void note_change(const char* call, uint32_t world) noexcept {
-    if (seat_of_thread == world_slot_of(world)) return;
+    if (seat_of_thread == world_slot_of(world)) {
+        seats[seat_of_thread].recorder->note_change_within();
+        return;
+    }
     const SeatHold hold(world, true);
     if (hold.recorder()) hold.recorder()->unrecorded(call);
 }
@@ -291,6 +311,10 @@ bool start_recording(const World& world, const taut_record_def& checked_def) {
     hold.seat().recorder = recorder;
     recorded_worlds.fetch_add(1, std::memory_order_relaxed);
     return true;
+}
+
+bool is_within_recording(uint32_t world) noexcept {
+    return seat_of_thread != 0 && seat_of_thread == world_slot_of(world);
 }
 
 bool is_recorded(const World& world) noexcept {

@@ -9,6 +9,8 @@ namespace taut {
 
 // Writes the head. Throws std::bad_alloc. False, with the reason told: the host did not take it.
 bool start_recording(const World& world, const taut_record_def& checked_def);
+// Whether this thread is within a call that is being recorded, as the host's write is.
+bool is_within_recording(uint32_t world) noexcept;
 bool is_recorded(const World& world) noexcept;
 // Writes the end. The world's pre_solve is the host's again.
 void end_recording(World& world) noexcept;

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "driver.h"
+#include "host/recording.h"
 #include "starts.h"
 
 using namespace taut_test;
@@ -15,8 +18,21 @@ namespace {
 
 class RandomHost : public testing::TestWithParam<uint64_t> {};
 
+// The calls of a seed as recordings of its worlds, for taut-replay.
+void leave_recordings(uint64_t seed, int calls, const std::string& folder) {
+    const std::string prefix = folder + "/host_seed" + std::to_string(seed);
+    RecordingFiles files(prefix);
+    Driver driver(
+        random_source(seed), [](const char*, const char*) {}, [&](taut_world world) { files.add(world); });
+    for (int number = 0; number < calls; ++number) driver.call();
+    std::printf("recordings of its worlds: %s_*.taut\n", prefix.c_str());
+}
+
+// With TAUT_RECORD_HOST=FOLDER what kills the process is recorded there; what else is found leaves its recordings
+// anyway.
 TEST_P(RandomHost, BreaksNothing) {
     if (few_starts() && GetParam() % 3 != 0) GTEST_SKIP() << "takes five seconds with sanitizers";
+    if (const char* folder = std::getenv("TAUT_RECORD_HOST")) leave_recordings(GetParam(), 3000, folder);
     int number = 0;
     bool broken = false;
     Driver driver(random_source(GetParam()), [&](const char* call, const char* what) {
@@ -24,6 +40,7 @@ TEST_P(RandomHost, BreaksNothing) {
         ADD_FAILURE() << "seed " << GetParam() << ", call " << number << ", " << call << ": " << what;
     });
     for (; number < 3000 && !broken; ++number) driver.call();
+    if (broken) leave_recordings(GetParam(), number, testing::TempDir());
     // Both roads were travelled.
     EXPECT_GT(driver.accepted, 1000u);
     EXPECT_GT(driver.refused, 300u);

@@ -92,6 +92,8 @@ void expect_replays(const Recorded& recorded, uint64_t frames) {
     }
 }
 
+bool is_whole(const Replay& replay) { return replay.is_same() && replay.state.whole == 1; }
+
 // ---------------------------------------------------------------- what replays
 
 TEST(Recording, OfAPileReplays) {
@@ -202,6 +204,30 @@ TEST(Recording, HoldsTheAnswersOfPreSolve) {
     });
     EXPECT_GT(judge.asked, 100u);
     expect_replays(recorded, 60);
+}
+
+// Worlds whose functions change each other's are recorded each for itself.
+TEST(Recording, OfAWorldThatAnotherOneChangesReplays) {
+    Recorded second;
+    const Recorded first = record([&](taut_world world) {
+        second = record([&](taut_world other) {
+            EXPECT_OK(taut_world_set_pre_solve(
+                world,
+                [](const taut_pre_solve*, taut_pre_solve_answer*, void* changed) -> int32_t {
+                    EXPECT_OK(taut_world_step(*static_cast<taut_world*>(changed)));
+                    return 1;
+                },
+                &other));
+            pile(world, 1, TAUT_COLLIDER_PRE_SOLVE);
+            pile(other, 3);
+            step(world, 20);
+            EXPECT_OK(taut_world_set_pre_solve(world, nullptr, nullptr));
+        });
+    });
+    expect_replays(first, 20);
+    Replay replay(second.bytes, 2);
+    EXPECT_TRUE(is_whole(replay.play())) << replay.text();
+    EXPECT_GT(replay.state.frame, 5u);
 }
 
 // What it says after the recording is the host's again.
@@ -458,6 +484,41 @@ TEST(Recording, EndsWhereTheHostDoesNotWrite) {
     EXPECT_GT(replay.state.call, 3u);
 }
 
+// A host whose function calls into the world that it writes of: no deadlock, and no recording that is not true.
+TEST(Recording, EndsWhereWriteChangesTheWorld) {
+    struct Meddler {
+        Recording recording;
+        taut_world world{};
+        bool meddles = false;
+    } meddler;
+    taut_record_def how;
+    taut_record_def_init(&how);
+    how.user_data = &meddler;
+    how.write = [](const void* bytes, uint64_t size, void* self) -> int32_t {
+        Meddler& own = *static_cast<Meddler*>(self);
+        if (own.meddles) {
+            own.meddles = false;
+            EXPECT_EQ(taut_world_destroy(own.world), TAUT_LOCKED);
+            EXPECT_EQ(taut_world_end_recording(own.world), TAUT_LOCKED);
+            EXPECT_OK(taut_world_set_gravity(own.world, {0, 1, 0}));
+        }
+        const taut_record_def def = own.recording.def();
+        return def.write(bytes, size, &own.recording);
+    };
+    const taut_world_def def = usual();
+    ASSERT_OK(taut_world_create(&def, &meddler.world));
+    ASSERT_OK(taut_world_record(meddler.world, &how));
+    step(meddler.world, 3);
+    meddler.meddles = true;
+    step(meddler.world, 3);
+    ASSERT_OK(taut_world_destroy(meddler.world));
+    Replay replay(meddler.recording.bytes);
+    replay.play();
+    EXPECT_TRUE(replay.is_same()) << replay.text();
+    EXPECT_EQ(replay.state.frame, 4u);
+    EXPECT_EQ(replay.state.whole, 0u);
+}
+
 // A recording does not count for what the host's allocator is told to give: without memory it ends, the call goes on.
 TEST(Recording, GivesItsMemoryBack) {
     Ledger ledger;
@@ -549,8 +610,6 @@ const Bytes& short_recording() {
     }();
     return bytes;
 }
-
-bool is_whole(const Replay& replay) { return replay.is_same() && replay.state.whole == 1; }
 
 TEST(DamagedRecording, AsWrittenIsWhole) {
     Replay replay(short_recording());

@@ -16,7 +16,8 @@ protected:
     void record_any() {
         const size_t w = pick_world();
         record(w);
-        if (one_in(16)) run("taut_world_end_recording", [&] { return taut_world_end_recording(worlds_[w]); });
+        if (one_in(16) && !created_)
+            run("taut_world_end_recording", [&] { return taut_world_end_recording(worlds_[w]); });
         const uint32_t keep = one_in(16) ? word() | 1 : 1;
         run("taut_bake_keep_defs", [&] { return taut_bake_keep_defs(keep); });
     }

@@ -40,6 +40,36 @@ struct Recording {
     }
 };
 
+// Recordings of worlds as files PREFIX_0.taut and so on, written at once, so that they outlive the process.
+class RecordingFiles {
+public:
+    explicit RecordingFiles(std::string prefix) : prefix_(std::move(prefix)) {}
+    ~RecordingFiles() {
+        for (std::FILE* file : files_) std::fclose(file);
+    }
+    RecordingFiles(const RecordingFiles&) = delete;
+    RecordingFiles& operator=(const RecordingFiles&) = delete;
+
+    bool add(taut_world world) {
+        std::FILE* const file = std::fopen((prefix_ + "_" + std::to_string(files_.size()) + ".taut").c_str(), "wb");
+        if (!file) return false;
+        files_.push_back(file);
+        taut_record_def def;
+        taut_record_def_init(&def);
+        def.hashes = TAUT_RECORD_HASH_CALLS;
+        def.user_data = file;
+        def.write = [](const void* from, uint64_t size, void* to) -> int32_t {
+            std::FILE* const out = static_cast<std::FILE*>(to);
+            return std::fwrite(from, 1, size, out) == size && std::fflush(out) == 0;
+        };
+        return taut_world_record(world, &def) == TAUT_OK;
+    }
+
+private:
+    std::string prefix_;
+    std::vector<std::FILE*> files_;
+};
+
 // A world that plays bytes, which outlive it.
 class Replay {
 public:

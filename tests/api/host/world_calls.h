@@ -36,10 +36,8 @@ protected:
         expect(taut_version() > 0 && std::strcmp(taut_result_name(TAUT_OK), "TAUT_OK") == 0, "no version or name");
         if (taut_world_create(&def, &out) != TAUT_OK) expect(false, taut_last_error());
         worlds_[w] = out;
-        if (created_)
-            created_(out);
-        else
-            record_new(w);
+        if (created_) created_(out);
+        record_new(w);
         watch_[w] = {};
         saved_[w] = {};
     }
