@@ -25,7 +25,7 @@ class RecordedScene : public testing::TestWithParam<scenes::Family> {};
 
 TEST_P(RecordedScene, ReplaysOnAnyThreads) {
     if (few_starts() && GetParam().large) GTEST_SKIP() << "takes long with sanitizers";
-    const int steps = GetParam().large ? 2 : 20;
+    const int steps = GetParam().large ? 2 : 12;
     const scenes::Scene scene = example_of(GetParam());
     const Recording recording = record_scene(scene, steps, 1);
     EXPECT_TRUE(record_scene(scene, steps, 2).bytes == recording.bytes) << "another file on two threads";
