@@ -423,12 +423,15 @@ void follow_joints(const System& system, const Nodes& nodes) {
         const RowBlock& block = system.rows.block[joint.block];
         Pose poses[kMaxEnds];
         Vec3 turned[kMaxEnds];
+        bool sane = true;  // else it is put back to where it was
         for (int n = 0; n < block.type->nodes; ++n) {
             const uint32_t at = block.node[n];
+            const Vec3& w = system.exact[at].w;
             poses[n] = pose_between(system, nodes, at);
-            turned[n] = system.scheme.h * system.exact[at].w;
+            turned[n] = system.scheme.h * w;
+            sane = sane && poses[n].x.allFinite() && poses[n].R.allFinite() && w.squaredNorm() <= kMaxSpeed * kMaxSpeed;
         }
-        block.type->follow(joint.data, poses, turned);
+        if (sane) block.type->follow(joint.data, poses, turned);
     }
 }
 
