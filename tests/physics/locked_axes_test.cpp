@@ -1,7 +1,8 @@
 // Locked axes of bodies: what is free moves as analysis says, what is locked keeps its bits, in all solvers.
 #include <cstring>
 
-#include "physics/lab.h"
+#include "physics/attachment_lab.h"
+#include "physics/cable_lab.h"
 
 namespace {
 
@@ -76,6 +77,7 @@ private:
 };
 
 class LockedAxes : public testing::TestWithParam<Run> {};
+class LockedBesideSofts : public LockedAxes {};
 
 // w = T t / I_yy of the inertia as it lies in the world, whatever of the body's own axes lies there.
 TEST_P(LockedAxes, TorqueAboutOneAxisMeetsTheMomentAboutIt) {
@@ -275,6 +277,65 @@ TEST_P(LockedAxes, KeepTheirBitsInAPile) {
     }
 }
 
+// A cable's load that may only rise and fall hangs below its end, and a cloth and a solid that lie on locked bodies or
+// hang from them move none of what is locked.
+TEST_P(LockedBesideSofts, KeepTheirBits) {
+    CableLab world(stepped(GetParam()));
+    Watch watch;
+    const taut_shape box = world.box({0.2, 0.2, 0.2}), ball = world.sphere(0.3);
+    const taut_body load = world.add({.shape = box, .position = {0, -2, 9}, .mass = 2});
+    watch.add(load, TAUT_LOCK_X | TAUT_LOCK_Z | TAUT_LOCK_ROTATION);
+    taut_cable_def cable = CableLab::plan(TAUT_CABLE_LINKS);
+    cable.end[0] = to_world({0.4, 0, 9});
+    cable.end[1] = to_body(load, {0, 0.2, 0});
+    cable.segment_count = 8;
+    world.cable(cable);
+    const taut_body under = world.add({.shape = ball, .position = {1, -0.4, 1}, .mass = 5, .gravity_scale = 0});
+    const taut_body beside = world.add({.shape = box, .position = {0.3, -0.3, 1.6}, .mass = 5, .gravity_scale = 0});
+    const taut_body held = world.add({.shape = box, .position = {0, 0, 0}, .mass = 1, .gravity_scale = 0});
+    watch.add(under, TAUT_LOCK_Y | TAUT_LOCK_ROTATION);
+    watch.add(beside, TAUT_LOCK_X | TAUT_LOCK_Y | TAUT_LOCK_ANGULAR_Z);
+    watch.add(held, TAUT_LOCK_TO_PLANE_XY | TAUT_LOCK_Y);
+    const Sheet sheet(9, 9, 2, 2, 0);
+    const taut_cloth cloth = add(world, sheet.def(TAUT_CLOTH_TRIANGLES));
+    attach(world, anchor_on(world, held, {0, 0, 0}), anchor_on(cloth, {0, 0, 0}));
+    const Beam beam({1, 0.4, 0.4}, 4, 3, 3, false);
+    const taut_solid solid = add(world, beam.def(TAUT_SOLID_ST_VENANT_KIRCHHOFF, 1e5, 0.3));
+    for (const taut_body vertex : bodies_of(solid)) {
+        const Vec at = position(vertex) + Vec(5, 0.5, 0);
+        const taut_pose pose{at.pos(), {0, 0, 0, 1}, {0, 0}};
+        ok(taut_body_set_pose(vertex, &pose));
+    }
+    const taut_body seat = world.add({.shape = ball, .position = {5.5, 0.1, 0.2}, .mass = 3, .gravity_scale = 0});
+    watch.add(seat, TAUT_LOCK_Y | TAUT_LOCK_X);
+    for (int i = 0; i < 2 * GetParam().hz; ++i) {
+        ok(taut_world_step(world.handle));
+        watch.look();
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_NEAR(position(load).y, -2.2, 0.25);
+}
+
+// A tower of boxes in a plane settles as one without locks, and stands.
+TEST_P(LockedAxes, TowerStandsAsWithoutLocks) {
+    World world(stepped(GetParam()));
+    world.add_ground();
+    const taut_shape box = world.box({0.5, 0.25, 0.5});
+    std::vector<taut_body> towers[2];
+    for (int level = 0; level < 5; ++level)
+        for (int locked = 0; locked < 2; ++locked) {
+            const Vec at(0.02 * (level % 2), 0.25 + 0.5 * level, 5.0 * locked);
+            towers[locked].push_back(world.add({.shape = box, .position = at}));
+            if (locked == 1) lock(towers[1].back(), TAUT_LOCK_TO_PLANE_XY);
+        }
+    for (int i = 0; i < 2 * GetParam().hz; ++i) ok(taut_world_step(world.handle));
+    for (size_t level = 0; level < 5; ++level) {
+        const Vec apart = position(towers[1][level]) - position(towers[0][level]) - Vec(0, 0, 5);
+        EXPECT_LT(norm(apart), 0.01) << level;
+        EXPECT_LT(norm(velocity(towers[1][level])), 0.02) << level;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Rates, LockedAxes,
                          testing::Values(Run{30, TAUT_SOLVER_BLOCK_LDLT}, Run{60, TAUT_SOLVER_BLOCK_LDLT},
                                          Run{120, TAUT_SOLVER_BLOCK_LDLT}, Run{240, TAUT_SOLVER_BLOCK_LDLT}),
@@ -286,5 +347,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Run{60, TAUT_SOLVER_NONLINEAR_GAUSS_SEIDEL}, Run{120, TAUT_SOLVER_MINIMUM_RESIDUAL},
                     Run{60, TAUT_SOLVER_CONJUGATE_RESIDUALS}, Run{120, TAUT_SOLVER_CONJUGATE_GRADIENTS}),
     testing::PrintToStringParamName());
+
+INSTANTIATE_TEST_SUITE_P(Some, LockedBesideSofts,
+                         testing::Values(Run{30, TAUT_SOLVER_BLOCK_LDLT}, Run{60, TAUT_SOLVER_BLOCK_LDLT},
+                                         Run{60, TAUT_SOLVER_PROJECTED_GAUSS_SEIDEL},
+                                         Run{60, TAUT_SOLVER_MINIMISATION}),
+                         testing::PrintToStringParamName());
 
 }  // namespace
