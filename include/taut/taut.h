@@ -15,6 +15,7 @@
 #include <taut/decomposition.h>
 #include <taut/draw.h>
 #include <taut/event.h>
+#include <taut/forces.h>
 #include <taut/joint.h>
 #include <taut/lint.h>
 #include <taut/math.h>

@@ -8,7 +8,9 @@
 
 #include <taut/joint.h>
 
+#include "advance.h"
 #include "api/sized.h"
+#include "models/bodies.h"
 #include "movers/call_parts.h"
 
 using namespace taut;
@@ -154,7 +156,8 @@ taut_result add_bone_joint(taut_world world, const taut_ragdoll_def& def, uint32
 // and its last column (sin b, -sin a cos b, cos a cos b).
 Vec3 angles_between(const Quat& a, const Quat& b) {
     const Mat3 turn = (a.conjugate() * b).toRotationMatrix();
-    return {angle_of(-turn(1, 2), turn(2, 2)), angle_of(turn(0, 2), std::sqrt(turn(1, 2) * turn(1, 2) + turn(2, 2) * turn(2, 2))),
+    return {angle_of(-turn(1, 2), turn(2, 2)),
+            angle_of(turn(0, 2), std::sqrt(turn(1, 2) * turn(1, 2) + turn(2, 2) * turn(2, 2))),
             angle_of(-turn(0, 1), turn(0, 0))};
 }
 
@@ -196,6 +199,18 @@ taut_result drive_joint(const taut_bone_def& bone, taut_joint joint, taut_ragdol
         }
     }
     return result;
+}
+
+// Whether a bone can be led: it is enabled, and not further away than taut_body_move_kinematic allows.
+taut_result check_way(Check& check, taut_body body, const taut_pose& pose) {
+    return with(check.call(), body, Use::read, [&](const World& world, uint32_t node) {
+        const NodePose to{to_vec(pose.position), to_quat(pose.rotation)};
+        const auto [v, w] = speed_between(world.nodes, node, origin_pose(world, node), to, world.def.time_step);
+        check.require(world.nodes.enabled(node), "a bone is disabled: nothing moves it")
+            .require(v.norm() <= kSpeed.hi, "poses ask for a speed beyond 1e4 m/s")
+            .require(w.norm() <= kSpeed.hi, "poses ask for an angular speed beyond 1e4 rad/s");
+        return check.result();
+    });
 }
 
 taut_result lead_bone(const taut_bone_def& bone, taut_body body, taut_ragdoll_mode mode, const taut_pose* pose) {
@@ -324,8 +339,10 @@ taut_result taut_ragdoll_drive(const taut_ragdoll_def* given, taut_ragdoll_mode 
         if (result != TAUT_OK) return refuse_as(check, result);
         check.require(kind == TAUT_BODY_DYNAMIC || kind == TAUT_BODY_KINEMATIC,
                       "a bone is neither dynamic nor kinematic");
+        if (!check) return check.result();
+        if (!is_led(def.bones[i], mode)) continue;
+        if (const taut_result way = check_way(check, ragdoll->bodies[i], poses[i]); way != TAUT_OK) return way;
     }
-    if (!check) return check.result();
     taut_vec3 targets[TAUT_RAGDOLL_MAX_BONES] = {};
     if (is_driven(mode)) targets_of(def, poses, targets);
     const bool renew = is_driven(mode) != is_driven(ragdoll->mode);

@@ -132,6 +132,8 @@ public:
             &Driver::use_ragdoll,
             &Driver::record_any,
             &Driver::replay_any,
+            &Driver::put_in_fluid,
+            &Driver::blow_up,
         };
         uint8_t which = 0;
         if (!source_(&which, 1)) return false;

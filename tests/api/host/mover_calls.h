@@ -1,4 +1,4 @@
-// Calls of character.h, vehicle.h and ragdoll.h.
+// Calls of character.h, vehicle.h, ragdoll.h and forces.h.
 #pragma once
 
 #include <cstddef>
@@ -93,6 +93,40 @@ protected:
             expect(std::memcmp(&before, &vehicle_[w], sizeof before) == 0, "a refused call drove a vehicle");
         }
         if (one_in(16)) spoil_bytes(&vehicle_[w], sizeof vehicle_[w]);
+    }
+
+    void put_in_fluid() {
+        const size_t w = pick_world();
+        const taut_body body = pick_body(w);
+        taut_fluid_def def;
+        taut_fluid_def_init(&def);
+        spoil(def.struct_size);
+        def.point = pos(reach(10));
+        if (one_in(4)) def.normal = one_in(2) ? taut_vec3{0, 0, 0} : vec(1);
+        if (one_in(4)) def.density = scale(1e-3, 1e6), def.drag = real(0, 100), def.skin_drag = real(0, 1e9);
+        if (one_in(4)) def.velocity = vec(100), def.gravity = vec(20);
+        const float seconds = one_in(8) ? real(0, 1) : 1 / 60.0f;
+        taut_fluid_report report;
+        if (run("taut_body_apply_fluid", [&] { return taut_body_apply_fluid(body, &def, seconds, &report); }))
+            expect(finite(report.force) && finite(report.torque) && finite(report.centre) && report.volume >= 0,
+                   "a report that is not finite");
+    }
+
+    void blow_up() {
+        const size_t w = pick_world();
+        taut_explosion_def def;
+        taut_explosion_def_init(&def);
+        spoil(def.struct_size);
+        def.position = pos(reach(10));
+        def.radius = real(0.1, 20);
+        def.impulse = one_in(16) ? real(-1e12, 1e12) : real(-100, 100);
+        def.falloff = byte() % (one_in(16) ? 255 : 17);
+        def.occlusion = one_in(2);
+        const Filter filter = query_filter(w);
+        def.filter = filter.get();
+        uint32_t pushed = 0;
+        if (run("taut_world_apply_explosion", [&] { return taut_world_apply_explosion(worlds_[w], &def, &pushed); }))
+            expect_all_finite();
     }
 
     void use_ragdoll() {

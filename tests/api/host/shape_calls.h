@@ -235,6 +235,7 @@ protected:
 
     // Tetrahedra, which are closed, and now and then what is not.
     void decompose_any() {
+        if (!one_in(6)) return;  // it takes long
         if (live(baked_, taut_baked_is_valid) >= kMostBaked) return release_baked();
         std::vector<taut_vec3> points(4);
         for (taut_vec3& point : points) point = vec(2);

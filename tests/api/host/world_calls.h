@@ -18,7 +18,7 @@ protected:
         def.threads = one_in(4) ? 1 + byte() % 4 : 1;
         def.adaptive_damping = one_in(4);
         def.air_density = one_in(4) ? real(0, 10) : 1.2f;
-        if (!(def.air_density >= 0)) def.air_density = 0;
+        if (!(def.air_density >= 0 && def.air_density <= 10)) def.air_density = 0;
         if (one_in(8)) def.max_bodies = 4 + byte() % 64;
         if (one_in(8)) def.max_colliders = 4 + byte() % 64;
         if (one_in(8)) def.max_joints = 1 + byte() % 32;
