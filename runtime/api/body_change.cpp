@@ -183,6 +183,7 @@ taut_result taut_body_get_damping(taut_body handle, float* linear, float* angula
 }
 
 taut_result taut_body_set_locked_axes(taut_body handle, uint32_t locked_axes) {
+    TAUT_RECORD(taut_body_set_locked_axes, handle, locked_axes);
     Check check(__func__);
     if (!check.count("locked_axes", locked_axes, 0, TAUT_LOCK_ALL)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t node) {

@@ -281,6 +281,7 @@ taut_result taut_world_add_six_dof_joint(taut_world world, const taut_six_dof_jo
     return add(__func__, world, TAUT_JOINT_SIX_DOF, def, taut_six_dof_joint_def_init, out);
 }
 taut_result taut_world_add_wheel_joint(taut_world world, const taut_wheel_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_wheel_joint, world, def, out);
     return add(__func__, world, TAUT_JOINT_WHEEL, def, taut_wheel_joint_def_init, out);
 }
 

@@ -162,12 +162,15 @@ void taut_pulley_joint_def_init_sized(taut_pulley_joint_def* def, uint32_t size)
 }
 
 taut_result taut_world_add_gear_joint(taut_world world, const taut_gear_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_gear_joint, world, def, out);
     return add_gear(__func__, world, TAUT_JOINT_GEAR, def, taut_gear_joint_def_init, out);
 }
 taut_result taut_world_add_rack_pinion_joint(taut_world world, const taut_rack_pinion_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_rack_pinion_joint, world, def, out);
     return add_gear(__func__, world, TAUT_JOINT_RACK_PINION, def, taut_rack_pinion_joint_def_init, out);
 }
 taut_result taut_world_add_pulley_joint(taut_world world, const taut_pulley_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_pulley_joint, world, def, out);
     const auto check_own = [](Check& check, const taut_pulley_joint_def& own) {
         check.number("ratio", own.ratio, kRatio)
             .zero_or("length", own.length, kJointLength)
@@ -199,6 +202,7 @@ taut_result taut_joint_get_housing_frames(taut_joint handle, taut_frame* frame_a
 }
 
 taut_result taut_joint_set_housing_frames(taut_joint handle, const taut_frame* frame_a, const taut_frame* frame_b) {
+    TAUT_RECORD(taut_joint_set_housing_frames, handle, frame_a, frame_b);
     Check check(__func__);
     if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
     const std::array<taut_frame, 2> frames = {*frame_a, *frame_b};
@@ -232,6 +236,7 @@ taut_result taut_joint_get_ratio(taut_joint handle, float* out) {
 }
 
 taut_result taut_joint_set_ratio(taut_joint handle, float ratio) {
+    TAUT_RECORD(taut_joint_set_ratio, handle, ratio);
     Check check(__func__);
     if (!check_gear_ratio(check, ratio)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t index) {

@@ -26,6 +26,7 @@
     X(taut_body_set_damping)              \
     X(taut_body_set_gravity_scale)        \
     X(taut_body_set_max_speed)            \
+    X(taut_body_set_locked_axes)          \
     X(taut_body_set_material)             \
     X(taut_body_set_contact_events)       \
     X(taut_body_set_pose)                 \
@@ -69,6 +70,10 @@
     X(taut_world_add_universal_joint)     \
     X(taut_world_add_cone_twist_joint)    \
     X(taut_world_add_six_dof_joint)       \
+    X(taut_world_add_wheel_joint)         \
+    X(taut_world_add_gear_joint)          \
+    X(taut_world_add_rack_pinion_joint)   \
+    X(taut_world_add_pulley_joint)        \
     X(taut_joint_remove)                  \
     X(taut_joint_set_user_data)           \
     X(taut_joint_set_axis)                \
@@ -77,6 +82,8 @@
     X(taut_joint_set_angular_compliance)  \
     X(taut_joint_set_break)               \
     X(taut_joint_set_length)              \
+    X(taut_joint_set_ratio)               \
+    X(taut_joint_set_housing_frames)      \
     X(taut_joint_set_solve)               \
     X(taut_joint_set_frames)              \
     X(taut_joint_set_enabled)             \

@@ -158,11 +158,11 @@ template <class V, Like<taut_body_def> T>
 void layout(V& visit, T& of) {
     auto& [struct_size, kind, position, rotation, linear_velocity, angular_velocity, shape, material, filter, density,
            mass, centre_of_mass, inertia, gravity_scale, collider_count, user_data, colliders, collider_flags,
-           contact_events, linear_damping, angular_damping, max_linear_speed, max_angular_speed] = of;
+           contact_events, linear_damping, angular_damping, max_linear_speed, max_angular_speed, locked_axes] = of;
     if (const auto whole = visit.sized(of)) {
         visit(kind, position, rotation, linear_velocity, angular_velocity, shape, material, filter, density, mass,
               centre_of_mass, inertia, gravity_scale, collider_count, user_data, collider_flags, contact_events,
-              linear_damping, angular_damping, max_linear_speed, max_angular_speed);
+              linear_damping, angular_damping, max_linear_speed, max_angular_speed, locked_axes);
         visit.defs(colliders, collider_count);
     }
 }
@@ -267,6 +267,42 @@ void layout(V& visit, T& of) {
     if (const auto whole = visit.sized(of)) {
         visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
               angular_damping, break_force, break_torque, solve, reserved, axes, user_data);
+    }
+}
+template <class V, Like<taut_wheel_joint_def> T>
+void layout(V& visit, T& of) {
+    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
+           angular_damping, break_force, break_torque, solve, reserved, suspension, steering, spin, user_data] = of;
+    if (const auto whole = visit.sized(of)) {
+        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
+              angular_damping, break_force, break_torque, solve, reserved, suspension, steering, spin, user_data);
+    }
+}
+template <class V, Like<taut_gear_joint_def> T>
+void layout(V& visit, T& of) {
+    auto& [struct_size, collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b,
+           ratio, angular_compliance, angular_damping, break_torque, solve, reserved, user_data] = of;
+    if (const auto whole = visit.sized(of)) {
+        visit(collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b, ratio,
+              angular_compliance, angular_damping, break_torque, solve, reserved, user_data);
+    }
+}
+template <class V, Like<taut_rack_pinion_joint_def> T>
+void layout(V& visit, T& of) {
+    auto& [struct_size, collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b,
+           ratio, compliance, damping, break_force, solve, reserved, user_data] = of;
+    if (const auto whole = visit.sized(of)) {
+        visit(collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b, ratio,
+              compliance, damping, break_force, solve, reserved, user_data);
+    }
+}
+template <class V, Like<taut_pulley_joint_def> T>
+void layout(V& visit, T& of) {
+    auto& [struct_size, collide_connected, body_a, body_b, housing, anchor_a, anchor_b, sheave_a, sheave_b, ratio,
+           length, rigid, compliance, damping, break_force, solve, reserved, user_data] = of;
+    if (const auto whole = visit.sized(of)) {
+        visit(collide_connected, body_a, body_b, housing, anchor_a, anchor_b, sheave_a, sheave_b, ratio, length, rigid,
+              compliance, damping, break_force, solve, reserved, user_data);
     }
 }
 template <class V, Like<taut_anchor> T>
