@@ -15,7 +15,7 @@
 namespace taut {
 
 GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const SolverSettings& settings,
-                       SolverReport& report, Stopwatch& watch)
+                       SolverReport& report, StageWatch& watch)
     : w_(world),
       system_(world.system),
       group_(world.partition.groups[index]),
@@ -41,6 +41,7 @@ GroupSolve::GroupSolve(World& world, uint32_t index, const Solver& solver, const
 }
 
 void GroupSolve::build() {
+    watch_.begin("predict");
     system_.scheme.set_length(clock_.length());
     build_rows(system_, group_, w_.partition.blocks, w_.joints, w_.elements, w_.pairs, w_.nodes, !solver_.lanes,
                solver_.energies);
@@ -56,6 +57,7 @@ void GroupSolve::build() {
 }
 
 void GroupSolve::begin() {
+    watch_.begin("predict");
     if (clock_.length() != system_.scheme.h)
         change_length(w_.team, system_, group_, w_.pairs, clock_.length(), w_.def.time_step);
     if (loaded_ || !sane_) {
@@ -119,6 +121,7 @@ void GroupSolve::renew_surfaces() {
 }
 
 void GroupSolve::assemble() {
+    watch_.begin("assemble");
     evaluate_rows(w_.team, system_, clock_.left(), w_.def.time_step);
     if (solver_.lanes) {
         evaluate_joint_lanes(w_.team, system_);
@@ -139,6 +142,7 @@ Substep GroupSolve::next() {
 }
 
 void GroupSolve::solve(Substep& substep) {
+    watch_.begin("solve");
     restitute(substep);
     solver_.solve(substep);
     if (substep.is_too_long()) return;
@@ -155,6 +159,7 @@ void GroupSolve::shorten() {
 }
 
 void GroupSolve::commit(Substep& substep) {
+    watch_.begin("commit");
     commit_strikes(system_, w_.impacts, w_.nodes);
     taut::commit(w_.team, system_, group_, w_.nodes);
     shift_kinematic(system_, w_.nodes, clock_.end());
@@ -172,8 +177,10 @@ void GroupSolve::commit(Substep& substep) {
 }
 
 void GroupSolve::relax(Substep& substep) {
+    watch_.begin("solve");
     solver_.relax(substep);
     w_.profile.sweep_us += watch_.lap();
+    watch_.begin("commit");
     sane_ = store_velocity(w_.team, system_, group_, w_.nodes, settings_.velocity_filter);
     if (!one_step_) remember_scheme(system_, group_, w_.nodes);
     store_contact_rows(system_);

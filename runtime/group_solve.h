@@ -13,7 +13,7 @@ namespace taut {
 class GroupSolve {
 public:
     GroupSolve(World& world, uint32_t index, const Solver& solver, const SolverSettings& settings, SolverReport& report,
-               Stopwatch& watch);
+               StageWatch& watch);
 
     void run() {
         build();
@@ -55,7 +55,7 @@ private:
     const Solver& solver_;
     const SolverSettings& settings_;
     SolverReport& report_;
-    Stopwatch& watch_;
+    StageWatch& watch_;
     const Vec3 gravity_;
     Substeps clock_;
     const bool airy_;              // air acts on surfaces of its soft bodies

@@ -1,7 +1,6 @@
 // One frame, from poses to poses.
 #include <algorithm>
 
-#include "base/clock.h"
 #include "base/log.h"
 #include "check/quarantine.h"
 #include "check/validate.h"
@@ -63,10 +62,11 @@ void find_touches(World& w, double lead) {
 }
 
 // Of solvers that take ways out in place of contacts.
-void detect_obstacles(World& w, Stopwatch& watch) {
+void detect_obstacles(World& w, StageWatch& watch) {
     update_bounds(w.team, w.nodes, w.colliders, w.shapes, w.pairs, w.broadphase, w.def.time_step);
     tell(w, {Stage::bounds});
     w.profile.broadphase_us = watch.lap();
+    watch.begin("narrowphase");
     w.pairs.surfaces.contact.clear();
     ++w.pairs.surfaces.version;
     const taut_vec3 g = w.def.gravity;
@@ -79,7 +79,7 @@ void detect_obstacles(World& w, Stopwatch& watch) {
     w.profile.narrowphase_us = watch.lap();
 }
 
-void detect(World& w, Stopwatch& watch) {
+void detect(World& w, StageWatch& watch) {
     if (solvers()[w.def.solver]->energies) return detect_obstacles(w, watch);
     const double lead = mean_age(w);
     recall_pairs(w);
@@ -89,6 +89,7 @@ void detect(World& w, Stopwatch& watch) {
     retire_pairs(w);
     tell(w, {Stage::pairs});
     w.profile.broadphase_us = watch.lap();
+    watch.begin("narrowphase");
     find_grain_contacts(w.nodes, w.colliders, w.shapes, w.pairs, w.def.time_step);
     w.profile.dropped_contacts = thin_crowds(w.nodes, w.colliders, w.shapes, w.pairs);
     find_touches(w, lead);
@@ -126,7 +127,7 @@ void tell_quarantine(World& w) {
             log_line(w.def.hooks, TAUT_LOG_WARNING, "body '%s' quarantined", name);
 }
 
-void solve(World& w, Stopwatch& watch) {
+void solve(World& w, StageWatch& watch) {
     const Solver& solver = *solvers()[w.def.solver];
     const taut_vec3 g = w.def.gravity;
     const MinimisationSettings minimisation{w.def.minimise_tolerance, w.def.line_search != 0, w.relaxation};
@@ -206,8 +207,11 @@ void give_back(World& w) {
 }  // namespace
 
 void step(World& w) {
-    Stopwatch whole, watch;
+    Stopwatch whole;
+    const ProfileScope scope(w.scopes, "step", 0);
     const RestAfter rest(w.team);
+    StageWatch watch(w.scopes);
+    watch.begin("broadphase");
     const Memory::Keeping keeping(w.memory);
     const uint64_t calls = w.memory.calls();
     w.profile = {};
@@ -219,6 +223,7 @@ void step(World& w) {
     remember_poses(w.team, w.nodes);
     w.last_step = w.def.time_step;
     detect(w, watch);
+    watch.begin("partition");
     watch_contacts(w.nodes, w.pairs, w.watch);
     watch_surfaces(w.team, w.nodes, w.colliders, w.pairs);
     const Solver& solver = *solvers()[w.def.solver];
@@ -232,7 +237,9 @@ void step(World& w) {
     if (w.def.report) w.reports.begin_step(w.partition, w.joints, w.elements);
     tell(w, {Stage::partition});
     w.profile.partition_us = watch.lap();
+    watch.begin("predict");
     solve(w, watch);
+    watch.begin("publish");
     if (!solver.energies)  // which leaves nodes where they are out of obstacles
         hold_back(w.team, w.colliders, w.shapes, w.joints, w.elements, followed_vertices(w), w.pairs, w.broadphase,
                   w.nodes);

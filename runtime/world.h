@@ -3,6 +3,7 @@
 
 #include <taut/taut.h>
 
+#include "base/profile_scopes.h"
 #include "collision/collide.h"
 #include "detect/pre_solve.h"
 #include "partition/partition.h"
@@ -94,6 +95,8 @@ struct World {
     Impacts impacts;  // derived
     Undo undo;        // of the step that is being taken
 
+    ProfileScopes scopes;  // the host's
+
     taut_body body_handle(uint32_t node) const;
     taut_joint joint_handle(uint32_t joint) const;
     taut_shape shape_handle(uint32_t shape) const;
@@ -124,15 +127,15 @@ void describe(Visitor& visitor, Of& of) {
            pairs, sleep, sensors, pre_solve, accumulator, last_step, partition, system, scratch, watch, window,
            contact_begin, contact_persist, contact_end, contact_points, hits, moved, quarantined, broken, detached,
            torn, yielded, fell_asleep, woke, moved_before, frozen, profile, reports, observer, relaxation,
-           spring_substep, first_substep, impacts, undo] = of;
+           spring_substep, first_substep, impacts, undo, scopes] = of;
     TAUT_FIELDS(visitor, def, nodes, shapes, colliders, joints, elements, cables, softs, attachments,
                 broadphase.boxes());
     TAUT_ROWS(visitor, colliders.ids, broadphase.boxes().of, pairs.reach, pairs.placement, pairs.stance, pairs.travel);
     TAUT_FIELDS(visitor, pairs, sleep, accumulator, spring_substep, partition);
     TAUT_ASIDE(visitor, sensors, last_step);
-    // Not state: the host's own (memory, team, id, pre_solve, observer, relaxation, first_substep); what a step works
-    // with (system, scratch, watch, impacts, undo, moved_before); what steps told (all others), which a restoration
-    // forgets.
+    // Not state: the host's own (memory, team, id, pre_solve, observer, relaxation, first_substep, scopes); what a step
+    // works with (system, scratch, watch, impacts, undo, moved_before); what steps told (all others), which a
+    // restoration forgets.
 }
 
 // One fixed time step. Throws std::bad_alloc only before the state changes or with the state still consistent.

@@ -63,6 +63,27 @@ typedef struct taut_profile {
 /** @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STRUCT_SIZE, TAUT_STALE_HANDLE, TAUT_LOCKED. Thread safety: as event.h. */
 TAUT_API taut_result taut_world_get_profile(taut_world world, taut_profile* out);
 
+/**
+ * Told that a stage begins (end 0) or ends (end 1). Scopes of a thread are nested and each ends on the thread that it
+ * began on.
+ *  - Thread 0 steps: "step", and in it one after the other, some of them many times, "broadphase", "narrowphase",
+ *    "partition", "predict", "assemble", "solve" (direct solves too), "commit" and "publish": the times of
+ *    taut_profile.
+ *  - Threads from 1 on, the world's own and the host's, help within these: "work", the part of one in a loop. Several
+ *    call at once. All have ended when the call that steps returns.
+ * name: a text of the library's that lives as long as it. Calls on the world from inside return TAUT_LOCKED; what the
+ * function throws is dropped.
+ */
+typedef void (*taut_profile_scope_fn)(const char* name, uint32_t thread, uint32_t end, void* user_data);
+
+/**
+ * Sets the function that steps of this world tell their stages; null: none, which costs nothing. No result of a step
+ * depends on it, and no snapshot holds it.
+ * Thread safety: one thread at a time per world, not inside a step.
+ * @return TAUT_OK; TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_world_set_profile_scopes(taut_world world, taut_profile_scope_fn scope, void* user_data);
+
 #ifdef __cplusplus
 }
 #endif

@@ -240,7 +240,9 @@ uint32_t Team::keep_off_caller() {
 void Team::rest() {
     if (!called_) return;
     called_ = false;
-    call_.fetch_add(1, std::memory_order_release);
+    call_.fetch_add(1, std::memory_order_seq_cst);
+    if (scopes_.load(std::memory_order_relaxed))
+        for (Spin spin; in_scope_.load(std::memory_order_seq_cst) > 0;) spin.wait();
     if (!enqueued_) return;
     enqueued_ = false;
     try {
@@ -258,9 +260,20 @@ void Team::help(uint32_t call, uint32_t worker) {
         if (number == kNone || number == last) continue;
         last = number;
         const Job job = job_out(number);
-        if (is_out(job)) work(job, worker);
+        const ProfileScopes* const scopes = scopes_.load(std::memory_order_relaxed);
+        if (is_out(job)) scopes ? work_in_scope(*scopes, job, call, worker) : work(job, worker);
         spin = {};
     }
+}
+
+// Either this sees that the call is over, or rest() that a helper is in a scope: both look after they have written.
+void Team::work_in_scope(const ProfileScopes& scopes, const Job& job, uint32_t call, uint32_t worker) {
+    in_scope_.fetch_add(1, std::memory_order_seq_cst);
+    if (call_.load(std::memory_order_seq_cst) == call) {
+        const ProfileScope scope(scopes, "work", worker);
+        work(job, worker);
+    }
+    in_scope_.fetch_sub(1, std::memory_order_release);
 }
 
 void Team::live(uint32_t worker) {

@@ -20,6 +20,8 @@
 
 #include <taut/base.h>
 
+#include "base/profile_scopes.h"
+
 namespace taut {
 
 // Where a part of [0, count) begins, of so many that are as long but for one.
@@ -100,8 +102,11 @@ public:
     }
     static constexpr uint32_t kMaxStages = 1024;  // of parts that go by after
 
-    // Lets the helpers go; the next loop calls them again. At the end of a step.
+    // Lets the helpers go; the next loop calls them again. At the end of a step. Waits for those that are in a scope.
     void rest();
+
+    // Whom helpers tell of their parts of loops; null: nobody. Between steps.
+    void tell_scopes(const ProfileScopes* scopes) { scopes_.store(scopes, std::memory_order_relaxed); }
 
 private:
     using StageFn = void (*)(const void* context, uint32_t stage, uint32_t part) noexcept;
@@ -168,6 +173,7 @@ private:
     void wake(uint32_t helpers, uint32_t call);
     void quit();
     void help(uint32_t call, uint32_t worker);
+    void work_in_scope(const ProfileScopes& scopes, const Job& job, uint32_t call, uint32_t worker);
     void live(uint32_t worker);
     static void help_as_task(uint32_t begin, uint32_t end, uint32_t worker, void* team);
 
@@ -187,6 +193,8 @@ private:
     uint32_t shares_ = 0;  // of the parts: one for each thread that is there, which takes every so manieth part
     uint64_t last_job_ = 0;
     uint64_t done_ = 0;  // stages of each part in all jobs so far
+    std::atomic<const ProfileScopes*> scopes_{nullptr};
+    std::atomic<uint32_t> in_scope_{0};  // helpers
 
     // The number of the job that is out; kNone while the rest is written. A helper that comes late may read a mixture
     // of two jobs, but then the number has changed, at which it looks before it takes a stage: stores release and loads

@@ -55,6 +55,9 @@ protected:
         const taut_world world = worlds_[w];
         const taut_vec3 gravity = vec(20);
         run("taut_world_set_gravity", [&] { return taut_world_set_gravity(world, gravity); });
+        const taut_profile_scope_fn scope = [](const char*, uint32_t, uint32_t, void*) {};
+        run("taut_world_set_profile_scopes",
+            [&] { return taut_world_set_profile_scopes(world, one_in(2) ? scope : nullptr, nullptr); });
         // World 0 always tells of beginnings and ends, so that its books can be kept.
         const uint32_t asked = byte() % (one_in(16) ? 32 : 16) | (w == 0 ? TAUT_CONTACT_EVENTS_BEGIN_END : 0);
         run("taut_world_set_contact_events", [&] { return taut_world_set_contact_events(world, asked); });
