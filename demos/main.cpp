@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "hud.h"
 #include "options.h"
@@ -71,6 +72,7 @@ public:
     }
     SceneView& view() { return view_; }
     double joint_error() const { return joint_error_; }
+    double worst_joint_error() const { return worst_; }
     nlohmann::ordered_json json() const {
         return {{"worst_joint_error_mm", 1e3 * worst_}, {"quarantined", world_.quarantined}};
     }
@@ -209,6 +211,10 @@ private:
         figures_.joint_error = std::fmax(figures_.joint_error, joint_error_);
         figures_.penetration = std::fmax(figures_.penetration, profile_.penetration);
         figures_.quarantined = world_.quarantined;
+        if (!options_.curves) return;
+        curves_[0].values.push_back(static_cast<float>(1e-3 * world_.energy()));
+        curves_[1].values.push_back(static_cast<float>(1e3 * joint_error_));
+        curves_[2].values.push_back(static_cast<float>(step_ms_));
     }
 
     void draw(uint32_t frame) {
@@ -221,6 +227,7 @@ private:
         if (options_.hud) add_figures(frame);
         if (options_.hud && tension && has_forces())
             add_tension_legend(list_, view_->tension_scale(), {options_.width, options_.height});
+        if (options_.hud && options_.curves) add_curves(list_, curves_, frames_, {options_.width, options_.height});
         if (options_.hud) add_soft_legend(list_, scene_, {options_.width, options_.height});
         if (options_.hud && twin_) add_captions();
         const render::Picture& picture = renderer_->draw(list_);
@@ -234,8 +241,9 @@ private:
 
     void add_captions() {
         const render::HudCanvas canvas(options_.width, options_.height);
-        add_caption(list_, {"with geometric stiffness", joint_error_}, 0.25f * canvas.width, canvas);
-        add_caption(list_, {"without", twin_->joint_error()}, 0.75f * canvas.width, canvas);
+        add_caption(list_, {"with geometric stiffness", joint_error_, figures_.joint_error}, 0.25f * canvas.width,
+                    canvas);
+        add_caption(list_, {"without", twin_->joint_error(), twin_->worst_joint_error()}, 0.75f * canvas.width, canvas);
     }
 
     void add_figures(uint32_t frame) {
@@ -256,8 +264,17 @@ private:
         hud.joints = profile_.joints;
         hud.broken = world_.broken.size();
         hud.pairs = profile_.touching;
-        hud.points = profile_.points;
+        hud.points = contact_count();
+        hud.asleep = options_.sleep ? profile_.bodies - profile_.awake : 0;
         add_hud(list_, hud);
+    }
+
+    // Those of what sleeps too, which the profile leaves out.
+    uint32_t contact_count() const {
+        if (!options_.sleep) return profile_.points;
+        uint32_t count = 0;
+        taut_world_get_contacts(world_.world, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+        return count;
     }
 
     bool has_forces() const { return !scene_.joints.empty() || !scene_.cables.empty(); }
@@ -290,6 +307,8 @@ private:
     taut_profile profile_{};
     double step_ms_ = 0, joint_error_ = 0;
     Figures figures_;
+    std::vector<HudCurve> curves_ = {
+        {"motion and height [kJ]", {}, false}, {"joint error [mm]", {}, true}, {"step [ms]", {}, true}};
 };
 
 nlohmann::ordered_json Run::json() const {

@@ -80,7 +80,8 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     app.add_flag("--no-render", no_render, "simulate only");
     app.add_flag("--no-hud", no_hud, "leave out the figures in the picture");
     app.add_flag("--sleep", options.sleep, "let what came to rest sleep; it is drawn darker");
-    app.add_flag("--contacts", options.contacts, "draw contact points and normals");
+    app.add_flag("--contacts", options.contacts, "draw contact points, with needles as long as their forces");
+    app.add_flag("--curves", options.curves, "draw curves of energy, joint error and step time");
     app.add_flag("--compare", options.compare, "draw the same scene without geometric stiffness beside it");
     CLI::Option* tension_flag = app.add_flag("--tension,!--no-tension", tension,
                                              "colour joints by their force (default: on in scenes with joints)");

@@ -27,6 +27,7 @@ struct Options {
     bool render = true;
     bool hud = true;
     bool contacts = false;
+    bool curves = false;
     bool sleep = false;           // what came to rest sleeps, and is drawn darker
     bool compare = false;         // beside it the same scene without geometric stiffness
     std::optional<bool> tension;  // else on for scenes with joints

@@ -20,7 +20,9 @@ using scenes::ShapeKind;
 
 constexpr float kRodRadius = 0.04f, kRopeRadius = 0.028f, kPointRadius = 0.05f,
                 kCableWeightRadius = 0.30f;  // drawn sizes [m]
-constexpr float kContactRadius = 0.03f, kNormalLength = 0.30f;
+constexpr float kContactRadius = 0.03f;      // [m]
+// Needles of contacts: one that bears the weight of the median body is so long, one of ten times it the longest [m].
+constexpr float kNeedle = 0.30f, kLongestNeedle = 10 * kNeedle;
 
 const Colour kLinkGrey = from_srgb(0xA9B4C0), kStop = from_srgb(0xFF2F4F), kDecoration = from_srgb(0xE8B23A),
              kPin = from_srgb(0x2A2F36), kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
@@ -105,7 +107,7 @@ SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world,
         uint32_t mesh = render::kMeshBox;
         const ShapeKind kind = scene.shapes[i].kind;
         if (kind == ShapeKind::sphere) mesh = render::kMeshSphere;
-        if (kind == ShapeKind::cylinder) mesh = render::kMeshCylinder;
+        if (kind == ShapeKind::cylinder) mesh = render::kMeshDrum;
         const std::vector<render::Vertex> own = own_mesh(scene.shapes[i], world.shapes[i]);
         if (!own.empty()) mesh = renderer.add_mesh(own);
         meshes_.push_back(mesh);
@@ -246,6 +248,21 @@ void SceneView::add_hinge(render::DrawList& list, size_t index, Vec3 at) const {
                                  stopped ? kStop : kPin));
 }
 
+// Arms from knots to the joints that tie them, coloured by their force.
+void SceneView::add_arms(render::DrawList& list, size_t index, const std::array<Vec3, 2>& anchors, bool tension) const {
+    const scenes::Joint& joint = scene_.joints[index];
+    const Colour colour = tension ? scale_.colour(force_on(world_.joints[index])) : kLinkGrey;
+    const int ends[2] = {joint.body_a, joint.body_b};
+    for (size_t end = 0; end < 2; ++end) {
+        if (ends[end] == scenes::kWorld) continue;
+        const auto body = static_cast<size_t>(ends[end]);
+        const scenes::Body& knot = scene_.bodies[body];
+        if (knot.look != Look::particle || knot.kind == TAUT_BODY_PARTICLE || knot.shape < 0) continue;
+        const float radius = scene_.shapes[static_cast<size_t>(knot.shape)].radius;
+        list.instances.push_back(rod(vec(world_.pose(body).position), anchors[end], 0.35f * radius, colour));
+    }
+}
+
 void SceneView::add_joints(render::DrawList& list, bool tension) const {
     for (size_t i = 0; i < scene_.joints.size(); ++i) {
         const std::optional<double>& drawn = scene_.joints[i].drawn_radius;
@@ -273,6 +290,7 @@ void SceneView::add_joints(render::DrawList& list, bool tension) const {
                 break;
             }
             case TAUT_JOINT_BALL:
+                add_arms(list, i, {vec(a), vec(b)}, tension);
                 list.instances.push_back(ball(
                     vec(b), drawn ? static_cast<float>(*drawn) : 1.25f * thickness_at(scene_.joints[i]), kPin, 0.7f));
                 break;
@@ -406,7 +424,26 @@ void SceneView::add_curves(render::DrawList& list) const {
         }
 }
 
+// Length of a needle for a newton [m/N].
+float SceneView::needle_scale() const {
+    std::vector<float> masses;
+    for (taut_body body : world_.bodies) {
+        float mass = 0;
+        taut_vec3 centre{};
+        taut_sym3 inertia{};
+        if (taut_body_get_mass(body, &mass, &centre, &inertia) == TAUT_OK && mass > 0) masses.push_back(mass);
+    }
+    if (masses.empty()) return 0;
+    const auto middle = masses.begin() + static_cast<ptrdiff_t>(masses.size() / 2);
+    std::nth_element(masses.begin(), middle, masses.end());
+    const taut_vec3 g = scene_.world.gravity;
+    const float weight = *middle * std::sqrt(g.x * g.x + g.y * g.y + g.z * g.z);
+    return weight > 0 ? kNeedle / weight : 0;
+}
+
 void SceneView::add_contacts(render::DrawList& list) {
+    const float scale = needle_scale();
+    const float substep = scene_.world.time_step / static_cast<float>(scene_.world.substeps);  // of the impulses told
     uint32_t count = 0;
     taut_result result =
         taut_world_get_contacts(world_.world, contacts_.data(), static_cast<uint32_t>(contacts_.size()), &count);
@@ -419,7 +456,8 @@ void SceneView::add_contacts(render::DrawList& list) {
         const taut_contact& contact = contacts_[i];
         Vec3 at = vec(contact.position), normal = {contact.normal.x, contact.normal.y, contact.normal.z};
         Instance point = ball(at, kContactRadius, kContact, 0);
-        Instance needle = rod(at, at + normal * kNormalLength, 0.3f * kContactRadius, kNormal);
+        const float length = std::min(scale * contact.normal_impulse / substep, kLongestNeedle);
+        Instance needle = rod(at, at + normal * length, 0.3f * kContactRadius, kNormal);
         point.mesh = render::kMeshDot;
         needle.mesh = render::kMeshBox;
         point.pass = needle.pass = render::Pass::overlay;

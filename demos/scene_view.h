@@ -1,6 +1,7 @@
 // Fills a draw list from a scene living in a Taut world.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "render/renderer.h"
@@ -41,6 +42,8 @@ private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
     void add_shape(render::DrawList& list, int shape, render::Instance instance) const;
     void add_hinge(render::DrawList& list, size_t index, render::Vec3 at) const;
+    void add_arms(render::DrawList& list, size_t index, const std::array<render::Vec3, 2>& anchors, bool tension) const;
+    float needle_scale() const;
     struct Paint {
         render::Colour plain;
         bool both_sides;

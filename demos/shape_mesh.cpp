@@ -21,6 +21,7 @@ const Colour kCrates[] = {from_srgb(0xE4572E), from_srgb(0xF3A712), from_srgb(0x
 const Colour kBricks[] = {from_srgb(0xC4553B), from_srgb(0xD6704A), from_srgb(0xB5473A), from_srgb(0xE08E5A)};
 const Colour kSteel = from_srgb(0x3B424C), kLinkGrey = from_srgb(0xA9B4C0), kStone = from_srgb(0xB9B4A7);
 const Colour kWood[] = {from_srgb(0xB98A58), from_srgb(0xA97A4C), from_srgb(0xC79A68)};
+const Colour kSand[] = {from_srgb(0xD9B26F), from_srgb(0xC79A55), from_srgb(0xE6C88F), from_srgb(0xB78845)};
 const Colour kCloth[] = {from_srgb(0x35618E), from_srgb(0x3D6B99)};
 const Colour kPaint = from_srgb(0xE0B03A), kSkin = from_srgb(0xE3A983);
 const Colour kWall = from_srgb(0x8FA3B5), kPin = from_srgb(0x2A2F36);
@@ -105,6 +106,8 @@ Colour colour_of(Look look, size_t index) {
             return kSkin;
         case Look::cloth:
             return pick(kCloth, index);
+        case Look::sand:
+            return pick(kSand, index);
         case Look::crate:
         case Look::hidden:
         case Look::ground:

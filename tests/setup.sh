@@ -5,7 +5,7 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 library_packages=(g++ cmake ninja-build libeigen3-dev libbullet-dev libccd-dev)
-demo_packages=(pkgconf libegl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev libpng-dev libcli11-dev
+demo_packages=(pkgconf libegl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev libpng-dev libfreetype-dev fonts-dejavu-core libcli11-dev
     nlohmann-json3-dev libtinyobjloader-dev libtinyxml2-dev)
 test_packages=(pkgconf xz-utils libgtest-dev libgmock-dev libbenchmark-dev python3-pip
     python3-cffi python3-numpy swig)

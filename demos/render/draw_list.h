@@ -31,8 +31,9 @@ struct Camera {
 enum BuiltinMesh : uint32_t {
     kMeshBox,
     kMeshSphere,
-    kMeshDot,  // a coarse sphere, for thousands of small ones
-    kMeshCylinder,
+    kMeshDot,       // a coarse sphere, for thousands of small ones
+    kMeshCylinder,  // of 16 sides, for links and pins
+    kMeshDrum,      // a fine one
 };
 
 // How an instance is drawn.

@@ -94,7 +94,7 @@ void HudBatch::add_text(const HudText& text) {
         for (int i = 0; i < 4; ++i) {
             float u = i == 1 || i == 2 ? 1.0f : 0.0f, v = i >= 2 ? 1.0f : 0.0f;
             float cell[2] = {static_cast<float>(font.cell_width), static_cast<float>(font.cell_height)};
-            corners[i].pixel[0] = pen - font.origin_x + u * cell[0];
+            corners[i].pixel[0] = std::round(pen) - font.origin_x + u * cell[0];
             corners[i].pixel[1] = top - font.origin_y + v * cell[1];
             corners[i].inside[0] =
                 (static_cast<float>(glyph % kGlyphColumns) + u) * cell[0] / static_cast<float>(font.width);

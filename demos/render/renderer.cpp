@@ -106,7 +106,7 @@ struct Renderer::Inside {
           hud(o.width, o.height) {
         glGenVertexArrays(1, &empty_array);
         glGenBuffers(1, &instance_buffer);
-        for (const auto& mesh : {box_mesh(), sphere_mesh(24), sphere_mesh(6), cylinder_mesh(16)})
+        for (const auto& mesh : {box_mesh(), sphere_mesh(24), sphere_mesh(6), cylinder_mesh(16), cylinder_mesh(64)})
             meshes.push_back(upload(mesh, instance_buffer));
         surface = surface_array();
         picture.width = o.width;

@@ -147,12 +147,39 @@ float lines(vec2 p, float period, float half_width) {
     vec2 full = clamp((period * 0.5 - w) / (period * 0.25), 0.0, 1.0);
     return max(cover.x * full.x, cover.y * full.y);
 }
+// Smooth noise in [0, 1] of cells of unit size.
+float grain(vec2 p) {
+    ivec2 cell = ivec2(floor(p));
+    vec2 f = fract(p);
+    f = f * f * (3.0 - 2.0 * f);
+    float corner[4];
+    for (int i = 0; i < 4; ++i) {
+        uvec2 q = uvec2(cell + ivec2(i & 1, i >> 1));
+        uint h = q.x * 1597334677u ^ q.y * 3812015801u;
+        h = (h ^ (h >> 15u)) * 2246822519u;
+        corner[i] = float((h ^ (h >> 13u)) & 65535u) / 65535.0;
+    }
+    return mix(mix(corner[0], corner[1], f.x), mix(corner[2], corner[3], f.x), f.y);
+}
+// Concrete: octaves of noise that fade out below a pixel.
+float concrete(vec2 p) {
+    float pixel = max(length(fwidth(p)), 1e-6), sum = 0.0, share = 0.5;
+    for (float size = 1.6; size > 0.01; size *= 0.42) {
+        sum += share * (grain(p / size) - 0.5) * clamp(size / pixel - 1.0, 0.0, 1.0);
+        share *= 0.72;
+    }
+    return sum;
+}
 void main() {
     float r = length(world - eye);
-    vec3 albedo = vec3(0.215, 0.245, 0.285);
-    float minor = lines(world.xz, 1.0, 0.012) * exp(-r / 22.0);
+    // Slabs of a metre in two tones.
+    vec2 slab = floor(world.xz);
+    float odd = mod(slab.x + slab.y, 2.0) * exp(-r / 45.0);
+    vec3 albedo = mix(vec3(0.25, 0.265, 0.285), vec3(0.195, 0.21, 0.235), odd);
+    albedo *= 1.0 + 0.42 * concrete(world.xz);
+    float minor = lines(world.xz, 1.0, 0.008) * exp(-r / 22.0);
     float major = lines(world.xz, 10.0, 0.03) * exp(-r / 70.0);
-    albedo = mix(albedo, vec3(0.48, 0.52, 0.58), 0.70 * minor);
+    albedo = mix(albedo, vec3(0.11, 0.12, 0.135), 0.75 * minor);
     albedo = mix(albedo, vec3(0.52, 0.56, 0.62), 0.75 * major);
     colour = vec4(lit_colour(albedo, world, vec3(0.0, 1.0, 0.0), 0.10), 1.0);
 }

@@ -39,6 +39,25 @@ bool match(const std::string& pattern, const std::string& name, double& n, doubl
     return at == name.size();
 }
 
+// A description with the numbers of a name in place of N and R.
+std::string filled(const std::string& description, double n, double r) {
+    std::string text;
+    const auto in_word = [&](size_t at) {
+        return at < description.size() && std::isalnum(static_cast<unsigned char>(description[at])) != 0;
+    };
+    for (size_t i = 0; i < description.size(); ++i) {
+        const char c = description[i];
+        if ((c != 'N' && c != 'R') || in_word(i + 1) || (i > 0 && in_word(i - 1))) {
+            text += c;
+            continue;
+        }
+        char number[32];
+        std::snprintf(number, sizeof number, "%.6g", c == 'N' ? n : r);
+        text += number;
+    }
+    return text;
+}
+
 void check_range(const std::string& scene, const char* what, double value, double low, double high) {
     if (value >= low && value <= high) return;
     char range[64];
@@ -223,7 +242,7 @@ Scene make_scene(const std::string& name, const Options& options, const std::vec
             for (Solid& solid : scene.solids) solid.def.solve = TAUT_DEFORMABLE_SWEPT;
         }
         scene.name = name;
-        scene.description = family.description;
+        scene.description = filled(family.description, n, r);
         scene.steps = family.steps;
         return scene;
     }

@@ -46,7 +46,7 @@ Scene build_crane(double, double, const Options& options) {
     scene.motions.push_back({-1, -1, 0, {}, {{{9.5, 0, 0}, {18, -kHaul, 0}}, {}}, cable_index});
     scene.forces = ForceScale{3, 5};
     perturb(scene, options.seed);
-    scene.camera = {{-4, 8.5, 25.5}, {3.4, 6.9, 0}, 40};
+    scene.camera = {{-2, 7.5, 21.5}, {4.0, 7.2, 0}, 42};
     scene.stage = {{-3, 0, -6}, {13, 16, 12}};
     return scene;
 }

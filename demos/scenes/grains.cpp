@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGrainRadius = 0.05, kGrainMass = 1;  // [m, kg]
 
-Body grain_at(int shape, taut_pos at, float friction, double mass = kGrainMass, Look look = Look::particle) {
+Body grain_at(int shape, taut_pos at, float friction, double mass = kGrainMass, Look look = Look::sand) {
     Body grain = crate(shape, at, mass, look);
     grain.kind = TAUT_BODY_PARTICLE;
     grain.friction = friction;
@@ -72,7 +72,7 @@ Scene build_grains(double n, double r, const Options& options) {
         scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, friction)));
     }
     perturb(scene, options.seed);
-    scene.camera = {{2.6, 1.7, 3.2}, {0, 0.35, 0}, 38};
+    scene.camera = {{2.9, 2.1, 3.7}, {0, 0.5, 0}, 40};
     scene.stage = {{-2, 0, -2}, {2, 8, 2}};
     return scene;
 }

@@ -155,7 +155,7 @@ Scene build_ragdoll_liana(double, double, const Options& options) {
     scene.roles.load = chest;
     scene.forces = ForceScale{2, 4};
     perturb(scene, options.seed);
-    scene.camera = {{2.8, 4.1, 9.2}, {-0.5, 4.15, 0}, 46};
+    scene.camera = {{2.3, 4.1, 7.9}, {-0.4, 4.3, 0}, 50};
     scene.stage = {{-5, 0, -5}, {5, 9, 5}};
     return scene;
 }

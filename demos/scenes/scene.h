@@ -60,7 +60,8 @@ enum class Look : uint8_t {
     wood,
     paint,
     skin,
-    cloth
+    cloth,
+    sand
 };
 
 // A shape on a body, beside its own.

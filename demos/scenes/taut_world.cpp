@@ -398,6 +398,31 @@ taut_pose TautWorld::pose(size_t body) const {
     return pose;
 }
 
+double TautWorld::energy() const {
+    uint32_t count = 0;
+    taut_world_get_bodies(world, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+    std::vector<taut_body> all(count);
+    check(taut_world_get_bodies(world, all.data(), count, &count), "listing the bodies");
+    const taut_vec3 g = scene_.world.gravity;
+    double sum = 0;
+    for (taut_body body : all) {
+        float mass = 0;
+        taut_vec3 centre{}, v{}, w{};
+        taut_sym3 i{};
+        taut_pos at{};
+        check(taut_body_get_mass(body, &mass, &centre, &i), "reading a mass");
+        if (!(mass > 0)) continue;
+        check(taut_body_get_world_point(body, centre, &at), "reading a centre of mass");
+        check(taut_body_get_velocity(body, &v, &w), "reading a velocity");
+        check(taut_body_get_local_vector(body, w, &w), "turning a spin into its body's frame");
+        const double m = mass, x = w.x, y = w.y, z = w.z;
+        sum += 0.5 * m * (double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z);
+        sum += 0.5 * (i.xx * x * x + i.yy * y * y + i.zz * z * z) + i.xy * x * y + i.xz * x * z + i.yz * y * z;
+        sum -= m * (g.x * at.x + g.y * at.y + g.z * at.z);
+    }
+    return sum;
+}
+
 double TautWorld::joint_error() const {
     float most = cables.empty() ? 0 : profile().joint_error;
     for (size_t i = 0; i < joints.size(); ++i) {

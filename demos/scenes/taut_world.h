@@ -39,6 +39,8 @@ public:
     taut_profile profile() const;
     double joint_error() const;  // largest of the rigid joints that are whole, those of rigid cables among them [m]
 
+    double energy() const;  // of motion and height of all bodies, vertices and points among them [J]
+
     taut_world world{};
     std::vector<taut_shape> shapes;
     std::vector<taut_body> bodies;

@@ -46,7 +46,7 @@ Scene build_tensegrity(double, double, const Options& options) {
         }
     scene.forces = ForceScale{2, 4};
     perturb(scene, options.seed);
-    scene.camera = {{3.2, 2.9, 6.6}, {-0.1, 2.0, 0}, 42};
+    scene.camera = {{2.7, 2.6, 5.6}, {-0.1, 1.75, 0}, 42};
     scene.stage = {{-4, 0, -4}, {4, 5, 4}};
     return scene;
 }

@@ -92,7 +92,7 @@ Scene build_terrain(double, double, const Options& options) {
         scene.roles.pile.push_back(scene.add_body(body));
     }
     perturb(scene, options.seed);
-    scene.camera = {{9.0, 9.5, 11.5}, {-1.5, 1.0, 0}, 40};
+    scene.camera = {{3.0, 8.5, -13.5}, {-2.6, 2.0, 0}, 40};
     scene.stage = {{-12, 0, -12}, {12, 10, 12}};
     return scene;
 }
