@@ -293,8 +293,10 @@ protected:
         const taut_body body = pick_body(w);
         if (ask("taut_body_get_joints", [&] { return taut_body_get_joints(body, own.data(), 256, &count); }))
             for (uint32_t i = 0; i < count; ++i) {
-                taut_body a, b;
-                expect(taut_joint_get_bodies(own[i], &a, &b) == TAUT_OK && (a.bits == body.bits || b.bits == body.bits),
+                taut_body a, b, housing;
+                expect(taut_joint_get_bodies(own[i], &a, &b) == TAUT_OK &&
+                           taut_joint_get_housing(own[i], &housing) == TAUT_OK &&
+                           (a.bits == body.bits || b.bits == body.bits || housing.bits == body.bits),
                        "a joint of another");
             }
         std::vector<taut_contact> contacts(1024);
