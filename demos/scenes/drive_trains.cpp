@@ -40,6 +40,7 @@ Joint geared(const Scene& scene, taut_joint_kind kind, int a, int b, int housing
     joint.housing_b = {guide_b.anchor_a, guide_b.rotation_a};
     joint.ratio = static_cast<float>(ratio);
     joint.drawn_radius = 0;
+    if (kind == TAUT_JOINT_GEAR) joint.solve = TAUT_JOINT_SOLVE_DIRECT;
     return joint;
 }
 

@@ -381,7 +381,8 @@ typedef struct taut_gear_joint_def {
     float angular_damping;      /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
     float break_torque;         /**< of the torque on b [N m], [0, 1e24]; a step that ends with more removes the joint;
                                      0: never. Default 0 */
-    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_BY_LOAD */
+    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_DIRECT: what a gear gives way by is an angle, of which
+                                     TAUT_JOINT_SOLVE_BY_LOAD knows no need */
     uint32_t reserved;          /**< zero */
     uint64_t user_data;
 } taut_gear_joint_def;

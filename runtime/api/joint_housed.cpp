@@ -145,6 +145,7 @@ void taut_gear_joint_def_init_sized(taut_gear_joint_def* def, uint32_t size) {
     give_defaults(def, size, [](taut_gear_joint_def& own) {
         init_housed(own);
         own.ratio = -1;
+        own.solve = TAUT_JOINT_SOLVE_DIRECT;
     });
 }
 void taut_rack_pinion_joint_def_init_sized(taut_rack_pinion_joint_def* def, uint32_t size) {

@@ -297,6 +297,7 @@ TEST_F(JointRefusals, Gear) {
     Def def;
     taut_gear_joint_def_init(&def);
     EXPECT_EQ(def.ratio, -1);
+    EXPECT_EQ(def.solve, TAUT_JOINT_SOLVE_DIRECT);
     EXPECT_EQ(def.housing_frame_b.rotation.w, 1);
     def.body_a = p.crate, def.body_b = p.wedge;
     DefCheck<Def, taut_joint> check(p.world, "taut_world_add_gear_joint", taut_world_add_gear_joint);
