@@ -10,16 +10,16 @@
 
 namespace taut {
 
-// Eight gather as an 8x8 transpose.
+// Eight gather as an 8x8 transpose. What velocities leave of it has inverse masses, of SweepMass.
 struct alignas(32) SweepVelocity {  // [m/s, rad/s]; no component is -0: what bears nothing changes no bit
     float v[3] = {0, 0, 0}, inv_mass_y = 0;
     float w[3] = {0, 0, 0}, inv_mass_z = 0;
 };
 struct alignas(32) SweepMass {
-    float inv_mass = 0;                         // along axes of the world that are not locked; 0: nothing moves it
+    float inv_mass = 0;                         // along axes that are not locked; 0: nothing moves it [1/kg]
     float inv_inertia[6] = {0, 0, 0, 0, 0, 0};  // xx, yy, zz, xy, xz, yz, world axes [1/(kg m^2)]
-    float inv_mass_x = 0;                       // along each axis of the world, 0 where it is locked; y and z lie in
-};                                              // what SweepVelocity has left
+    float inv_mass_x = 0;  // along the world's x axis: inv_mass, or 0 where it is locked; y, z above
+};
 // Share of what a row would move with no axis locked, below which locks leave it nothing but rounding: k in floats, and
 // a normal off the locked axis by less than a milliradian, along which a body would have to go a thousand times as far.
 constexpr float kLeastFree = 0x1p-20f;
@@ -37,11 +37,11 @@ struct alignas(64) SweepNode {
         velocity.inv_mass_z = z;
     }
     void set_inv_mass(float inv_mass) { set_inv_mass(inv_mass, inv_mass, inv_mass, inv_mass); }
-    bool locked() const {  // along some axis
+    bool locked() const {  // some linear axis is
         return mass.inv_mass_x != mass.inv_mass || velocity.inv_mass_y != mass.inv_mass ||
                velocity.inv_mass_z != mass.inv_mass;
     }
-    // As SweepSide::held().
+    // Some axis is locked; as SweepSide::held().
     bool held() const {
         const auto& i = mass.inv_inertia;
         const bool turns = i[0] > 0 || i[1] > 0 || i[2] > 0, turns_about_all = i[0] > 0 && i[1] > 0 && i[2] > 0;

@@ -118,6 +118,8 @@ TEST_P(Motions, PredictsVelocityPoseAndTurn) {
                 EXPECT_EQ(Mat3(Eigen::Map<const Mat3>(now.pose[i].R)), R);
                 const Vec3 away = (quat_of(m.q) * quat_of(before.found[i].q).conjugate()).vec();
                 EXPECT_EQ(far >> i & 1, away.norm() > 0.5 * 0.05);
+                EXPECT_EQ(now.sweep[i].velocity.linear[3], static_cast<float>(mass.inv_mass));
+                EXPECT_EQ(now.sweep[i].velocity.angular[3], static_cast<float>(mass.inv_mass));
                 for (int k = 0; k < 3; ++k) {
                     EXPECT_EQ(now.sweep[i].velocity.linear[k], static_cast<float>(v[k]));
                     EXPECT_EQ(now.sweep[i].velocity.angular[k], static_cast<float>(m.w[k]));
@@ -239,7 +241,9 @@ void stop_turning(MotionRig& rig) {
         for (auto* q : {&rig.motion[i].q, &rig.found[i].q}) put(Quat(Quat::Identity()), *q);
         std::copy_n(R.data(), 9, rig.pose[i].R);
         for (FloatRow* row : {&rig.shift[i], &rig.sweep_pose[i]}) row->angular[3] = 1;
-        rig.sweep_pose[i].linear[3] = static_cast<float>(rig.mass[i].inv_mass);
+        for (float* inverse :
+             {&rig.sweep_pose[i].linear[3], &rig.sweep[i].velocity.linear[3], &rig.sweep[i].velocity.angular[3]})
+            *inverse = static_cast<float>(rig.mass[i].inv_mass);
     }
 }
 
