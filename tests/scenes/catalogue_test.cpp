@@ -1,4 +1,6 @@
 // Every scene of the catalogue runs, from its own start and from a random one.
+#include <regex>
+
 #include "scenes/running_scene.h"
 
 namespace {
@@ -17,6 +19,27 @@ TEST_P(EveryScene, StaysFiniteForASecond) {
             ASSERT_TRUE(run.sound()) << "frame " << frame << ", seed " << seed;
         }
         EXPECT_LT(run.joint_error(), 0.1) << "seed " << seed;
+    }
+}
+
+// A picture says "7 cubes", not "N cubes".
+TEST_P(EveryScene, TellsItsOwnNumbers) {
+    const std::string text = example_of(GetParam()).description;
+    EXPECT_FALSE(std::regex_search(text, std::regex("\\b[NR]\\b"))) << text;
+}
+
+TEST(Descriptions, TellTheNumbersOfTheName) {
+    EXPECT_EQ(scenes::make_scene("stack7").description, "7 cubes exactly on each other");
+    EXPECT_EQ(scenes::make_scene("chain10_r1e5").description, "10 1 kg links and 100000 kg, released from horizontal");
+}
+
+// The curve of energy that taut-demo draws: a swing turns height into motion and back, 13 % of it.
+TEST(SceneEnergy, OfASwingStays) {
+    RunningScene run("swing_r100");
+    const double start = run.world.energy();
+    for (int frame = 0; frame < 120; ++frame) {
+        run.step();
+        ASSERT_NEAR(run.world.energy() / start, 1, 0.005) << "frame " << frame;
     }
 }
 
