@@ -1,5 +1,6 @@
 # taut_docs: the reference of the headers, with these pages, in docs/html of the build. What lacks a text fails it.
-install(DIRECTORY ${CMAKE_CURRENT_LIST_DIR}/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY ${CMAKE_CURRENT_LIST_DIR}/ DESTINATION ${CMAKE_INSTALL_DOCDIR} 
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 find_program(TAUT_DOXYGEN doxygen)
 mark_as_advanced(TAUT_DOXYGEN)
 if(TAUT_DOXYGEN)
