@@ -31,7 +31,7 @@ extern "C" {
  * began touches in it, and who was pushed within it, be it off again by its end.
  */
 typedef struct taut_contact_event {
-    taut_body body_a;         /**< one of the pair, that whose collider's slot comes first */
+    taut_body body_a;         /**< one of the pair */
     taut_body body_b;         /**< the other one */
     taut_collider collider_a; /**< of body_a */
     taut_collider collider_b; /**< of body_b */

@@ -30,7 +30,7 @@ typedef struct taut_pre_solve_point {
 typedef struct taut_pre_solve {
     taut_body body_a;               /**< of collider_a */
     taut_body body_b;               /**< of collider_b */
-    taut_collider collider_a;       /**< one of the pair, that whose slot comes first */
+    taut_collider collider_a;       /**< one of the pair */
     taut_collider collider_b;       /**< the other one */
     taut_pre_solve_point points[4]; /**< where they are near */
     uint32_t point_count;           /**< 1 to 4 of points; the others are zero */

@@ -30,7 +30,7 @@ typedef struct taut_profile {
     uint32_t pairs;       /**< overlapping fat boxes */
     uint32_t touching;    /**< pairs with contact points, those between grains too */
     uint32_t points;      /**< contact points */
-    uint32_t joints;      /**< those of cables of links included */
+    uint32_t joints;      /**< of the world, cables of links included */
     uint32_t islands;     /**< bodies that touch or are tied together */
     uint32_t blocks;      /**< joint-connected components solved directly */
     uint32_t colours;     /**< groups of rows of which no two share a body */
