@@ -44,8 +44,8 @@ typedef struct taut_decomposition_def {
     uint32_t max_parts;        /**< [1, TAUT_DECOMPOSITION_MAX_PARTS]. Default 32 */
     uint32_t max_vertices;     /**< of each hull, [4, TAUT_HULL_MAX_VERTICES]. Default TAUT_HULL_MAX_VERTICES */
     float tolerance;           /**< distance at most of any point of a hull from the solid, and of any point of the
-                                    solid over the faces of its hull [m], 0 or in the range of shapes' sizes. 0: a 40th of the
-                                  longest           side. Kept where max_parts allow. Default 0 */
+                                    solid over the faces of its hull [m], 0 or in the range of shapes' sizes; 0: a
+                                    40th of the longest side. Kept where max_parts allows. Default 0 */
     uint32_t close_holes; /**< 1: the rim of each hole is joined to its middle. Default 0: open meshes are refused */
     uint32_t reserved;    /**< zero */
 } taut_decomposition_def;

@@ -32,8 +32,8 @@ typedef struct taut_fluid_def {
     uint32_t struct_size;
     float density;  /**< [kg/m^3], [0, 1e6]. Default 1000 */
     taut_pos point; /**< of the surface [m] */
-    taut_vec3
-        normal; /**< of the surface, out of the fluid; normalised. 0: the fluid is everywhere. Default (0, 1, 0) */
+    taut_vec3 normal;   /**< of the surface, out of the fluid; normalised. 0: the fluid is everywhere. Default
+                             (0, 1, 0) */
     taut_vec3 gravity;  /**< [m/s^2], each within 1e4, also that of the bodies. Default (0, -9.81, 0) */
     taut_vec3 velocity; /**< of the fluid [m/s], length at most 1e4. Default 0 */
     float drag;         /**< coefficient of the area in the flow, [0, 100]. Default 1 */

@@ -17,6 +17,13 @@ static double seconds;
 static const taut_pos* points;
 static const uint32_t *triangles, *cells;
 static uint32_t point_count, triangle_count, cell_count;
+static taut_ragdoll_def skeleton;
+static taut_pose animated[TAUT_RAGDOLL_MAX_BONES], drawn[TAUT_RAGDOLL_MAX_BONES];
+static FILE* file;
+
+static int32_t write_bytes(const void* bytes, uint64_t size, void* user_data) {
+    return fwrite(bytes, 1, (size_t)size, (FILE*)user_data) == size;
+}
 
 static void check(taut_result result) {
     if (result != TAUT_OK) fprintf(stderr, "%s\n", taut_last_error());
