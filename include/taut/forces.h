@@ -30,8 +30,8 @@ extern "C" {
  */
 typedef struct taut_fluid_def {
     uint32_t struct_size;
-    float density;  /**< [kg/m^3], [0, 1e6]. Default 1000 */
-    taut_pos point; /**< of the surface [m] */
+    float density;      /**< [kg/m^3], [0, 1e6]. Default 1000 */
+    taut_pos point;     /**< of the surface [m] */
     taut_vec3 normal;   /**< of the surface, out of the fluid; normalised. 0: the fluid is everywhere. Default
                              (0, 1, 0) */
     taut_vec3 gravity;  /**< [m/s^2], each within 1e4, also that of the bodies. Default (0, -9.81, 0) */
