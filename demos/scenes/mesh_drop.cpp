@@ -2,11 +2,11 @@
 // decomposed into.
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
 
 #include "builders.h"
 #include "obj_file.h"
 #include "parts.h"
+#include "taut_world.h"
 
 namespace scenes {
 
@@ -35,18 +35,14 @@ Shape hull_of(const ObjPiece& piece, const std::string& path) {
     return shape;
 }
 
-void check(taut_result result) {
-    if (result != TAUT_OK) throw std::runtime_error(taut_last_error());
-}
-
 // Corners of a hull that is baked [m].
 std::vector<taut_vec3> corners_of(taut_world world, taut_baked part) {
     taut_shape shape;
     uint32_t count = 0;
-    check(taut_world_add_baked(world, part, &shape));
+    check(taut_world_add_baked(world, part, &shape), "a part of a mesh");
     taut_shape_hull_triangles(shape, nullptr, 0, &count);
     std::vector<taut_vec3> corners(count);
-    check(taut_shape_hull_triangles(shape, corners.data(), count, &count));
+    check(taut_shape_hull_triangles(shape, corners.data(), count, &count), "a part of a mesh");
     return corners;
 }
 
@@ -81,7 +77,7 @@ std::optional<Body> body_of_surface(Scene& scene, const std::string& path) {
     taut_world_def world_def;
     taut_world_def_init(&world_def);
     taut_world world;
-    check(taut_world_create(&world_def, &world));
+    check(taut_world_create(&world_def, &world), "a world for parts");
     Body body;
     for (uint32_t i = 0; i < count; ++i) {
         Shape hull;
@@ -93,9 +89,9 @@ std::optional<Body> body_of_surface(Scene& scene, const std::string& path) {
             body.shape = shape;
         else
             body.parts.push_back({shape, {}, {0, 0, 0, 1}});
-        check(taut_baked_release(parts[i]));
+        check(taut_baked_release(parts[i]), "a part of a mesh");
     }
-    check(taut_world_destroy(world));
+    check(taut_world_destroy(world), "a world for parts");
     if (count == 1) return std::nullopt;
     const taut_sym3& inertia = info.solid.inertia;
     body.mass = kDensity * info.solid.mass;
