@@ -1,12 +1,14 @@
-/* A ragdoll: capsules on joints with the limits of limbs, dropped on the ground.
+/* A ragdoll: a skeleton of ten bones, capsules on joints with the limits of limbs, dropped on the ground.
  *
- * Each joint is placed where the two bodies lie now, by taut_joint_frames_from_world: a hinge where a limb bends one
- * way alone, a cone with a twist where it may lean to any side.
+ * Each joint is given where it is at rest, its x axis along the bone, about which that twists: shoulders, hips and the
+ * neck lean to any side, elbows and knees bend about one axis, the other two being locked.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <taut/taut.h>
+
+enum { TRUNK, HEAD, BONES = 10 };
 
 static void check(taut_result result) {
     if (result == TAUT_OK) return;
@@ -15,55 +17,38 @@ static void check(taut_result result) {
 }
 
 static taut_world world;
-static taut_body bodies[16];
-static taut_joint joints[16];
-static int body_count, joint_count;
 
 /* A capsule whose axis goes from one height to another, at x. */
-static taut_body limb(double x, double low, double high, float radius, float mass) {
+static taut_bone_def limb(int parent, double x, double low, double high, float radius, float mass) {
     taut_capsule_def capsule;
-    taut_body_def def;
+    taut_bone_def bone;
     taut_capsule_def_init(&capsule);
     capsule.radius = radius;
     capsule.half_length = (float)(high - low) / 2 - radius;
-    taut_body_def_init(&def);
-    check(taut_world_add_capsule(world, &capsule, &def.shape));
-    def.mass = mass;
-    def.position = (taut_pos){x, (low + high) / 2, 0};
-    check(taut_world_add_body(world, &def, &bodies[body_count]));
-    return bodies[body_count++];
-}
-
-static void limit(taut_axis_def* axis, float lower, float upper) {
-    axis->mode = TAUT_AXIS_LIMITED;
-    axis->lower = lower;
-    axis->upper = upper;
-    axis->friction = 3; /* muscles at rest [N m] */
-}
-
-/* An elbow or a knee: bends about the world's x from straight to 140 degrees. */
-static void bend(taut_body upper, taut_body lower, double x, double y, float side) {
-    taut_hinge_joint_def def;
-    taut_hinge_joint_def_init(&def);
-    def.body_a = upper;
-    def.body_b = lower;
-    limit(&def.angle, 0, 2.44f);
-    check(taut_joint_frames_from_world(world, upper, lower, (taut_pos){x, y, 0}, (taut_vec3){side, 0, 0}, &def.frame_a,
-                                       &def.frame_b));
-    check(taut_world_add_hinge_joint(world, &def, &joints[joint_count++]));
+    taut_bone_def_init(&bone);
+    check(taut_world_add_capsule(world, &capsule, &bone.shape));
+    bone.parent = parent;
+    bone.mass = mass;
+    bone.friction = 3; /* muscles at rest [N m] */
+    bone.pose.position = (taut_pos){x, (low + high) / 2, 0};
+    bone.joint.position = (taut_pos){x, high, 0};
+    return bone;
 }
 
 /* A shoulder, hip or neck: leans by up to swing [rad] from hanging down (or up), and twists by up to half a radian. */
-static void lean(taut_body trunk, taut_body part, double x, double y, float up, float swing) {
-    taut_cone_twist_joint_def def;
-    taut_cone_twist_joint_def_init(&def);
-    def.body_a = trunk;
-    def.body_b = part;
-    limit(&def.swing, 0, swing);
-    limit(&def.twist, -0.5f, 0.5f);
-    check(taut_joint_frames_from_world(world, trunk, part, (taut_pos){x, y, 0}, (taut_vec3){0, up, 0}, &def.frame_a,
-                                       &def.frame_b));
-    check(taut_world_add_cone_twist_joint(world, &def, &joints[joint_count++]));
+static taut_bone_def lean(taut_bone_def bone, float up, float swing) {
+    bone.joint.rotation = (taut_quat){0, 0, up * 0.70710678f, 0.70710678f}; /* x up or down */
+    bone.upper = (taut_vec3){0.5f, swing, swing};
+    bone.lower = (taut_vec3){-0.5f, -swing, -swing};
+    return bone;
+}
+
+/* An elbow or a knee: bends about the world's x, or against it, from straight to 140 degrees. */
+static taut_bone_def bend(taut_bone_def bone, float side) {
+    bone.joint.rotation = (taut_quat){-0.5f * side, 0.5f * side, -0.5f, 0.5f}; /* x down, z along the world's */
+    bone.lower = (taut_vec3){0, 0, 0};
+    bone.upper = (taut_vec3){0, 0, 2.44f};
+    return bone;
 }
 
 int main(void) {
@@ -79,39 +64,48 @@ int main(void) {
     ground_def.kind = TAUT_BODY_STATIC;
     check(taut_world_add_body(world, &ground_def, &ground));
 
-    const double up = 1; /* the soles' height [m] */
-    taut_body trunk = limb(0, up + 0.95, up + 1.5, 0.15f, 40);
-    lean(trunk, limb(0, up + 1.52, up + 1.8, 0.1f, 5), 0, up + 1.52, 1, 0.7f);
-    for (int side = -1; side <= 1; side += 2) {
-        taut_body thigh = limb(side * 0.12, up + 0.5, up + 0.95, 0.075f, 9);
-        lean(trunk, thigh, side * 0.12, up + 0.95, -1, 1.2f);
-        bend(thigh, limb(side * 0.12, up, up + 0.5, 0.055f, 4), side * 0.12, up + 0.5, 1);
-        taut_body arm = limb(side * 0.25, up + 1.1, up + 1.42, 0.045f, 2);
-        lean(trunk, arm, side * 0.25, up + 1.42, -1, 1.6f);
-        bend(arm, limb(side * 0.25, up + 0.8, up + 1.1, 0.04f, 2), side * 0.25, up + 1.1, -1);
+    taut_bone_def bones[BONES]; /* heights over the soles */
+    bones[TRUNK] = limb(-1, 0, 0.95, 1.5, 0.15f, 40);
+    bones[HEAD] = lean(limb(TRUNK, 0, 1.52, 1.8, 0.1f, 5), 1, 0.7f);
+    bones[HEAD].joint.position.y = 1.52;
+    for (int i = 0; i < 2; ++i) {
+        const double side = i ? 1 : -1;
+        const int thigh = 2 + 4 * i, arm = thigh + 2;
+        bones[thigh] = lean(limb(TRUNK, side * 0.12, 0.5, 0.95, 0.075f, 9), -1, 1.2f);
+        bones[thigh + 1] = bend(limb(thigh, side * 0.12, 0, 0.5, 0.055f, 4), 1);
+        bones[arm] = lean(limb(TRUNK, side * 0.25, 1.1, 1.42, 0.045f, 2), -1, 1.5f);
+        bones[arm + 1] = bend(limb(arm, side * 0.25, 0.8, 1.1, 0.04f, 2), -1);
     }
+    taut_ragdoll_def def;
+    taut_ragdoll ragdoll;
+    taut_ragdoll_def_init(&def);
+    def.bones = bones;
+    def.bone_count = BONES;
+    def.pose.position.y = 1; /* of the soles [m] */
+    taut_ragdoll_init(&ragdoll);
+    check(taut_world_add_ragdoll(world, &def, &ragdoll));
     /* Tipped forwards, so that it does not stand. */
-    check(taut_body_set_velocity(trunk, (taut_vec3){0, 0, 1}, (taut_vec3){1, 0, 0}));
+    check(taut_body_set_velocity(ragdoll.bodies[TRUNK], (taut_vec3){0, 0, 1}, (taut_vec3){1, 0, 0}));
 
     float widest = 0;
     for (int step = 0; step < 600; ++step) {
         check(taut_world_step(world));
-        for (int i = 0; i < joint_count; ++i) {
+        for (int i = 1; i < BONES; ++i) {
             float gap;
-            check(taut_joint_get_error(joints[i], &gap));
+            check(taut_joint_get_error(ragdoll.joints[i], &gap));
             if (gap > widest) widest = gap;
         }
     }
+    taut_pose poses[BONES];
     double highest = 0, fastest = 0;
-    for (int i = 0; i < body_count; ++i) {
-        taut_pose pose;
+    check(taut_ragdoll_get_poses(&ragdoll, poses, BONES));
+    for (int i = 0; i < BONES; ++i) {
         taut_vec3 v;
-        check(taut_body_get_pose(bodies[i], &pose));
-        check(taut_body_get_velocity(bodies[i], &v, NULL));
-        highest = fmax(highest, pose.position.y);
+        check(taut_body_get_velocity(ragdoll.bodies[i], &v, NULL));
+        highest = fmax(highest, poses[i].position.y);
         fastest = fmax(fastest, sqrt((double)v.x * v.x + (double)v.y * v.y + (double)v.z * v.z));
     }
-    printf("%d bodies on %d joints, opened by %.1f mm at most\n", body_count, joint_count, 1e3 * (double)widest);
+    printf("%d bodies on %d joints, opened by %.1f mm at most\n", BONES, BONES - 1, 1e3 * (double)widest);
     printf("after 10 s it lies: highest body at %.2f m, fastest at %.3f m/s\n", highest, fastest);
     check(taut_world_destroy(world));
     return 0;
