@@ -31,7 +31,7 @@ Vec3 vec(taut_pos p) { return {static_cast<float>(p.x), static_cast<float>(p.y),
 
 bool is_asleep(taut_body body) {
     uint32_t awake = 1;
-    scenes::check(taut_body_is_awake(body, &awake), "asking whether a body is awake");
+    scenes::check(taut_body_get_awake(body, &awake), "asking whether a body is awake");
     return awake == 0;
 }
 

@@ -59,9 +59,9 @@ std::vector<render::Vertex> tapered_capsule_mesh(const scenes::Shape& shape) {
 
 std::vector<render::Vertex> triangles_of(taut_shape handle) {
     uint32_t count = 0;
-    taut_shape_triangles(handle, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
+    taut_shape_get_triangles(handle, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
     std::vector<taut_vec3> triangles(count);
-    scenes::check(taut_shape_triangles(handle, triangles.data(), count, &count), "reading a shape's triangles");
+    scenes::check(taut_shape_get_triangles(handle, triangles.data(), count, &count), "reading a shape's triangles");
     std::vector<Vec3> points;
     for (const taut_vec3& p : triangles) points.push_back({p.x, p.y, p.z});
     return render::flat_mesh(points);

@@ -40,9 +40,9 @@ std::vector<taut_vec3> corners_of(taut_world world, taut_baked part) {
     taut_shape shape;
     uint32_t count = 0;
     check(taut_world_add_baked(world, part, &shape), "a part of a mesh");
-    taut_shape_hull_triangles(shape, nullptr, 0, &count);
+    taut_shape_get_triangles(shape, nullptr, 0, &count);
     std::vector<taut_vec3> corners(count);
-    check(taut_shape_hull_triangles(shape, corners.data(), count, &count), "a part of a mesh");
+    check(taut_shape_get_triangles(shape, corners.data(), count, &count), "a part of a mesh");
     return corners;
 }
 

@@ -308,25 +308,20 @@ TAUT_API taut_result taut_shape_get_bounds(taut_shape shape, taut_vec3* low, tau
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT for a density out of range or a plane, mesh or height field (no volume);
  *         TAUT_STALE_HANDLE.
  */
-TAUT_API taut_result taut_shape_mass_properties_sized(taut_shape shape, float density, taut_mass_properties* out,
-                                                      uint32_t size);
-static inline taut_result taut_shape_mass_properties(taut_shape shape, float density, taut_mass_properties* out) {
-    return taut_shape_mass_properties_sized(shape, density, out, (uint32_t)sizeof(*out));
+TAUT_API taut_result taut_shape_get_mass_properties_sized(taut_shape shape, float density, taut_mass_properties* out,
+                                                          uint32_t size);
+static inline taut_result taut_shape_get_mass_properties(taut_shape shape, float density, taut_mass_properties* out) {
+    return taut_shape_get_mass_properties_sized(shape, density, out, (uint32_t)sizeof(*out));
 }
 
 /**
- * Triangles of a hull shape for drawing, outward counter-clockwise: positions receives three points a
- * triangle in the body's frame. With positions null or capacity too small: TAUT_TOO_SMALL and *count holds the number
- * of points needed.
- * @return TAUT_OK; TAUT_TOO_SMALL; TAUT_INVALID_ARGUMENT if the shape is not a hull; TAUT_STALE_HANDLE.
- */
-TAUT_API taut_result taut_shape_hull_triangles(taut_shape shape, taut_vec3* positions, uint32_t capacity,
-                                               uint32_t* count);
-/**
- * As taut_shape_hull_triangles, of a hull, mesh or height field.
+ * Triangles of a hull, mesh or height field for drawing, of a hull outward counter-clockwise: positions receives three
+ * points a triangle in the body's frame. With positions null or capacity too small: TAUT_TOO_SMALL and *count holds the
+ * number of points needed.
  * @return TAUT_OK; TAUT_TOO_SMALL; TAUT_INVALID_ARGUMENT for other shapes; TAUT_NULL_POINTER, TAUT_STALE_HANDLE.
  */
-TAUT_API taut_result taut_shape_triangles(taut_shape shape, taut_vec3* positions, uint32_t capacity, uint32_t* count);
+TAUT_API taut_result taut_shape_get_triangles(taut_shape shape, taut_vec3* positions, uint32_t capacity,
+                                              uint32_t* count);
 /** @return TAUT_OK; TAUT_INVALID_ARGUMENT if the shape is neither mesh nor height field; TAUT_STALE_HANDLE. */
 TAUT_API taut_result taut_shape_get_mesh_info_sized(taut_shape shape, taut_mesh_info* out, uint32_t size);
 static inline taut_result taut_shape_get_mesh_info(taut_shape shape, taut_mesh_info* out) {

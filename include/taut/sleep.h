@@ -31,14 +31,14 @@ extern "C" {
 
 /** 1 if the body is awake, else 0. Static and kinematic bodies count as awake, a disabled one as events said last.
  * @return TAUT_OK; TAUT_NULL_POINTER, TAUT_STALE_HANDLE, TAUT_LOCKED. */
-TAUT_API taut_result taut_body_is_awake(taut_body body, uint32_t* out);
+TAUT_API taut_result taut_body_get_awake(taut_body body, uint32_t* out);
 /**
  * Wakes the island of a body (awake 1; its quiet time begins anew), or puts it to sleep now, moving or not (awake 0).
  * @return TAUT_OK; TAUT_INVALID_ARGUMENT for a static, kinematic or disabled body, awake above 1, and 0 in a world
  *         without sleeping; TAUT_STALE_HANDLE, TAUT_LOCKED, TAUT_OUT_OF_MEMORY.
  */
 TAUT_API taut_result taut_body_set_awake(taut_body body, uint32_t awake);
-/** Whether islands with this body may fall asleep. @return as taut_body_is_awake. */
+/** Whether islands with this body may fall asleep. @return as taut_body_get_awake. */
 TAUT_API taut_result taut_body_get_can_sleep(taut_body body, uint32_t* out);
 /**
  * Says so; 0 wakes its island, and lets only taut_body_set_awake put it to sleep. A new body can sleep.

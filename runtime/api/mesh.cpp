@@ -96,17 +96,7 @@ taut_result taut_shape_add_scaled(taut_shape mesh, taut_vec3 scale, taut_shape* 
     });
 }
 
-taut_result taut_shape_hull_triangles(taut_shape handle, taut_vec3* positions, uint32_t capacity, uint32_t* count) {
-    Check check(__func__);
-    if (!check.pointer("count", count)) return check.result();
-    return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
-        const collision::Shape& shape = world.shapes[index].shape;
-        if (!check.require(shape.kind == collision::ShapeKind::hull, "shape is not a hull")) return check.result();
-        return copy_triangles(check, shape, positions, capacity, count);
-    });
-}
-
-taut_result taut_shape_triangles(taut_shape handle, taut_vec3* positions, uint32_t capacity, uint32_t* count) {
+taut_result taut_shape_get_triangles(taut_shape handle, taut_vec3* positions, uint32_t capacity, uint32_t* count) {
     Check check(__func__);
     if (!check.pointer("count", count)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {

@@ -152,10 +152,10 @@ taut_result taut_shape_remove(taut_shape handle) {
 
 int32_t taut_shape_is_valid(taut_shape handle) { return is_valid(handle); }
 
-taut_result taut_shape_mass_properties_sized(taut_shape handle, float density, taut_mass_properties* first,
-                                             uint32_t size) {
+taut_result taut_shape_get_mass_properties_sized(taut_shape handle, float density, taut_mass_properties* first,
+                                                 uint32_t size) {
     const RecordOut<taut_mass_properties> out(first, size);
-    Check check("taut_shape_mass_properties");
+    Check check("taut_shape_get_mass_properties");
     if (!check.number("density", density, kDensity).pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t index) {
         const collision::Shape& shape = world.shapes[index].shape;

@@ -6,7 +6,7 @@
 
 using namespace taut;
 
-taut_result taut_body_is_awake(taut_body handle, uint32_t* out) {
+taut_result taut_body_get_awake(taut_body handle, uint32_t* out) {
     Check check(__func__);
     if (!check.pointer("out", out)) return check.result();
     return with(check.call(), handle, Use::read, [&](const World& world, uint32_t node) {

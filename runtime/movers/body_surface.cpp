@@ -94,7 +94,7 @@ taut_result add_hull(taut_shape shape, Array<SurfaceTriangle>& out) {
     constexpr uint32_t kMost = 3 * (2 * TAUT_HULL_MAX_VERTICES - 4);
     taut_vec3 points[kMost];
     uint32_t count = 0;
-    const taut_result result = taut_shape_hull_triangles(shape, points, kMost, &count);
+    const taut_result result = taut_shape_get_triangles(shape, points, kMost, &count);
     for (uint32_t i = 0; result == TAUT_OK && i < count; i += 3)
         out.push_back({{to_vec(points[i]), to_vec(points[i + 1]), to_vec(points[i + 2])}});
     return result;
@@ -108,7 +108,7 @@ taut_result add_turned(taut_shape shape, void (*init)(Def*), taut_result (*get)(
     init(&def);
     taut_mass_properties mass;
     taut_result result = get(shape, &def);
-    if (result == TAUT_OK) result = taut_shape_mass_properties(shape, 1, &mass);
+    if (result == TAUT_OK) result = taut_shape_get_mass_properties(shape, 1, &mass);
     if (result != TAUT_OK) return result;
     Lathe lathe(out);
     fill(def, lathe);

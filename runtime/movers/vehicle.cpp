@@ -207,7 +207,8 @@ bool Drive::sleeps() {
     }
     out_.quiet = static_cast<float>(std::min(double(out_.quiet) + seconds_, kQuietTime.hi));
     uint32_t awake = 1, may = 0;
-    if (!ok(taut_body_is_awake(def_.chassis, &awake)) || !ok(taut_body_get_can_sleep(def_.chassis, &may))) return false;
+    if (!ok(taut_body_get_awake(def_.chassis, &awake)) || !ok(taut_body_get_can_sleep(def_.chassis, &may)))
+        return false;
     if (awake && may && out_.quiet >= about_.sleep_time) {
         ok(taut_body_set_awake(def_.chassis, 0));
         return true;

@@ -119,9 +119,9 @@ uint64_t play(taut_world world, const Built& shapes, int steps) {
 
 std::vector<float> triangles(taut_shape shape) {
     uint32_t count = 0;
-    EXPECT_EQ(taut_shape_triangles(shape, nullptr, 0, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(taut_shape_get_triangles(shape, nullptr, 0, &count), TAUT_TOO_SMALL);
     std::vector<taut_vec3> points(count);
-    EXPECT_OK(taut_shape_triangles(shape, points.data(), count, &count));
+    EXPECT_OK(taut_shape_get_triangles(shape, points.data(), count, &count));
     std::vector<float> out;
     for (const taut_vec3& p : points) out.insert(out.end(), {p.x, p.y, p.z});
     return out;

@@ -120,8 +120,8 @@ TEST_F(Bodies, RefuseNullPointers) {
     EXPECT_EQ(taut_body_move_kinematic(p.lift, nullptr), TAUT_NULL_POINTER);
     EXPECT_TRUE(contains(taut_last_error(), "taut_body_move_kinematic: target is null")) << taut_last_error();
     EXPECT_OK(taut_body_get_velocity(p.crate, nullptr, nullptr));
-    EXPECT_EQ(taut_shape_mass_properties(p.box, 1, nullptr), TAUT_NULL_POINTER);
-    EXPECT_EQ(taut_shape_hull_triangles(p.hull, nullptr, 0, nullptr), TAUT_NULL_POINTER);
+    EXPECT_EQ(taut_shape_get_mass_properties(p.box, 1, nullptr), TAUT_NULL_POINTER);
+    EXPECT_EQ(taut_shape_get_triangles(p.hull, nullptr, 0, nullptr), TAUT_NULL_POINTER);
     EXPECT_TRUE(watch.unchanged());
 }
 
@@ -302,23 +302,23 @@ TEST_F(Bodies, ShapesInUseStay) {
 
 TEST_F(Bodies, ShapesTellMassAndTriangles) {
     taut_mass_properties mass;
-    ASSERT_OK(taut_shape_mass_properties(p.box, 10, &mass));
+    ASSERT_OK(taut_shape_get_mass_properties(p.box, 10, &mass));
     EXPECT_FLOAT_EQ(mass.mass, 10);
-    EXPECT_EQ(taut_shape_mass_properties(p.plane, 10, &mass), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_shape_get_mass_properties(p.plane, 10, &mass), TAUT_INVALID_ARGUMENT);
     for (float bad : {NAN, INFINITY, -INFINITY, 0.0f, -1.0f, 1.1e8f}) {
-        EXPECT_EQ(taut_shape_mass_properties(p.box, bad, &mass), TAUT_INVALID_ARGUMENT);
-        EXPECT_TRUE(contains(taut_last_error(), "taut_shape_mass_properties: density")) << taut_last_error();
+        EXPECT_EQ(taut_shape_get_mass_properties(p.box, bad, &mass), TAUT_INVALID_ARGUMENT);
+        EXPECT_TRUE(contains(taut_last_error(), "taut_shape_get_mass_properties: density")) << taut_last_error();
     }
     uint32_t count = 0;
-    EXPECT_EQ(taut_shape_hull_triangles(p.hull, nullptr, 0, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(taut_shape_get_triangles(p.hull, nullptr, 0, &count), TAUT_TOO_SMALL);
     EXPECT_EQ(count, 12u);
     std::vector<taut_vec3> points(count);
     count = 0;
-    EXPECT_EQ(taut_shape_hull_triangles(p.hull, points.data(), 11, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(taut_shape_get_triangles(p.hull, points.data(), 11, &count), TAUT_TOO_SMALL);
     EXPECT_EQ(count, 12u);
-    ASSERT_OK(taut_shape_hull_triangles(p.hull, points.data(), 12, &count));
+    ASSERT_OK(taut_shape_get_triangles(p.hull, points.data(), 12, &count));
     for (const taut_vec3& q : points) EXPECT_TRUE((q.x == 0 || q.x == 1) && q.x + q.y + q.z <= 1);
-    EXPECT_EQ(taut_shape_hull_triangles(p.box, points.data(), 12, &count), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_shape_get_triangles(p.box, points.data(), 12, &count), TAUT_INVALID_ARGUMENT);
 }
 
 }  // namespace

@@ -402,10 +402,10 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
 // The kind of body that each call works on is in the comment; a stale handle fails before that matters.
 inline std::vector<Call<taut_body>> body_calls() {
     return {
-        {"taut_body_is_awake",
+        {"taut_body_get_awake",
          [](taut_body b) {
              uint32_t out;
-             return taut_body_is_awake(b, &out);
+             return taut_body_get_awake(b, &out);
          }},
         {"taut_body_set_awake", [](taut_body b) { return taut_body_set_awake(b, 1); }},
         {"taut_body_get_can_sleep",
@@ -584,16 +584,10 @@ inline std::vector<Call<taut_body>> body_calls() {
 
 inline std::vector<Call<taut_shape>> shape_calls() {
     return {
-        {"taut_shape_mass_properties",
+        {"taut_shape_get_mass_properties",
          [](taut_shape s) {
              taut_mass_properties out;
-             return taut_shape_mass_properties(s, 1000, &out);
-         }},
-        {"taut_shape_hull_triangles",
-         [](taut_shape s) {
-             taut_vec3 out[400];
-             uint32_t count;
-             return taut_shape_hull_triangles(s, out, 400, &count);
+             return taut_shape_get_mass_properties(s, 1000, &out);
          }},
         {"taut_shape_get_kind",
          [](taut_shape s) {
@@ -605,11 +599,11 @@ inline std::vector<Call<taut_shape>> shape_calls() {
              taut_vec3 low, high;
              return taut_shape_get_bounds(s, &low, &high);
          }},
-        {"taut_shape_triangles",
+        {"taut_shape_get_triangles",
          [](taut_shape s) {
              taut_vec3 out[400];
              uint32_t count;
-             return taut_shape_triangles(s, out, 400, &count);
+             return taut_shape_get_triangles(s, out, 400, &count);
          }},
         {"taut_shape_add_scaled",
          [](taut_shape s) {

@@ -114,9 +114,9 @@ protected:
             ASSERT_OK(taut_world_add_baked(world, part, &shape));
             shapes.push_back(shape);
             uint32_t points = 0;
-            taut_shape_hull_triangles(shape, nullptr, 0, &points);
+            taut_shape_get_triangles(shape, nullptr, 0, &points);
             std::vector<taut_vec3> corners(points);
-            ASSERT_OK(taut_shape_hull_triangles(shape, corners.data(), points, &points));
+            ASSERT_OK(taut_shape_get_triangles(shape, corners.data(), points, &points));
             hulls.push_back(corners);
         }
     }
@@ -342,10 +342,10 @@ TEST_F(Decomposition, IsTheSameOnAnyThread) {
             taut_shape shape;
             ASSERT_OK(taut_world_add_baked(world, others[i][k], &shape));
             uint32_t points = 0;
-            taut_shape_hull_triangles(shape, nullptr, 0, &points);
+            taut_shape_get_triangles(shape, nullptr, 0, &points);
             ASSERT_EQ(points, first[k].size());
             std::vector<taut_vec3> corners(points);
-            ASSERT_OK(taut_shape_hull_triangles(shape, corners.data(), points, &points));
+            ASSERT_OK(taut_shape_get_triangles(shape, corners.data(), points, &points));
             EXPECT_EQ(std::memcmp(corners.data(), first[k].data(), points * sizeof(taut_vec3)), 0);
             ASSERT_OK(taut_baked_release(others[i][k]));
         }

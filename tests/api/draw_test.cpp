@@ -123,7 +123,7 @@ TEST_P(DrawnSolid, IsItsSurface) {
     for (const taut_draw_triangle& triangle : picture.triangles)
         for (const taut_pos& corner : triangle.corners) EXPECT_LE(distance(corner), 2e-5);
     taut_mass_properties whole;
-    ASSERT_OK(taut_shape_mass_properties(def.shape, 1, &whole));
+    ASSERT_OK(taut_shape_get_mass_properties(def.shape, 1, &whole));
     const double mass = static_cast<double>(whole.mass);
     const bool flat = GetParam() == Solid::box || GetParam() == Solid::hull;
     EXPECT_LE(volume(picture.triangles), mass * 1.00001);

@@ -67,7 +67,7 @@ TEST_F(Meshes, BelongOnStaticAndKinematicBodies) {
         EXPECT_EQ(taut_world_add_body(p.world, &def, &body), TAUT_INVALID_ARGUMENT);
         EXPECT_TRUE(contains(taut_last_error(), "static and kinematic")) << taut_last_error();
         taut_mass_properties mass;
-        EXPECT_EQ(taut_shape_mass_properties(shape, 1000, &mass), TAUT_INVALID_ARGUMENT);
+        EXPECT_EQ(taut_shape_get_mass_properties(shape, 1000, &mass), TAUT_INVALID_ARGUMENT);
         EXPECT_TRUE(contains(taut_last_error(), "no volume")) << taut_last_error();
     }
 }
@@ -78,9 +78,9 @@ TEST_F(Meshes, AreReadBackScaled) {
     ASSERT_OK(taut_shape_add_scaled(scaled, {0.5f, 1, 1}, &twice));
     taut_vec3 points[6];
     uint32_t count = 0;
-    EXPECT_EQ(taut_shape_triangles(twice, nullptr, 0, &count), TAUT_TOO_SMALL);
+    EXPECT_EQ(taut_shape_get_triangles(twice, nullptr, 0, &count), TAUT_TOO_SMALL);
     ASSERT_EQ(count, 6u);
-    ASSERT_OK(taut_shape_triangles(twice, points, 6, &count));
+    ASSERT_OK(taut_shape_get_triangles(twice, points, 6, &count));
     for (int t = 0; t < 6; t += 3) {
         const taut_vec3 &a = points[t], &b = points[t + 1], &c = points[t + 2];
         EXPECT_GT((b.z - a.z) * (c.x - a.x) - (b.x - a.x) * (c.z - a.z), 0) << "looks down";
@@ -93,7 +93,7 @@ TEST_F(Meshes, AreReadBackScaled) {
         EXPECT_EQ(taut_shape_add_scaled(mesh, bad, &scaled), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_shape_add_scaled(p.box, {1, 1, 1}, &scaled), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_shape_get_mesh_info(p.hull, &info), TAUT_INVALID_ARGUMENT);
-    EXPECT_EQ(taut_shape_triangles(p.box, points, 6, &count), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_shape_get_triangles(p.box, points, 6, &count), TAUT_INVALID_ARGUMENT);
 }
 
 // A box that slides from facet to facet keeps touching the body: one begin, no end.

@@ -87,21 +87,21 @@ TEST_F(Shapes, HaveTightBounds) {
 // Volumes go with the product of the factors, mirrored or not, and a shape outlives its source.
 TEST_F(Shapes, ScaledHullsHaveScaledVolumeAndBounds) {
     taut_mass_properties base;
-    ASSERT_OK(taut_shape_mass_properties(p.hull, 1000, &base));
+    ASSERT_OK(taut_shape_get_mass_properties(p.hull, 1000, &base));
     taut_vec3 low, high;
     ASSERT_OK(taut_shape_get_bounds(p.hull, &low, &high));
     for (const taut_vec3 scale : {taut_vec3{2, 0.5f, 3}, taut_vec3{-2, 0.5f, 3}, taut_vec3{-1, -1, -1}}) {
         const taut_shape shape = scaled(scale);
         taut_mass_properties mass;
-        ASSERT_OK(taut_shape_mass_properties(shape, 1000, &mass));
+        ASSERT_OK(taut_shape_get_mass_properties(shape, 1000, &mass));
         EXPECT_NEAR(mass.mass, base.mass * std::fabs(scale.x * scale.y * scale.z), 1e-4f * mass.mass);
         EXPECT_NEAR(mass.centre_of_mass.x, base.centre_of_mass.x * scale.x, 1e-5f);
         taut_vec3 lo, hi;
         ASSERT_OK(taut_shape_get_bounds(shape, &lo, &hi));
         EXPECT_NEAR(hi.x - lo.x, std::fabs(scale.x) * (high.x - low.x), 1e-5f);
         uint32_t count = 0, base_count = 0;
-        EXPECT_EQ(taut_shape_hull_triangles(shape, nullptr, 0, &count), TAUT_TOO_SMALL);
-        EXPECT_EQ(taut_shape_hull_triangles(p.hull, nullptr, 0, &base_count), TAUT_TOO_SMALL);
+        EXPECT_EQ(taut_shape_get_triangles(shape, nullptr, 0, &count), TAUT_TOO_SMALL);
+        EXPECT_EQ(taut_shape_get_triangles(p.hull, nullptr, 0, &base_count), TAUT_TOO_SMALL);
         EXPECT_EQ(count, base_count);
     }
 }

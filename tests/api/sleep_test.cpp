@@ -39,7 +39,7 @@ TEST(SleepCalls, RefuseBadInputAndChangeNothing) {
         EXPECT_TRUE(contains(taut_last_error(), word)) << taut_last_error();
         EXPECT_EQ(s.hash(), before);
     };
-    refused(taut_body_is_awake(s.ball, nullptr), TAUT_NULL_POINTER, "out");
+    refused(taut_body_get_awake(s.ball, nullptr), TAUT_NULL_POINTER, "out");
     refused(taut_body_get_can_sleep(s.ball, nullptr), TAUT_NULL_POINTER, "out");
     refused(taut_body_set_awake(s.ball, 2), TAUT_INVALID_ARGUMENT, "awake");
     refused(taut_body_set_can_sleep(s.ball, 2), TAUT_INVALID_ARGUMENT, "can_sleep");
@@ -60,7 +60,7 @@ TEST(SleepCalls, ARefusedCallWakesNobody) {
     EXPECT_EQ(taut_world_set_gravity(s.world, {NAN, 0, 0}), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(s.hash(), before);
     uint32_t awake = 1;
-    ASSERT_OK(taut_body_is_awake(s.ball, &awake));
+    ASSERT_OK(taut_body_get_awake(s.ball, &awake));
     EXPECT_EQ(awake, 0u);
 }
 
@@ -72,7 +72,7 @@ TEST(SleepCalls, ReadWhatWasSet) {
     ASSERT_OK(taut_body_set_can_sleep(s.ball, 0));
     ASSERT_OK(taut_body_get_can_sleep(s.ball, &out));
     EXPECT_EQ(out, 0u);
-    ASSERT_OK(taut_body_is_awake(s.wall, &out));
+    ASSERT_OK(taut_body_get_awake(s.wall, &out));
     EXPECT_EQ(out, 1u) << "static bodies count as awake";
     taut_world_def def;
     ASSERT_OK(taut_world_get_def(s.world, &def));

@@ -112,7 +112,7 @@ TEST(Fluid, VolumesAreThoseOfGeometry) {
     ASSERT_OK(taut_world_add_tapered_capsule(pool.world, &tapered, &shapes[3]));
     for (const taut_shape shape : shapes) {
         taut_mass_properties mass;
-        ASSERT_OK(taut_shape_mass_properties(shape, 1, &mass));
+        ASSERT_OK(taut_shape_get_mass_properties(shape, 1, &mass));
         const taut_body body = pool.add(shape, 1000, {50, -5, 0});
         ASSERT_OK(taut_body_apply_fluid(body, &pool.fluid, pool.seconds, &pool.report));
         EXPECT_NEAR(pool.report.volume, mass.mass, 1e-4f * mass.mass);
@@ -238,7 +238,7 @@ TEST(Explosion, PushesAPlateByItsArea) {
     const taut_body far = pool.add(pool.box({0.1f, 0.1f, 0.1f}), 1000, {0, 20, 0});
     for (int i = 0; i < 120; ++i) ASSERT_OK(taut_world_step(pool.world));
     uint32_t awake = 1;
-    ASSERT_OK(taut_body_is_awake(plate, &awake));
+    ASSERT_OK(taut_body_get_awake(plate, &awake));
     EXPECT_EQ(awake, 0u);
     taut_explosion_def def;
     taut_explosion_def_init(&def);
@@ -249,7 +249,7 @@ TEST(Explosion, PushesAPlateByItsArea) {
     ASSERT_OK(taut_body_get_velocity(plate, &v, &w));
     EXPECT_NEAR(static_cast<double>(v.x), 500 * 0.04 / 0.8, 0.02);
     EXPECT_NEAR(static_cast<double>(v.y), 0, 1e-4);
-    ASSERT_OK(taut_body_is_awake(plate, &awake));
+    ASSERT_OK(taut_body_get_awake(plate, &awake));
     EXPECT_EQ(awake, 1u);
     ASSERT_OK(taut_body_get_velocity(far, &v, &w));
     EXPECT_EQ(v.y, 0);

@@ -357,7 +357,7 @@ TEST_P(Vehicle, SleepsWhereItStandsAndWakesToDrive) {
     car.input.handbrake = 1;
     car.run(5);
     uint32_t awake = 1;
-    ok(taut_body_is_awake(car.chassis, &awake));
+    ok(taut_body_get_awake(car.chassis, &awake));
     EXPECT_EQ(awake, 0u);
     car.input.handbrake = 0;
     car.input.throttle = 0.5f;

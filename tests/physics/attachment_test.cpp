@@ -540,7 +540,7 @@ TEST(Attachment, SleepsAndWakesWithItsBodies) {
     const HungFromAPinnedSheet hung(true);
     const auto awake = [&] {
         uint32_t out = 0;
-        ok(taut_body_is_awake(hung.body, &out));
+        ok(taut_body_get_awake(hung.body, &out));
         return out != 0;
     };
     for (int i = 0; i < 1200 && awake(); ++i) hung.world.step();

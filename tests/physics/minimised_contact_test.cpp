@@ -332,7 +332,7 @@ TEST(Minimised, SleepersWakeForWhatComes) {
         const std::vector<taut_body> vertices = bodies_of(cube);
         const auto sleeps = [&] {
             uint32_t awake = 1;
-            ok(taut_body_is_awake(vertices[0], &awake));
+            ok(taut_body_get_awake(vertices[0], &awake));
             return awake == 0;
         };
         ASSERT_TRUE(sleeps());

@@ -165,7 +165,7 @@ TEST(SoftContacts, WakeWhatTheyCarry) {
     const taut_body grain = make_grain(world, {.at = {0.4, 0.06, 1.3}}, true);
     const auto sleeps = [&] {
         uint32_t awake = 0;
-        ok(taut_body_is_awake(grain, &awake));
+        ok(taut_body_get_awake(grain, &awake));
         return awake == 0;
     };
     world.step(120);

@@ -223,7 +223,7 @@ TEST(SoftEvent, IsNotToldAnewAfterSleep) {
     const taut_body ball = make_grain(world, {.at = {0.043, 0.09, -0.03}}, true);
     const auto is_awake = [&](taut_body body) {
         uint32_t awake = 0;
-        ok(taut_body_is_awake(body, &awake));
+        ok(taut_body_get_awake(body, &awake));
         return awake == 1;
     };
     std::set<Sides> touching;

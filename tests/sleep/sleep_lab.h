@@ -12,7 +12,7 @@ inline void let_sleep(taut_world_def& def) { def.sleeping = 1; }
 
 inline bool awake(taut_body body) {
     uint32_t out = 0;
-    ok(taut_body_is_awake(body, &out));
+    ok(taut_body_get_awake(body, &out));
     return out == 1;
 }
 inline bool all_asleep(const std::vector<taut_body>& bodies) {

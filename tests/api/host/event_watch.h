@@ -35,7 +35,7 @@ private:
     }
     static bool awake(taut_body body) {
         uint32_t out = 1;
-        return taut_body_is_awake(body, &out) != TAUT_OK || out == 1;
+        return taut_body_get_awake(body, &out) != TAUT_OK || out == 1;
     }
     // What is left of each list to go through.
     struct Lists {

@@ -152,13 +152,14 @@ protected:
         const taut_shape shape = pick(shapes_, pick_world());
         const float density = real(1, 1e4);
         taut_mass_properties mass;
-        if (ask("taut_shape_mass_properties", [&] { return taut_shape_mass_properties(shape, density, &mass); })) {
+        if (ask("taut_shape_get_mass_properties",
+                [&] { return taut_shape_get_mass_properties(shape, density, &mass); })) {
             expect(mass.mass >= 0 && finite(mass.centre_of_mass) && mass.inertia.xx >= 0, "a mass that is none");
         }
         std::vector<taut_vec3> points(byte() * 2u);
         uint32_t count = 0;
-        ask("taut_shape_hull_triangles", [&] {
-            return taut_shape_hull_triangles(shape, points.data(), static_cast<uint32_t>(points.size()), &count);
+        ask("taut_shape_get_triangles", [&] {
+            return taut_shape_get_triangles(shape, points.data(), static_cast<uint32_t>(points.size()), &count);
         });
         expect(count % 3 == 0, "triangles that are none");
         taut_shape_kind kind;
@@ -169,8 +170,6 @@ protected:
         if (ask("taut_shape_get_bounds", [&] { return taut_shape_get_bounds(shape, &low, &high); })) {
             expect(finite(low) && finite(high) && low.x < high.x && low.y < high.y && low.z < high.z, "no bounds");
         }
-        ask("taut_shape_triangles",
-            [&] { return taut_shape_triangles(shape, points.data(), static_cast<uint32_t>(points.size()), &count); });
         read_def("taut_shape_get_plane", shape, taut_plane_def_init, taut_shape_get_plane);
         read_def("taut_shape_get_box", shape, taut_box_def_init, taut_shape_get_box);
         read_def("taut_shape_get_sphere", shape, taut_sphere_def_init, taut_shape_get_sphere);

@@ -16,7 +16,7 @@ protected:
         if (ask("taut_body_get_can_sleep", [&] { return taut_body_get_can_sleep(body, &can); }))
             expect(can <= 1, "a flag that is none");
         if (run("taut_body_set_awake", [&] { return taut_body_set_awake(body, flag); })) {
-            expect(taut_body_is_awake(body, &read) == TAUT_OK && read == flag, "a sleeper who is awake");
+            expect(taut_body_get_awake(body, &read) == TAUT_OK && read == flag, "a sleeper who is awake");
         }
         const taut_pos lo = pos(5), hi = pos(5);
         const taut_world world = worlds_[pick_world()];
