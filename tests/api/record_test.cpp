@@ -711,7 +711,7 @@ TEST_P(ForgedRecording, BreaksNothing) {
         return end > 0 ? value % end : 0;
     };
     const Forged original(short_recording());
-    for (int round = 0; round < 40; ++round) {
+    for (int round = 0; round < 200; ++round) {
         Forged forged = original;
         for (size_t edits = 1 + below(4); edits > 0; --edits) {
             Forged::Piece& piece = forged.pieces[below(forged.pieces.size())];
@@ -745,7 +745,7 @@ TEST_P(ForgedRecording, BreaksNothing) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, ForgedRecording, testing::Range<uint64_t>(1, 16));
+INSTANTIATE_TEST_SUITE_P(Seeds, ForgedRecording, testing::Range<uint64_t>(1, 31));
 
 // ---------------------------------------------------------------- the random host
 
