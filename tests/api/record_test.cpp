@@ -654,7 +654,7 @@ uint32_t check_of(const unsigned char* bytes, size_t size) {
         add(word);
     }
     uint64_t rest = 0;
-    std::memcpy(&rest, bytes, size);
+    if (size > 0) std::memcpy(&rest, bytes, size);
     add(rest);
     return static_cast<uint32_t>(value ^ value >> 32);
 }
