@@ -5,7 +5,6 @@
 #include "api/shape_build.h"
 #include "api/shape_def.h"
 #include "collision/decomposition.h"
-#include "movers/call_parts.h"
 
 using namespace taut;
 
@@ -58,9 +57,8 @@ private:
     taut_baked* parts_;
 };
 
-taut_result bake_parts(const Check& check, const taut_decomposition_def& def, const taut_allocator* allocator,
+taut_result bake_parts(const char* call, const taut_decomposition_def& def, const taut_allocator* allocator,
                        taut_baked* parts, uint32_t* count, taut_decomposition_info& info) {
-    const char* const call = check.call();
     taut_hooks hooks{};
     if (allocator)
         hooks.allocate = allocator->allocate, hooks.free = allocator->free,
@@ -89,7 +87,8 @@ taut_result bake_parts(const Check& check, const taut_decomposition_def& def, co
     BakedParts baked(own);
     double departure = 0, shortfall = 0;
     for (const collision::ConvexPart& part : found) {
-        if (const taut_result result = baked.add(part, allocator); result != TAUT_OK) return refuse_as(check, result);
+        if (const taut_result result = baked.add(part, allocator); result != TAUT_OK)
+            return refuse(result, "%s: baking a part: %s", call, taut_result_name(result));
         departure = std::max(departure, part.departure);
         shortfall = std::max(shortfall, part.shortfall);
     }
@@ -130,7 +129,7 @@ taut_result taut_bake_decomposition_sized(const taut_decomposition_def* given, c
     }
     return contain(check.call(), [&] {
         taut_decomposition_info info{};
-        const taut_result result = bake_parts(check, def, allocator, parts, count, info);
+        const taut_result result = bake_parts(check.call(), def, allocator, parts, count, info);
         if (result == TAUT_OK && first) *RecordOut<taut_decomposition_info>(first, size) = info;
         return result;
     });
