@@ -194,7 +194,12 @@ public:
     template <class T>
     void one(T& value) {
         if (is_beyond(&value + 1)) return;
-        if constexpr (Plain<T>) {
+        if constexpr (std::is_enum_v<T> && sizeof(T) == sizeof(uint32_t)) {
+            uint32_t bits = 0;  // of which an enumeration of the interface has values up to this
+            raw(&bits, sizeof bits);
+            bits = std::min(bits, uint32_t{0x7fffffff});
+            std::memcpy(static_cast<void*>(&value), &bits, sizeof bits);
+        } else if constexpr (Plain<T>) {
             raw(&value, sizeof value);
         } else if constexpr (std::is_array_v<T>) {
             for (auto& each : value) one(each);
