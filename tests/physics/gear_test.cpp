@@ -95,8 +95,9 @@ TEST_P(Gears, KeepTheirPhaseOverAThousandTurns) {
 // Turns of more than half a turn a substep, which poses do not tell: none is miscounted, which would be a blow. Swept
 // hinges do not hold their axis beyond half a turn a substep, gears or not.
 TEST_P(Gears, CountTurnsHoweverFastTheySpin) {
-    constexpr double kRatio = -0.7310585, kMostSwept = 2.5 * 4;  // [rad a frame of four substeps]
-    const double spin = GetParam().solve == TAUT_JOINT_SOLVE_DIRECT ? 900 : std::min(900.0, kMostSwept * GetParam().hz);
+    constexpr double kRatio = -0.7310585;
+    const double most = 2.5 * pace().substeps * GetParam().hz;
+    const double spin = GetParam().solve == TAUT_JOINT_SOLVE_DIRECT ? 900 : std::min(900.0, most);
     const taut_body a = wheel({0, 0, 0}, 0.2), b = wheel({1, 0, 0}, 0.05);
     ok(taut_body_set_velocity(a, {0, 0, 0}, (spin * kAxis).narrow()));
     ok(taut_body_set_velocity(b, {0, 0, 0}, (kRatio * spin * kAxis).narrow()));
