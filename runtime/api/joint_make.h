@@ -7,8 +7,6 @@
 
 namespace taut {
 
-constexpr taut_quat kUnturned{0, 0, 0, 1};
-
 template <class Def>
 constexpr bool kFramed = requires(Def def) {
     def.frame_a;
