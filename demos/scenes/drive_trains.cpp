@@ -10,7 +10,7 @@ namespace scenes {
 
 namespace {
 
-constexpr int32_t kCarGroup = -32, kTrainGroup = -33;
+constexpr int32_t kJointedCarGroup = -32, kTrainGroup = -33;
 
 // A joint's frame whose x and y axes are two directions of the world that are square to each other.
 taut_quat frame_of(taut_pos x, taut_pos y) {
@@ -87,15 +87,15 @@ Scene build_car(double, double, const Options& options) {
     add_ground(scene);
     add_road(scene);
     Body hull = crate(box_shape(scene, 1.55, 0.22, 0.6), {kStart, kLevel + 0.3, 0}, kMass, Look::paint);
-    hull.group = kCarGroup;
+    hull.group = kJointedCarGroup;
     const int chassis = scene.add_body(hull);
     Body cabin = crate(box_shape(scene, 0.7, 0.25, 0.55), {kStart - 0.2, kLevel + 0.75, 0}, 60, Look::crate);
-    cabin.group = kCarGroup;
+    cabin.group = kJointedCarGroup;
     scene.add_joint(joint_at(scene, TAUT_JOINT_FIXED, chassis, scene.add_body(cabin), {kStart - 0.2, kLevel + 0.5, 0}));
     // The carrier of the differential, which the engine turns.
     const taut_pos middle = {kStart - 0.5 * kBase, kLevel + 0.1, 0};
     const int carrier =
-        add_capsule(scene, plus(middle, 0, 0, -0.1), plus(middle, 0, 0, 0.1), 0.12, 15, Look::steel, kCarGroup);
+        add_capsule(scene, plus(middle, 0, 0, -0.1), plus(middle, 0, 0, 0.1), 0.12, 15, Look::steel, kJointedCarGroup);
     Joint engine = joint_at(scene, TAUT_JOINT_HINGE, chassis, carrier, middle, across);
     engine.axes = {free_axis()};
     engine.axes[0].drive.damping = INFINITY;
@@ -108,7 +108,7 @@ Scene build_car(double, double, const Options& options) {
         const double side = i % 2 == 0 ? -0.5 * kTrack : 0.5 * kTrack;
         const taut_pos place = {kStart + (front ? 0.5 : -0.5) * kBase, kLevel, side};
         const int wheel = add_capsule(scene, plus(place, 0, 0, -0.06), plus(place, 0, 0, 0.06), kWheel, kWheelMass,
-                                      Look::stone, kCarGroup);
+                                      Look::stone, kJointedCarGroup);
         scene.bodies[static_cast<size_t>(wheel)].friction = 1;
         Joint joint = wheel_at(scene, chassis, wheel, place, up, across);
         taut_axis_def locked = free_axis();
