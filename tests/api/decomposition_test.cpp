@@ -16,7 +16,7 @@ using namespace taut_test;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kTorusPi = 3.14159265358979323846;
 
 struct Triangles {
     std::vector<taut_vec3> vertices;
@@ -37,7 +37,7 @@ struct Triangles {
     }
 };
 
-void add_box(Triangles& out, taut_vec3 low, taut_vec3 high) {
+void put_box(Triangles& out, taut_vec3 low, taut_vec3 high) {
     const auto first = static_cast<uint32_t>(out.vertices.size());
     for (int i = 0; i < 8; ++i)
         out.vertices.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
@@ -51,7 +51,7 @@ Triangles torus(double big, double small, uint32_t around, uint32_t across) {
     Triangles out;
     for (uint32_t i = 0; i < around; ++i)
         for (uint32_t k = 0; k < across; ++k) {
-            const double a = 2 * kPi * i / around, b = 2 * kPi * k / across, r = big + small * std::cos(b);
+            const double a = 2 * kTorusPi * i / around, b = 2 * kTorusPi * k / across, r = big + small * std::cos(b);
             out.vertices.push_back({static_cast<float>(r * std::cos(a)), static_cast<float>(small * std::sin(b)),
                                     static_cast<float>(r * std::sin(a))});
         }
@@ -187,7 +187,7 @@ TEST_F(Decomposition, TorusStaysWithinItsTolerance) {
     EXPECT_LE(info.departure, kTolerance);
     EXPECT_LE(info.shortfall, kTolerance);
     // The mesh lies within its torus, by the sag of its facets.
-    const double sag = (kBig + kSmall) * (1 - std::cos(kPi / 96)) + kSmall * (1 - std::cos(kPi / 40));
+    const double sag = (kBig + kSmall) * (1 - std::cos(kTorusPi / 96)) + kSmall * (1 - std::cos(kTorusPi / 40));
     double most = 0, short_of = 0;
     for_surface_points([&](const taut_vec3& p) { most = std::max(most, torus_distance(p, kBig, kSmall)); });
     for (const taut_vec3& p : mesh.vertices) short_of = std::max(short_of, over_union(p));
@@ -196,7 +196,7 @@ TEST_F(Decomposition, TorusStaysWithinItsTolerance) {
     EXPECT_LE(most, static_cast<double>(info.departure) + sag);
     EXPECT_LE(short_of, static_cast<double>(info.shortfall) + 1e-3);
     // Volumes: of the mesh by the information, of the union between that and the torus grown by the tolerance.
-    const double solid = 2 * kPi * kPi * kBig * kSmall * kSmall;
+    const double solid = 2 * kTorusPi * kTorusPi * kBig * kSmall * kSmall;
     EXPECT_NEAR(static_cast<double>(info.solid.mass), solid, 0.01 * solid);
     const double own = volume({-1.4f, -0.4f, -1.4f}, {1.4f, 0.4f, 1.4f}, 48);
     EXPECT_GT(own, 0.97 * solid);
@@ -263,7 +263,7 @@ TEST_F(Decomposition, StairsBecomeBoxes) {
 
 TEST_F(Decomposition, WhatIsConvexIsOnePart) {
     Triangles mesh;
-    add_box(mesh, {-1, -2, -3}, {1, 2, 3});
+    put_box(mesh, {-1, -2, -3}, {1, 2, 3});
     for (const bool inside_out : {false, true}) {
         if (inside_out) mesh.turn_inside_out();
         hulls.clear(), shapes.clear();
@@ -279,8 +279,8 @@ TEST_F(Decomposition, WhatIsConvexIsOnePart) {
 
 TEST_F(Decomposition, CrossingBoxesAreOneSolid) {
     Triangles mesh;
-    add_box(mesh, {-3, -0.5f, -0.5f}, {3, 0.5f, 0.5f});
-    add_box(mesh, {-0.5f, -3, -0.5f}, {0.5f, 3, 0.5f});
+    put_box(mesh, {-3, -0.5f, -0.5f}, {3, 0.5f, 0.5f});
+    put_box(mesh, {-0.5f, -3, -0.5f}, {0.5f, 3, 0.5f});
     taut_decomposition_def def = mesh.def();
     def.tolerance = 0.1f;
     bake(def);
@@ -291,7 +291,7 @@ TEST_F(Decomposition, CrossingBoxesAreOneSolid) {
 
 TEST_F(Decomposition, HolesAreClosedOnDemand) {
     Triangles mesh;
-    add_box(mesh, {0, 0, 0}, {1, 1, 1});
+    put_box(mesh, {0, 0, 0}, {1, 1, 1});
     mesh.indices.resize(mesh.indices.size() - 6);  // a face
     taut_decomposition_def def = mesh.def();
     taut_baked out[32];
@@ -354,7 +354,7 @@ TEST_F(Decomposition, IsTheSameOnAnyThread) {
 
 TEST_F(Decomposition, RefusesWhatItCannotTake) {
     Triangles mesh;
-    add_box(mesh, {0, 0, 0}, {1, 1, 1});
+    put_box(mesh, {0, 0, 0}, {1, 1, 1});
     taut_baked out[32];
     uint32_t count = 5;
     const auto refused = [&](taut_result expected, const char* text, auto&& change) {

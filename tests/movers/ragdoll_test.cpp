@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr double kG = 9.81, kPi = 3.14159265358979323846;
+constexpr double kFall = 9.81, kPi = 3.14159265358979323846;
 #define ASSERT_OK(call) ASSERT_EQ(call, TAUT_OK) << taut_last_error()
 #define EXPECT_OK(call) EXPECT_EQ(call, TAUT_OK) << taut_last_error()
 
@@ -83,7 +83,7 @@ public:
             sum += 0.5 * double(mass) * (square(v.x) + square(v.y) + square(v.z)) +
                    0.5 * (double(inertia.xx) * square(own.x) + double(inertia.yy) * square(own.y) +
                           double(inertia.zz) * square(own.z)) +
-                   double(mass) * kG * pose.position.y;
+                   double(mass) * kFall * pose.position.y;
         }
         return sum;
     }
@@ -146,7 +146,7 @@ TEST_P(RagdollAtRates, PowerHoldsAgainstGravityAsStiffnessSays) {
         taut_axis_def_init(&axis);
         ASSERT_OK(taut_joint_get_axis(limb.ragdoll.joints[1], 5, &axis));
         const double stiffness = static_cast<double>(axis.drive.stiffness),
-                     moment = Limb::kMass * kG * Limb::kLength / 2;
+                     moment = Limb::kMass * kFall * Limb::kLength / 2;
         ASSERT_GT(stiffness, 0);
         double angle = 0;
         for (int i = 0; i < 50; ++i) angle = -moment * std::cos(angle) / stiffness;
@@ -201,7 +201,7 @@ TEST_P(RagdollAtRates, LimpFallsWithoutGain) {
         ASSERT_OK(taut_world_step(limb.world));
         most = std::max(most, limb.energy());
     }
-    EXPECT_LT(most, start + 0.01 * Limb::kMass * kG * 4 * Limb::kLength);
+    EXPECT_LT(most, start + 0.01 * Limb::kMass * kFall * 4 * Limb::kLength);
     EXPECT_LT(limb.energy(), start);
 }
 
@@ -222,7 +222,7 @@ TEST_P(RagdollAtRates, IsLedToItsPosesAndLetGoAtTheirSpeed) {
     ASSERT_OK(taut_ragdoll_drive(&limb.def, TAUT_RAGDOLL_LIMP, nullptr, limb.seconds, &limb.ragdoll));
     for (int i = 0; i < frames / 2; ++i) ASSERT_OK(taut_world_step(limb.world));
     // Thrown up at 2 m/s: y = 2 t - g t^2 / 2.
-    for (const taut_pose& pose : limb.poses()) EXPECT_NEAR(pose.position.y - 2, 1 - kG / 8, 0.06);
+    for (const taut_pose& pose : limb.poses()) EXPECT_NEAR(pose.position.y - 2, 1 - kFall / 8, 0.06);
 }
 
 TEST(Ragdoll, NeighboursDoNotCollideAndLimitsHold) {
