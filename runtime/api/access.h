@@ -129,7 +129,8 @@ taut_result room_for_attachments(const char* call, const World& world, size_t mo
 // ---------------------------------------------------------------- find
 
 // Readers share a world; a writer holds it alone. Whoever comes in between is refused, not kept waiting: he is a
-// callback inside a step or breaks the rule of one thread at a time. Alone: a reader that works in the world's memory.
+// callback inside a step or breaks the rule of one thread at a time. Alone: a reader that works in the world's
+// memory, or a writer of what is the host's and no state.
 enum class Use { read, alone, write };
 
 // Holds a world while it lives. The lock stands in a static table, not in the world, so that looking up a handle

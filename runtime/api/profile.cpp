@@ -5,7 +5,7 @@
 using namespace taut;
 
 taut_result taut_world_set_profile_scopes(taut_world handle, taut_profile_scope_fn scope, void* user_data) {
-    return with_world(__func__, handle, Use::write, [&](World& world) {
+    return with_world(__func__, handle, Use::alone, [&](World& world) {
         world.scopes.set(scope, user_data);
         world.team.tell_scopes(scope ? &world.scopes : nullptr);
         return TAUT_OK;
