@@ -52,7 +52,7 @@ typedef struct taut_decomposition_def {
 
 /** What became of a mesh. */
 typedef struct taut_decomposition_info {
-    uint32_t parts;
+    uint32_t parts;             /**< hulls */
     uint32_t without_area;      /**< triangles left out, as two of their corners are one */
     uint32_t open_edges;        /**< of holes that were closed */
     float departure;            /**< of the points of the hulls from the solid, at most [m] */

@@ -426,8 +426,8 @@ typedef struct taut_pulley_joint_def {
                                      particle, and no two the same */
     taut_pos anchor_a;          /**< as for the ball joint */
     taut_pos anchor_b;
-    taut_pos sheave_a; /**< in the frame of the housing, within 1e4; world position if null [m] */
-    taut_pos sheave_b;
+    taut_pos sheave_a;      /**< in the frame of the housing, within 1e4; world position if null [m] */
+    taut_pos sheave_b;      /**< likewise */
     float ratio;            /**< falls of rope on b's side for one on a's, [1e-4, 1e4]. Default 1 */
     float length;           /**< [m], 0 or [1e-4, 1e6]; 0: what it is at creation. Default 0 */
     uint32_t rigid;         /**< 1: it pushes too, and axis 0 is locked. Default 0 */

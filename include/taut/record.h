@@ -91,15 +91,15 @@ typedef enum taut_replay_status {
 
 /** Where a replay is. */
 typedef struct taut_replay_state {
-    taut_replay_status status;
-    uint32_t whole;         /**< 1 at the end of a recording that was ended; 0: it is cut, or its process died */
-    uint64_t call;          /**< number of the last call played, from 1; 0: none */
-    uint64_t frame;         /**< of calls that step, relax or restore, likewise */
-    uint64_t offset;        /**< of that call in the recording [bytes] */
-    const char* function;   /**< its name, null: none. Valid as long as the library */
-    const char* difference; /**< what differs, null: nothing. Likewise */
-    uint64_t expected;      /**< what is recorded: a result, a handle's or hash's bits */
-    uint64_t found;         /**< what came out */
+    taut_replay_status status; /**< whether it goes on */
+    uint32_t whole;            /**< 1 at the end of a recording that was ended; 0: it is cut, or its process died */
+    uint64_t call;             /**< number of the last call played, from 1; 0: none */
+    uint64_t frame;            /**< of calls that step, relax or restore, likewise */
+    uint64_t offset;           /**< of that call in the recording [bytes] */
+    const char* function;      /**< its name, null: none. Valid as long as the library */
+    const char* difference;    /**< what differs, null: nothing. Likewise */
+    uint64_t expected;         /**< what is recorded: a result, a handle's or hash's bits */
+    uint64_t found;            /**< what came out */
 } taut_replay_state;
 
 TAUT_API void taut_replay_def_init_sized(taut_replay_def* def, uint32_t size);

@@ -65,6 +65,13 @@ bool is_read(uint32_t struct_size) {
     return struct_size > 0 && struct_size <= sizeof(T) && struct_size % alignof(T) == 0;
 }
 
+// Where the fields of a def end that are there; it may lie in another, which ends sooner.
+template <Def T>
+const std::byte* end_of(const T& def, bool whole, const std::byte* limit) {
+    const std::byte* end = reinterpret_cast<const std::byte*>(&def) + (whole ? def.struct_size : 0);
+    return limit ? std::min(limit, end) : end;
+}
+
 class Encoder {
 public:
     // baked: handles of those that the recording has, by number.
@@ -77,27 +84,29 @@ public:
     }
     template <class T>
     void one(const T& value) {
-        if (is_beyond(&value + 1)) return;
-        if constexpr (Plain<T>) {
-            raw(&value, sizeof value);
-        } else if constexpr (std::is_array_v<T>) {
+        if constexpr (std::is_array_v<T>) {
             for (const auto& each : value) one(each);
+        } else if constexpr (!Plain<T> && !HandleOf<T>) {
+            layout(*this, value);
+        } else if (is_beyond(&value + 1)) {
+            return;
+        } else if constexpr (Plain<T>) {
+            raw(&value, sizeof value);
         } else if constexpr (std::is_same_v<T, taut_baked>) {
             const auto at =
                 taut_baked_is_valid(value) ? std::find(baked_.begin(), baked_.end(), value.bits) : baked_.end();
             number(static_cast<uint64_t>(at == baked_.end() ? -1 : at - baked_.begin()));
-        } else if constexpr (HandleOf<T>) {
-            number(to_recording(value.bits, own_));
         } else {
-            layout(*this, value);
+            number(to_recording(value.bits, own_));
         }
     }
     template <Def T>
     Sized sized(const T& def) {
+        if (is_beyond(&def.struct_size + 1)) return {limit_, limit_, false};
         const bool whole = is_read<T>(def.struct_size);
         raw(&def.struct_size, sizeof def.struct_size);
         raw(&whole, 1);
-        return {limit_, reinterpret_cast<const std::byte*>(&def) + (whole ? def.struct_size : 0), whole};
+        return {limit_, end_of(def, whole, limit_), whole};
     }
     template <class T>
     void array(const T* const& first, uint64_t count, uint64_t most) {
@@ -193,34 +202,36 @@ public:
     }
     template <class T>
     void one(T& value) {
-        if (is_beyond(&value + 1)) return;
-        if constexpr (std::is_enum_v<T> && sizeof(T) == sizeof(uint32_t)) {
+        if constexpr (std::is_array_v<T>) {
+            for (auto& each : value) one(each);
+        } else if constexpr (!Plain<T> && !HandleOf<T>) {
+            layout(*this, value);
+        } else if (is_beyond(&value + 1)) {
+            return;
+        } else if constexpr (std::is_enum_v<T> && sizeof(T) == sizeof(uint32_t)) {
             uint32_t bits = 0;  // of which an enumeration of the interface has values up to this
             raw(&bits, sizeof bits);
             bits = std::min(bits, uint32_t{0x7fffffff});
             std::memcpy(static_cast<void*>(&value), &bits, sizeof bits);
         } else if constexpr (Plain<T>) {
             raw(&value, sizeof value);
-        } else if constexpr (std::is_array_v<T>) {
-            for (auto& each : value) one(each);
         } else if constexpr (std::is_same_v<T, taut_baked>) {
             uint64_t number = 0;
             raw(&number, sizeof number);
             value = number < baked_.size() ? baked_[number] : taut_baked{0};
-        } else if constexpr (HandleOf<T>) {
+        } else {
             one(value.bits);
             value.bits = from_recording(value.bits, own_);
-        } else {
-            layout(*this, value);
         }
     }
     template <Def T>
     Sized sized(T& def) {
+        if (is_beyond(&def.struct_size + 1)) return {limit_, limit_, false};
         uint8_t whole = 0;
         raw(&def.struct_size, sizeof def.struct_size);
         raw(&whole, 1);
         if (whole > 1 || (whole && !is_read<T>(def.struct_size))) bad_ = true;
-        return {limit_, reinterpret_cast<const std::byte*>(&def) + (whole ? def.struct_size : 0), whole && !bad_};
+        return {limit_, end_of(def, whole && !bad_, limit_), whole && !bad_};
     }
     template <class T>
     void array(const T*& first, uint64_t count, uint64_t most) {

@@ -110,6 +110,35 @@ TEST(Recording, OfAPileReplays) {
     }
 }
 
+// What a def says is as long as it is there is taken, also where that ends amid a field.
+TEST(Recording, OfDefsThatEndAnywhereReplays) {
+    const auto history = [](taut_world world) {
+        for (uint32_t size = 4; size <= sizeof(taut_particle_def); size += 4) {
+            taut_particle_def def;
+            taut_particle_def_init(&def);
+            def.position = {1.5, 2.5 + size, 3.5};
+            def.velocity = {1, 2, 3};
+            def.struct_size = size;
+            taut_body out;
+            taut_world_add_particle(world, &def, &out);
+        }
+        for (uint32_t size = 4; size <= sizeof(taut_hinge_joint_def); size += 4) {
+            taut_body first = body(world, box(world, 0.5f), {0, 9, 0}, TAUT_BODY_DYNAMIC);
+            taut_hinge_joint_def def;
+            taut_hinge_joint_def_init(&def);
+            def.body_a = first;
+            def.frame_a.position = {0.25, 0.5, 0.75};
+            def.angle.mode = TAUT_AXIS_LIMITED;
+            def.angle.upper = 1;
+            def.struct_size = size;
+            taut_joint out;
+            taut_world_add_hinge_joint(world, &def, &out);
+        }
+        step(world, 2);
+    };
+    expect_replays(record(history), 2);
+}
+
 // Threads and the place in the table of worlds are not in the file.
 TEST(Recording, IsTheSameFileOnAnyThreads) {
     const auto history = [](taut_world world) {
