@@ -5,6 +5,7 @@
 
 #include "constraints/soft_contact.h"
 #include "partition/movers.h"
+#include "state/joint_reading.h"
 
 namespace taut {
 namespace {
@@ -26,6 +27,22 @@ double strain_of(const Nodes& nodes, const ConstraintType& type, std::span<const
         size = std::min(size, extent(nodes.mass[node]));
     }
     return strain(kJointYield * h * h * inverse * std::sqrt(squared), size);
+}
+
+// Whether what keeps its ends together gives way by nothing but the sweeps.
+bool all_rigid(const Joint& joint) {
+    const std::span<const Axis> rows(joint.axis, static_cast<size_t>(joint.type->rows));
+    return joint.compliance == 0 && (joint.plain || std::ranges::all_of(rows, [](const Axis& axis) {
+                                         return axis.mode != AxisMode::limited || axis.limit_compliance == 0;
+                                     }));
+}
+
+double strain_of_gap(const Nodes& nodes, const Joint& joint) {
+    if (!all_rigid(joint)) return 0;
+    double size = std::numeric_limits<double>::infinity();
+    for (const uint32_t node : joint.nodes())
+        if (moving(nodes, node)) size = std::min(size, extent(nodes.mass[node]));
+    return std::min(1 + static_cast<double>(kPatience / kJammed), strain(gap_of(nodes, joint), size));
 }
 
 // Seconds of strain beyond what may be seen; once it is needed, of time until it is not.
@@ -52,7 +69,8 @@ double strain_of_fall(const NodeMass& body, double time, double gravity) {
 void note_needs(Joints& joints, Elements& elements, const Nodes& nodes, double h, double frame) {
     for (Joint& joint : joints.record) {
         if (!joint.works() || joint.solve != JointSolve::by_load || asleep(nodes, joint)) continue;
-        joint.need = follow(joint.need, strain_of(nodes, *joint.type, joint.nodes(), joint.lambda, h), frame);
+        const double yields = strain_of(nodes, *joint.type, joint.nodes(), joint.lambda, h);
+        joint.need = follow(joint.need, std::max(yields, strain_of_gap(nodes, joint)), frame);
     }
     for_each_element(elements, [&](ElementSet& set, uint32_t e, std::span<const uint32_t> ends) {
         if (set.solve != JointSolve::by_load || asleep(nodes, ends)) return;

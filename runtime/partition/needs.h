@@ -3,6 +3,8 @@
 // A row that is swept yields to a force f by  y = s h^2 w |f|  [m], w = sum 1/m of its ends (kJointYield, kContactYield
 // in constraints/soft_contact.h). Its strain is y over what may be seen: kSeen of the size of its smaller body. What is
 // above 1 adds up over time; once that comes to kPatience, the tie needs a direct solve until it did not for as long.
+// A rigid joint's gap is measured as well, as what is jammed among others opens joints far beyond y: one that may be
+// seen counts so that it comes to kPatience in kJammed.
 #pragma once
 
 #include <cmath>
@@ -13,6 +15,7 @@ namespace taut {
 
 constexpr double kSeen = 0.002;     // of a body's size: a pixel where it fills half of a screen of 1000 rows
 constexpr float kPatience = 0.25f;  // [s] at a strain of 2, less at larger ones
+constexpr float kJammed = 1;        // [s]; what lands in a heap closes its joints sooner
 
 // Of a body: the diagonal of the box that has its moments of inertia, sum I = m d^2 / 6 [m]. Of a particle 0.
 inline double extent(const NodeMass& body) {

@@ -80,6 +80,21 @@ TEST(Heap, OfRagdollsHoldsTogetherBySweepsAlone) {
     }
 }
 
+// A forearm that hangs on two others and carries its ragdoll, its joint open by 23 mm for seconds where sweeps are left
+// with it.
+TEST(Heap, OfAHundredRagdollsClosesWhatIsJammed) {
+    scenes::Options options;
+    options.seed = 52;
+    RunningScene run(scenes::make_scene("ragdolls100", options));
+    double most = 0;
+    for (int frame = 0; frame < 480; ++frame) {
+        run.step();
+        if (frame >= 420) most = std::max(most, run.joint_error());
+    }
+    std::printf("joints within %.2f mm\n", 1e3 * most);
+    EXPECT_LE(most, 0.002);
+}
+
 // A body that bursts or whips has its own remedies: the substeps of all that it touches are not for it.
 TEST(Heap, OfRagdollsLandsWithFourSubsteps) {
     constexpr uint64_t kSeeds[] = {2, 5, 6, 7};
