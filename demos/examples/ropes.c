@@ -74,8 +74,8 @@ int main(void) {
     taut_distance_joint_def rope_def;
     taut_joint rope;
     taut_distance_joint_def_init(&rope_def);
-    rope_def.anchor_a = (taut_pos){5, 10, 0};
-    rope_def.body_b = bucket;
+    rope_def.base.frame_a.position = (taut_pos){5, 10, 0};
+    rope_def.base.body_b = bucket;
     rope_def.max_length = 3;
     check(taut_world_add_distance_joint(world, &rope_def, &rope));
 

@@ -137,195 +137,123 @@ typedef struct taut_axis_def {
 } taut_axis_def;
 
 /**
- * Holds a point of one end on a point of the other (3 rows).
- * force = -(error / compliance) - damping * d(error)/dt; compliance 0 is rigid, damping then has no effect.
+ * What the defs of all kinds share: the ends, where the joint sits on them, what it gives way by and what it breaks at.
+ * A loader or editor fills one struct for whatever kind it makes. taut_joint_base_init writes the defaults, which are
+ * those of all defs but for solve of gears and collide_connected of pulleys.
+ *
+ * A spring: force = -(error / compliance) - damping * d(error)/dt; compliance 0 is rigid, damping then has no effect.
+ *
+ * What a kind has no use for keeps its default, 0, and is refused otherwise: angular_compliance, angular_damping and
+ * break_torque of ball and distance joints, racks and pulleys, which hold no angles; compliance, damping and
+ * break_force of gears, which hold an angle alone. Ball and distance joints and pulleys sit on points: they do not look
+ * at the rotations of frames, which must be valid all the same.
+ *
+ * As it lies within the defs it keeps its size while older programs run on: fields to come take the place of reserved.
  */
+typedef struct taut_joint_base {
+    taut_body body_a;   /**< null: the world; a particle for ball and distance joints and pulleys alone */
+    taut_body body_b;   /**< likewise; one end or the housing must be dynamic or a particle, and no two the same */
+    taut_frame frame_a; /**< on body_a; a particle takes position 0 alone. Default: the origin, unturned */
+    taut_frame frame_b; /**< on body_b, likewise */
+    float compliance;   /**< of what is held in metres [m/N], [0, 1e6]. Default 0 */
+    float damping;      /**< likewise [N s/m], [0, 1e12]. Default 0 */
+    float angular_compliance;   /**< of the held angles [rad/(N m)], [0, 1e6]. Default 0 */
+    float angular_damping;      /**< likewise [N m s/rad], [0, 1e12]. Default 0 */
+    float break_force;          /**< on end b [N], [0, 1e24]; a step that ends with more removes the joint; 0: never.
+                                     Default 0 */
+    float break_torque;         /**< the same of the torque about the anchor of end b [N m] */
+    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_BY_LOAD */
+    uint32_t collide_connected; /**< 1: the bodies that it ties still collide. Default 0 */
+    uint64_t user_data;         /**< number of the host's own. Default 0 */
+    uint32_t reserved[4];       /**< zero */
+} taut_joint_base;
+
+/** Holds a point of one end, the position of its frame, on a point of the other (3 rows). */
 typedef struct taut_ball_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected; /**< 1: the two bodies still collide. Default 0 */
-    taut_body body_a;           /**< null: the world */
-    taut_body body_b;           /**< null: the world; at least one end must be dynamic or a particle */
-    taut_pos anchor_a; /**< in the frame of end a, within 1e4; world position if null [m]; a particle takes only 0 */
-    taut_pos anchor_b; /**< in the frame of end b, world position if null [m]; a particle takes only 0 */
-    float compliance;  /**< [m/N], [0, 1e6]. Default 0 */
-    float damping;     /**< [N s/m], [0, 1e12]. Default 0 */
-    float break_force; /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
-    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
-    uint64_t user_data;
+    uint32_t reserved;    /**< zero */
+    taut_joint_base base; /**< ends, places, springs, breaking */
 } taut_ball_joint_def;
 
 /**
- * Holds two points at a distance (1 row): a rod, or a spring when compliant. With min_length or max_length it keeps
- * them within a range instead: a rope has a max_length alone. Its axis 0 has the coordinate distance - length.
+ * Holds two points, the positions of the frames, at a distance (1 row): a rod, or a spring when compliant. With
+ * min_length or max_length it keeps them within a range instead: a rope has a max_length alone. Its axis 0 has the
+ * coordinate distance - length.
  */
 typedef struct taut_distance_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected; /**< 1: the two bodies still collide. Default 0 */
-    taut_body body_a;           /**< null: the world */
-    taut_body body_b;           /**< null: the world; at least one end must be dynamic or a particle */
-    taut_pos anchor_a;          /**< as for the ball joint */
-    taut_pos anchor_b;
-    float length;           /**< [m], 0 or [1e-4, 1e6]; 0: max_length if finite, else min_length, else the distance at
-                                 creation. Default 0 */
-    float compliance;       /**< of the rod, or of the stops of a range [m/N], [0, 1e6]. Default 0 */
-    float damping;          /**< likewise [N s/m], [0, 1e12]. Default 0 */
-    float min_length;       /**< [m], 0 or [1e-4, 1e6]; 0: no lower stop. Default 0 */
-    float max_length;       /**< [m], 0, [1e-4, 1e6] or INFINITY; 0: no upper stop; INFINITY likewise, but not a rod.
-                                 Default 0 */
-    float frequency;        /**< [Hz], 0 or [1e-3, 1e3]: compliance and damping (then 0 here) follow from it and
-                                 damping_ratio, as for a taut_drive. Default 0 */
-    float damping_ratio;    /**< of frequency, [0, 1000]. Default 1 */
-    float break_force;      /**< as for the ball joint */
-    taut_drive drive;       /**< of a range: target is distance - length */
-    float friction;         /**< of a range [N], [0, 1e24]. Default 0 */
-    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
-    uint32_t reserved;      /**< zero */
-    uint64_t user_data;
+    float length;         /**< [m], 0 or [1e-4, 1e6]; 0: max_length if finite, else min_length, else the distance at
+                               creation. Default 0 */
+    taut_joint_base base; /**< compliance and damping: of the rod, or of the stops of a range */
+    float min_length;     /**< [m], 0 or [1e-4, 1e6]; 0: no lower stop. Default 0 */
+    float max_length;     /**< [m], 0, [1e-4, 1e6] or INFINITY; 0: no upper stop; INFINITY likewise, but not a rod.
+                               Default 0 */
+    float frequency;      /**< [Hz], 0 or [1e-3, 1e3]: compliance and damping (then 0 in base) follow from it and
+                               damping_ratio, as for a taut_drive. Default 0 */
+    float damping_ratio;  /**< of frequency, [0, 1000]. Default 1 */
+    taut_drive drive;     /**< of a range: target is distance - length */
+    float friction;       /**< of a range [N], [0, 1e24]. Default 0 */
 } taut_distance_joint_def;
 
 /** Holds two frames together (6 rows). */
 typedef struct taut_fixed_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected; /**< 1: the two bodies still collide. Default 0 */
-    taut_body body_a;           /**< null: the world; no particle */
-    taut_body body_b;           /**< null: the world; no particle; at least one end must be dynamic */
-    taut_frame frame_a;         /**< default: the origin, unturned */
-    taut_frame frame_b;         /**< likewise */
-    float compliance;           /**< of the locked positions [m/N], [0, 1e6]. Default 0 */
-    float damping;              /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
-    float angular_compliance;   /**< of the locked angles [rad/(N m)], [0, 1e6]. Default 0 */
-    float angular_damping;      /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
-    float break_force;      /**< [N], [0, 1e24]; a step that ends with more removes the joint; 0: never. Default 0 */
-    float break_torque;     /**< the same of the torque about the anchor of end b [N m] */
-    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
-    uint32_t reserved;      /**< zero */
-    uint64_t user_data;
+    uint32_t reserved;    /**< zero */
+    taut_joint_base base; /**< ends, places, springs, breaking */
 } taut_fixed_joint_def;
 
-/** Leaves the angle about x. All fields but the axes are those of taut_fixed_joint_def, here and below. */
+/** Leaves the angle about x. */
 typedef struct taut_hinge_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
-    taut_axis_def angle; /**< default free */
-    uint64_t user_data;
+    uint32_t reserved;    /**< zero */
+    taut_joint_base base; /**< ends, places, springs, breaking */
+    taut_axis_def angle;  /**< default free */
 } taut_hinge_joint_def;
 
 /** Leaves the slide along x. */
 typedef struct taut_slider_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
-    taut_axis_def slide; /**< default free */
-    uint64_t user_data;
+    uint32_t reserved;    /**< zero */
+    taut_joint_base base; /**< ends, places, springs, breaking */
+    taut_axis_def slide;  /**< default free */
 } taut_slider_joint_def;
 
 /** Leaves the slide along and the angle about x. */
 typedef struct taut_cylindrical_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
-    taut_axis_def slide; /**< default free */
-    taut_axis_def angle; /**< default free */
-    uint64_t user_data;
+    uint32_t reserved;    /**< zero */
+    taut_joint_base base; /**< ends, places, springs, breaking */
+    taut_axis_def slide;  /**< default free */
+    taut_axis_def angle;  /**< default free */
 } taut_cylindrical_joint_def;
 
 /** Leaves the angles about x of frame a and about y of frame b: a cardan joint. */
 typedef struct taut_universal_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
+    uint32_t reserved;     /**< zero */
+    taut_joint_base base;  /**< ends, places, springs, breaking */
     taut_axis_def angle_a; /**< about x of frame a; default free */
     taut_axis_def angle_b; /**< about y of frame b; default free */
-    uint64_t user_data;
 } taut_universal_joint_def;
 
 /** A ball joint with a limited cone and twist: shoulder, neck. */
 typedef struct taut_cone_twist_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
-    taut_axis_def swing; /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at. A drive's
-                              target is a swing, [0, pi], towards whichever side the joint leans. Its damping and
-                              friction act around the cone too, but where the joint is swept */
-    taut_axis_def twist; /**< default free */
-    uint64_t user_data;
+    uint32_t reserved;    /**< zero */
+    taut_joint_base base; /**< ends, places, springs, breaking */
+    taut_axis_def swing;  /**< free (default) or limited by upper, (0, pi], alone: lower is not looked at. A drive's
+                               target is a swing, [0, pi], towards whichever side the joint leans. Its damping and
+                               friction act around the cone too, but where the joint is swept */
+    taut_axis_def twist;  /**< default free */
 } taut_cone_twist_joint_def;
 
 /** Each of the six relative motions as the host wants it. */
 typedef struct taut_six_dof_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
+    uint32_t reserved;     /**< zero */
+    taut_joint_base base;  /**< ends, places, springs, breaking */
     taut_axis_def axes[6]; /**< position along x, y, z of a; angle about x of a, the turned y, z of b, of which that
                               about y must keep off +-pi/2; default locked */
-    uint64_t user_data;
 } taut_six_dof_joint_def;
 
 /**
@@ -337,23 +265,11 @@ typedef struct taut_six_dof_joint_def {
  */
 typedef struct taut_wheel_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected;
-    taut_body body_a;
-    taut_body body_b;
-    taut_frame frame_a;
-    taut_frame frame_b;
-    float compliance;
-    float damping;
-    float angular_compliance;
-    float angular_damping;
-    float break_force;
-    float break_torque;
-    taut_joint_solve solve;
-    uint32_t reserved;
+    uint32_t reserved;        /**< zero */
+    taut_joint_base base;     /**< ends, places, springs, breaking */
     taut_axis_def suspension; /**< slide along x of frame a; default locked */
     taut_axis_def steering;   /**< angle about x of frame a; default locked */
     taut_axis_def spin;       /**< angle about y of frame b; default free */
-    uint64_t user_data;
 } taut_wheel_joint_def;
 
 /**
@@ -365,26 +281,16 @@ typedef struct taut_wheel_joint_def {
  */
 typedef struct taut_gear_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected; /**< 1: the three bodies still collide. Default 0 */
-    taut_body body_a;           /**< null: the world; no particle */
-    taut_body body_b;           /**< null: the world; no particle */
-    taut_body housing;          /**< null: the world; no particle. At least one of the three must be dynamic, and no two
-                                     the same */
-    taut_frame frame_a;         /**< on body_a. Default, as of the others: the origin, unturned */
-    taut_frame frame_b;         /**< on body_b */
-    taut_frame housing_frame_a; /**< on the housing, of body_a's axis */
-    taut_frame housing_frame_b; /**< on the housing, of body_b's axis */
     float ratio;                /**< turns of b for one of a, magnitude in [1e-4, 1e4]; below 0 they turn against each
                                      other about axes that point the same way, as spur gears do: -teeth a / teeth b.
                                      Default -1 */
-    float angular_compliance;   /**< of b's angle [rad/(N m)], [0, 1e6]. Default 0 */
-    float angular_damping;      /**< [N m s/rad], [0, 1e12]; has no effect without compliance. Default 0 */
-    float break_torque;         /**< of the torque on b [N m], [0, 1e24]; a step that ends with more removes the joint;
-                                     0: never. Default 0 */
-    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_DIRECT: what a gear gives way by is an angle, of which
+    taut_joint_base base;       /**< angular_compliance and angular_damping: of b's angle. solve: default
+                                     TAUT_JOINT_SOLVE_DIRECT: what a gear gives way by is an angle, of which
                                      TAUT_JOINT_SOLVE_BY_LOAD knows no need */
-    uint32_t reserved;          /**< zero */
-    uint64_t user_data;
+    taut_body housing;          /**< null: the world; no particle. At least one of the three must be dynamic, and no two
+                                     the same */
+    taut_frame housing_frame_a; /**< on the housing, of body_a's axis. Default: the origin, unturned */
+    taut_frame housing_frame_b; /**< on the housing, of body_b's axis, likewise */
 } taut_gear_joint_def;
 
 /**
@@ -393,50 +299,31 @@ typedef struct taut_gear_joint_def {
  */
 typedef struct taut_rack_pinion_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected; /**< 1: the three bodies still collide. Default 0 */
-    taut_body body_a;           /**< the pinion; null: the world; no particle */
-    taut_body body_b;           /**< the rack; null: the world; no particle */
-    taut_body housing;          /**< as of gears */
-    taut_frame frame_a;
-    taut_frame frame_b; /**< its position slides; its rotation is not looked at, but must be valid */
-    taut_frame housing_frame_a;
-    taut_frame housing_frame_b; /**< the rack slides along its x axis */
     float ratio;                /**< slide of b for an angle of a: the pinion's radius, magnitude in [1e-4, 1e4]
                                      [m/rad]. Default 1 */
-    float compliance;           /**< of the slide [m/N], [0, 1e6]. Default 0 */
-    float damping;              /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
-    float break_force;          /**< of the force on b [N], [0, 1e24]; 0: never. Default 0 */
-    taut_joint_solve solve;     /**< default TAUT_JOINT_SOLVE_BY_LOAD */
-    uint32_t reserved;          /**< zero */
-    uint64_t user_data;
+    taut_joint_base base;       /**< frame_b: its position slides, its rotation is not looked at. compliance and
+                                     damping: of the slide */
+    taut_body housing;          /**< as of gears */
+    taut_frame housing_frame_a; /**< as of gears */
+    taut_frame housing_frame_b; /**< the rack slides along its x axis */
 } taut_rack_pinion_joint_def;
 
 /**
  * A rope from a point of body a over two sheaves of a housing to a point of body b (1 row): with distances d of the
  * points from their sheaves, d_a + ratio d_b <= length. It has no mass and no friction; its tension pulls body a, ratio
  * times that body b, and the housing bears both. Its axis 0 has the coordinate d_a + ratio d_b - length, limited above
- * at 0: slack is below, a drive winches.
+ * at 0: slack is below, a drive winches. All places are the positions of frames.
  */
 typedef struct taut_pulley_joint_def {
     uint32_t struct_size;
-    uint32_t collide_connected; /**< 1: the three bodies still collide. Default 1 */
-    taut_body body_a;           /**< null: the world */
-    taut_body body_b;           /**< null: the world */
+    uint32_t rigid;             /**< 1: it pushes too, and axis 0 is locked. Default 0 */
+    taut_joint_base base;       /**< compliance and damping: of the rope. collide_connected: default 1 */
     taut_body housing;          /**< null: the world; no particle. At least one of the three must be dynamic or a
                                      particle, and no two the same */
-    taut_pos anchor_a;          /**< as for the ball joint */
-    taut_pos anchor_b;
-    taut_pos sheave_a;      /**< in the frame of the housing, within 1e4; world position if null [m] */
-    taut_pos sheave_b;      /**< likewise */
-    float ratio;            /**< falls of rope on b's side for one on a's, [1e-4, 1e4]. Default 1 */
-    float length;           /**< [m], 0 or [1e-4, 1e6]; 0: what it is at creation. Default 0 */
-    uint32_t rigid;         /**< 1: it pushes too, and axis 0 is locked. Default 0 */
-    float compliance;       /**< of the rope [m/N], [0, 1e6]. Default 0 */
-    float damping;          /**< [N s/m], [0, 1e12]; has no effect without compliance. Default 0 */
-    float break_force;      /**< of the force on b [N], [0, 1e24]; 0: never. Default 0 */
-    taut_joint_solve solve; /**< default TAUT_JOINT_SOLVE_BY_LOAD */
-    uint32_t reserved;      /**< zero */
-    uint64_t user_data;
+    taut_frame housing_frame_a; /**< a's sheave on the housing. Default: the origin, unturned */
+    taut_frame housing_frame_b; /**< b's sheave, likewise */
+    float ratio;                /**< falls of rope on b's side for one on a's, [1e-4, 1e4]. Default 1 */
+    float length;               /**< [m], 0 or [1e-4, 1e6]; 0: what it is at creation. Default 0 */
 } taut_pulley_joint_def;
 
 /** What acts along an axis, as of the last substep; zero before the first step. */
@@ -449,11 +336,13 @@ typedef struct taut_axis_forces {
     uint32_t reserved;   /**< zero */
 } taut_axis_forces;
 
-/** Writes the defaults of a free axis. */
 /** The origin, unturned. */
 TAUT_API void taut_frame_init(taut_frame* frame);
 /** No drive: the defaults of its fields. */
 TAUT_API void taut_drive_init(taut_drive* drive);
+/** The defaults of its fields; defs of gears and pulleys differ from them, see taut_joint_base. */
+TAUT_API void taut_joint_base_init(taut_joint_base* base);
+/** A free axis. */
 TAUT_API void taut_axis_def_init_sized(taut_axis_def* def, uint32_t size);
 static inline void taut_axis_def_init(taut_axis_def* def) { taut_axis_def_init_sized(def, (uint32_t)sizeof(*def)); }
 TAUT_API void taut_ball_joint_def_init_sized(taut_ball_joint_def* def, uint32_t size);

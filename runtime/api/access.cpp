@@ -109,6 +109,14 @@ Check& Check::bounded(const char* field, const taut_pos& value, Range range) {
     return vector(field, value, range).length(field, to_vec(value).squaredNorm(), range);
 }
 
+Check& Check::zero(const char* field, float value, const char* why) {
+    if (*this && value != 0) {
+        result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is %.9g, expected 0 %s", call_, scope_, field,
+                         static_cast<double>(value), why);
+    }
+    return *this;
+}
+
 Check& Check::zero(const char* field, const taut_vec3& value, const char* why) {
     if (*this && !(value.x == 0 && value.y == 0 && value.z == 0)) {
         result_ = refuse(TAUT_INVALID_ARGUMENT, "%s: %s%s is (%.9g, %.9g, %.9g), expected 0 %s", call_, scope_, field,

@@ -98,6 +98,7 @@ public:
     // Each component in the range, and the length at most its upper end.
     Check& bounded(const char* field, const taut_vec3& value, Range range);
     Check& bounded(const char* field, const taut_pos& value, Range range);
+    Check& zero(const char* field, float value, const char* why);
     Check& zero(const char* field, const taut_vec3& value, const char* why);
     Check& rotation(const char* field, const taut_quat& value);
     Check& pose(const char* position, const char* rotation_field, const taut_pose& value);

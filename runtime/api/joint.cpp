@@ -233,18 +233,15 @@ taut_result taut_joint_set_frames(taut_joint handle, const taut_frame* frame_a, 
     TAUT_RECORD(taut_joint_set_frames, handle, frame_a, frame_b);
     Check check(__func__);
     if (!check.pointer("frame_a", frame_a).pointer("frame_b", frame_b)) return check.result();
-    const taut_frame* frames[2] = {frame_a, frame_b};
-    for (int i = 0; i < 2; ++i) {
-        check.bounded(kFrameNames[i].position, frames[i]->position, kPosition)
-            .rotation(kFrameNames[i].rotation, frames[i]->rotation);
-    }
+    check_frames(check, *frame_a, *frame_b);
     return change(check, handle, [&](const World& world, Joint& joint) {
         const JointKind& kind = kind_of(joint);
         JointEnd ends[2];
         for (int i = 0; i < 2; ++i) {
             ends[i].node = joint.node[i];
-            if (!place_end(check, world, kind, kFrameNames[i], *frames[i], ends[i])) return check.result();
+            place_end(check, world, kFrameNames[i], i == 0 ? *frame_a : *frame_b, ends[i]);
         }
+        if (!check) return check.result();
         Joint moved = joint;
         write_ends(moved, kind, ends[0], ends[1]);
         restart(world.nodes, moved);

@@ -19,6 +19,7 @@ struct NamedAxis {
 using NamedAxes = std::array<NamedAxis, kMaxRows>;
 
 NamedAxes axes_of(const taut_ball_joint_def&) { return {}; }
+NamedAxes axes_of(const taut_distance_joint_def&) { return {}; }  // of its own fields
 NamedAxes axes_of(const taut_fixed_joint_def&) { return {}; }
 NamedAxes axes_of(const taut_hinge_joint_def& def) { return {{{&def.angle, "angle."}}}; }
 NamedAxes axes_of(const taut_slider_joint_def& def) { return {{{&def.slide, "slide."}}}; }
@@ -46,61 +47,41 @@ void init_axis(taut_axis_def& def, taut_axis_mode mode) {
     def.mode = mode;
     def.lower = -INFINITY;
     def.upper = INFINITY;
-    def.drive.damping_ratio = 1;
-    def.drive.max_force = INFINITY;
+    taut_drive_init(&def.drive);
 }
 
 template <class Def>
-void init(Def* def, taut_axis_mode mode = TAUT_AXIS_FREE) {
-    if (!def) return;
-    *def = {};
-    def->struct_size = sizeof *def;
-    def->solve = TAUT_JOINT_SOLVE_BY_LOAD;
-    if constexpr (kFramed<Def>) {
-        def->frame_a.rotation = def->frame_b.rotation = kUnturned;
-        for (const NamedAxis& axis : axes_of(*def)) {
-            if (axis.def) init_axis(const_cast<taut_axis_def&>(*axis.def), mode);
-        }
-    }
+void init_joint(Def& def, taut_axis_mode mode = TAUT_AXIS_FREE) {
+    def.struct_size = sizeof def;
+    taut_joint_base_init(&def.base);
+    for (const NamedAxis& axis : axes_of(def))
+        if (axis.def) init_axis(const_cast<taut_axis_def&>(*axis.def), mode);
 }
 
 // ---------------------------------------------------------------- check
 
-bool check_axes(Check& check, const JointKind& kind, const NamedAxes& axes) {
+void check_axes(Check& check, const JointKind& kind, const NamedAxes& axes) {
     for (size_t i = 0; i < kind.axes.size(); ++i) {
         check.within(axes[i].scope);
-        if (!check_axis(check, kind, kind.axes[i], *axes[i].def)) return false;
-        check.within("");
+        check_axis(check, kind, kind.axes[i], *axes[i].def).within("");
     }
-    return true;
 }
 
-bool check_range(Check& check, const taut_distance_joint_def& def) {
+void check_range(Check& check, const taut_distance_joint_def& def) {
     const bool ranged = def.min_length > 0 || def.max_length > 0;
     check.zero_or("length", def.length, kJointLength).zero_or("min_length", def.min_length, kJointLength);
     if (def.max_length != INFINITY) check.zero_or("max_length", def.max_length, kJointLength);
     check.require(def.max_length == 0 || def.min_length <= def.max_length, "min_length is above max_length");
     check.zero_or("frequency", def.frequency, kFrequency)
         .number("damping_ratio", def.damping_ratio, kDampingRatio)
-        .require(def.frequency == 0 || (def.compliance == 0 && def.damping == 0),
-                 "frequency stands beside compliance or damping, expected one way of the two");
+        .require(def.frequency == 0 || (def.base.compliance == 0 && def.base.damping == 0),
+                 "frequency stands beside base.compliance or base.damping, expected one way of the two");
     check_drive(check, def.drive, false).number("friction", def.friction, kJointForce);
     const bool acts = def.drive.stiffness > 0 || def.drive.damping > 0 || def.drive.frequency > 0 || def.friction > 0;
     check.require(ranged || !acts, "drive or friction on a rod: min_length and max_length are 0");
-    return static_cast<bool>(check);
 }
 
 // ---------------------------------------------------------------- act
-
-template <class Def>
-taut_result find_ends(Check& check, const World& world, const JointKind& kind, const Def& def, JointEnd (&ends)[2]) {
-    const taut_result found = place_ends(check, world, kind, def, ends);
-    if (found != TAUT_OK) return found;
-    check.require(moves_by_forces(world, ends[0]) || moves_by_forces(world, ends[1]),
-                  "body_a and body_b: neither end is dynamic or a particle");
-    check.require(ends[0].node != ends[1].node, "body_a and body_b are the same");
-    return check.result();
-}
 
 void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, Joint& joint) {
     if (kind.axes.empty()) return;
@@ -114,23 +95,16 @@ void set_axes(const World& world, const JointKind& kind, const NamedAxes& axes, 
     }
 }
 
+// A kind that has axes at most.
 template <class Def>
 taut_result add(const char* call, taut_world handle, taut_joint_kind which, const Def* given, void (*init)(Def*),
                 taut_joint* out) {
-    Check check(call);
-    Def def;
-    const JointKind& kind = joint_kind(which);
-    if (!check_def(check, given, init, &def, out)) return check.result();
-    const NamedAxes axes = axes_of(def);
-    if (!check_axes(check, kind, axes)) return check.result();
-    return with_world(call, handle, Use::write, [&](World& world) {
-        JointEnd ends[2];
-        const taut_result found = find_ends(check, world, kind, def, ends);
-        if (found != TAUT_OK) return found;
-        Joint joint = make_joint(kind, def, ends);
-        set_axes(world, kind, axes, joint);
-        return add_joint(check, world, joint, out);
-    });
+    return add_by_def(
+        call, handle, which, given, init, out,
+        [](Check& check, const JointKind& kind, const Def& def) { check_axes(check, kind, axes_of(def)); },
+        [](Check&, const World& world, const JointKind& kind, const Def& def, Joint& joint) {
+            set_axes(world, kind, axes_of(def), joint);
+        });
 }
 
 // The length that counts as 0 of a distance joint's coordinate.
@@ -141,7 +115,8 @@ double zero_length(const taut_distance_joint_def& def, double distance) {
 }
 
 // Rod or range, with length and spring.
-Check& set_distance(Check& check, const World& world, const taut_distance_joint_def& def, Joint& joint) {
+void set_distance(Check& check, const World& world, const taut_distance_joint_def& def, Joint& joint) {
+    if (!check_distance(check, world, joint)) return;
     DistanceData data = read_data<DistanceData>(joint);
     const double distance = (world_anchor(world.nodes, joint, 1) - world_anchor(world.nodes, joint, 0)).norm();
     data.length = zero_length(def, distance);
@@ -154,7 +129,7 @@ Check& set_distance(Check& check, const World& world, const taut_distance_joint_
         check.number("frequency gives a compliance that", joint.compliance, kCompliance);
         check.number("frequency gives a damping that", joint.damping, kDamping);
     }
-    if (!(def.min_length > 0 || def.max_length > 0)) return check;
+    if (!(def.min_length > 0 || def.max_length > 0)) return;
     Axis axis;
     const float length = static_cast<float>(data.length);
     axis.lower = def.min_length > 0 ? def.min_length - length : -INFINITY;
@@ -165,7 +140,6 @@ Check& set_distance(Check& check, const World& world, const taut_distance_joint_
     set_drive(axis, def.drive, inverse_mass);
     axis.friction = def.friction;
     change_axis(joint, {0}, axis);
-    return check;
 }
 
 // The world axis most square to a direction.
@@ -208,44 +182,41 @@ void taut_axis_def_init_sized(taut_axis_def* def, uint32_t size) {
     give_defaults(def, size, [](taut_axis_def& own) { init_axis(own, TAUT_AXIS_FREE); });
 }
 void taut_ball_joint_def_init_sized(taut_ball_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_ball_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_ball_joint_def& own) { init_joint(own); });
 }
 void taut_distance_joint_def_init_sized(taut_distance_joint_def* def, uint32_t size) {
     give_defaults(def, size, [](taut_distance_joint_def& own) {
-        own = {};
-        own.struct_size = sizeof own;
-        own.solve = TAUT_JOINT_SOLVE_BY_LOAD;
+        init_joint(own);
         own.damping_ratio = 1;
-        own.drive.damping_ratio = 1;
-        own.drive.max_force = INFINITY;
+        taut_drive_init(&own.drive);
     });
 }
 void taut_fixed_joint_def_init_sized(taut_fixed_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_fixed_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_fixed_joint_def& own) { init_joint(own); });
 }
 void taut_hinge_joint_def_init_sized(taut_hinge_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_hinge_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_hinge_joint_def& own) { init_joint(own); });
 }
 void taut_slider_joint_def_init_sized(taut_slider_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_slider_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_slider_joint_def& own) { init_joint(own); });
 }
 void taut_cylindrical_joint_def_init_sized(taut_cylindrical_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_cylindrical_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_cylindrical_joint_def& own) { init_joint(own); });
 }
 void taut_universal_joint_def_init_sized(taut_universal_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_universal_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_universal_joint_def& own) { init_joint(own); });
 }
 void taut_cone_twist_joint_def_init_sized(taut_cone_twist_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_cone_twist_joint_def& own) { init(&own); });
+    give_defaults(def, size, [](taut_cone_twist_joint_def& own) { init_joint(own); });
 }
 void taut_wheel_joint_def_init_sized(taut_wheel_joint_def* def, uint32_t size) {
     give_defaults(def, size, [](taut_wheel_joint_def& own) {
-        init(&own);
+        init_joint(own);
         own.suspension.mode = own.steering.mode = TAUT_AXIS_LOCKED;
     });
 }
 void taut_six_dof_joint_def_init_sized(taut_six_dof_joint_def* def, uint32_t size) {
-    give_defaults(def, size, [](taut_six_dof_joint_def& own) { init(&own, TAUT_AXIS_LOCKED); });
+    give_defaults(def, size, [](taut_six_dof_joint_def& own) { init_joint(own, TAUT_AXIS_LOCKED); });
 }
 
 taut_result taut_world_add_ball_joint(taut_world world, const taut_ball_joint_def* def, taut_joint* out) {
@@ -285,21 +256,14 @@ taut_result taut_world_add_wheel_joint(taut_world world, const taut_wheel_joint_
     return add(__func__, world, TAUT_JOINT_WHEEL, def, taut_wheel_joint_def_init, out);
 }
 
-taut_result taut_world_add_distance_joint(taut_world handle, const taut_distance_joint_def* given, taut_joint* out) {
-    TAUT_RECORD(taut_world_add_distance_joint, handle, given, out);
-    Check check(__func__);
-    taut_distance_joint_def def;
-    if (!check_def(check, given, taut_distance_joint_def_init, &def, out) || !check_range(check, def))
-        return check.result();
-    return with_world(check.call(), handle, Use::write, [&](World& world) {
-        const JointKind& kind = joint_kind(TAUT_JOINT_DISTANCE);
-        JointEnd ends[2];
-        const taut_result found = find_ends(check, world, kind, def, ends);
-        if (found != TAUT_OK) return found;
-        Joint joint = make_joint(kind, def, ends);
-        if (!check_distance(check, world, joint) || !set_distance(check, world, def, joint)) return check.result();
-        return add_joint(check, world, joint, out);
-    });
+taut_result taut_world_add_distance_joint(taut_world world, const taut_distance_joint_def* def, taut_joint* out) {
+    TAUT_RECORD(taut_world_add_distance_joint, world, def, out);
+    return add_by_def(
+        __func__, world, TAUT_JOINT_DISTANCE, def, taut_distance_joint_def_init, out,
+        [](Check& check, const JointKind&, const taut_distance_joint_def& own) { check_range(check, own); },
+        [](Check& check, const World& held, const JointKind&, const taut_distance_joint_def& own, Joint& joint) {
+            set_distance(check, held, own, joint);
+        });
 }
 
 taut_result taut_joint_frames_from_world(taut_world world, taut_body body_a, taut_body body_b, taut_pos pivot,

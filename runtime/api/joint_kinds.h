@@ -26,6 +26,11 @@ struct JointKind {
     std::span<const JointAxis> axes;
 };
 
+// Whether some row is an angle, which compliance, damping and break_torque of angles are about, and whether some is
+// not.
+inline bool holds_angles(const JointKind& kind) { return kind.type->angular != 0; }
+inline bool holds_points(const JointKind& kind) { return kind.type->angular != (1 << kind.type->rows) - 1; }
+
 const JointKind& joint_kind(taut_joint_kind kind);
 const JointKind& kind_of(const Joint& joint);
 

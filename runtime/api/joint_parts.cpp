@@ -12,13 +12,20 @@ constexpr double kPi = 3.14159265358979323846;
 
 // ---------------------------------------------------------------- ends
 
-Check& place_end(Check& check, const World& world, const JointKind& kind, const EndNames& names,
-                 const taut_frame& frame, JointEnd& end) {
+Check& check_frames(Check& check, const taut_frame& frame_a, const taut_frame& frame_b) {
+    for (int i = 0; i < 2; ++i) {
+        const taut_frame& frame = i == 0 ? frame_a : frame_b;
+        check.bounded(kFrameNames[i].position, frame.position, kPosition)
+            .rotation(kFrameNames[i].rotation, frame.rotation);
+    }
+    return check;
+}
+
+Check& place_end(Check& check, const World& world, const FrameNames& names, const taut_frame& frame, JointEnd& end) {
     end.anchor = to_vec(frame.position);
     end.frame = to_quat(frame.rotation);
     if (end.node == kNone) return check;
-    if (world.nodes.info[end.node].kind == NodeKind::particle) {
-        check.require(!kind.framed, "an end is a particle, which only ball and distance joints and pulleys take");
+    if (is_point(world, end.node)) {
         return check.zero(names.position,
                           {static_cast<float>(end.anchor.x()), static_cast<float>(end.anchor.y()),
                            static_cast<float>(end.anchor.z())},
@@ -26,6 +33,13 @@ Check& place_end(Check& check, const World& world, const JointKind& kind, const 
     }
     end.anchor -= world.nodes.mass[end.node].centre;
     return check.vector(names.position, frame.position, kShapeCoordinate);
+}
+
+Check& place_guides(Check& check, const World& world, uint32_t housing, const taut_frame& frame_a,
+                    const taut_frame& frame_b, JointEnd (&guides)[2]) {
+    guides[0].node = guides[1].node = housing;
+    place_end(check, world, kFrameNames[0], frame_a, guides[0]);
+    return place_end(check, world, kFrameNames[1], frame_b, guides[1]);
 }
 
 void write_ends(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b) {

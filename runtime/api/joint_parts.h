@@ -23,20 +23,24 @@ struct JointEnd {
     Quat frame = Quat::Identity();
 };
 
-// What a def calls the two ends.
-struct EndNames {
-    const char *body, *position, *rotation;
+// What a def calls the places on its two ends, after what it calls where they are.
+struct FrameNames {
+    const char *position, *rotation;
 };
-constexpr EndNames kAnchorNames[2] = {{"body_a", "anchor_a", ""}, {"body_b", "anchor_b", ""}};
-constexpr EndNames kSheaveNames[2] = {{"housing", "sheave_a", ""}, {"housing", "sheave_b", ""}};
-constexpr EndNames kHousingNames[2] = {{"housing", "housing_frame_a.position", "housing_frame_a.rotation"},
-                                       {"housing", "housing_frame_b.position", "housing_frame_b.rotation"}};
-constexpr EndNames kFrameNames[2] = {{"body_a", "frame_a.position", "frame_a.rotation"},
-                                     {"body_b", "frame_b.position", "frame_b.rotation"}};
+constexpr FrameNames kFrameNames[2] = {{"frame_a.position", "frame_a.rotation"},
+                                       {"frame_b.position", "frame_b.rotation"}};
 
-// Places an end whose node is known; the frame is as a def has it.
-Check& place_end(Check& check, const World& world, const JointKind& kind, const EndNames& names,
-                 const taut_frame& frame, JointEnd& end);
+inline bool is_point(const World& world, uint32_t node) {
+    return node != kNone && world.nodes.info[node].kind == NodeKind::particle;
+}
+
+// Frames that the host gives, wherever they are to be.
+Check& check_frames(Check& check, const taut_frame& frame_a, const taut_frame& frame_b);
+// Places an end whose node is known on a checked frame.
+Check& place_end(Check& check, const World& world, const FrameNames& names, const taut_frame& frame, JointEnd& end);
+// Both places on a housing.
+Check& place_guides(Check& check, const World& world, uint32_t housing, const taut_frame& frame_a,
+                    const taut_frame& frame_b, JointEnd (&guides)[2]);
 void write_ends(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b);
 // Where the housing guides a and b.
 void write_housing(Joint& joint, const JointKind& kind, const JointEnd& a, const JointEnd& b);

@@ -144,10 +144,10 @@ taut_result add_bone_joint(taut_world world, const taut_ragdoll_def& def, uint32
     const auto parent = static_cast<uint32_t>(bone.parent);
     taut_six_dof_joint_def joint;
     taut_six_dof_joint_def_init(&joint);
-    joint.body_a = ragdoll.bodies[parent];
-    joint.body_b = ragdoll.bodies[number];
-    joint.frame_a = (BoneFrame(def.bones[parent].pose).inverse() * BoneFrame(bone.joint)).frame();
-    joint.frame_b = (BoneFrame(bone.pose).inverse() * BoneFrame(bone.joint)).frame();
+    joint.base.body_a = ragdoll.bodies[parent];
+    joint.base.body_b = ragdoll.bodies[number];
+    joint.base.frame_a = (BoneFrame(def.bones[parent].pose).inverse() * BoneFrame(bone.joint)).frame();
+    joint.base.frame_b = (BoneFrame(bone.pose).inverse() * BoneFrame(bone.joint)).frame();
     for (int axis = 0; axis < 3; ++axis) joint.axes[kFirstAngle + uint32_t(axis)] = axis_of(bone, axis, false);
     return taut_world_add_six_dof_joint(world, &joint, &ragdoll.joints[number]);
 }

@@ -188,122 +188,79 @@ void layout(V& visit, T& of) {
     auto& [struct_size, mode, lower, upper, stop_compliance, stop_damping, drive, friction] = of;
     if (const auto whole = visit.sized(of)) visit(mode, lower, upper, stop_compliance, stop_damping, drive, friction);
 }
+template <class V, Like<taut_joint_base> T>
+void layout(V& visit, T& of) {
+    auto& [body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance, angular_damping, break_force,
+           break_torque, solve, collide_connected, user_data, reserved] = of;
+    visit(body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance, angular_damping, break_force,
+          break_torque, solve, collide_connected, user_data, reserved);
+}
 template <class V, Like<taut_ball_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, anchor_a, anchor_b, compliance, damping, break_force, solve,
-           user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, anchor_a, anchor_b, compliance, damping, break_force, solve,
-              user_data);
-    }
+    auto& [struct_size, reserved, base] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base);
 }
 template <class V, Like<taut_distance_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, anchor_a, anchor_b, length, compliance, damping, min_length,
-           max_length, frequency, damping_ratio, break_force, drive, friction, solve, reserved, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, anchor_a, anchor_b, length, compliance, damping, min_length,
-              max_length, frequency, damping_ratio, break_force, drive, friction, solve, reserved, user_data);
-    }
+    auto& [struct_size, length, base, min_length, max_length, frequency, damping_ratio, drive, friction] = of;
+    if (const auto whole = visit.sized(of))
+        visit(length, base, min_length, max_length, frequency, damping_ratio, drive, friction);
 }
 template <class V, Like<taut_fixed_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, user_data);
-    }
+    auto& [struct_size, reserved, base] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base);
 }
 template <class V, Like<taut_hinge_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, angle, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, angle, user_data);
-    }
+    auto& [struct_size, reserved, base, angle] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, angle);
 }
 template <class V, Like<taut_slider_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, slide, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, slide, user_data);
-    }
+    auto& [struct_size, reserved, base, slide] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, slide);
 }
 template <class V, Like<taut_cylindrical_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, slide, angle, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, slide, angle, user_data);
-    }
+    auto& [struct_size, reserved, base, slide, angle] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, slide, angle);
 }
 template <class V, Like<taut_universal_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, angle_a, angle_b, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, angle_a, angle_b, user_data);
-    }
+    auto& [struct_size, reserved, base, angle_a, angle_b] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, angle_a, angle_b);
 }
 template <class V, Like<taut_cone_twist_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, swing, twist, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, swing, twist, user_data);
-    }
+    auto& [struct_size, reserved, base, swing, twist] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, swing, twist);
 }
 template <class V, Like<taut_six_dof_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, axes, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, axes, user_data);
-    }
+    auto& [struct_size, reserved, base, axes] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, axes);
 }
 template <class V, Like<taut_wheel_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-           angular_damping, break_force, break_torque, solve, reserved, suspension, steering, spin, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, frame_a, frame_b, compliance, damping, angular_compliance,
-              angular_damping, break_force, break_torque, solve, reserved, suspension, steering, spin, user_data);
-    }
+    auto& [struct_size, reserved, base, suspension, steering, spin] = of;
+    if (const auto whole = visit.sized(of)) visit(reserved, base, suspension, steering, spin);
 }
 template <class V, Like<taut_gear_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b,
-           ratio, angular_compliance, angular_damping, break_torque, solve, reserved, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b, ratio,
-              angular_compliance, angular_damping, break_torque, solve, reserved, user_data);
-    }
+    auto& [struct_size, ratio, base, housing, housing_frame_a, housing_frame_b] = of;
+    if (const auto whole = visit.sized(of)) visit(ratio, base, housing, housing_frame_a, housing_frame_b);
 }
 template <class V, Like<taut_rack_pinion_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b,
-           ratio, compliance, damping, break_force, solve, reserved, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, housing, frame_a, frame_b, housing_frame_a, housing_frame_b, ratio,
-              compliance, damping, break_force, solve, reserved, user_data);
-    }
+    auto& [struct_size, ratio, base, housing, housing_frame_a, housing_frame_b] = of;
+    if (const auto whole = visit.sized(of)) visit(ratio, base, housing, housing_frame_a, housing_frame_b);
 }
 template <class V, Like<taut_pulley_joint_def> T>
 void layout(V& visit, T& of) {
-    auto& [struct_size, collide_connected, body_a, body_b, housing, anchor_a, anchor_b, sheave_a, sheave_b, ratio,
-           length, rigid, compliance, damping, break_force, solve, reserved, user_data] = of;
-    if (const auto whole = visit.sized(of)) {
-        visit(collide_connected, body_a, body_b, housing, anchor_a, anchor_b, sheave_a, sheave_b, ratio, length, rigid,
-              compliance, damping, break_force, solve, reserved, user_data);
-    }
+    auto& [struct_size, rigid, base, housing, housing_frame_a, housing_frame_b, ratio, length] = of;
+    if (const auto whole = visit.sized(of))
+        visit(rigid, base, housing, housing_frame_a, housing_frame_b, ratio, length);
 }
 template <class V, Like<taut_anchor> T>
 void layout(V& visit, T& of) {

@@ -79,6 +79,17 @@ static void build(void) {
         body_def.position.x = 1.5 * i - 45, body_def.position.y = 0.6;
         OK(taut_world_add_body(world, &body_def, &boxes[i]));
     }
+
+    /* A box on a hinge, whose def has a struct inside and an axis behind it. */
+    taut_joint joint;
+    GUARDED(taut_hinge_joint_def, hinge_def, 1);
+    taut_hinge_joint_def_init(hinge_def.of);
+    WHOLE(hinge_def);
+    hinge_def.of[0].base.body_b = boxes[BOXES - 1];
+    hinge_def.of[0].base.frame_a.position.x = 1.5 * (BOXES - 1) - 46, hinge_def.of[0].base.frame_a.position.y = 0.6;
+    hinge_def.of[0].base.frame_b.position.x = -1;
+    OK(taut_world_add_hinge_joint(world, hinge_def.of, &joint));
+    WHOLE(hinge_def);
 }
 
 static void look(void) {

@@ -488,9 +488,9 @@ TEST_F(Attachments, OfAMechanismTheMostOverloadedBreaks) {
     const taut_body upper = add_particle(world, 9, 5, 0), lower = add_particle(world, 9, 4, 0);
     taut_ball_joint_def joint;
     taut_ball_joint_def_init(&joint);
-    joint.body_b = upper;
-    joint.anchor_a = {9, 5, 0};
-    joint.break_force = 19;  // carries 19.62
+    joint.base.body_b = upper;
+    joint.base.frame_a.position = {9, 5, 0};
+    joint.base.break_force = 19;  // carries 19.62
     taut_joint held{};
     EXPECT_OK(taut_world_add_ball_joint(world, &joint, &held));
     taut_attachment_def def;

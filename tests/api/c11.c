@@ -21,8 +21,10 @@ _Static_assert(sizeof(taut_result) == 4 && sizeof(taut_body_kind) == 4, "enums a
 _Static_assert(sizeof(taut_pos) == 24 && sizeof(taut_vec3) == 12 && sizeof(taut_quat) == 16, "plain values");
 _Static_assert(sizeof(taut_pose) == 48, "poses have no hidden padding");
 _Static_assert(sizeof(taut_frame) == 40 && sizeof(taut_axis_def) == 56 && sizeof(taut_lint_entry) == 72, "plain values");
-_Static_assert(sizeof(taut_ball_joint_def) == 96 && sizeof(taut_distance_joint_def) == 152, "no hidden padding");
-_Static_assert(sizeof(taut_fixed_joint_def) == 144 && sizeof(taut_hinge_joint_def) == 200, "no hidden padding");
+_Static_assert(sizeof(taut_joint_base) == 152 && offsetof(taut_hinge_joint_def, base) == 8, "no hidden padding");
+_Static_assert(sizeof(taut_ball_joint_def) == 160 && sizeof(taut_distance_joint_def) == 208, "no hidden padding");
+_Static_assert(sizeof(taut_gear_joint_def) == 248 && sizeof(taut_pulley_joint_def) == 256, "no hidden padding");
+_Static_assert(sizeof(taut_fixed_joint_def) == 160 && sizeof(taut_hinge_joint_def) == 216, "no hidden padding");
 _Static_assert(sizeof(taut_joint_break_event) == 48 && sizeof(taut_events) == 192, "no hidden padding");
 _Static_assert(sizeof(taut_anchor) == 152 && sizeof(taut_attachment_def) == 360, "no hidden padding");
 _Static_assert(sizeof(taut_attachment_state) == 80 && sizeof(taut_attachment_break_event) == 48, "likewise");
@@ -57,8 +59,30 @@ int taut_c11_run(void) {
     body_def.position = (taut_pos){0.0, 10.0, 0.0};
     CHECK(taut_world_add_body(world, &body_def, &body) == TAUT_OK);
 
+    /* One base for two kinds: a ball below a rod of 1 m and one below a hinge. */
+    taut_joint_base base;
+    taut_joint_base_init(&base);
+    base.frame_a.position = (taut_pos){20.0, 10.0, 0.0};
+    body_def.position = (taut_pos){20.0, 9.0, 0.0};
+    CHECK(taut_world_add_body(world, &body_def, &base.body_b) == TAUT_OK);
+    taut_distance_joint_def rod = {sizeof(rod), 1, base, 0, 0, 0, 1, {0, 0, 0, 0, 0, 1, 0}, 0};
+    taut_hinge_joint_def hinge;
+    taut_joint joints[2];
+    CHECK(taut_world_add_distance_joint(world, &rod, &joints[0]) == TAUT_OK);
+    taut_hinge_joint_def_init(&hinge);
+    hinge.base = base;
+    hinge.base.frame_a.position.x = 30;
+    hinge.base.frame_b.position.y = 1;
+    body_def.position.x = 30;
+    CHECK(taut_world_add_body(world, &body_def, &hinge.base.body_b) == TAUT_OK);
+    CHECK(taut_world_add_hinge_joint(world, &hinge, &joints[1]) == TAUT_OK);
+
     for (int i = 0; i < 60; ++i) CHECK(taut_world_step(world) == TAUT_OK);
     taut_pose pose;
+    for (int i = 0; i < 2; ++i) {
+        CHECK(taut_body_get_pose(i == 0 ? base.body_b : hinge.base.body_b, &pose) == TAUT_OK);
+        CHECK(pose.position.y > 8.999 && pose.position.y < 9.001);
+    }
     CHECK(taut_body_get_pose(body, &pose) == TAUT_OK);
     CHECK(pose.position.y > 4.9 && pose.position.y < 5.2); /* g t^2 / 2 after one second */
 

@@ -205,7 +205,7 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
          [&p](taut_world w) {
              taut_ball_joint_def def;
              taut_ball_joint_def_init(&def);
-             def.body_a = p.crate;
+             def.base.body_a = p.crate;
              taut_joint out;
              return taut_world_add_ball_joint(w, &def, &out);
          }},
@@ -213,8 +213,8 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
          [&p](taut_world w) {
              taut_distance_joint_def def;
              taut_distance_joint_def_init(&def);
-             def.body_a = p.crate;
-             def.anchor_b = {0, 20, 0};
+             def.base.body_a = p.crate;
+             def.base.frame_b.position = {0, 20, 0};
              taut_joint out;
              return taut_world_add_distance_joint(w, &def, &out);
          }},
@@ -285,7 +285,7 @@ inline std::vector<Call<taut_world>> world_calls(const Populated& p) {
          [&p](taut_world w) {
              taut_pulley_joint_def def;
              taut_pulley_joint_def_init(&def);
-             def.body_a = p.crate, def.body_b = p.wedge;
+             def.base.body_a = p.crate, def.base.body_b = p.wedge;
              taut_joint out;
              return taut_world_add_pulley_joint(w, &def, &out);
          }},

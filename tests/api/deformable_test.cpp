@@ -352,8 +352,8 @@ TEST_F(Deformable, PartsAreNotRemovedAloneAndGoWithTheWhole) {
     EXPECT_EQ(taut_body_remove(bodies[0]), TAUT_IN_USE);
     taut_ball_joint_def joint;
     taut_ball_joint_def_init(&joint);
-    joint.body_a = bodies[1];
-    joint.anchor_b = kSquare[1];
+    joint.base.body_a = bodies[1];
+    joint.base.frame_b.position = kSquare[1];
     taut_joint held{};
     EXPECT_OK(taut_world_add_ball_joint(world, &joint, &held));
     EXPECT_OK(taut_world_step(world));

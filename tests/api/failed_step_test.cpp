@@ -68,11 +68,11 @@ private:
     void tie(taut_body a, taut_body b) {
         taut_ball_joint_def def;
         taut_ball_joint_def_init(&def);
-        def.body_a = a;
-        def.body_b = b;
-        def.anchor_a = {0.51, 0, 0};
-        def.anchor_b = {-0.51, 0, 0};
-        def.break_force = 1;
+        def.base.body_a = a;
+        def.base.body_b = b;
+        def.base.frame_a.position = {0.51, 0, 0};
+        def.base.frame_b.position = {-0.51, 0, 0};
+        def.base.break_force = 1;
         taut_joint out;
         EXPECT_OK(taut_world_add_ball_joint(world, &def, &out));
     }

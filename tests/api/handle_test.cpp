@@ -87,8 +87,8 @@ TEST_F(Handles, RemovedIsStale) {
     EXPECT_TRUE(contains(taut_last_error(), "shape")) << taut_last_error();
     taut_ball_joint_def joint;
     taut_ball_joint_def_init(&joint);
-    joint.body_a = crate;
-    joint.body_b = p.crate;
+    joint.base.body_a = crate;
+    joint.base.body_b = p.crate;
     taut_joint joint_out = {0};
     EXPECT_EQ(taut_world_add_ball_joint(p.world, &joint, &joint_out), TAUT_STALE_HANDLE);
     EXPECT_TRUE(contains(taut_last_error(), "body_b")) << taut_last_error();
@@ -112,15 +112,15 @@ TEST_F(Handles, OfAnotherWorldAreForeign) {
     for (int end = 0; end < 2; ++end) {
         taut_ball_joint_def ball;
         taut_ball_joint_def_init(&ball);
-        ball.body_a = end == 0 ? other.crate : p.crate;
-        ball.body_b = end == 1 ? other.crate : p.crate;
+        ball.base.body_a = end == 0 ? other.crate : p.crate;
+        ball.base.body_b = end == 1 ? other.crate : p.crate;
         taut_joint out = {0};
         EXPECT_EQ(taut_world_add_ball_joint(p.world, &ball, &out), TAUT_FOREIGN_HANDLE);
         EXPECT_TRUE(contains(taut_last_error(), end == 0 ? "body_a" : "body_b")) << taut_last_error();
         taut_distance_joint_def rod;
         taut_distance_joint_def_init(&rod);
-        rod.body_a = ball.body_a;
-        rod.body_b = ball.body_b;
+        rod.base.body_a = ball.base.body_a;
+        rod.base.body_b = ball.base.body_b;
         EXPECT_EQ(taut_world_add_distance_joint(p.world, &rod, &out), TAUT_FOREIGN_HANDLE);
     }
     EXPECT_TRUE(watch.unchanged() && other_watch.unchanged());

@@ -211,8 +211,8 @@ TEST(Frequency, GivesTheStiffnessOfTheTwoEnds) {
     };
     taut_distance_joint_def def;
     taut_distance_joint_def_init(&def);
-    def.body_a = ball(0, 2);
-    def.body_b = ball(3, 6);
+    def.base.body_a = ball(0, 2);
+    def.base.body_b = ball(3, 6);
     def.max_length = INFINITY;
     def.drive.frequency = 2;
     def.drive.damping_ratio = 0.5f;
@@ -230,8 +230,9 @@ TEST(Frequency, GivesTheStiffnessOfTheTwoEnds) {
     const taut_body box = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 0, 9, 0));
     taut_hinge_joint_def hinge;
     taut_hinge_joint_def_init(&hinge);
-    hinge.body_b = box;
-    ASSERT_OK(taut_joint_frames_from_world(world, {0}, box, {0, 9.5, 0}, {0, 0, 1}, &hinge.frame_a, &hinge.frame_b));
+    hinge.base.body_b = box;
+    ASSERT_OK(taut_joint_frames_from_world(world, {0}, box, {0, 9.5, 0}, {0, 0, 1}, &hinge.base.frame_a,
+                                           &hinge.base.frame_b));
     hinge.angle.drive.frequency = 1;
     ASSERT_OK(taut_world_add_hinge_joint(world, &hinge, &joint));
     ASSERT_OK(taut_joint_get_axis(joint, 0, &axis));
@@ -249,7 +250,7 @@ TEST(Distance, HasRodRopeRangeAndSpring) {
     const taut_world world = make_world();
     taut_distance_joint_def good;
     taut_distance_joint_def_init(&good);
-    good.body_b = add_particle(world, 0, -2, 0);
+    good.base.body_b = add_particle(world, 0, -2, 0);
     const auto add = [&](auto change) {
         taut_distance_joint_def def = good;
         change(def);
@@ -276,7 +277,7 @@ TEST(Distance, HasRodRopeRangeAndSpring) {
     EXPECT_EQ(axis.lower, -INFINITY);
     EXPECT_EQ(axis.upper, 0);
     const taut_joint range =
-        add([](Def& d) { d.min_length = 1, d.max_length = 4, d.length = 2, d.compliance = 1e-3f; });
+        add([](Def& d) { d.min_length = 1, d.max_length = 4, d.length = 2, d.base.compliance = 1e-3f; });
     ASSERT_OK(taut_joint_get_axis(range, 0, &axis));
     EXPECT_EQ(axis.lower, -1);
     EXPECT_EQ(axis.upper, 2);
@@ -299,7 +300,7 @@ TEST(Distance, SpringSwingsAtItsFrequency) {
     ASSERT_OK(taut_world_set_gravity(world, {0, 0, 0}));
     taut_distance_joint_def def;
     taut_distance_joint_def_init(&def);
-    def.body_b = add_particle(world, 0, -2.1, 0);
+    def.base.body_b = add_particle(world, 0, -2.1, 0);
     def.length = 2;
     def.frequency = 1;
     def.damping_ratio = 0;

@@ -16,9 +16,9 @@ TEST(Break, AboveTheForceAndNotBelow) {
         const taut_world world = make_world();
         taut_ball_joint_def def;
         taut_ball_joint_def_init(&def);
-        def.body_b = add_particle(world, 0, 0, 0);
-        def.break_force = holds ? 9.9f : 9.7f;
-        def.user_data = 77;
+        def.base.body_b = add_particle(world, 0, 0, 0);
+        def.base.break_force = holds ? 9.9f : 9.7f;
+        def.base.user_data = 77;
         taut_joint joint;
         ASSERT_OK(taut_world_add_ball_joint(world, &def, &joint));
         uint32_t broken = 0;
@@ -35,7 +35,7 @@ TEST(Break, AboveTheForceAndNotBelow) {
         EXPECT_EQ(broken, holds ? 0u : 1u);
         EXPECT_EQ(counts_of(world).joints, holds ? 1u : 0u);
         taut_pose pose;
-        ASSERT_OK(taut_body_get_pose(def.body_b, &pose));
+        ASSERT_OK(taut_body_get_pose(def.base.body_b, &pose));
         EXPECT_EQ(pose.position.y < -4, !holds);
         EXPECT_OK(taut_world_destroy(world));
     }
@@ -63,10 +63,10 @@ TEST(Break, ManyAtOnce) {
         const taut_body bob = add_particle(world, i, 0, 0);
         taut_distance_joint_def def;
         taut_distance_joint_def_init(&def);
-        def.body_b = bob;
-        def.anchor_a = {static_cast<double>(i), 1, 0};
-        def.break_force = i % 2 == 0 ? 1.0f : 100.0f;
-        def.user_data = static_cast<uint64_t>(i);
+        def.base.body_b = bob;
+        def.base.frame_a.position = {static_cast<double>(i), 1, 0};
+        def.base.break_force = i % 2 == 0 ? 1.0f : 100.0f;
+        def.base.user_data = static_cast<uint64_t>(i);
         taut_joint joint;
         ASSERT_OK(taut_world_add_distance_joint(world, &def, &joint));
         joints.push_back(joint);
@@ -96,15 +96,15 @@ struct Chain {
             link.mass = i + 1 < links ? 1.0f : 10.0f;
             taut_distance_joint_def def;
             taut_distance_joint_def_init(&def);
-            def.body_a = last;
-            if (i == 0) def.anchor_a = {x, 0.5, 0};
-            EXPECT_OK(taut_world_add_particle(world, &link, &def.body_b));
-            def.break_force = strength;
-            def.user_data = static_cast<uint64_t>(i);
+            def.base.body_a = last;
+            if (i == 0) def.base.frame_a.position = {x, 0.5, 0};
+            EXPECT_OK(taut_world_add_particle(world, &link, &def.base.body_b));
+            def.base.break_force = strength;
+            def.base.user_data = static_cast<uint64_t>(i);
             taut_joint joint;
             EXPECT_OK(taut_world_add_distance_joint(world, &def, &joint));
             joints.push_back(joint);
-            last = def.body_b;
+            last = def.base.body_b;
         }
     }
 };
@@ -147,10 +147,10 @@ TEST(Break, TheOldestOfLikeOnes) {
     const auto thread = [&](double x, uint64_t name) {
         taut_distance_joint_def def;
         taut_distance_joint_def_init(&def);
-        def.body_b = weight;
-        def.anchor_a = {x, 2, 0};
-        def.break_force = 5;
-        def.user_data = name;
+        def.base.body_b = weight;
+        def.base.frame_a.position = {x, 2, 0};
+        def.base.break_force = 5;
+        def.base.user_data = name;
         taut_joint joint;
         EXPECT_OK(taut_world_add_distance_joint(world, &def, &joint));
         return joint;

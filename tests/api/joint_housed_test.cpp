@@ -63,14 +63,14 @@ struct Housed : testing::Test {
         housing = add_body(boxes.world, body_def(TAUT_BODY_DYNAMIC, boxes.box, 0, 9, 0));
         taut_gear_joint_def def;
         taut_gear_joint_def_init(&def);
-        def.body_a = boxes.a, def.body_b = boxes.b, def.housing = housing;
+        def.base.body_a = boxes.a, def.base.body_b = boxes.b, def.housing = housing;
         def.housing_frame_a = frame(-1, -4, 0), def.housing_frame_b = frame(1, -4, 0);
         def.ratio = -2.5f;
         EXPECT_OK(taut_world_add_gear_joint(boxes.world, &def, &gear));
         taut_pulley_joint_def rope;
         taut_pulley_joint_def_init(&rope);
-        rope.body_a = boxes.a, rope.body_b = boxes.b, rope.housing = housing;
-        rope.sheave_a = {-1, -1, 0}, rope.sheave_b = {1, -1, 0};
+        rope.base.body_a = boxes.a, rope.base.body_b = boxes.b, rope.housing = housing;
+        rope.housing_frame_a.position = {-1, -1, 0}, rope.housing_frame_b.position = {1, -1, 0};
         rope.ratio = 2;
         EXPECT_OK(taut_world_add_pulley_joint(boxes.world, &rope, &pulley));
         hinge = boxes.add(framed_kinds()[1]);

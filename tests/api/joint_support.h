@@ -24,10 +24,10 @@ taut_result add_framed(taut_world world, taut_body a, taut_body b, const taut_fr
                        taut_joint* out) {
     Def def;
     init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    def.frame_a = frame_a;
-    def.frame_b = frame_b;
+    def.base.body_a = a;
+    def.base.body_b = b;
+    def.base.frame_a = frame_a;
+    def.base.frame_b = frame_b;
     return add(world, &def, out);
 }
 
@@ -84,8 +84,9 @@ struct TwoBoxes {
 inline taut_joint add_beam(taut_world world) {
     taut_fixed_joint_def def;
     taut_fixed_joint_def_init(&def);
-    def.body_b = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
-    EXPECT_OK(taut_joint_frames_from_world(world, {0}, def.body_b, {0, 5, 0}, {1, 0, 0}, &def.frame_a, &def.frame_b));
+    def.base.body_b = add_body(world, body_def(TAUT_BODY_DYNAMIC, add_box(world), 2, 5, 0));
+    EXPECT_OK(taut_joint_frames_from_world(world, {0}, def.base.body_b, {0, 5, 0}, {1, 0, 0}, &def.base.frame_a,
+                                           &def.base.frame_b));
     taut_joint joint = {0};
     EXPECT_OK(taut_world_add_fixed_joint(world, &def, &joint));
     return joint;

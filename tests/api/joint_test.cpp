@@ -159,10 +159,10 @@ TEST(Contacts, AreFilteredByJoints) {
     EXPECT_EQ(contacts_of(world).size(), 4u);
     taut_ball_joint_def def;
     taut_ball_joint_def_init(&def);
-    def.body_a = boxes.b;
-    def.body_b = boxes.a;
-    def.anchor_a = {-0.4995, 0, 0};
-    def.anchor_b = {0.4995, 0, 0};
+    def.base.body_a = boxes.b;
+    def.base.body_b = boxes.a;
+    def.base.frame_a.position = {-0.4995, 0, 0};
+    def.base.frame_b.position = {0.4995, 0, 0};
     taut_joint joint;
     ASSERT_OK(taut_world_add_ball_joint(world, &def, &joint));
     ASSERT_OK(taut_world_step(world));
@@ -173,7 +173,7 @@ TEST(Contacts, AreFilteredByJoints) {
     EXPECT_EQ(contacts_of(world).size(), 4u);
     EXPECT_EQ(events_of(world).begin_count, 1u);
     // A joint that lets them collide changes nothing, and no event.
-    def.collide_connected = 1;
+    def.base.collide_connected = 1;
     ASSERT_OK(taut_world_add_ball_joint(world, &def, &joint));
     ASSERT_OK(taut_world_step(world));
     EXPECT_EQ(contacts_of(world).size(), 4u);

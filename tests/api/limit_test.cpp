@@ -88,7 +88,7 @@ TEST(Limit, OfJoints) {
     const taut_joint first = add_ball(world, body, {0});
     taut_ball_joint_def def;
     taut_ball_joint_def_init(&def);
-    def.body_a = body;
+    def.base.body_a = body;
     taut_joint out{};
     expect_limit(world, "max_joints of the world is 1", [&] { return taut_world_add_ball_joint(world, &def, &out); });
     ASSERT_OK(taut_joint_remove(first));

@@ -57,11 +57,11 @@ struct LintWorld : testing::Test {
         EXPECT_OK(taut_joint_frames_from_world(world, a, b, middle, {1, 0, 0}, &fa, &fb));
         taut_ball_joint_def def;
         taut_ball_joint_def_init(&def);
-        def.body_a = a;
-        def.body_b = b;
-        def.anchor_a = fa.position;
-        def.anchor_b = fb.position;
-        def.solve = solve;
+        def.base.body_a = a;
+        def.base.body_b = b;
+        def.base.frame_a.position = fa.position;
+        def.base.frame_b.position = fb.position;
+        def.base.solve = solve;
         taut_joint out = {0};
         EXPECT_OK(taut_world_add_ball_joint(world, &def, &out));
         return out;
@@ -100,8 +100,9 @@ TEST_F(LintWorld, FindsNothingInAWorldWellMade) {
     const taut_body door = body(20, 20, 5);
     taut_hinge_joint_def hinge;
     taut_hinge_joint_def_init(&hinge);
-    hinge.body_b = door;
-    ASSERT_OK(taut_joint_frames_from_world(world, {0}, door, {19, 5, 0}, {0, 1, 0}, &hinge.frame_a, &hinge.frame_b));
+    hinge.base.body_b = door;
+    ASSERT_OK(taut_joint_frames_from_world(world, {0}, door, {19, 5, 0}, {0, 1, 0}, &hinge.base.frame_a,
+                                           &hinge.base.frame_b));
     hinge.angle.mode = TAUT_AXIS_LIMITED;
     hinge.angle.lower = -1;
     hinge.angle.upper = 1;
@@ -110,8 +111,8 @@ TEST_F(LintWorld, FindsNothingInAWorldWellMade) {
     ASSERT_OK(taut_world_add_hinge_joint(world, &hinge, &joint));
     taut_distance_joint_def rope;
     taut_distance_joint_def_init(&rope);
-    rope.body_b = body(1, 30, 5);
-    rope.anchor_a = {30, 8, 0};
+    rope.base.body_b = body(1, 30, 5);
+    rope.base.frame_a.position = {30, 8, 0};
     rope.max_length = 3;
     ASSERT_OK(taut_world_add_distance_joint(world, &rope, &joint));
     taut_body ring[4];

@@ -103,10 +103,10 @@ void run_short_of_memory(uint64_t first, uint64_t length) {
         retry(world, false, [&] {
             taut_ball_joint_def d;
             taut_ball_joint_def_init(&d);
-            d.body_a = bodies[static_cast<size_t>(i)];
-            d.body_b = bodies[static_cast<size_t>(i + 6)];
-            d.anchor_a = {0, 0.5, 0};
-            d.anchor_b = {0, -0.49, 0};
+            d.base.body_a = bodies[static_cast<size_t>(i)];
+            d.base.body_b = bodies[static_cast<size_t>(i + 6)];
+            d.base.frame_a.position = {0, 0.5, 0};
+            d.base.frame_b.position = {0, -0.49, 0};
             return taut_world_add_ball_joint(world, &d, &joint);
         });
     }

@@ -69,14 +69,14 @@ private:
     void tie(taut_body a, taut_body b) {
         taut_hinge_joint_def def;
         taut_hinge_joint_def_init(&def);
-        def.body_a = a;
-        def.body_b = b;
-        def.frame_a.position.x = uniform(-0.5, 0.5) * logarithmic(1e-2, 1e4);
-        def.frame_a.position.z = uniform(-0.5, 0.5) * logarithmic(1e-2, 1e4);
+        def.base.body_a = a;
+        def.base.body_b = b;
+        def.base.frame_a.position.x = uniform(-0.5, 0.5) * logarithmic(1e-2, 1e4);
+        def.base.frame_a.position.z = uniform(-0.5, 0.5) * logarithmic(1e-2, 1e4);
         def.angle.drive.stiffness = static_cast<float>(logarithmic(1, 1e24));
         def.angle.drive.target = 3;
         def.angle.drive.damping = static_cast<float>(logarithmic(1e-3, 1e24));
-        def.solve = static_cast<taut_joint_solve>(static_cast<int>(uniform(0, 3)));
+        def.base.solve = static_cast<taut_joint_solve>(static_cast<int>(uniform(0, 3)));
         taut_joint out;
         EXPECT_OK(taut_world_add_hinge_joint(world, &def, &out));
     }

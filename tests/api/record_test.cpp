@@ -126,8 +126,8 @@ TEST(Recording, OfDefsThatEndAnywhereReplays) {
             taut_body first = body(world, box(world, 0.5f), {0, 9, 0}, TAUT_BODY_DYNAMIC);
             taut_hinge_joint_def def;
             taut_hinge_joint_def_init(&def);
-            def.body_a = first;
-            def.frame_a.position = {0.25, 0.5, 0.75};
+            def.base.body_a = first;
+            def.base.frame_a.position = {0.25, 0.5, 0.75};
             def.angle.mode = TAUT_AXIS_LIMITED;
             def.angle.upper = 1;
             def.struct_size = size;
@@ -621,7 +621,7 @@ const Bytes& short_recording() {
                 EXPECT_OK(taut_world_add_cloth(world, &cloth, &sheet));
                 taut_hinge_joint_def hinge;
                 taut_hinge_joint_def_init(&hinge);
-                hinge.body_a = bodies[0], hinge.body_b = two;
+                hinge.base.body_a = bodies[0], hinge.base.body_b = two;
                 taut_joint joint{};
                 EXPECT_OK(taut_world_add_hinge_joint(world, &hinge, &joint));
                 uint64_t size = 0;

@@ -241,10 +241,10 @@ taut_joint add_anchored(void (*init)(Def*), taut_result (*add)(taut_world, const
                         taut_body a, taut_body b, taut_pos anchor_a, taut_pos anchor_b) {
     Def def;
     init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    def.anchor_a = anchor_a;
-    def.anchor_b = anchor_b;
+    def.base.body_a = a;
+    def.base.body_b = b;
+    def.base.frame_a.position = anchor_a;
+    def.base.frame_b.position = anchor_b;
     taut_joint joint = {0};
     EXPECT_EQ(add(world, &def, &joint), TAUT_OK) << taut_last_error();
     return joint;

@@ -30,8 +30,9 @@ TEST(Values, AreTheDefaultsOfDefs) {
     expect_same(garbage_then(taut_filter_init), body.filter);
     taut_hinge_joint_def hinge;
     taut_hinge_joint_def_init(&hinge);
-    expect_same(garbage_then(taut_frame_init), hinge.frame_a);
+    expect_same(garbage_then(taut_frame_init), hinge.base.frame_a);
     expect_same(garbage_then(taut_drive_init), hinge.angle.drive);
+    expect_same(garbage_then(taut_joint_base_init), hinge.base);
     taut_attachment_def attachment;
     taut_attachment_def_init(&attachment);
     expect_same(garbage_then(taut_anchor_init), attachment.a);

@@ -49,8 +49,8 @@ private:
         if (bodies_.size() > 1 && random_() % 2) {
             taut_ball_joint_def joint;
             taut_ball_joint_def_init(&joint);
-            joint.body_a = bodies_[random_() % (bodies_.size() - 1)];
-            joint.body_b = bodies_.back();
+            joint.base.body_a = bodies_[random_() % (bodies_.size() - 1)];
+            joint.base.body_b = bodies_.back();
             taut_joint made{};
             ok(taut_world_add_ball_joint(world_, &joint, &made));
         }

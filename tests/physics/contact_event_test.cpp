@@ -133,9 +133,9 @@ TEST(ContactEvents, ABlocksContactsCarryItsWeight) {
     const taut_body heavy = world.add({.position = {0, 0.5, 0}, .mass = 200, .inertia = {20, 20, 20}});
     taut_fixed_joint_def joint;
     taut_fixed_joint_def_init(&joint);
-    joint.body_a = light;
-    joint.body_b = heavy;
-    joint.frame_a.position = {0, 0.45, 0};
+    joint.base.body_a = light;
+    joint.base.body_b = heavy;
+    joint.base.frame_a.position = {0, 0.45, 0};
     taut_joint out{};
     ok(taut_world_add_fixed_joint(world.handle, &joint, &out));
     world.step(120);

@@ -108,7 +108,7 @@ TEST_P(DrivenAgainstAStop, StaysThere) {
         def.angle.mode = TAUT_AXIS_LIMITED;
         def.angle.lower = static_cast<float>(-stop);
         def.angle.upper = static_cast<float>(stop);
-        def.solve = GetParam();
+        def.base.solve = GetParam();
         taut_joint joint{};
         ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
         double over = 0;  // [rad]
@@ -135,7 +135,7 @@ TEST_P(DrivenAgainstAStop, ChainDoesNotBurst) {
         for (size_t i = 0; i + 1 < limbs.size(); ++i) {
             auto def = at(world, taut_six_dof_joint_def_init, limbs[i], limbs[i + 1],
                           {0, 0.4 * static_cast<double>(i) + 0.2, 0}, {0, 1, 0});
-            def.solve = GetParam();
+            def.base.solve = GetParam();
             for (int k = 3; k < 6; ++k) {
                 def.axes[k] = limited(-0.5, 0.5);
                 def.axes[k].drive.frequency = 60;

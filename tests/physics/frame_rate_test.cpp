@@ -232,10 +232,10 @@ struct Rain {
                                        .spinning = 0.01}));
         taut_distance_joint_def def;
         taut_distance_joint_def_init(&def);
-        def.body_b = world.add({.shape = world.box({0.3, 0.3, 0.3}), .position = {0, 20, 0}, .mass = 10});
-        def.anchor_a = {0, 22, 0};
+        def.base.body_b = world.add({.shape = world.box({0.3, 0.3, 0.3}), .position = {0, 20, 0}, .mass = 10});
+        def.base.frame_a.position = {0, 22, 0};
         def.length = 2;
-        def.break_force = 90;  // less than it weighs
+        def.base.break_force = 90;  // less than it weighs
         taut_joint rope{};
         ok(taut_world_add_distance_joint(world.handle, &def, &rope));
     }
@@ -309,8 +309,8 @@ TEST_P(AtEveryRate, TheLoopDrawsWhatThereIs) {
         for (int i = 0; i < 5; ++i) bodies.push_back(world.add({.shape = cube, .position = {0, 0.5 + i, 0}}));
         taut_body end{};
         for (int i = 1; i <= 10; ++i) {
-            const taut_body next = world.add(
-                {.shape = cube, .position = {9.0 + i, 12, 0}, .mass = i < 10 ? 1.0 : 1000.0});
+            const taut_body next =
+                world.add({.shape = cube, .position = {9.0 + i, 12, 0}, .mass = i < 10 ? 1.0 : 1000.0});
             world.ball(end, i == 1 ? Vec(9.5, 12, 0) : Vec(0.5, 0, 0), next, {-0.5, 0, 0});
             bodies.push_back(end = next);
         }

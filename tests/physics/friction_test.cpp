@@ -176,8 +176,8 @@ TEST(Friction, SlowsALoadedBoxByMuG) {
     const taut_body load = world.add({.position = {0, 0.1, 0}, .mass = 100, .inertia = {10, 10, 10}});
     taut_fixed_joint_def joint;
     taut_fixed_joint_def_init(&joint);
-    joint.body_a = box;
-    joint.body_b = load;
+    joint.base.body_a = box;
+    joint.base.body_b = load;
     taut_joint out{};
     ok(taut_world_add_fixed_joint(world.handle, &joint, &out));
     world.step(30);

@@ -10,10 +10,10 @@ const Vec kAxis(0, 0, 1);
 // By both frames of each body: on itself and on the housing.
 template <class Def>
 void guide(const World& world, Def& def, const Vec& at_a, const Vec& along_a, const Vec& at_b, const Vec& along_b) {
-    ok(taut_joint_frames_from_world(world.handle, def.body_a, def.housing, at_a.pos(), along_a.narrow(), &def.frame_a,
-                                    &def.housing_frame_a));
-    ok(taut_joint_frames_from_world(world.handle, def.body_b, def.housing, at_b.pos(), along_b.narrow(), &def.frame_b,
-                                    &def.housing_frame_b));
+    ok(taut_joint_frames_from_world(world.handle, def.base.body_a, def.housing, at_a.pos(), along_a.narrow(),
+                                    &def.base.frame_a, &def.housing_frame_a));
+    ok(taut_joint_frames_from_world(world.handle, def.base.body_b, def.housing, at_b.pos(), along_b.narrow(),
+                                    &def.base.frame_b, &def.housing_frame_b));
 }
 
 double turn_of(taut_body body) { return dot(state(body).spin, kAxis); }
@@ -32,10 +32,10 @@ protected:
     taut_joint gear(taut_body a, taut_body b, taut_body housing, double ratio) const {
         taut_gear_joint_def def;
         taut_gear_joint_def_init(&def);
-        def.body_a = a, def.body_b = b, def.housing = housing;
+        def.base.body_a = a, def.base.body_b = b, def.housing = housing;
         guide(world, def, position(a), kAxis, position(b), kAxis);
         def.ratio = static_cast<float>(ratio);
-        def.solve = GetParam().solve;
+        def.base.solve = GetParam().solve;
         taut_joint out{};
         ok(taut_world_add_gear_joint(world.handle, &def, &out));
         return out;
@@ -177,10 +177,10 @@ protected:
     taut_joint rack(taut_body pinion, taut_body bar, taut_body housing, double radius) const {
         taut_rack_pinion_joint_def def;
         taut_rack_pinion_joint_def_init(&def);
-        def.body_a = pinion, def.body_b = bar, def.housing = housing;
+        def.base.body_a = pinion, def.base.body_b = bar, def.housing = housing;
         guide(world, def, position(pinion), kAxis, position(bar), {0, -1, 0});
         def.ratio = static_cast<float>(radius);
-        def.solve = GetParam().solve;
+        def.base.solve = GetParam().solve;
         taut_joint out{};
         ok(taut_world_add_rack_pinion_joint(world.handle, &def, &out));
         return out;
@@ -214,10 +214,10 @@ TEST_P(Racks, LiftTheirHousingWhereTheRackIsFixed) {
     const taut_joint crank = hinged(carriage, pinion, {0, 0, 0}, kAxis);
     taut_rack_pinion_joint_def def;
     taut_rack_pinion_joint_def_init(&def);
-    def.body_a = pinion, def.housing = carriage;
+    def.base.body_a = pinion, def.housing = carriage;
     guide(world, def, {0, 0, 0}, kAxis, {kRadius, 0, 0}, {0, -1, 0});
     def.ratio = static_cast<float>(kRadius);
-    def.solve = GetParam().solve;
+    def.base.solve = GetParam().solve;
     taut_joint mesh{};
     ok(taut_world_add_rack_pinion_joint(world.handle, &def, &mesh));
     const taut_axis_def drive = motor(20, 1000);  // 2 m/s
@@ -316,10 +316,10 @@ TEST_P(GearHost, DriveALeaningShaftEvenly) {
     hinged({}, a, {0, 0, 0}, kAxis);
     taut_gear_joint_def def;
     taut_gear_joint_def_init(&def);
-    def.body_a = a, def.body_b = b;
+    def.base.body_a = a, def.base.body_b = b;
     guide(world, def, {0, 0, 0}, kAxis, {1, 0, 0}, kAxis);
     def.ratio = 1;
-    def.solve = GetParam().solve;
+    def.base.solve = GetParam().solve;
     // The shaft is upright in the housing's frame, and held in a hinge that leans.
     taut_pose pose;
     ok(taut_body_get_pose(b, &pose));

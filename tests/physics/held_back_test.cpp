@@ -29,9 +29,9 @@ TEST_P(HeldBack, WaitsAndGoesOn) {
     const taut_body b = world.add({.shape = ball, .position = {off, 0, 0}, .mass = 1});
     taut_ball_joint_def def;
     taut_ball_joint_def_init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    def.solve = GetParam().solve;
+    def.base.body_a = a;
+    def.base.body_b = b;
+    def.base.solve = GetParam().solve;
     taut_joint joint{};
     ok(taut_world_add_ball_joint(world.handle, &def, &joint));
     const auto gap = [&] { return norm(state(a).position - state(b).position); };

@@ -40,9 +40,10 @@ template <class Def>
 Def at(const World& world, void (*init)(Def*), taut_body a, taut_body b, const Vec& pivot, const Vec& axis) {
     Def def;
     init(&def);
-    def.body_a = a;
-    def.body_b = b;
-    ok(taut_joint_frames_from_world(world.handle, a, b, pivot.pos(), axis.narrow(), &def.frame_a, &def.frame_b));
+    def.base.body_a = a;
+    def.base.body_b = b;
+    ok(taut_joint_frames_from_world(world.handle, a, b, pivot.pos(), axis.narrow(), &def.base.frame_a,
+                                    &def.base.frame_b));
     return def;
 }
 

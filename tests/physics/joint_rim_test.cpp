@@ -14,7 +14,7 @@ double overrun_around_rim(double rate) {
         world.add({.rotation = Quat::turn({0, 0, 1}, kTilt), .spin = rate * up, .mass = 1, .inertia = {0.1, 0.1, 0.1}});
     taut_cone_twist_joint_def def;
     taut_cone_twist_joint_def_init(&def);
-    def.body_b = body;
+    def.base.body_b = body;
     def.swing = limited(0, kTilt);
     def.swing.lower = -INFINITY;
     taut_joint joint{};

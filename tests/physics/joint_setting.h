@@ -39,14 +39,14 @@ protected:
                       const taut_axis_def& angle = free_axis()) const {
         auto def = at(world, taut_hinge_joint_def_init, in, body, place, axis);
         def.angle = angle;
-        def.solve = GetParam().solve;
+        def.base.solve = GetParam().solve;
         taut_joint out{};
         ok(taut_world_add_hinge_joint(world.handle, &def, &out));
         return out;
     }
     taut_joint sliding(taut_body in, taut_body body, const Vec& axis) const {
         auto def = at(world, taut_slider_joint_def_init, in, body, position(body), axis);
-        def.solve = GetParam().solve;
+        def.base.solve = GetParam().solve;
         taut_joint out{};
         ok(taut_world_add_slider_joint(world.handle, &def, &out));
         return out;

@@ -12,7 +12,7 @@ TEST(SoftJoint, KnowsStopsAndMotors) {
     const taut_body body = bar(world);
     auto def = at(world, taut_hinge_joint_def_init, {}, body, {0, 0, 0}, {0, 0, 1});
     def.angle = limited(-30 * kDegree, 60 * kDegree);
-    def.solve = TAUT_JOINT_SOLVE_SOFT;
+    def.base.solve = TAUT_JOINT_SOLVE_SOFT;
     taut_joint joint{};
     ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
     world.step(300);
@@ -86,7 +86,7 @@ TEST_P(AxisUnder, FrictionOfASwingActsAroundItsCone) {
                                       .inertia = {kInertia, kInertia, kInertia}});
     taut_cone_twist_joint_def def;
     taut_cone_twist_joint_def_init(&def);
-    def.body_b = body;
+    def.base.body_b = body;
     def.swing = limited(0, kTilt);
     def.swing.lower = -INFINITY;
     def.swing.friction = kTorque;

@@ -47,7 +47,7 @@ TEST(Rope, IsSlackUntilItIsTaut) {
     const taut_body body = world.particle(3, {0, -0.5, 0});
     taut_distance_joint_def def;
     taut_distance_joint_def_init(&def);
-    def.body_b = body;
+    def.base.body_b = body;
     def.max_length = 2;
     taut_joint rope{};
     ok(taut_world_add_distance_joint(world.handle, &def, &rope));
@@ -174,15 +174,15 @@ TEST(Universal, TurnsLikeACardanJoint) {
     const taut_joint output = hinge(world, {}, out, 0.5 * out_axis, out_axis);
     taut_universal_joint_def def;
     taut_universal_joint_def_init(&def);
-    def.body_a = in;
-    def.body_b = out;
-    def.frame_a.position = {0.5, 0, 0};
-    def.frame_b.position = (-0.5 * out_axis).pos();
+    def.base.body_a = in;
+    def.base.body_b = out;
+    def.base.frame_a.position = {0.5, 0, 0};
+    def.base.frame_b.position = (-0.5 * out_axis).pos();
     // The cross: x of a is z of the world, y of b is square to it and to the output shaft.
     const Quat a = Quat::turn({0, 1, 0}, -kPi / 2);  // x to z
     const Quat b = Quat::turn({0, 0, 1}, beta) * a;
-    def.frame_a.rotation = a.narrow();
-    def.frame_b.rotation = b.narrow();
+    def.base.frame_a.rotation = a.narrow();
+    def.base.frame_b.rotation = b.narrow();
     taut_joint cardan{};
     ok(taut_world_add_universal_joint(world.handle, &def, &cardan));
     double worst = 0, ratio_low = 10, ratio_high = 0;

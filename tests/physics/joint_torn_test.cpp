@@ -25,8 +25,8 @@ protected:
         });
         Def def;
         init(&def);
-        def.body_b = world.add({.rotation = Quat::turn(axis, angle), .mass = 2, .inertia = {0.1, 0.2, 0.25}});
-        def.solve = GetParam().solve;
+        def.base.body_b = world.add({.rotation = Quat::turn(axis, angle), .mass = 2, .inertia = {0.1, 0.2, 0.25}});
+        def.base.solve = GetParam().solve;
         taut_joint joint{};
         ok(add(world.handle, &def, &joint));
         EXPECT_GT(angular_error(joint), 1) << "degrees " << angle / kDegree;

@@ -24,7 +24,7 @@ public:
     void hold(void (*init)(Def*), taut_result (*add)(taut_world, const Def*, taut_joint*), uint32_t axis,
               const taut_axis_def& stops, taut_joint_solve solve = TAUT_JOINT_SOLVE_DIRECT) {
         Def def = at(world, init, {}, body, {}, kAxis);
-        def.solve = solve;
+        def.base.solve = solve;
         ok(add(world.handle, &def, &joint));
         ok(taut_joint_set_axis(joint, axis, &stops));
     }

@@ -226,10 +226,10 @@ public:
     taut_joint ball(taut_body a, const Vec& at_a, taut_body b, const Vec& at_b) const {
         taut_ball_joint_def d;
         taut_ball_joint_def_init(&d);
-        d.body_a = a;
-        d.body_b = b;
-        d.anchor_a = at_a.pos();
-        d.anchor_b = at_b.pos();
+        d.base.body_a = a;
+        d.base.body_b = b;
+        d.base.frame_a.position = at_a.pos();
+        d.base.frame_b.position = at_b.pos();
         taut_joint out{};
         ok(taut_world_add_ball_joint(handle, &d, &out));
         return out;
@@ -239,13 +239,13 @@ public:
                    double damping = 0) const {
         taut_distance_joint_def d;
         taut_distance_joint_def_init(&d);
-        d.body_a = a;
-        d.body_b = b;
-        d.anchor_a = at_a.pos();
-        d.anchor_b = at_b.pos();
+        d.base.body_a = a;
+        d.base.body_b = b;
+        d.base.frame_a.position = at_a.pos();
+        d.base.frame_b.position = at_b.pos();
         d.length = static_cast<float>(length);
-        d.compliance = static_cast<float>(compliance);
-        d.damping = static_cast<float>(damping);
+        d.base.compliance = static_cast<float>(compliance);
+        d.base.damping = static_cast<float>(damping);
         taut_joint out{};
         ok(taut_world_add_distance_joint(handle, &d, &out));
         return out;

@@ -57,10 +57,10 @@ struct Press {
     void tie(taut_body one, taut_body other, taut_joint_solve solve) {
         taut_ball_joint_def def;
         taut_ball_joint_def_init(&def);
-        def.body_a = one;
-        def.body_b = other;
-        def.anchor_b = (position(one) - position(other)).pos();
-        def.solve = solve;
+        def.base.body_a = one;
+        def.base.body_b = other;
+        def.base.frame_b.position = (position(one) - position(other)).pos();
+        def.base.solve = solve;
         taut_joint joint{};
         ok(taut_world_add_ball_joint(w.handle, &def, &joint));
     }

@@ -12,12 +12,12 @@ protected:
     taut_joint hang(taut_body a, taut_body b, double ratio, taut_body housing = {}, const Vec& in_housing = {}) const {
         taut_pulley_joint_def def;
         taut_pulley_joint_def_init(&def);
-        def.body_a = a, def.body_b = b, def.housing = housing;
+        def.base.body_a = a, def.base.body_b = b, def.housing = housing;
         const Vec up(0, 2, 0);
-        def.sheave_a = (position(a) + up - in_housing).pos();
-        def.sheave_b = (position(b) + up - in_housing).pos();
+        def.housing_frame_a.position = (position(a) + up - in_housing).pos();
+        def.housing_frame_b.position = (position(b) + up - in_housing).pos();
         def.ratio = static_cast<float>(ratio);
-        def.solve = GetParam().solve;
+        def.base.solve = GetParam().solve;
         taut_joint out{};
         ok(taut_world_add_pulley_joint(world.handle, &def, &out));
         return out;
@@ -77,16 +77,16 @@ TEST_P(Pulleys, GoSlack) {
 TEST_P(Pulleys, PushWhereTheyAreRigid) {
     taut_pulley_joint_def def;
     taut_pulley_joint_def_init(&def);
-    def.body_a = world.add({.position = {-1, 2, 0}, .mass = 2, .inertia = {1, 1, 1}});
-    def.body_b = world.add({.position = {1, 2, 0}, .mass = 3, .inertia = {1, 1, 1}});
-    def.sheave_a = {-1, 0, 0}, def.sheave_b = {1, 0, 0};
+    def.base.body_a = world.add({.position = {-1, 2, 0}, .mass = 2, .inertia = {1, 1, 1}});
+    def.base.body_b = world.add({.position = {1, 2, 0}, .mass = 3, .inertia = {1, 1, 1}});
+    def.housing_frame_a.position = {-1, 0, 0}, def.housing_frame_b.position = {1, 0, 0};
     def.rigid = 1;
-    def.solve = GetParam().solve;
-    for (const taut_body body : {def.body_a, def.body_b}) sliding({}, body, {0, 1, 0});
+    def.base.solve = GetParam().solve;
+    for (const taut_body body : {def.base.body_a, def.base.body_b}) sliding({}, body, {0, 1, 0});
     taut_joint rope{};
     ok(taut_world_add_pulley_joint(world.handle, &def, &rope));
     run(0.4);
-    EXPECT_NEAR(-velocity(def.body_b).y / 0.4, kG / 5, 0.01 * kG);
+    EXPECT_NEAR(-velocity(def.base.body_b).y / 0.4, kG / 5, 0.01 * kG);
 }
 
 // A drive along the axis is a winch.
@@ -116,15 +116,15 @@ TEST_P(Pulleys, SwingAsPendulums) {
     const taut_body load = world.particle(1, out), rival = world.particle(1, out + Vec(0, 0, 3));
     taut_pulley_joint_def def;
     taut_pulley_joint_def_init(&def);
-    def.body_a = load, def.body_b = heavy;
-    def.sheave_a = {0, 0, 0}, def.sheave_b = {5, 1, 0};
-    def.solve = GetParam().solve;
+    def.base.body_a = load, def.base.body_b = heavy;
+    def.housing_frame_a.position = {0, 0, 0}, def.housing_frame_b.position = {5, 1, 0};
+    def.base.solve = GetParam().solve;
     taut_joint rope{};
     ok(taut_world_add_pulley_joint(world.handle, &def, &rope));
     taut_distance_joint_def rod;
     taut_distance_joint_def_init(&rod);
-    rod.body_b = rival, rod.anchor_a = {0, 0, 3};
-    rod.solve = GetParam().solve;
+    rod.base.body_b = rival, rod.base.frame_a.position = {0, 0, 3};
+    rod.base.solve = GetParam().solve;
     taut_joint rod_out{};
     ok(taut_world_add_distance_joint(world.handle, &rod, &rod_out));
     Crossings of_load;

@@ -89,9 +89,9 @@ TEST_P(SpinsOnAJoint, PrecessesLevel) {
         const taut_body disc = add_disc({kLever, 0, 0}, {0, 0, -rate * kLever}, {spin, rate, 0});
         taut_ball_joint_def def;
         taut_ball_joint_def_init(&def);
-        def.body_a = disc;
-        def.anchor_a = Vec(-kLever, 0, 0).pos();
-        def.solve = GetParam().how;
+        def.base.body_a = disc;
+        def.base.frame_a.position = Vec(-kLever, 0, 0).pos();
+        def.base.solve = GetParam().how;
         taut_joint joint{};
         ok(taut_world_add_ball_joint(world.handle, &def, &joint));
         double turned = 0, last = 0, tilt = 0;
@@ -123,10 +123,10 @@ TEST_P(SpinsOnAJoint, DoNotWobbleOnHinges) {
         const taut_body wheel = add_disc(where + lever, cross(turns, lever), turns + Vec(400, 0, 0));
         taut_hinge_joint_def def;
         taut_hinge_joint_def_init(&def);
-        def.body_a = wheel;
-        def.body_b = on;
-        def.frame_b.position = lever.pos();
-        def.solve = GetParam().how;
+        def.base.body_a = wheel;
+        def.base.body_b = on;
+        def.base.frame_b.position = lever.pos();
+        def.base.solve = GetParam().how;
         taut_joint joint{};
         ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
         return wheel;

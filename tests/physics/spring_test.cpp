@@ -84,9 +84,9 @@ TEST(SpringyBallJoint, SagsByWeightTimesCompliance) {
     const taut_body weight = world.add({.position = {0, 0, 0}, .mass = kMass, .inertia = {0.1, 0.1, 0.1}});
     taut_ball_joint_def def;
     taut_ball_joint_def_init(&def);
-    def.body_b = weight;
-    def.compliance = static_cast<float>(kCompliance);
-    def.damping = static_cast<float>(critical());
+    def.base.body_b = weight;
+    def.base.compliance = static_cast<float>(kCompliance);
+    def.base.damping = static_cast<float>(critical());
     taut_joint joint{};
     ok(taut_world_add_ball_joint(world.handle, &def, &joint));
     world.step(300);

@@ -32,8 +32,8 @@ protected:
         const taut_body rider = world.add(plan);
         taut_fixed_joint_def d;
         taut_fixed_joint_def_init(&d);
-        d.body_a = body;
-        d.body_b = rider;
+        d.base.body_a = body;
+        d.base.body_b = rider;
         taut_joint out{};
         ok(taut_world_add_fixed_joint(world.handle, &d, &out));
         return body;

@@ -21,7 +21,7 @@ struct Top {
           body(world.add({.mass = 2, .inertia = {kInertia, kInertia, kInertia}})) {
         auto def = at(world, taut_cone_twist_joint_def_init, {}, body, {}, {1, 0, 0});
         def.swing = swing;
-        def.solve = solve;
+        def.base.solve = solve;
         ok(taut_world_add_cone_twist_joint(world.handle, &def, &joint));
         const taut_pose pose{{0, 0, 0}, Quat::turn(axis, tilt).narrow(), {}};
         ok(taut_body_set_pose(body, &pose));

@@ -130,15 +130,15 @@ TEST_P(ChangedStep, DrivesHold) {
         const double z = frequency;
         taut_hinge_joint_def def;
         taut_hinge_joint_def_init(&def);
-        def.body_b = world.add({.shape = world.box({0.5, 0.05, 0.1}), .position = {0.5, 2, z}, .mass = 2});
+        def.base.body_b = world.add({.shape = world.box({0.5, 0.05, 0.1}), .position = {0.5, 2, z}, .mass = 2});
         const taut_quat about_z = Quat::turn({0, 1, 0}, -kPi / 2).narrow();
-        def.frame_a = {{0, 2, z}, about_z};
-        def.frame_b = {{-0.5, 0, 0}, about_z};
+        def.base.frame_a = {{0, 2, z}, about_z};
+        def.base.frame_b = {{-0.5, 0, 0}, about_z};
         def.angle.drive.frequency = static_cast<float>(frequency);
         def.angle.drive.damping_ratio = 1;
         taut_joint joint{};
         ok(taut_world_add_hinge_joint(world.handle, &def, &joint));
-        bodies.push_back(def.body_b);
+        bodies.push_back(def.base.body_b);
     }
     expect_rest(bodies, 600);
 }

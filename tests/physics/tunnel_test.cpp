@@ -147,7 +147,7 @@ double deepest_hit(taut_solver solver, double speed, bool one_way, bool jointed)
         if (jointed) {
             taut_fixed_joint_def def;
             taut_fixed_joint_def_init(&def);
-            def.body_b = plate;
+            def.base.body_b = plate;
             taut_joint joint{};
             ok(taut_world_add_fixed_joint(world.handle, &def, &joint));
         }

@@ -40,7 +40,7 @@ struct Vise {
         plate = world.add({.shape = world.box({0.1, 0.2, 0.4}), .position = start, .mass = between(random, 1, 8)});
         auto def = at(world, taut_slider_joint_def_init, {}, plate, start, {1, 0, 0});
         def.slide = motor(between(random, 0.1, 1), force);
-        def.solve = static_cast<taut_joint_solve>(random() % 3);
+        def.base.solve = static_cast<taut_joint_solve>(random() % 3);
         taut_joint joint{};
         ok(taut_world_add_slider_joint(world.handle, &def, &joint));
     }

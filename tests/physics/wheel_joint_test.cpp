@@ -14,10 +14,10 @@ protected:
     taut_wheel_joint_def wheel_at(taut_body chassis, taut_body wheel, const Vec& place, const Vec& strut = kUp) const {
         taut_wheel_joint_def def;
         taut_wheel_joint_def_init(&def);
-        def.body_a = chassis, def.body_b = wheel;
+        def.base.body_a = chassis, def.base.body_b = wheel;
         ok(taut_joint_frames_from_two_axes(world.handle, chassis, wheel, place.pos(), strut.narrow(), kAxle.narrow(),
-                                           &def.frame_a, &def.frame_b));
-        def.solve = GetParam().solve;
+                                           &def.base.frame_a, &def.base.frame_b));
+        def.base.solve = GetParam().solve;
         return def;
     }
     taut_joint add(const taut_wheel_joint_def& def) const {
@@ -134,12 +134,12 @@ public:
                                   .group = -1});
             taut_wheel_joint_def def;
             taut_wheel_joint_def_init(&def);
-            def.body_a = chassis, def.body_b = wheel[i];
+            def.base.body_a = chassis, def.base.body_b = wheel[i];
             ok(taut_joint_frames_from_two_axes(world.handle, chassis, wheel[i], place.pos(), kUp.narrow(),
-                                               kAxle.narrow(), &def.frame_a, &def.frame_b));
+                                               kAxle.narrow(), &def.base.frame_a, &def.base.frame_b));
             def.suspension = spring(4e4, 4e3, -kMass * kG / 4 / 4e4);
             if (i < 2) def.steering = spring(2e4, 500);
-            def.solve = solve;
+            def.base.solve = solve;
             ok(taut_world_add_wheel_joint(world.handle, &def, &joint[i]));
         }
     }
@@ -215,18 +215,18 @@ TEST_P(Wheels, AreDrivenThroughADifferential) {
     const Vec middle(-0.5 * Car::kBase, 0.6, 0);
     const taut_body carrier = world.add({.position = middle, .mass = 15, .inertia = {0.2, 0.2, 0.2}, .group = -1});
     auto hinge = at(world, taut_hinge_joint_def_init, car.chassis, carrier, middle, kAxle);
-    hinge.solve = GetParam().solve;
+    hinge.base.solve = GetParam().solve;
     hinge.angle = motor(-10, 600);
     taut_joint engine{};
     ok(taut_world_add_hinge_joint(world.handle, &hinge, &engine));
     taut_gear_joint_def def;
     taut_gear_joint_def_init(&def);
-    def.body_a = car.wheel[2], def.body_b = car.wheel[3], def.housing = carrier;
+    def.base.body_a = car.wheel[2], def.base.body_b = car.wheel[3], def.housing = carrier;
     for (const int i : {2, 3})
         ok(taut_joint_frames_from_world(world.handle, car.wheel[i], carrier, position(car.wheel[i]).pos(),
-                                        kAxle.narrow(), i == 2 ? &def.frame_a : &def.frame_b,
+                                        kAxle.narrow(), i == 2 ? &def.base.frame_a : &def.base.frame_b,
                                         i == 2 ? &def.housing_frame_a : &def.housing_frame_b));
-    def.solve = GetParam().solve;
+    def.base.solve = GetParam().solve;
     taut_joint gear{};
     ok(taut_world_add_gear_joint(world.handle, &def, &gear));
     for (const int i : {0, 1}) {

@@ -104,8 +104,32 @@ def add_pile(world):
         definition.position = 0.625 * (i % 5) + 0.03125 * (i % 3), 0.5 + 0.625 * (i // 25), 0.625 * (i // 5 % 5)
         definition.material.friction = 0.75
         bodies.append(world.add_body(definition))
-    world.add_ball_joint(body_b=bodies[-1], anchor_a=(2.5, 6, 2.5), anchor_b=(0, 1, 0))
+    world.add_ball_joint(body_b=bodies[-1], frame_a={"position": (2.5, 6, 2.5)}, frame_b={"position": (0, 1, 0)})
     return bodies
+
+
+class JointBase(unittest.TestCase):
+    def test_its_fields_are_those_of_every_def(self):
+        with taut.World() as world:
+            bob = world.add_body(mass=1, inertia=(1, 1, 1, 0, 0, 0), position=(1, 2, 3))
+            base = taut.JointBase(body_b=bob, user_data=7, frame_a={"position": (1, 2, 3)})
+            self.assertEqual((base.solve, base.frame_b.rotation.w), (taut.JointSolve.BY_LOAD, 1))
+            kinds = {"Ball": world.add_ball_joint, "Hinge": world.add_hinge_joint, "SixDof": world.add_six_dof_joint}
+            for kind, add in kinds.items():
+                whole = getattr(taut, kind + "JointDef")(base=base)
+                by_name = getattr(taut, kind + "JointDef")(body_b=bob, user_data=7)
+                by_name.frame_a.position = 1, 2, 3
+                self.assertEqual((by_name.body_b, by_name.base.user_data), (bob, 7))
+                for joint in add(whole), add(by_name), add(base=base):
+                    self.assertEqual(joint.get_bodies(), (taut.Body(), bob))
+                    self.assertEqual(joint.get_user_data(), 7)
+                    self.assertEqual(joint.get_frames()[0].position, (1, 2, 3))
+            with self.assertRaises(taut.InvalidArgument) as caught:
+                world.add_ball_joint(body_b=bob, break_torque=2)
+            self.assertIn("base.break_torque is 2, expected 0", str(caught.exception))
+            with self.assertRaises(AttributeError) as caught:
+                taut.HingeJointDef(boddy_b=bob)
+            self.assertIn("HingeJointDef has no field 'boddy_b'", str(caught.exception))
 
 
 class Pile(unittest.TestCase):

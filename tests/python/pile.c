@@ -42,9 +42,9 @@ int main(void) {
     taut_ball_joint_def joint_def;
     taut_joint joint;
     taut_ball_joint_def_init(&joint_def);
-    joint_def.body_b = last;
-    joint_def.anchor_a = (taut_pos){2.5, 6, 2.5};
-    joint_def.anchor_b = (taut_pos){0, 1, 0};
+    joint_def.base.body_b = last;
+    joint_def.base.frame_a.position = (taut_pos){2.5, 6, 2.5};
+    joint_def.base.frame_b.position = (taut_pos){0, 1, 0};
     check(taut_world_add_ball_joint(world, &joint_def, &joint));
     for (int step = 0; step < 240; ++step) check(taut_world_step(world));
     uint64_t hash;

@@ -99,10 +99,10 @@ TEST(FallsAsleep, PuppetAsAWholeWhereItFell) {
             puppet.push_back(world.add({.shape = part, .position = end + Vec(0.25 * side.x, 0, 0)}));
             taut_hinge_joint_def def;
             taut_hinge_joint_def_init(&def);
-            def.body_a = inner, def.body_b = inner = puppet.back();
+            def.base.body_a = inner, def.base.body_b = inner = puppet.back();
             def.angle.friction = 2;
-            ok(taut_joint_frames_from_world(world.handle, def.body_a, def.body_b, end.pos(), {0, 0, 1}, &def.frame_a,
-                                            &def.frame_b));
+            ok(taut_joint_frames_from_world(world.handle, def.base.body_a, def.base.body_b, end.pos(), {0, 0, 1},
+                                            &def.base.frame_a, &def.base.frame_b));
             taut_joint out{};
             ok(taut_world_add_hinge_joint(world.handle, &def, &out));
             end += Vec(0.5 * side.x, 0, 0);

@@ -304,8 +304,8 @@ TEST(Wakes, WhatAChangedOrRemovedJointHolds) {
     const taut_body door = world.add({.shape = arm, .position = {0.5, 0, 0}});
     taut_hinge_joint_def def;
     taut_hinge_joint_def_init(&def);
-    def.body_b = door;
-    def.frame_b.position = {-0.5, 0, 0};
+    def.base.body_b = door;
+    def.base.frame_b.position = {-0.5, 0, 0};
     def.angle.drive.frequency = 2;
     def.angle.drive.damping_ratio = 1;
     taut_joint joint{};

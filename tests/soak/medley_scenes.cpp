@@ -211,7 +211,7 @@ void doll(Medley& m, Random& random) {
         auto def = at(m.world, taut_cone_twist_joint_def_init, to, limb, joint, along);
         def.swing = limited(0, 1);
         def.twist = limited(-0.5, 0.5);
-        def.solve = static_cast<taut_joint_solve>(random() % 3);
+        def.base.solve = static_cast<taut_joint_solve>(random() % 3);
         ok(taut_world_add_cone_twist_joint(m.world.handle, &def, &m.joints.emplace_back()));
         return limb;
     };

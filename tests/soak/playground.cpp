@@ -142,13 +142,14 @@ void Playground::link(taut_body a, taut_body b, const Vec& pivot, bool hinge) {
     if (!hinge) {
         taut_ball_joint_def def;
         taut_ball_joint_def_init(&def);
-        def.body_a = a, def.body_b = b, def.anchor_a = in_a.pos(), def.anchor_b = in_b.pos();
+        def.base.body_a = a, def.base.body_b = b, def.base.frame_a.position = in_a.pos(),
+        def.base.frame_b.position = in_b.pos();
         return ok(taut_world_add_ball_joint(world_, &def, &out));
     }
     taut_hinge_joint_def def;
     taut_hinge_joint_def_init(&def);
-    def.body_a = a, def.body_b = b;
-    def.frame_a.position = in_a.pos(), def.frame_b.position = in_b.pos();
+    def.base.body_a = a, def.base.body_b = b;
+    def.base.frame_a.position = in_a.pos(), def.base.frame_b.position = in_b.pos();
     def.angle.mode = TAUT_AXIS_LIMITED, def.angle.lower = -1, def.angle.upper = 1;
     ok(taut_world_add_hinge_joint(world_, &def, &out));
 }

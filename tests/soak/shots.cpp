@@ -168,10 +168,10 @@ void ShootingRange::tie(taut_body a, taut_body b, const Vec& pivot, taut_joint_s
     taut_ball_joint_def def;
     taut_ball_joint_def_init(&def);
     const BodyState s = state(a), t = state(b);
-    def.body_a = a, def.body_b = b;
-    def.anchor_a = s.rotation.rotate_back(pivot - s.position).pos();
-    def.anchor_b = t.rotation.rotate_back(pivot - t.position).pos();
-    def.solve = solve;
+    def.base.body_a = a, def.base.body_b = b;
+    def.base.frame_a.position = s.rotation.rotate_back(pivot - s.position).pos();
+    def.base.frame_b.position = t.rotation.rotate_back(pivot - t.position).pos();
+    def.base.solve = solve;
     taut_joint out{};
     ok(taut_world_add_ball_joint(world_.handle, &def, &out));
 }

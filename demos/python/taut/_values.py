@@ -151,7 +151,8 @@ def _count_field(name, names):
 
 class Struct:
     """A struct of the interface. As it is made it has the defaults that its _init function writes; fields may be given
-    by name. Arrays are taken as numpy has them, and set their count. Of a struct within another it is a view."""
+    by name, those of its base as its own. Arrays are taken as numpy has them, and set their count. Of a struct within
+    another it is a view."""
 
     c_name = None
     __slots__ = ("_pointer", "_owner", "_kept")
@@ -170,9 +171,12 @@ class Struct:
             setattr(self, name, value)
 
     def _write_defaults(self):
-        init = self.c_name + "_init_sized"
+        init = self.c_name + "_init"
+        if init + "_sized" in EXPORTED:
+            getattr(lib, init + "_sized")(self._pointer, ffi.sizeof(self.c_name))
+            return
         if init in EXPORTED:
-            getattr(lib, init)(self._pointer, ffi.sizeof(self.c_name))
+            getattr(lib, init)(self._pointer)
             return
         for name, kind, _ in _fields(self.c_name):
             if name == "struct_size":
@@ -203,7 +207,12 @@ class Struct:
                 return kind
         raise AttributeError(f"{type(self).__name__} has no field '{name}'")
 
+    def _is_of_base(self, name):
+        return name not in dir(self) and "base" in dir(self) and name in dir(self.base)
+
     def __getattr__(self, name):
+        if self._is_of_base(name):
+            return getattr(self.base, name)
         kind = self._kind(name)
         value = getattr(self._pointer, name)
         if kind.kind != "pointer":
@@ -216,6 +225,9 @@ class Struct:
         return value
 
     def __setattr__(self, name, value):
+        if self._is_of_base(name):
+            setattr(self.base, name, value)
+            return
         kind = self._kind(name)
         if kind.kind == "pointer" and not isinstance(value, ffi.CData) and value is not None:
             pointer, alive, count = to_array(kind.item, value)

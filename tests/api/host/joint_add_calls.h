@@ -55,11 +55,11 @@ protected:
                 return run("taut_world_add_wheel_joint", [&] { return taut_world_add_wheel_joint(world, &def, &out); });
             }
             case 7: {
-                const auto def = framed_def(w, taut_gear_joint_def_init);
+                const auto def = framed_def(w, taut_gear_joint_def_init, kAngles);
                 return run("taut_world_add_gear_joint", [&] { return taut_world_add_gear_joint(world, &def, &out); });
             }
             case 8: {
-                const auto def = framed_def(w, taut_rack_pinion_joint_def_init);
+                const auto def = framed_def(w, taut_rack_pinion_joint_def_init, kPoints);
                 return run("taut_world_add_rack_pinion_joint",
                            [&] { return taut_world_add_rack_pinion_joint(world, &def, &out); });
             }
@@ -85,13 +85,13 @@ protected:
         } else if (one_in(3)) {
             auto def = joint_def(w, taut_pulley_joint_def_init);
             def.housing = one_in(2) ? taut_body{0} : pick_body(w);
-            def.sheave_a = pos(4);
-            def.sheave_b = pos(4);
+            def.housing_frame_a.position = pos(4);
+            def.housing_frame_b.position = pos(4);
             if (one_in(2)) def.ratio = real(0.1, 4);
             if (one_in(2)) def.length = real(0, 9);
             def.rigid = byte() & 1;
             spoil(def.rigid);
-            spoil(def.reserved);
+            spoil(def.base.reserved[1]);
             added =
                 run("taut_world_add_pulley_joint", [&] { return taut_world_add_pulley_joint(worlds_[w], &def, &out); });
         } else {
@@ -103,8 +103,8 @@ protected:
                 if (one_in(2)) def.drive = drive();
                 if (one_in(2)) def.friction = real(0, 10);
             }
-            if (one_in(4)) def.compliance = def.damping = 0, def.frequency = real(0.1, 30);
-            spoil(def.reserved);
+            if (one_in(4)) def.base.compliance = def.base.damping = 0, def.frequency = real(0.1, 30);
+            spoil(def.base.reserved[1]);
             added = run("taut_world_add_distance_joint",
                         [&] { return taut_world_add_distance_joint(worlds_[w], &def, &out); });
         }
