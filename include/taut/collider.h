@@ -51,6 +51,35 @@ typedef struct taut_material {
 } taut_material;
 
 /**
+ * What friction of a collider is beyond one coefficient for sticking and sliding, in all directions. Fields not named
+ * in an initialiser are 0, as by default: then friction is that of the material alone.
+ *
+ * Static friction: a contact point that does not slide holds up to static_friction times its normal force; one that
+ * slides is held back by the material's friction times it, until it comes to rest or the slip turns round. Creep slower
+ * than about a third of (static_friction - friction) g h, with the substep h, counts as sticking. Of a pair it follows
+ * from the static_friction of its two surfaces, where that is below a surface's friction from the latter, by the rule
+ * of friction. An answer of the pre-solve function that changes the friction holds for both.
+ *
+ * By direction: along slide_direction, as seen on the contact's plane, friction is slide_factor times as large as
+ * across it, where the coefficients are as given: skis, blades, rollers, wood grain. Forces stay within an ellipse, and
+ * of those on its rim the one that takes most energy acts: with the factor m, the slip v and the normal force N,
+ *   (F_along / (m mu N))^2 + (F_across / (mu N))^2 <= 1,   F_i parallel to -mu_i^2 v_i.
+ * Where the direction leaves the plane by an angle t, the factor is 1 / sqrt(1 + (1 / m^2 - 1) cos(t)^2). Below 1e-6 m
+ * counts as 1e-6. Where both surfaces have a direction, what they let slip adds up: the ellipse's matrix, 1 of a circle
+ * and 1 + (1 / m^2 - 1) d d^T of a direction d, is 1 and what either has beyond it.
+ *
+ * Grains, and contacts of cloths, solids, and worlds that minimise, have the material's friction alone. Rolling and
+ * spinning friction know no direction.
+ */
+typedef struct taut_friction {
+    float static_friction; /**< coefficient while it sticks, [0, 100]; below the material's friction: that. Default 0 */
+    float slide_factor;    /**< of the coefficients along slide_direction, [0, 1]; 0: it slides freely. Default 0 */
+    taut_vec3 slide_direction; /**< in the collider's frame, each component within 1e4, the length does not matter; 0:
+                                  friction is the same all ways. Default 0 */
+    uint32_t reserved;         /**< zero */
+} taut_friction;
+
+/**
  * Who collides with whom: two colliders collide when they share a non-zero group with positive sign, never
  * when they share a negative one; else when each one's category is in the other's mask. Those of one body never do.
  */
@@ -64,6 +93,7 @@ typedef struct taut_filter {
 /** The defaults that a def has. */
 TAUT_API void taut_material_init(taut_material* material);
 TAUT_API void taut_filter_init(taut_filter* filter);
+TAUT_API void taut_friction_init(taut_friction* friction);
 
 /** Bits of taut_collider_def.flags. */
 #define TAUT_COLLIDER_SENSOR 1u        /**< detects what overlaps it and collides with nothing; see sensor.h */
@@ -101,7 +131,8 @@ typedef struct taut_collider_def {
      * that is jumped through from below: see taut_collider_set_one_way. Each component within 1e4, the length does not
      * matter; 0: it is touched from everywhere. Default 0 */
     taut_vec3 one_way;
-    uint32_t reserved; /**< zero */
+    uint32_t reserved;      /**< zero */
+    taut_friction friction; /**< static friction, and friction by direction. Default: none */
 } taut_collider_def;
 
 TAUT_API void taut_collider_def_init_sized(taut_collider_def* def, uint32_t size);
@@ -160,6 +191,13 @@ TAUT_API taut_result taut_collider_set_shape(taut_collider collider, taut_shape 
 /** Changes its surface, from the next step on. @return TAUT_OK; TAUT_INVALID_ARGUMENT, TAUT_NULL_POINTER,
  *  TAUT_STALE_HANDLE, TAUT_LOCKED. */
 TAUT_API taut_result taut_collider_set_material(taut_collider collider, const taut_material* material);
+/**
+ * Changes its static friction and its friction by direction, from the next step on. taut_collider_get_def tells them,
+ * the direction as a unit vector.
+ * @return TAUT_OK; TAUT_INVALID_ARGUMENT (text names field and value), TAUT_NULL_POINTER, TAUT_IN_USE (of a cable,
+ * cloth or solid), TAUT_STALE_HANDLE, TAUT_LOCKED.
+ */
+TAUT_API taut_result taut_collider_set_friction(taut_collider collider, const taut_friction* friction);
 /** Changes who collides with it, from the next step on. */
 TAUT_API taut_result taut_collider_set_filter(taut_collider collider, const taut_filter* filter);
 /** Changes its share in a mass taken from colliders [kg/m^3], [0, 1e8]; the body's mass stays as it is. */

@@ -20,6 +20,27 @@ void set_one_way(const taut_vec3& direction, ColliderTraits& traits, Collider& c
     ask_for(collider, kAsksOneWay, traits.one_way == Vec3f::Zero() ? 0 : kAsksOneWay);
 }
 
+// What a refusal calls the fields of taut_friction.
+struct FrictionNames {
+    const char *static_friction, *slide_factor, *slide_direction, *reserved;
+};
+constexpr FrictionNames kFrictionAlone{"static_friction", "slide_factor", "slide_direction", "reserved"};
+constexpr FrictionNames kFrictionInDef{"friction.static_friction", "friction.slide_factor", "friction.slide_direction",
+                                       "friction.reserved"};
+
+Check& check_friction(Check& check, const FrictionNames& names, const taut_friction& friction) {
+    return check.number(names.static_friction, friction.static_friction, kFriction)
+        .number(names.slide_factor, friction.slide_factor, kUnitInterval)
+        .vector(names.slide_direction, friction.slide_direction, kOneWay)
+        .zero(names.reserved, friction.reserved);
+}
+
+void set_friction(const taut_friction& friction, ColliderTraits& traits) {
+    traits.static_friction = friction.static_friction;
+    traits.slide_factor = friction.slide_factor;
+    traits.slide_direction = to_vec(friction.slide_direction).stableNormalized().cast<float>();  // 0 stays 0
+}
+
 }  // namespace
 
 namespace taut {
@@ -45,9 +66,10 @@ Check& check_collider_def(Check& check, const taut_collider_def& def) {
         .vector("position", def.position, kShapeCoordinate)
         .rotation("rotation", def.rotation);
     check_material(check, kMaterialInDef, def.material).zero("filter.reserved", def.filter.reserved);
-    return check_asks(check, "flags", def.flags, def.contact_events)
+    check_asks(check, "flags", def.flags, def.contact_events)
         .vector("one_way", def.one_way, kOneWay)
         .zero("reserved", def.reserved);
+    return check_friction(check, kFrictionInDef, def.friction);
 }
 
 taut_result make_collider(Check& check, const World& world, NodeKind kind, const taut_collider_def& def,
@@ -75,6 +97,7 @@ taut_result make_collider(Check& check, const World& world, NodeKind kind, const
     out.grain = (def.flags & TAUT_COLLIDER_GRAIN) && solvers()[world.def.solver]->lanes;
     out.asks = static_cast<uint8_t>(def.contact_events | (def.flags & TAUT_COLLIDER_PRE_SOLVE ? kAsksPreSolve : 0));
     set_one_way(def.one_way, out.traits, out);
+    set_friction(def.friction, out.traits);
     return check.result();
 }
 
@@ -104,6 +127,7 @@ taut_collider_def def_of(const World& world, uint32_t index) {
         (collider.grain ? TAUT_COLLIDER_GRAIN : 0) | (collider.asks & kAsksPreSolve ? TAUT_COLLIDER_PRE_SOLVE : 0);
     def.contact_events = collider.asks & TAUT_CONTACT_EVENTS_ALL;
     def.one_way = to_vec3(traits.one_way.cast<double>());
+    def.friction = {traits.static_friction, traits.slide_factor, to_vec3(traits.slide_direction.cast<double>()), 0};
     return def;
 }
 
@@ -288,6 +312,19 @@ taut_result taut_collider_set_material(taut_collider handle, const taut_material
     if (!check_material(check, kMaterialAlone, *material)) return check.result();
     return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
         world.colliders.change_traits(collider, [&](ColliderTraits& own) { own.material = *material; });
+        wake(world, world.colliders.record[collider].node);
+        return TAUT_OK;
+    });
+}
+
+taut_result taut_collider_set_friction(taut_collider handle, const taut_friction* friction) {
+    TAUT_RECORD(taut_collider_set_friction, handle, friction);
+    Check check(__func__);
+    if (!check.pointer("friction", friction)) return check.result();
+    if (!check_friction(check, kFrictionAlone, *friction)) return check.result();
+    return with(check.call(), handle, Use::write, [&](World& world, uint32_t collider) {
+        if (!check_own(check, world, world.colliders.record[collider].node)) return check.result();
+        world.colliders.change_traits(collider, [&](ColliderTraits& own) { set_friction(*friction, own); });
         wake(world, world.colliders.record[collider].node);
         return TAUT_OK;
     });

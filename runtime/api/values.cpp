@@ -22,6 +22,7 @@ void taut_hooks_init(taut_hooks* hooks) { give_value(hooks, {}); }
 void taut_pose_init(taut_pose* pose) { give_value(pose, {{}, taut::kUnturned, {}}); }
 void taut_material_init(taut_material* material) { give_value(material, taut::kDefaultMaterial); }
 void taut_filter_init(taut_filter* filter) { give_value(filter, taut::kDefaultFilter); }
+void taut_friction_init(taut_friction* friction) { give_value(friction, {}); }
 void taut_frame_init(taut_frame* frame) { give_value(frame, {{}, taut::kUnturned}); }
 void taut_drive_init(taut_drive* drive) { give_value(drive, {0, 0, 0, 0, 0, 1, INFINITY}); }
 void taut_joint_base_init(taut_joint_base* base) {

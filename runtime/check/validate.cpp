@@ -166,7 +166,7 @@ MaybeFlaw lane_impulse_flaw(const ContactLanes& lanes) {
         for (int lane = 0; lane < kLanes; ++lane) {
             if (g.pair[lane] == kNoLanes) continue;
             for (uint32_t k = 0; k < g.points; ++k)
-                if (const char* flaw = impulse_flaw(g.point[k].impulse, lane, g.friction[lane]))
+                if (const char* flaw = impulse_flaw(g.point[k].impulse, lane, lanes.most_friction(g, k, lane)))
                     return Flaw{flaw, g.pair[lane]};
         }
     return std::nullopt;

@@ -75,15 +75,22 @@ struct alignas(64) LaneGroup {
     float round[2][kLanes];           // of a and b: how far from their surfaces what turns ends [m]; is_round
     LanePoint* point;                 // one for each of `points`
     uint32_t points;                  // most points of a lane
-    uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no surface of a lane moves
+    uint32_t first_drive = kNoLanes;  // in LaneDrive, one for each of `points`; kNoLanes: no lane has what that tells
     uint32_t bounces = 0;             // 1: some pair has restitution
     uint32_t is_round = 0;            // 1: some round is not 0
     uint32_t rolling = kNoLanes;      // in LaneRolling; kNoLanes: no lane has friction torques or an axis
     uint32_t has_axes = 0;            // 1: some lane has a shape of revolution
 };
 
-struct alignas(64) LaneDrive {  // what friction drives the slip of body b on a to, where surfaces move
-    float speed[2][kLanes];     // along the tangents [m/s]
+// Of a point where surfaces move, or friction has a direction or holds more where it sticks. The row of tangent 2
+// counts `part` times: what has to do with it, friction masses, coupling, speed and impulse, is of that.
+struct alignas(64) LaneDrive {
+    float speed[2][kLanes];     // what friction drives the slip of body b on a to, of the rows of the tangents [m/s]
+    float part[kLanes];         // friction along tangent 2, in parts of that along tangent 1
+    float friction[2][kLanes];  // coefficients: where it slides, where it sticks
+    float slid[kLanes];         // at the end of the last substep: compliance of its sliding [1/kg]; 0: it stuck
+    float slides[kLanes];       // the same of this substep, as relaxed sweeps found it last
+    float way[2][kLanes];       // friction at the start of the substep, of the rows [N s]
 };
 
 struct alignas(64) LaneRolling {   // about normal, tangent 1, tangent 2; lanes without it have zero arms
@@ -115,7 +122,7 @@ struct alignas(64) LanePoint {           // empty places have zero masses
 // What the kernels see: plain pointers, so that no inline function is shared between builds.
 struct LaneView {
     const LaneGroup* group;
-    const LaneDrive* drive;
+    LaneDrive* drive;
     LaneRolling* rolling;
     uint32_t movers = 0;  // of groups that threads share: seats 1 to here move, and another core may hold them; else 0
 };
@@ -189,6 +196,20 @@ struct ContactLanes {
 
     bool bounces = false;  // some point has restitution
 
+    // Of a point, the most that it may have.
+    float most_friction(const LaneGroup& g, uint32_t k, int lane) const {
+        return g.first_drive == kNoLanes ? g.friction[lane] : drive[g.first_drive + k].friction[1][lane];
+    }
+    // The one that it has as it slides or sticks in this substep.
+    float friction_now(const LaneGroup& g, uint32_t k, int lane) const {
+        if (g.first_drive == kNoLanes) return g.friction[lane];
+        const LaneDrive& at = drive[g.first_drive + k];
+        return at.friction[at.slid[lane] > 0 ? 0 : 1][lane];
+    }
+    // How much the row of a point's tangent 2 counts.
+    float part_of(const LaneGroup& g, int lane) const {
+        return g.first_drive == kNoLanes ? 1 : drive[g.first_drive].part[lane];
+    }
     std::span<const LanePart> parts_of(uint32_t colour) const { return {&part[colour * parts], parts}; }
     // act(i), an index into part, for a thread's part of each colour in turn.
     template <class Act>
@@ -207,6 +228,9 @@ struct ContactLanes {
         taut::trim(pairs);
     }
 };
+
+// Creep that counts as sticking: what is stopped by this part of the drop from static to kinetic friction.
+constexpr float kSlips = 1.0f / 8;
 
 // Parameters of a sweep, from the soft-contact model: frequency 0.25/h, damping ratio 10, push at most 3 m/s.
 struct SweepTerms {

@@ -6,7 +6,20 @@
 // which opposes the slip, then projected on the circle. Where surfaces move, v_t is what misses their speed.
 // Rolling and spinning friction: the same on the relative angular velocity, after the points of a pair, with the sum of
 // their normal impulses times an arm as the limit.
+//
+// Static friction: a point that slides has the coefficient mu_k, one that sticks mu_s. Which of the two it does is
+// decided by the substep before, for within one the law has no unique answer:
+//   sticks -> slides   if mu_s p_n does not stop it, |p_t - v_t / k_max| > mu_s p_n, and it does not creep:
+//                      |v_t| / k_max > s (mu_s - mu_k) P, with s = kSlips and P the sum of p_n over its pair. Among
+//                      points that hold together some are at mu_s p_n, and slip by what sweeps leave.
+//   slides -> sticks   if mu_k p_n stops it: |p_t - v_t / k_max| <= mu_k p_n; or if friction would turn round against
+//                      what it was, as then the slip went through 0: at once.
+//
+// Friction by direction: the row of tangent 2 is r times that of the unit vector, which makes the ellipse with the axes
+// mu, r mu the circle of radius mu, and a slip along the ellipse's normal one against the impulse (associated flow).
 #pragma once
+
+#include <type_traits>
 
 #include "constraints/sweep_side.inl"
 
@@ -97,22 +110,25 @@ struct ContactSweep {
     // What is hit answers to friction at once: it turns a corner that hits, which would go in at the speed that this
     // gives it. What rests does so in the next sweep, and friction, the last word here, lets nothing creep.
     // Where no lane bears anything, or comes to, nothing changes; then false.
-    template <class Terms>
-    [[gnu::always_inline]] static bool point_rows(LanePoint& p, const LaneDrive* drive, const Frame& f, Side& a,
-                                                  Side& b, const Terms& terms) {
+    template <bool kDriven, class Terms>
+    [[gnu::always_inline]] static bool point_rows(LanePoint& p, LaneDrive* drive, const F& pushes, const Frame& f,
+                                                  Side& a, Side& b, const Terms& terms) {
         const V ra = load(p.ra), rb = load(p.rb), v = b.at(rb) - a.at(ra);
         const F old = F::load(p.impulse[0]), old1 = F::load(p.impulse[1]), old2 = F::load(p.impulse[2]);
         const F mass = F::load(p.normal_mass), asked = normal_row(mass, old, dot(v, f.n), terms);
         const F first = F::max(asked, F::all(0));
-        if (!F::any(first, old, old1, old2)) return false;
+        const bool bears = F::any(first, old, old1, old2);
+        if (!kDriven && !bears) return false;
         const F normal = first - old, c1 = F::load(p.coupling[0]), c2 = F::load(p.coupling[1]);
-        F v1 = dot(v, f.t1) + c1 * normal, v2 = dot(v, f.t2) + c2 * normal;
-        if (drive) {
+        F v1 = dot(v, f.t1) + c1 * normal, v2 = dot(v, f.t2) + c2 * normal, friction = f.friction;
+        if constexpr (kDriven) {
             v1 = v1 - F::load(drive->speed[0]);
             v2 = v2 - F::load(drive->speed[1]);
+            friction = friction_now(p, *drive, first, pushes, v1, v2, std::is_same_v<Terms, PointTerms>);
+            if (!bears) return false;
         }
         F q1 = old1, q2 = old2;
-        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, f.friction * first);
+        circle(q1, q2, v1, v2, p.friction_mass, p.isotropic_mass, friction * first);
         q1.store(p.impulse[1]);
         q2.store(p.impulse[2]);
         const F d1 = q1 - old1, d2 = q2 - old2, next = after_friction(mass, asked, c1 * d1 + c2 * d2, terms);
@@ -123,9 +139,44 @@ struct ContactSweep {
         return true;
     }
 
+    // The coefficient of a point that bears `first` and slips at v. relaxed: also what it does from now on.
+    static F friction_now(const LanePoint& p, LaneDrive& drive, const F& first, const F& load, const F& v1, const F& v2,
+                          bool relaxed) {
+        const F zero = F::all(0), one = F::all(1), iso = F::load(p.isotropic_mass);
+        const F kinetic = F::load(drive.friction[0]), sticking = F::load(drive.friction[1]);
+        const F e1 = F::load(p.impulse[1]) - iso * v1, e2 = F::load(p.impulse[2]) - iso * v2;
+        const F back = zero - (e1 * F::load(drive.way[0]) + e2 * F::load(drive.way[1]));
+        const F goes_on = F::if_greater(F::load(drive.slid), zero, F::if_greater(back, zero, zero, one), zero);
+        const F friction = F::if_greater(goes_on, zero, kinetic, sticking);
+        if (!relaxed) return friction;
+        const F most = first * friction, slip = F::sqrt(v1 * v1 + v2 * v2), least = F::all(1e-30f);
+        const F creep = F::if_greater(goes_on, zero, zero, F::all(kSlips) * (sticking - kinetic) * load);
+        const F ratio = F::max(slip, least) / F::max(kinetic * first, least);
+        const F compliance = F::if_greater(F::all(1e30f), ratio, ratio, F::all(1e30f));
+        const F slides = F::if_greater(iso * slip, creep, compliance, zero);
+        F::if_greater(e1 * e1 + e2 * e2, most * most, slides, zero).store(drive.slides);
+        return friction;
+    }
+
     // Of the points of a group.
-    static const LaneDrive* drive_of(const LaneView& contacts, const LaneGroup& g, uint32_t point) {
+    static LaneDrive* drive_of(const LaneView& contacts, const LaneGroup& g, uint32_t point) {
         return g.first_drive == kNoLanes ? nullptr : contacts.drive + g.first_drive + point;
+    }
+
+    // The frame of rows, in which tangent 2 counts less where friction has a direction.
+    static Frame frame_of_rows(const LaneView& contacts, const LaneGroup& g) {
+        Frame f(g);
+        f.t2 = F::load(contacts.drive[g.first_drive].part) * f.t2;
+        return f;
+    }
+
+    // What points did in the last substep decides what they do in this one.
+    [[gnu::noinline]] static void begin_friction(LaneView contacts, const LaneGroup& g) {
+        for (uint32_t k = 0; k < g.points; ++k) {
+            LaneDrive& drive = *drive_of(contacts, g, k);
+            F::load(drive.slides).store(drive.slid);
+            for (int t = 0; t < 2; ++t) F::load(g.point[k].impulse[1 + t]).store(drive.way[t]);
+        }
     }
 
     [[gnu::noinline]] static void rolling_rows(LaneView contacts, const LaneGroup& g, const Frame& f, Side& a,
@@ -189,6 +240,19 @@ struct ContactSweep {
         Side::prefetch(contacts.group[i].b, nodes, shifts, contacts.movers);
     }
 
+    // What is told of unit tangents for a row of the second that counts `part` times.
+    [[gnu::noinline]] static void scale_rows(const F& part, const F& used, const F& k11, const F& k22, const F& k12,
+                                             F (&tangents)[3], F& isotropic, F& c2) {
+        const F half = F::all(0.5f), one = F::all(1), tiny = F::all(1e-30f), zero = F::all(0), squared = part * part;
+        const F mean = half * (k11 + squared * k22), diff = half * (k11 - squared * k22), across = part * k12;
+        const F largest = mean + F::sqrt(diff * diff + across * across);
+        const F scaled = F::if_greater(isotropic, zero, used / F::max(largest, tiny), zero);  // locks may leave none
+        isotropic = F::if_greater(one, part, scaled, isotropic);
+        tangents[1] = tangents[1] / squared;
+        tangents[2] = tangents[2] / part;
+        c2 = part * c2;
+    }
+
     // k_n = n^T (J W J^T) n, the tangential 2x2 block and its larger eigenvalue. put(value, array) writes a value of
     // all lanes, before(point, new mass) comes ahead of a point's. What was hit already keeps the approach speed that
     // it had.
@@ -234,6 +298,8 @@ struct ContactSweep {
                 mass = F::if_greater(held, zero, F::if_greater(kn, least, mass, zero), mass);
                 invert_held(used * held, {k11, k22, k12}, largest, least, tangents, isotropic);
             }
+            if (g.first_drive != kNoLanes)
+                scale_rows(F::load(contacts.drive[g.first_drive].part), used, k11, k22, k12, tangents, isotropic, c2);
             const F approach = dot(b.at(rb) - a.at(ra), f.n);
             before(p, mass);
             put(mass, p.normal_mass);
@@ -345,15 +411,16 @@ struct ContactSweep {
         for (uint32_t i = begin; i < end; ++i) {
             prefetch(contacts, i + 1, end, nodes);
             const LaneGroup& g = contacts.group[i];
+            if (g.first_drive != kNoLanes) begin_friction(contacts, g);
             if (!bears(g)) continue;
             const Frame f(g);
+            const V t2 = g.first_drive == kNoLanes ? f.t2 : frame_of_rows(contacts, g).t2;
             Side a, b;
             a.gather(g.a, nodes);
             b.gather(g.b, nodes);
             for (uint32_t k = 0; k < g.points; ++k) {
                 const LanePoint& p = g.point[k];
-                const V push =
-                    F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * f.t2;
+                const V push = F::load(p.impulse[0]) * f.n + F::load(p.impulse[1]) * f.t1 + F::load(p.impulse[2]) * t2;
                 b.add(push, load(p.rb));
                 a.subtract(push, load(p.ra));
             }
@@ -367,17 +434,35 @@ struct ContactSweep {
     template <class Terms>
     [[gnu::always_inline]] static void sweep_group(LaneView contacts, const LaneGroup& g, SweepNode* nodes,
                                                    Terms&& terms) {
-        const Frame f(g);
+        if (g.first_drive != kNoLanes)
+            sweep_driven(contacts, g, nodes, terms);
+        else
+            sweep_points<false>(contacts, g, Frame(g), nodes, terms);
+    }
+    template <class Terms>
+    [[gnu::noinline]] static void sweep_driven(LaneView contacts, const LaneGroup& g, SweepNode* nodes, Terms& terms) {
+        sweep_points<true>(contacts, g, frame_of_rows(contacts, g), nodes, terms);
+    }
+    template <bool kDriven, class Terms>
+    [[gnu::always_inline]] static void sweep_points(LaneView contacts, const LaneGroup& g, const Frame& f,
+                                                    SweepNode* nodes, Terms& terms) {
         Side a, b;
         a.gather(g.a, nodes);
         b.gather(g.b, nodes);
         bool changed = g.rolling != kNoLanes;
+        F pushes = F::all(0);
+        for (uint32_t k = 0; kDriven && k < g.points; ++k) pushes = pushes + F::load(g.point[k].impulse[0]);
         for (uint32_t k = 0; k < g.points; ++k) {
             LanePoint& p = g.point[k];
-            changed |= point_rows(p, drive_of(contacts, g, k), f, a, b, terms(p));
+            changed |= point_rows<kDriven>(p, drive_of(contacts, g, k), pushes, f, a, b, terms(p));
         }
         if (!changed) return;
-        if (g.rolling != kNoLanes) rolling_rows(contacts, g, f, a, b);
+        if (g.rolling != kNoLanes) {
+            if constexpr (kDriven)
+                rolling_rows(contacts, g, Frame(g), a, b);
+            else
+                rolling_rows(contacts, g, f, a, b);
+        }
         a.scatter(g.a, nodes);
         b.scatter(g.b, nodes);
     }

@@ -29,4 +29,14 @@ inline RelativeMotion relative_motion(const Nodes& nodes, const Pair& pair) {
     return {apart.cast<float>(), turning.cast<float>()};
 }
 
+// Whether b's surface slips on a's at a point, by more than rounding of how fast they go.
+inline bool slips(const Nodes& nodes, const Pair& pair, int k) {
+    constexpr float kRounding = 0x1p-20f;
+    const RelativeMotion motion = relative_motion(nodes, pair);
+    const Vec3f n = pair.manifold.normal, drive = pair.driven ? pair.drive_at(k) : Vec3f(Vec3f::Zero());
+    const Vec3f v = motion.apart + motion.turning.cross(pair.manifold.points[k].position) - drive;
+    const double speed = nodes.motion[pair.a].v.norm() + nodes.motion[pair.b].v.norm();
+    return (v - n.dot(v) * n).norm() > kRounding * (static_cast<float>(speed) + drive.norm());
+}
+
 }  // namespace taut

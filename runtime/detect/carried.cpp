@@ -26,7 +26,9 @@ bool any_carries(const Nodes& nodes) {
 // Single points say nothing: against each other they may all be at their bounds.
 bool sticks(const Pair& pair) {
     constexpr float kWithin = 0.999f;  // of the bounds; forces are floats
-    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+    const Vec3f n = pair.manifold.normal;
+    const Tangents tangents = tangents_of(pair);
+    const Vec3f &t1 = tangents.t1, &t2 = tangents.t2;
     Vec3f force = Vec3f::Zero(), centre = Vec3f::Zero();
     float pressure = 0, torque = 0, arms = 0;
     const auto each = [&](auto visit) {
@@ -38,14 +40,15 @@ bool sticks(const Pair& pair) {
     });
     if (!(pressure > 0)) return false;
     centre /= pressure;
-    each([&](const ContactForce& at, const Vec3f& point) {
+    each([&](const ContactForce& given, const Vec3f& point) {
+        const ContactForce at = to_rows(pair, given);
         const Vec3f push = at.tangent1 * t1 + at.tangent2 * t2, arm = point - centre;
         force += push;
         torque += n.dot(arm.cross(push));
         arms += at.normal * (arm - n.dot(arm) * n).norm();
     });
-    const float slide = force.norm() / (pair.friction * pressure);
-    const float turn = arms > 0 ? torque / (pair.friction * arms) : 0;
+    const float slide = force.norm() / (pair.most_friction() * pressure);
+    const float turn = arms > 0 ? torque / (pair.most_friction() * arms) : 0;
     return slide * slide + turn * turn < kWithin * kWithin;
 }
 
@@ -102,7 +105,7 @@ bool hold(const Nodes& nodes, float borne, double time_step, const Carried& from
     if (!sticks(pair) || !(tipped(nodes, pair, from, now) <= kTips)) return false;
     const Slip slip(nodes, pair, from);
     const double inv_mass = std::max(nodes.mass[pair.a].inv_mass, nodes.mass[pair.b].inv_mass);
-    const double friction = static_cast<double>(pair.friction * borne);
+    const double friction = static_cast<double>(pair.friction * pair.easy_part * borne);
     if (!(slip.way.norm() <= friction * inv_mass * time_step * time_step)) return false;
     drive_back(slip, time_step, pair);
     return true;

@@ -59,7 +59,7 @@ void meet(const Detection& of, const collision::Placement& at_a, const collision
     const uint32_t a = pair.collider_a(), b = pair.collider_b();
     const float friction = pair.friction, restitution = pair.restitution;
     combine_surfaces(of.nodes, of.colliders.traits[a], of.colliders.traits[b], at_a, at_b, from_a, pair);
-    if (pair.answered) pair.friction = friction, pair.restitution = restitution;
+    if (pair.answered) answer(friction, restitution, pair);
     pair.asks = of.pairs.asks | of.colliders.record[a].asks | of.colliders.record[b].asks;
 }
 
@@ -120,7 +120,9 @@ void keep_cache(const collision::PairCache& cache, PointsCache& of_points) {
 
 // Whether a record that had this manifold knows its surface, unless the host changed it since. Moving ones turn with
 // their bodies.
-bool is_known(const collision::Manifold& old, const Pair& pair) { return old.count > 0 && !pair.driven; }
+bool is_known(const collision::Manifold& old, const Pair& pair) {
+    return old.count > 0 && !pair.driven && !pair.directed;
+}
 
 // What was found for a pair without a surface, and is in its record.
 void take_over(const Shaped& shaped, const Detection& of, const collision::Manifold& old, NearPair& near, Pair& pair) {
@@ -331,7 +333,7 @@ void find_open_points(const Detection& of, bool solid_is_b, const collision::Sol
 bool reuse(const Detection& of, const NearPair& near, Pair& pair) {
     const Vec3f old_normal = pair.manifold.normal;
     if (!reuse_manifold(of.pairs, of.time, pair)) return false;
-    if (near.changed || pair.driven) {
+    if (near.changed || pair.driven || pair.directed) {
         const uint32_t a = pair.collider_a();
         meet(of, of.pairs.placement[a], of.pairs.placement[pair.collider_b()], of.pairs.stance[a].from_node, pair);
     }

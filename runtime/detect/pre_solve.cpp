@@ -70,8 +70,7 @@ Verdict ask_host(const PreSolve& pre_solve, const taut_pre_solve& question, Cont
     }
     if (said == 0) return Verdict::ignored;
     if (said != 1 || !within(answer.friction, kMostFriction) || !within(answer.restitution, 1)) return Verdict::refused;
-    contact.friction = answer.friction;
-    contact.restitution = answer.restitution;
+    taut::answer(answer.friction, answer.restitution, contact);
     return Verdict::accepted;
 }
 

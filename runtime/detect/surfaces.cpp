@@ -33,11 +33,58 @@ bool can_turn(const Nodes& nodes, const Pair& pair) {
     return either(NodeKind::dynamic) && !either(NodeKind::particle);
 }
 
+// The smallest factor of friction along a direction.
+constexpr double kLeastFactor = 1e-6;
+
+// Friction of a pair by direction. The forces of a surface with the unit direction d and the factor m are those within
+// an ellipsoid, F S F <= (mu N)^2 with S = 1 + e d d^T, e = 1/m^2 - 1; on the contact's plane d is (x, y). Of two
+// surfaces e d d^T adds up. With the eigenvalues s >= l >= 0 of this sum E the axes are mu / sqrt(1 + s) along its
+// eigenvector and mu / sqrt(1 + l) across.
+void direct_friction(const ColliderTraits& a, const ColliderTraits& b, const collision::Placement& at_a,
+                     const collision::Placement& at_b, Pair& pair) {
+    const Vec3 n = pair.manifold.normal.cast<double>(), t1 = tangent_of(pair.manifold.normal).cast<double>(),
+               t2 = n.cross(t1);
+    double x[2] = {0, 0}, y[2] = {0, 0};  // times the root of e
+    const auto project = [&](const ColliderTraits& of, const collision::Placement& at, int side) {
+        if (!of.directed()) return;
+        const double factor = std::max(static_cast<double>(of.slide_factor), kLeastFactor);
+        const Vec3 d = std::sqrt(1 / (factor * factor) - 1) * (at.rotation * of.slide_direction).cast<double>();
+        x[side] = d.dot(t1), y[side] = d.dot(t2);
+    };
+    project(a, at_a, 0);
+    project(b, at_b, 1);
+    const double xx = x[0] * x[0] + x[1] * x[1], yy = y[0] * y[0] + y[1] * y[1], xy = x[0] * y[0] + x[1] * y[1];
+    const double half = 0.5 * (xx + yy), diff = 0.5 * (xx - yy), root = std::sqrt(diff * diff + xy * xy);
+    const double area = x[0] * y[1] - x[1] * y[0], largest = half + root;
+    pair.easy_part = 1;
+    if (!(largest > 0)) return;
+    const double least = std::min(area * area / largest, largest);
+    const double u = diff >= 0 ? diff + root : xy, v = diff >= 0 ? xy : root - diff;
+    const auto shorter = static_cast<float>(1 / std::sqrt(1 + least));
+    pair.friction *= shorter;
+    pair.sticking *= shorter;
+    pair.easy_part = static_cast<float>(std::sqrt((1 + least) / (1 + largest)));
+    const Vec3 along = u * t1 + v * t2;
+    if (root > 0)
+        pair.easy = along.normalized().cast<float>();
+    else
+        pair.easy_part = 1;
+}
+
 }  // namespace
 
 float friction_of(const taut_material& a, const taut_material& b) {
     return combine(a.friction, b.friction, a.friction_rule, b.friction_rule,
                    [](float x, float y) { return std::sqrt(x * y); });
+}
+
+float static_friction_of(const ColliderTraits& a, const ColliderTraits& b) {
+    const auto sticking = [](const ColliderTraits& of) {
+        taut_material material = of.material;
+        material.friction = std::max(of.static_friction, material.friction);
+        return material;
+    };
+    return friction_of(sticking(a), sticking(b));
 }
 
 float restitution_of(const taut_material& a, const taut_material& b) {
@@ -50,6 +97,13 @@ void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const Collide
                       Pair& pair) {
     const taut_material &one = a.material, &other = b.material;
     pair.friction = friction_of(one, other);
+    const bool sticks_better = a.static_friction > one.friction || b.static_friction > other.friction;
+    pair.sticking = sticks_better ? static_friction_of(a, b) : 0;
+    pair.directed = a.directed() || b.directed();
+    if (pair.directed)
+        direct_friction(a, b, at_a, at_b, pair);
+    else
+        pair.easy_part = 1;
     pair.restitution = restitution_of(one, other);
     pair.spinning = std::max(one.spinning_friction, other.spinning_friction);
     pair.rolling = std::max(one.rolling_friction, other.rolling_friction);

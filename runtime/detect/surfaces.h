@@ -9,6 +9,7 @@ namespace taut {
 
 // Of two surfaces together.
 float friction_of(const taut_material& a, const taut_material& b);
+float static_friction_of(const ColliderTraits& a, const ColliderTraits& b);
 float restitution_of(const taut_material& a, const taut_material& b);
 
 // Friction, restitution, arms and drive of a pair. from_a: of the origin of a's shape from that of its node [m].

@@ -38,9 +38,9 @@ void follow_points(const collision::Manifold& now, WatchedPair& watched) {
     }
 }
 
-// Of the last substep [N s]: normal, tangent 1, tangent 2.
+// Of the last substep, of its rows [N s]: normal, tangent 1, tangent 2.
 Vec3f impulse_of(const WatchedPair& watched, const System& system, const Pair& pair, int k) {
-    const ContactForce& force = pair.force[k];
+    const ContactForce force = to_rows(pair, pair.force[k]);
     if (watched.lane_group == kNone)
         return static_cast<float>(system.scheme.h) * Vec3f(force.normal, force.tangent1, force.tangent2);
     const ContactLanes& lanes = system.contacts;
@@ -92,19 +92,20 @@ void gather_impulses(const System& system, const Impacts& impacts, const Pairs& 
         WatchedPair& watched = watch.pairs[index];
         const Pair& pair = pairs.list[watched.pair];
         follow_points(pair.manifold, watched);
-        const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+        const Vec3f n = pair.manifold.normal;
+        const Tangents tangents = tangents_of(pair);
         for (int k = 0; k < pair.manifold.count; ++k) {
             const Vec3f impulse = impulse_of(watched, system, pair, k);
             watched.push[k] += impulse[0] * n;
-            watched.friction[k] += impulse[1] * t1 + impulse[2] * t2;
+            watched.friction[k] += friction_of(tangents, impulse[1], impulse[2]);
         }
     }
     for (const Impacts::Strike& strike : impacts.strikes) {
         WatchedPair* watched = find_watched(watch, strike.pair);
         if (!watched) continue;
-        const Vec3f n = pairs.list[strike.pair].manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
-        watched->push[strike.point] += strike.impulse[0] * n;
-        watched->friction[strike.point] += strike.impulse[1] * t1 + strike.impulse[2] * t2;
+        const Pair& pair = pairs.list[strike.pair];
+        watched->push[strike.point] += strike.impulse[0] * pair.manifold.normal;
+        watched->friction[strike.point] += friction_of(tangents_of(pair), strike.impulse[1], strike.impulse[2]);
     }
 }
 

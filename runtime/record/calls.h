@@ -55,6 +55,7 @@
     X(taut_collider_set_user_data)        \
     X(taut_collider_set_shape)            \
     X(taut_collider_set_material)         \
+    X(taut_collider_set_friction)         \
     X(taut_collider_set_filter)           \
     X(taut_collider_set_density)          \
     X(taut_collider_set_surface_velocity) \

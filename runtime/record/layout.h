@@ -48,6 +48,11 @@ void layout(V& visit, T& of) {
     auto& [friction, restitution, friction_rule, restitution_rule, rolling_friction, spinning_friction] = of;
     visit(friction, restitution, friction_rule, restitution_rule, rolling_friction, spinning_friction);
 }
+template <class V, Like<taut_friction> T>
+void layout(V& visit, T& of) {
+    auto& [static_friction, slide_factor, slide_direction, reserved] = of;
+    visit(static_friction, slide_factor, slide_direction, reserved);
+}
 template <class V, Like<taut_filter> T>
 void layout(V& visit, T& of) {
     auto& [category, mask, group, reserved] = of;
@@ -149,10 +154,10 @@ void layout(V& visit, T& of) {
 template <class V, Like<taut_collider_def> T>
 void layout(V& visit, T& of) {
     auto& [struct_size, density, shape, position, rotation, material, filter, user_data, flags, contact_events, one_way,
-           reserved] = of;
+           reserved, friction] = of;
     if (const auto whole = visit.sized(of))
-        visit(density, shape, position, rotation, material, filter, user_data, flags, contact_events, one_way,
-              reserved);
+        visit(density, shape, position, rotation, material, filter, user_data, flags, contact_events, one_way, reserved,
+              friction);
 }
 template <class V, Like<taut_body_def> T>
 void layout(V& visit, T& of) {

@@ -91,14 +91,15 @@ SweptPoint point_of(const System& system, const RowBlock& block, const Evaluated
 
 // A point of a lane.
 struct PointOfLane : SweptPoint {
-    Vec3 ra, rb, n, t1, t2;
+    Vec3 ra, rb, n, t1, t2;  // t2 as its row counts
 
-    PointOfLane(const LaneGroup& g, const LanePoint& point, int lane) {
+    PointOfLane(const ContactLanes& lanes, const LaneGroup& g, uint32_t k, int lane) {
+        const LanePoint& point = g.point[k];
         const auto load = [lane](const float(&from)[3][kLanes]) {
             return Vec3(static_cast<double>(from[0][lane]), static_cast<double>(from[1][lane]),
                         static_cast<double>(from[2][lane]));
         };
-        n = load(g.normal), t1 = load(g.tangent), t2 = n.cross(t1);
+        n = load(g.normal), t1 = load(g.tangent), t2 = static_cast<double>(lanes.part_of(g, lane)) * n.cross(t1);
         ra = load(point.ra), rb = load(point.rb), p = load(point.impulse);
         gap = static_cast<double>(point.gap[lane]);
         mass = static_cast<double>(point.normal_mass[lane]);
@@ -211,12 +212,13 @@ struct SolveReports::Measure {
         for_lane_points(system.contacts, [&](const LaneGroup& g, int lane, uint32_t k) {
             IslandReport* const out = report(g, lane);
             if (!out) return;
-            const PointOfLane at(g, g.point[k], lane);
+            const PointOfLane at(system.contacts, g, k, lane);
             const Vec3 v = velocity_at(system.exact[g.b[lane]], at.rb) - velocity_at(system.exact[g.a[lane]], at.ra);
             const Eigen::Vector2d slip =
                 Eigen::Vector2d(at.t1.dot(v), at.t2.dot(v)) - drive_of(system.contacts, g, lane, k);
-            const double change = std::max(normal_change(at, at.n.dot(v), contact),
-                                           friction_change(at, slip, static_cast<double>(g.friction[lane])));
+            const auto friction = static_cast<double>(system.contacts.friction_now(g, k, lane));
+            const double change =
+                std::max(normal_change(at, at.n.dot(v), contact), friction_change(at, slip, friction));
             out->residual = std::max(out->residual, system.scheme.h * change);
             if (at.p[0] > 0) out->linearisation = std::max(out->linearisation, lever_curve(system, g, lane, k, at));
         });
@@ -375,7 +377,7 @@ struct SolveReports::Measure {
         for_lane_points(system.contacts, [&](const LaneGroup& g, int lane, uint32_t k) {
             IslandReport* const out = report(g, lane);
             if (!out) return;
-            const PointOfLane at(g, g.point[k], lane);
+            const PointOfLane at(system.contacts, g, k, lane);
             const Vec3 p = at.impulse();
             if (!is_moved(g.a[lane])) out->energy -= p.dot(velocity_at(to.mean_[g.a[lane]], at.ra));
             if (!is_moved(g.b[lane])) out->energy += p.dot(velocity_at(to.mean_[g.b[lane]], at.rb));

@@ -226,7 +226,8 @@ private:
             const bool driven = g.first_drive != kNoLanes;
             impact.drive[t] = driven ? sys_.contacts.drive[g.first_drive + static_cast<uint32_t>(k)].speed[t][lane] : 0;
         }
-        const Vec3 n = column(g.normal, lane), t1 = column(g.tangent, lane), row[3] = {n, t1, n.cross(t1)};
+        const Vec3 n = column(g.normal, lane), t1 = column(g.tangent, lane), t2 = n.cross(t1);
+        const Vec3 row[3] = {n, t1, static_cast<double>(sys_.contacts.part_of(g, lane)) * t2};
         const Vec3 lever[2] = {column(p.ra, lane), column(p.rb, lane)};
         impact.sides = 2;
         for (int i = 0; i < 2; ++i) {

@@ -71,7 +71,7 @@ public:
         p[0] = std::max(0.0, asked);
         move_to(p);
 
-        solve_circle(s, block_.friction * p[0]);
+        solve_circle(s, (turns_round(s) ? block_.sticking : block_.friction) * p[0]);
         if (!(biased && block_.hits)) return;
         p = impulse();
         p[0] = std::max(0.0, asked - s.row(0).tail<2>().dot(p.tail<2>() - before) / s(0, 0));
@@ -92,6 +92,15 @@ public:
     }
 
 private:
+    // Friction that slides and would go against what it was sticks at once, where that holds more.
+    bool turns_round(const RowMatrix& s) const {
+        if (!(block_.sticking > block_.friction)) return false;
+        const double mass = 1 / largest_across(s);
+        const RowVector p = impulse(), v = velocity();
+        double along = 0;
+        for (int t = 0; t < 2; ++t) along += block_.way[t] * (p[1 + t] - mass * (v[1 + t] - block_.drive[t]));
+        return along < 0;
+    }
     // Rows 1 and 2 towards no slip on a circle; isotropic where they slide.
     void solve_circle(const RowMatrix& s, double limit) {
         RowVector p = impulse();
@@ -99,8 +108,7 @@ private:
         const Eigen::Matrix2d k = s.bottomRightCorner<2, 2>();
         if (!(inverse_mass(1) > 0) && !(inverse_mass(2) > 0)) return;
         const Eigen::Vector2d slip(v[1] - block_.drive[0], v[2] - block_.drive[1]), old(p[1], p[2]);
-        const double half = 0.5 * k.trace(), diff = 0.5 * (k(0, 0) - k(1, 1));
-        const double largest = half + std::sqrt(diff * diff + k(0, 1) * k(0, 1));
+        const double largest = largest_across(s);
         // Locked axes may leave one direction alone.
         const bool flat = has_locks() && !(k.determinant() > static_cast<double>(kLeastFree) * largest * largest);
         Eigen::Vector2d q = flat ? Eigen::Vector2d(old - slip / largest) : Eigen::Vector2d(old - k.inverse() * slip);

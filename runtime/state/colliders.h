@@ -63,10 +63,14 @@ struct ColliderTraits {
     // Of its surface against the body, in the shape's frame: surface_velocity + surface_spin x p [m/s], [rad/s].
     Vec3f surface_velocity = Vec3f::Zero(), surface_spin = Vec3f::Zero();
     Vec3f one_way = Vec3f::Zero();  // unit, in the shape's frame: it is touched from this side only; 0: from all
+    float static_friction = 0;      // coefficient while it sticks, if above that of the material
+    float slide_factor = 0;         // of friction along slide_direction
+    Vec3f slide_direction = Vec3f::Zero();  // unit, in the shape's frame; 0: none
 
     bool driven() const { return surface_velocity != Vec3f::Zero() || surface_spin != Vec3f::Zero(); }
+    bool directed() const { return slide_direction != Vec3f::Zero(); }
 
-    std::array<uint64_t, 18> words() const {
+    std::array<uint64_t, 23> words() const {
         const float numbers[] = {density,
                                  material.friction,
                                  material.restitution,
@@ -80,22 +84,29 @@ struct ColliderTraits {
                                  surface_spin.z(),
                                  one_way.x(),
                                  one_way.y(),
-                                 one_way.z()};
-        std::array<uint64_t, 18> words{};
+                                 one_way.z(),
+                                 static_friction,
+                                 slide_factor,
+                                 slide_direction.x(),
+                                 slide_direction.y(),
+                                 slide_direction.z()};
+        std::array<uint64_t, 23> words{};
         std::transform(std::begin(numbers), std::end(numbers), words.begin(),
                        [](float x) { return std::bit_cast<uint32_t>(x); });
-        words[14] =
+        words[19] =
             static_cast<uint64_t>(material.friction_rule) << 32 | static_cast<uint64_t>(material.restitution_rule);
-        words[15] = filter.category;
-        words[16] = filter.mask;
-        words[17] = static_cast<uint32_t>(filter.group);
+        words[20] = filter.category;
+        words[21] = filter.mask;
+        words[22] = static_cast<uint32_t>(filter.group);
         return words;
     }
 };
 template <class Visitor, Like<ColliderTraits> Of>
 void describe(Visitor& visitor, Of& of) {
-    auto& [density, material, filter, surface_velocity, surface_spin, one_way] = of;
-    TAUT_FIELDS(visitor, density, material, filter, surface_velocity, surface_spin, one_way);
+    auto& [density, material, filter, surface_velocity, surface_spin, one_way, static_friction, slide_factor,
+           slide_direction] = of;
+    TAUT_FIELDS(visitor, density, material, filter, surface_velocity, surface_spin, one_way, static_friction,
+                slide_factor, slide_direction);
 }
 
 // All of a collider that is to be.

@@ -155,7 +155,11 @@ struct PairRecord {
     // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
     // bodies: drive + drive_spin x p [m/s], world axes, p as the points of the manifold.
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
-    bool driven = false;                    // else these two mean nothing
+    float sticking = 0;          // friction of a point that does not slide, where that is more
+    float easy_part = 1;         // friction along `easy` is so many times that across it
+    Vec3f easy = Vec3f::Zero();  // unit, world axes, along the contact; where easy_part is 1 it means nothing
+    bool driven = false;         // else drive and drive_spin mean nothing
+    bool directed = false;       // a side has a direction of friction, which turns with it
     bool rolls_a = false, rolls_b = false;  // contact levers stay while the shape turns: collision::rolls()
     bool touching = false;                  // overlapped or was pushed in the last step
     bool pushed = false;                    // some point was in this step, in any of its substeps
@@ -171,6 +175,8 @@ struct PairRecord {
 
     // Of a point of the manifold.
     Vec3f drive_at(int k) const { return drive + drive_spin.cross(manifold.points[k].position); }
+    bool sticks_better() const { return sticking > friction; }
+    float most_friction() const { return std::max(sticking, friction); }
     bool turns() const { return spinning > 0 || rolling > 0; }
     bool twists() const { return turns() || patch > 0; }
     // Arms of the torques in sweeps [m]: of the surfaces, or of the patch, whichever resist more. Friction in a patch
@@ -186,12 +192,14 @@ struct PairRecord {
 template <class Visitor, Like<PairRecord> Of>
 void describe(Visitor& visitor, Of& of, bool kept) {
     auto& [part, next, manifold, then, round_a, round_b, force, friction, restitution, spinning, rolling, stiffness,
-           patch, torque, spin_slip, drive, drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block,
-           loaded, asks, cache, found] = of;  // next: follows from the order of records
+           patch, torque, spin_slip, drive, drive_spin, sticking, easy_part, easy, driven, directed, rolls_a, rolls_b,
+           touching, pushed, answered, in_block, loaded, asks, cache, found] =
+        of;  // next: follows from the order of records
     TAUT_FIELDS(visitor, part, manifold, then, round_a, round_b);
     for (int k = 0; k < manifold.count; ++k) TAUT_FIELDS(visitor, force[k]);
     TAUT_FIELDS(visitor, friction, restitution, spinning, rolling, stiffness, patch, torque, spin_slip, drive,
-                drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, cache);
+                drive_spin, sticking, easy_part, easy, driven, directed, rolls_a, rolls_b, touching, pushed, answered,
+                in_block, loaded, cache);
     TAUT_ASIDE(visitor, asks);
     if (kept) describe(visitor, found, manifold.count);
 }
@@ -246,6 +254,59 @@ inline Vec3f tangent_of(const Vec3f& n) {
 // Whether they go over into each other from one normal to another nearby.
 inline bool same_tangents(const Vec3f& one, const Vec3f& other) {
     return (std::abs(one.x()) < 0.6f) == (std::abs(other.x()) < 0.6f);
+}
+
+// The tangents that the rows of a pair's friction are along, t2 = n x t1. The row of t2 counts `part` times: with
+// coefficients mu and part mu along the two the ellipse of forces is the disc of radius mu for the impulses of the
+// rows.
+struct Tangents {
+    Vec3f t1, t2;    // unit
+    float part = 1;  // in (0, 1]
+};
+inline Tangents tangents_of(const PairRecord& pair) {
+    const Vec3f &n = pair.manifold.normal, easy = pair.easy - n.dot(pair.easy) * n;
+    const float size = pair.easy_part < 1 ? easy.norm() : 0;
+    if (!(size > 0)) {  // all ways alike
+        const Vec3f t1 = tangent_of(n);
+        return {t1, n.cross(t1), 1};
+    }
+    const Vec3f t2 = easy / size;
+    return {t2.cross(n), t2, pair.easy_part};
+}
+// What rows have of a friction, and back; world axes.
+inline std::array<float, 2> rows_of(const Tangents& of, const Vec3f& friction) {
+    return {friction.dot(of.t1), friction.dot(of.t2) / of.part};
+}
+inline Vec3f friction_of(const Tangents& of, float row1, float row2) { return row1 * of.t1 + of.part * row2 * of.t2; }
+
+// A force of a pair, in the frame of tangent_of(normal), as its rows have it, and back.
+inline ContactForce to_rows(const PairRecord& pair, const ContactForce& force, const Tangents& of) {
+    const Vec3f &n = pair.manifold.normal, o1 = tangent_of(n);
+    const auto [row1, row2] = rows_of(of, force.tangent1 * o1 + force.tangent2 * n.cross(o1));
+    return {force.normal, row1, row2, force.slip};
+}
+inline ContactForce from_rows(const PairRecord& pair, const ContactForce& rows, const Tangents& of) {
+    const Vec3f &n = pair.manifold.normal, o1 = tangent_of(n);
+    const Vec3f friction = friction_of(of, rows.tangent1, rows.tangent2);
+    return {rows.normal, friction.dot(o1), friction.dot(n.cross(o1)), rows.slip};
+}
+inline ContactForce to_rows(const PairRecord& pair, const ContactForce& force) {
+    return pair.easy_part < 1 ? to_rows(pair, force, tangents_of(pair)) : force;
+}
+inline ContactForce from_rows(const PairRecord& pair, const ContactForce& rows) {
+    return pair.easy_part < 1 ? from_rows(pair, rows, tangents_of(pair)) : rows;
+}
+// The same of friction torques, which know no direction.
+inline Tangents torque_tangents_of(const PairRecord& pair) {
+    Tangents of = tangents_of(pair);
+    of.part = 1;
+    return of;
+}
+inline ContactForce torque_to_rows(const PairRecord& pair) {
+    return pair.easy_part < 1 ? to_rows(pair, pair.torque, torque_tangents_of(pair)) : pair.torque;
+}
+inline ContactForce torque_from_rows(const PairRecord& pair, const ContactForce& rows) {
+    return pair.easy_part < 1 ? from_rows(pair, rows, torque_tangents_of(pair)) : rows;
 }
 
 // A pair with contact points in this frame, in brief: what partition and assembly go through.
@@ -392,6 +453,16 @@ uint32_t take_slot(Pairs& pairs, const PairEnds& ends);
 // The records of a pair that is left without points.
 void give_slots(Pairs& pairs, NearPair& near);
 
+// What the host says of a contact's friction, if that is another, holds where it sticks too.
+inline void answer(float friction, float restitution, PairRecord& pair) {
+    if (friction != pair.friction) pair.sticking = 0;
+    pair.friction = friction;
+    pair.restitution = restitution;
+}
+inline void answer(float friction, float restitution, SurfaceContact& contact) {
+    contact.friction = friction;
+    contact.restitution = restitution;
+}
 // As if the two had just met.
 void forget_forces(Pair& pair);
 // Of a pair that is swept from now on. A direct solve sets hundreds of times a light body's momentum against as much

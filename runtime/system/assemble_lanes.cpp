@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/prefetch.h"
+#include "detect/approach.h"
 #include "state/levers.h"
 #include "system/assemble.h"
 #include "system/lane_parts.h"
@@ -38,22 +39,37 @@ void fill_lane(LanePoint& p, int lane, const Levers& levers, float separation, f
     p.restitution[lane] = restitution;
 }
 
-// What the moving surfaces of a pair, if any, drive its points to.
-void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* pair) {
+// Whether a pair's points need a LaneDrive.
+bool is_driven(const Pair& pair) { return pair.driven || pair.sticks_better() || pair.easy_part < 1; }
+
+// What the surfaces of a pair, if any, make of the friction of its points.
+void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* pair, const Nodes& nodes) {
     for (uint32_t k = 0; k < g.points; ++k) {
-        float(&speed)[2][kLanes] = lanes.drive[g.first_drive + k].speed;
-        speed[0][lane] = speed[1][lane] = 0;
-        if (!pair || !pair->driven || static_cast<int>(k) >= pair->manifold.count) continue;
-        const Vec3f t1 = tangent_of(pair->manifold.normal), drive = pair->drive_at(static_cast<int>(k));
-        speed[0][lane] = drive.dot(t1);
-        speed[1][lane] = drive.dot(pair->manifold.normal.cross(t1));
+        LaneDrive& to = lanes.drive[g.first_drive + k];
+        to.speed[0][lane] = to.speed[1][lane] = to.way[0][lane] = to.way[1][lane] = 0;
+        to.slid[lane] = to.slides[lane] = 0;
+        to.part[lane] = 1;
+        to.friction[0][lane] = to.friction[1][lane] = 0;
+        if (!pair) continue;
+        const Tangents tangents = tangents_of(*pair);
+        to.part[lane] = tangents.part;
+        to.friction[0][lane] = pair->friction;
+        to.friction[1][lane] = pair->most_friction();
+        if (static_cast<int>(k) >= pair->manifold.count) continue;
+        const Vec3f drive = pair->driven ? pair->drive_at(static_cast<int>(k)) : Vec3f(Vec3f::Zero());
+        to.speed[0][lane] = drive.dot(tangents.t1);
+        to.speed[1][lane] = tangents.part * drive.dot(tangents.t2);
+        if (!pair->sticks_better()) continue;
+        const float slip = pair->force[k].slip;
+        const bool starts_to_slide = slip < 0 && slips(nodes, *pair, static_cast<int>(k));
+        to.slides[lane] = starts_to_slide ? 1 : std::max(slip, 0.0f);
     }
 }
 
 void fill_rolling(LaneRolling& rolling, int lane, const Pair* pair, float h) {
     rolling.arm[0][lane] = pair ? pair->spinning_arm() : 0;
     rolling.arm[1][lane] = pair ? pair->rolling_arm() : 0;
-    load(rolling.impulse, lane, pair && pair->twists() ? pair->torque : ContactForce(), h);
+    load(rolling.impulse, lane, pair && pair->twists() ? torque_to_rows(*pair) : ContactForce(), h);
 }
 
 Movement movement_of(const Nodes& nodes, uint32_t node) {
@@ -76,7 +92,8 @@ struct PairMovement {
 
 // One pair into one lane of a group; its points into the group's first points.
 void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, const Nodes& nodes, float h) {
-    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n);
+    const Tangents tangents = tangents_of(pair);
+    const Vec3f &n = pair.manifold.normal, &t1 = tangents.t1;
     g.friction[lane] = pair.friction;
     g.stiffness[lane] = pair.stiffness;
     g.round[0][lane] = pair.round_a;
@@ -89,7 +106,7 @@ void fill_pair(LaneGroup& g, int lane, const Pairs& pairs, const Pair& pair, con
     for (int k = 0; k < pair.manifold.count; ++k) {
         fill_lane(g.point[k], lane, on_ball_paths(pairs, nodes, pair, moves.levers(pair, k)),
                   pair.manifold.points[k].separation, pair.restitution);
-        load(g.point[k].impulse, lane, pair.force[k], h);
+        load(g.point[k].impulse, lane, to_rows(pair, pair.force[k]), h);
     }
 }
 
@@ -144,7 +161,7 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, float h, Pairs& pairs, cons
             fill_pair(g, lane, pairs, pair, nodes, h);
             filled = static_cast<uint32_t>(pair.manifold.count);
             bounces = bounces || pair.restitution > 0;
-            driven = driven || pair.driven;
+            driven = driven || is_driven(pair);
             turns = turns || pair.twists();
             round = round || pair.round_a > 0 || pair.round_b > 0;
             rolls = rolls || pair.rolls_a || pair.rolls_b;
@@ -161,7 +178,8 @@ bool fill_group(LaneGroup& g, const LaneGroup* next, float h, Pairs& pairs, cons
     return bounces;
 }
 
-// Room for what moving surfaces, friction torques and shapes of revolution of the pairs of a group need.
+// Room for what surfaces that drive, hold or direct friction, friction torques and shapes of revolution of the pairs of
+// a group need.
 void make_special_room(ContactLanes& lanes, LaneGroup& g) {
     if (g.first_drive != kNoLanes) {
         g.first_drive = static_cast<uint32_t>(lanes.drive.size());
@@ -176,7 +194,7 @@ void make_special_room(ContactLanes& lanes, LaneGroup& g) {
 void fill_special(ContactLanes& lanes, const LaneGroup& g, const Pairs& pairs, const Nodes& nodes, float h) {
     for (int lane = 0; lane < kLanes; ++lane) {
         const Pair* pair = pair_of(g, lane, pairs);
-        if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair);
+        if (g.first_drive != kNoLanes) fill_drive(lanes, g, lane, pair, nodes);
         if (g.rolling != kNoLanes) fill_rolling(lanes.rolling[g.rolling], lane, pair, h);
         if (g.has_axes && pair) fill_axes(lanes.rolling[g.rolling], lane, pairs, *pair, nodes);
     }
@@ -287,8 +305,8 @@ void load_lanes(Team& team, System& system, const Pairs& pairs) {
     const auto h = static_cast<float>(system.scheme.h);
     for_pairs_in_lanes(team, lanes, pairs, [&](const LaneGroup& g, int lane, uint32_t index) {
         const Pair& pair = pairs.list[index];
-        for (int k = 0; k < pair.manifold.count; ++k) load(g.point[k].impulse, lane, pair.force[k], h);
-        if (pair.twists()) load(lanes.rolling[g.rolling].impulse, lane, pair.torque, h);
+        for (int k = 0; k < pair.manifold.count; ++k) load(g.point[k].impulse, lane, to_rows(pair, pair.force[k]), h);
+        if (pair.twists()) load(lanes.rolling[g.rolling].impulse, lane, torque_to_rows(pair), h);
     });
 }
 
@@ -301,10 +319,11 @@ void store_lanes(Team& team, const System& system, Pairs& pairs) {
         for (int k = 0; k < pair.manifold.count; ++k) {
             const LanePoint& p = g.point[k];
             pair.pushed = pair.pushed || p.peak[lane] > 0;
-            pair.force[k] = force_of(p.impulse, lane, h);
+            pair.force[k] = from_rows(pair, force_of(p.impulse, lane, h));
+            if (pair.sticks_better()) pair.force[k].slip = lanes.drive[g.first_drive + k].slides[lane];
         }
         if (!pair.twists()) return;
-        pair.torque = force_of(lanes.rolling[g.rolling].impulse, lane, h);
+        pair.torque = torque_from_rows(pair, force_of(lanes.rolling[g.rolling].impulse, lane, h));
         pair.spin_slip = -1;
     });
 }

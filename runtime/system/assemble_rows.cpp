@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "constraints/soft_contact.h"
+#include "detect/approach.h"
 #include "state/levers.h"
 #include "system/assemble.h"
 #include "system/operators.h"
@@ -115,12 +116,14 @@ Vec3 position_of(const System& system, const Nodes& nodes, const Pair& pair, int
     return a.x - a.R * nodes.mass[pair.a].centre + pair.manifold.points[k].position.cast<double>();
 }
 
-Mat3 basis_of(const Pair& pair) {
-    const Vec3f n = pair.manifold.normal, t1 = tangent_of(n), t2 = n.cross(t1);
+// Rows n, t1 and the second tangent, as much as it counts.
+Mat3 basis_of(const Pair& pair, const Tangents& tangents) {
+    const Vec3f &n = pair.manifold.normal, t2 = tangents.part * tangents.t2;
     Mat3 basis;
-    basis << n.cast<double>().transpose(), t1.cast<double>().transpose(), t2.cast<double>().transpose();
+    basis << n.cast<double>().transpose(), tangents.t1.cast<double>().transpose(), t2.cast<double>().transpose();
     return basis;
 }
+Mat3 basis_of(const Pair& pair) { return basis_of(pair, tangents_of(pair)); }
 
 // Effective anchors and offset of a contact point, so that C is the gap and zero slip at the present poses.
 ContactData contact_data(const System& system, const Nodes& nodes, const Pairs& pairs, const Pair& pair, int k) {
@@ -203,11 +206,24 @@ void note_approach(const Vec3& apart, const Vec3& normal, RowBlock& block) {
     block.hits = -apart.dot(normal) > kHardSpeed;
 }
 
+// What a contact carries on as its rows have it, and back.
+ContactForce carried_of(const RowBlock& block) {
+    if (!block.surface_pair) return *block.contact;
+    const PairRecord& pair = *block.surface_pair;
+    return block.type->bound == Bound::load ? torque_to_rows(pair) : to_rows(pair, *block.contact);
+}
+ContactForce carried_from(const RowBlock& block, const ContactForce& rows) {
+    if (!block.surface_pair) return rows;
+    const PairRecord& pair = *block.surface_pair;
+    return block.type->bound == Bound::load ? torque_from_rows(pair, rows) : from_rows(pair, rows);
+}
+
 void load(System& system, const RowBlock& block) {
     double* const impulse = &system.rows.impulse[block.row];
-    impulse[0] = system.scheme.h * static_cast<double>(block.contact->normal);
-    impulse[1] = system.scheme.h * static_cast<double>(block.contact->tangent1);
-    impulse[2] = system.scheme.h * static_cast<double>(block.contact->tangent2);
+    const ContactForce force = carried_of(block);
+    impulse[0] = system.scheme.h * static_cast<double>(force.normal);
+    impulse[1] = system.scheme.h * static_cast<double>(force.tangent1);
+    impulse[2] = system.scheme.h * static_cast<double>(force.tangent2);
 }
 
 // What a block of rows carries over.
@@ -249,17 +265,26 @@ RowBlock& add_point(System& system, const Pair& pair, const SpanContactData& dat
 // What moving surfaces drive the tangents of a contact point to.
 void set_drive(const Pair& pair, int k, RowBlock& block) {
     if (!pair.driven) return;
-    const Vec3f t1 = tangent_of(pair.manifold.normal), t2 = pair.manifold.normal.cross(t1);
+    const Tangents tangents = tangents_of(pair);
     const Vec3f speed = pair.drive_at(k);
-    block.drive[0] = speed.dot(t1);
-    block.drive[1] = speed.dot(t2);
+    block.drive[0] = speed.dot(tangents.t1);
+    block.drive[1] = tangents.part * speed.dot(tangents.t2);
+}
+
+// The coefficient of a point as it slides or sticks; of a new one by how it moves.
+void set_friction(const Nodes& nodes, const Pair& pair, int k, RowBlock& block) {
+    block.friction = block.kinetic = pair.friction;
+    if (!pair.sticks_better()) return;
+    block.sticking = pair.sticking;
+    const float slip = pair.force[k].slip;
+    if (!(slip > 0 || (slip < 0 && slips(nodes, pair, k)))) block.friction = block.sticking;
 }
 
 // Friction torques of a pair whose points' rows begin at `points`.
 void add_rolling(System& system, Pair& pair, uint32_t points) {
     RowBlock& block = add_block(system, kRolling);
     RollingData& data = system.rows.rolling_data.emplace_back();
-    data.basis = basis_of(pair);
+    data.basis = basis_of(pair, torque_tangents_of(pair));
     block.data = &data;
     block.node[0] = system.at(pair.a);
     block.node[1] = system.at(pair.b);
@@ -268,6 +293,7 @@ void add_rolling(System& system, Pair& pair, uint32_t points) {
     block.loaded = points;
     block.loads = static_cast<uint32_t>(pair.manifold.count);
     block.spin_slip = &pair.spin_slip;
+    block.surface_pair = &pair;
     carry(system, block, pair.torque);
 }
 
@@ -282,7 +308,8 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
                 pairs.active[p].spans()
                     ? add_point(system, pair, rows.span_data.emplace_back(span_contact_data(system, nodes, pair, k)))
                     : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pairs, pair, k)));
-            block.friction = pair.friction;
+            block.surface_pair = &pair;
+            set_friction(nodes, pair, k, block);
             block.restitution = pair.restitution;
             block.pair = pairs.active[p].pair;
             block.point = static_cast<uint8_t>(k);
@@ -458,6 +485,45 @@ void begin_substep(System& system, const RowBlock& block, double frame_left, dou
     }
 }
 
+// What a contact point with static friction did in the last substep decides what it does in this one.
+void begin_friction(const System& system, RowBlock& block) {
+    if (!(block.sticking > 0)) return;
+    for (uint32_t t = 0; t < 2; ++t) block.way[t] = system.rows.impulse[block.row + 1 + t];
+    if (block.contact->slip >= 0) block.friction = block.contact->slip > 0 ? block.kinetic : block.sticking;
+}
+
+// The law of contact_sweep.inl: what it does from now on. Of blocks c itself tells, but for friction that turned round.
+void follow_friction(const System& system, bool in_block, const RowBlock& block) {
+    const double* mu = &system.rows.impulse[block.row];
+    const bool slid = block.friction < block.sticking, turned = mu[1] * block.way[0] + mu[2] * block.way[1] < 0;
+    float& slip = block.contact->slip;
+    if (in_block && slip >= 0) {
+        if (slid && turned) slip = 0;
+        return;
+    }
+    RowMatrix effective = RowMatrix::Zero(3, 3);
+    for (int n = 0; n < block.type->nodes; ++n) effective += effective_mass(system, block, n);
+    const double k = largest_across(effective);
+    const double v[2] = {rate(system, block, 1, system.exact) - block.drive[0],
+                         rate(system, block, 2, system.exact) - block.drive[1]};
+    double stopping = 0;  // squared
+    for (int t = 0; t < 2; ++t) {
+        const double to = mu[1 + t] - (k > 0 ? v[t] / k : 0);
+        stopping += to * to;
+    }
+    const bool goes_on = slid && !turned;
+    double push = 0;  // of the pair, whose points' rows follow each other
+    for (int p = 0; p < block.surface_pair->manifold.count; ++p) push += mu[3 * (p - block.point)];
+    const double most = mu[0] * (goes_on ? block.kinetic : block.sticking), limit = block.kinetic * mu[0];
+    const double creep = goes_on ? 0 : double{kSlips} * (block.sticking - block.kinetic) * push * k;
+    const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1]);
+    const bool slides = stopping > most * most && speed > creep;
+    if (in_block)
+        slip = slides ? -1 : 0;  // c begins anew
+    else
+        slip = slides ? static_cast<float>(std::clamp(speed / std::max(limit, 1e-30), 1e-30, 1e30)) : 0;
+}
+
 void evaluate_run(System& system, const ElementRun& run) {
     Rows& rows = system.rows;
     const RowBlock& first = rows.block[run.first];
@@ -493,6 +559,7 @@ void evaluate_rows(Team& team, System& system, double frame_left, double frame) 
     });
     size_t next_rolling = 0;  // their data are in the order of their blocks
     for (size_t i = rows.joints; i < rows.block.size(); ++i) {
+        begin_friction(system, rows.block[i]);
         Pose poses[kMaxNodes];
         poses_of(system, rows.block[i], poses);
         if (rows.block[i].type->bound == Bound::load) rows.rolling_data[next_rolling++].align(poses);
@@ -506,13 +573,14 @@ void load_contact_rows(System& system) {
 }
 
 void store_contact_rows(const System& system) {
-    for (const RowBlock& block : system.rows.block) {
+    for (size_t i = 0; i < system.rows.block.size(); ++i) {
+        const RowBlock& block = system.rows.block[i];
         if (!block.contact) continue;
+        if (block.sticking > 0) follow_friction(system, i >= system.rows.lasting, block);
         const double* mu = &system.rows.impulse[block.row];
-        block.contact->normal = static_cast<float>(mu[0] / system.scheme.h);
         if (block.pushed && mu[0] > 0) *block.pushed = true;
-        block.contact->tangent1 = static_cast<float>(mu[1] / system.scheme.h);
-        block.contact->tangent2 = static_cast<float>(mu[2] / system.scheme.h);
+        const auto force = [&](int row) { return static_cast<float>(mu[row] / system.scheme.h); };
+        *block.contact = carried_from(block, {force(0), force(1), force(2), block.contact->slip});
     }
 }
 

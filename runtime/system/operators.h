@@ -63,6 +63,12 @@ inline void gear(const System& system, const RowBlock& block, int row, AxisRow& 
     axis.compliance *= g * g;
 }
 
+// Larger eigenvalue of the part of J W J^T of a contact's two tangents [1/kg].
+inline double largest_across(const RowMatrix& s) {
+    const double half = 0.5 * (s(1, 1) + s(2, 2)), diff = 0.5 * (s(1, 1) - s(2, 2));
+    return half + std::sqrt(diff * diff + s(1, 2) * s(1, 2));
+}
+
 inline RowVector impulse_of(const System& system, const RowBlock& block) {
     return Eigen::Map<const RowVector>(&system.rows.impulse[block.row], block.type->rows);
 }

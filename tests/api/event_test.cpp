@@ -19,6 +19,9 @@ struct EventCalls : testing::Test {
         EXPECT_EQ(read.flags, def.flags);
         EXPECT_EQ(read.contact_events, def.contact_events);
         EXPECT_EQ(read.one_way.z, def.one_way.z);
+        EXPECT_EQ(read.friction.static_friction, def.friction.static_friction);
+        EXPECT_EQ(read.friction.slide_factor, def.friction.slide_factor);
+        EXPECT_EQ(read.friction.slide_direction.y, def.friction.slide_direction.y);
         ASSERT_OK(taut_collider_remove(out));
     }
 
@@ -48,6 +51,15 @@ TEST_F(EventCalls, RefuseWhatIsOutOfRange) {
         expect_refused(p.world, "hit_speed", [&] { return taut_world_set_hit_speed(p.world, bad); });
     for (float bad : {NAN, INFINITY, 1.0001e4f})
         expect_refused(p.world, "direction.z", [&] { return taut_collider_set_one_way(p.collider, {0, 0, bad}); });
+    const auto refuse = [&](const char* text, const taut_friction& friction) {
+        expect_refused(p.world, text, [&] { return taut_collider_set_friction(p.collider, &friction); });
+    };
+    for (float bad : {NAN, INFINITY, -0.1f, 100.1f})
+        refuse("taut_collider_set_friction: static_friction is", {bad, 0, {}, 0});
+    for (float bad : {NAN, INFINITY, -0.1f, 1.1f}) refuse("slide_factor is", {0, bad, {}, 0});
+    for (float bad : {NAN, INFINITY, 1.0001e4f}) refuse("slide_direction.y", {0, 0, {0, bad, 0}, 0});
+    refuse("reserved", {0, 0, {}, 1});
+    EXPECT_EQ(taut_collider_set_friction(p.collider, nullptr), TAUT_NULL_POINTER);
 }
 
 TEST_F(EventCalls, DefsRefuseWhatIsOutOfRange) {
@@ -65,6 +77,10 @@ TEST_F(EventCalls, DefsRefuseWhatIsOutOfRange) {
     refuse("contact_events is 16", [](auto& d) { d.contact_events = 16; });
     refuse("one_way.x", [](auto& d) { d.one_way.x = NAN; });
     refuse("reserved", [](auto& d) { d.reserved = 1; });
+    refuse("friction.static_friction is -1", [](auto& d) { d.friction.static_friction = -1; });
+    refuse("friction.slide_factor is 2", [](auto& d) { d.friction.slide_factor = 2; });
+    refuse("friction.slide_direction.x", [](auto& d) { d.friction.slide_direction.x = NAN; });
+    refuse("friction.reserved", [](auto& d) { d.friction.reserved = 1; });
     taut_body_def body = body_def(TAUT_BODY_DYNAMIC, p.box);
     taut_body out{};
     body.collider_flags = 16;
@@ -87,6 +103,7 @@ TEST_F(EventCalls, ReadAsTheyWereSet) {
     expect_kept([](taut_collider_def& d) { d.flags = TAUT_COLLIDER_PRE_SOLVE | TAUT_COLLIDER_SENSES_STATIC; });
     expect_kept([](taut_collider_def& d) { d.contact_events = TAUT_CONTACT_EVENTS_HIT; });
     expect_kept([](taut_collider_def& d) { d.one_way = {0, 0, -1}; });
+    expect_kept([](taut_collider_def& d) { d.friction = {0.75f, 0.25f, {0, -1, 0}, 0}; });
     ASSERT_OK(taut_world_set_hit_speed(p.world, 3));
     ASSERT_OK(taut_world_set_contact_events(p.world, TAUT_CONTACT_EVENTS_ALL));
     taut_world_def def;

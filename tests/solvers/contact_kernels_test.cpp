@@ -112,8 +112,14 @@ struct Data {
         g.first_drive = static_cast<uint32_t>(drive.size());
         for (uint32_t k = 0; k < g.points; ++k) {
             LaneDrive& d = drive.emplace_back();
-            for (int lane = 0; lane < kLanes; ++lane)
+            for (int lane = 0; lane < kLanes; ++lane) {
                 for (int t = 0; t < 2; ++t) d.speed[t][lane] = g.pair[lane] == kNone ? 0 : 2 * any();
+                const bool slips_alike = k % 2 == 0;  // of a lane all points have the same part
+                d.part[lane] = lane % 3 == 0 ? 1 : 0.01f + 0.9f * static_cast<float>(lane) / kLanes;
+                d.friction[0][lane] = g.friction[lane];
+                d.friction[1][lane] = slips_alike ? g.friction[lane] : 1.5f * g.friction[lane];
+                d.slides[lane] = lane % 2 == 0 ? 1 : 0.0f;
+            }
         }
     }
     template <class Any>
@@ -205,6 +211,7 @@ void expect_same_bits(const ContactKernels& kernels) {
         ASSERT_TRUE(std::isfinite(sum));
         ASSERT_TRUE(same_bits(scalar.node, other.node));
         ASSERT_TRUE(same_bits(scalar.point, other.point));
+        ASSERT_TRUE(same_bits(scalar.drive, other.drive));
         ASSERT_TRUE(same_bits(scalar.impacts, other.impacts));
         ASSERT_NE(std::accumulate(scalar.impacts.begin(), scalar.impacts.end(), 0u), 0u);
         ASSERT_FALSE(scalar.rolling.empty());
@@ -292,6 +299,19 @@ void add_surface(Pair& pair, Random& random) {
     pair.drive_spin = random.vector().cast<float>();
 }
 
+// Static friction and friction by direction of some pairs.
+void add_law(Pair& pair, Random& random) {
+    if (random.unit() < 0.7) {
+        const Vec3f along = random.vector().cast<float>(), n = pair.manifold.normal;
+        pair.directed = true;
+        pair.easy = (along - n.dot(along) * n).normalized();
+        pair.easy_part = static_cast<float>(0.05 + 0.9 * random.unit());
+    }
+    if (random.unit() < 0.3) return;
+    pair.sticking = 1.5f * pair.friction;
+    for (int k = 0; k < pair.manifold.count; ++k) pair.force[k].slip = random.unit() < 0.5 ? 0 : 0.1f;
+}
+
 // Bodies of many masses touching at random, with impulses carried in: a few colours, none of them the last.
 void build_pile(Rig& rig, uint64_t seed) {
     Random random(seed);
@@ -327,6 +347,7 @@ void build_pile(Rig& rig, uint64_t seed) {
                     pair.force[k].tangent1 = static_cast<float>(48 * random.unit());
                     pair.force[k].tangent2 = static_cast<float>(-48 * random.unit());
                 }
+                if (seed % 4 > 1) add_law(pair, random);
             }
         }
     }

@@ -53,7 +53,7 @@ protected:
     void write_collider() {
         const size_t w = pick_world();
         const taut_collider collider = pick(colliders_, w);
-        switch (byte() % 9) {
+        switch (byte() % 10) {
             case 0: {
                 const taut_shape shape = pick(shapes_, w);
                 const taut_vec3 position = vec(1);
@@ -101,6 +101,11 @@ protected:
             case 7: {
                 const taut_vec3 direction = one_in(2) ? taut_vec3{0, 0, 0} : vec(1);
                 run("taut_collider_set_one_way", [&] { return taut_collider_set_one_way(collider, direction); });
+                break;
+            }
+            case 8: {
+                const taut_friction changed = friction();
+                run("taut_collider_set_friction", [&] { return taut_collider_set_friction(collider, &changed); });
                 break;
             }
             default: {

@@ -133,6 +133,16 @@ protected:
         return out;
     }
 
+    taut_friction friction() {
+        taut_friction out;
+        taut_friction_init(&out);
+        if (one_in(2)) out.static_friction = real(0, 2);
+        if (one_in(2)) out.slide_factor = real(0, 1);
+        if (one_in(2)) out.slide_direction = vec(1);
+        spoil(out.reserved);
+        return out;
+    }
+
     taut_collider_def collider_def(size_t w) {
         taut_collider_def def;
         taut_collider_def_init(&def);
@@ -145,6 +155,7 @@ protected:
         if (one_in(4)) def.flags = byte() % (one_in(16) ? 16 : 8);
         if (one_in(4)) def.contact_events = byte() % (one_in(16) ? 32 : 16);
         if (one_in(8)) def.one_way = vec(1);
+        if (one_in(8)) def.friction = friction();
         return def;
     }
 
