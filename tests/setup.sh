@@ -11,6 +11,8 @@ test_packages=(pkgconf xz-utils libgtest-dev libgmock-dev libbenchmark-dev pytho
     python3-cffi python3-numpy swig)
 arm64_packages=(libc6-dev:arm64 libbullet-dev:arm64 libccd-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
     libtinyobjloader-dev:arm64 libtinyxml2-dev:arm64)
+bundle_packages=(dpkg-dev pkgconf python3)
+bundle_sources=(bullet libccd)
 report_packages=(libode-dev gnuplot-nox fonts-dejavu-core)
 
 say() { printf '%s\n' "$*" >&2; }
@@ -39,6 +41,34 @@ At least cmake 3.25 and ninja are missing; cmake will name the libraries that ar
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
         apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2 ||
         fail "apt-get could not install ${missing[*]}"
+}
+
+# need_sources NAME...: Debian's source packages, unpacked as build/sources/NAME; what is there is taken as it is. apt's
+# settings stay as they are: it reads others, which name the same places, from build/sources.
+need_sources() {
+    local folder=$root/build/sources name list missing=() apt
+    for name in "$@"; do
+        [[ -d $folder/$name ]] || missing+=("$name")
+    done
+    ((${#missing[@]})) || return 0
+    command -v apt-get >/dev/null ||
+        fail "this is not a Debian system. Please put the sources of ${missing[*]} into $folder, a folder each"
+    apt=(apt-get -qq -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$folder/apt/parts"
+        -o "Dir::State::Lists=$folder/apt/lists" -o "APT::Sandbox::User=$(id -un)")
+    mkdir -p "$folder/apt/parts" "$folder/apt/lists"
+    for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
+        [[ ! -f $list ]] || sed -n 's/^deb[[:blank:]]/deb-src /p' "$list" >"$folder/apt/parts/$(basename "$list" .list).list"
+    done
+    for list in /etc/apt/sources.list.d/*.sources; do
+        [[ ! -f $list ]] || sed 's/^Types:.*/Types: deb-src/' "$list" >"$folder/apt/parts/$(basename "$list")"
+    done
+    say "Getting the sources of ${missing[*]}"
+    "${apt[@]}" update >&2 || fail "apt-get update failed: is there a network?"
+    for name in "${missing[@]}"; do
+        mkdir -p "$folder/apt/$name"
+        (cd "$folder/apt/$name" && "${apt[@]}" source "$name" >&2) || fail "apt-get could not get the sources of $name"
+        mv "$folder/apt/$name"/*/ "$folder/$name"
+    done
 }
 
 # need_architecture NAME: packages of another kind of processor can be installed from then on.

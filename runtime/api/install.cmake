@@ -14,6 +14,10 @@ install(TARGETS taut_static EXPORT tautStaticTargets
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.h" PATTERN "pages" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(TAUT_BUNDLED) # whose code is inside
+    install(FILES ${TAUT_BULLET_SOURCE}/LICENSE.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.bullet)
+    install(FILES ${TAUT_CCD_SOURCE}/BSD-LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.libccd)
+endif()
 
 install(EXPORT tautStaticTargets NAMESPACE taut:: DESTINATION ${package_dir})
 configure_package_config_file(${here}/tautConfig.cmake.in ${PROJECT_BINARY_DIR}/tautConfig.cmake
@@ -21,8 +25,10 @@ configure_package_config_file(${here}/tautConfig.cmake.in ${PROJECT_BINARY_DIR}/
 # Before 1.0 a new minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tautConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tautConfig.cmake ${PROJECT_BINARY_DIR}/tautConfigVersion.cmake
-              ${here}/tautDependencies.cmake
         DESTINATION ${package_dir})
+if(NOT TAUT_BUNDLED)
+    install(FILES ${here}/tautDependencies.cmake DESTINATION ${package_dir})
+endif()
 
 # Directories relative to the place of taut.pc, unless the installer gave absolute ones.
 cmake_path(SET pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
@@ -38,7 +44,11 @@ foreach(kind IN ITEMS LIBDIR INCLUDEDIR)
     endif()
 endforeach()
 set(TAUT_PC_LIBS "-ltaut")
-set(TAUT_PC_LIBS_PRIVATE "-lBulletCollision -lLinearMath -lccd -l${TAUT_CXX_LIBRARY} -lm")
+list(TRANSFORM TAUT_STATIC_NEEDS PREPEND "-l" OUTPUT_VARIABLE needs)
+list(JOIN needs " " TAUT_PC_LIBS_PRIVATE)
+if(NOT TAUT_BUNDLED)
+    string(PREPEND TAUT_PC_LIBS_PRIVATE "-lBulletCollision -lLinearMath -lccd ")
+endif()
 if(NOT BUILD_SHARED_LIBS)
     string(APPEND TAUT_PC_LIBS " ${TAUT_PC_LIBS_PRIVATE}")
 endif()
@@ -58,7 +68,9 @@ if(TAUT_DPKG)
     set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
     set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
     set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
-    # What the static library links has the shared ones with it.
-    set(CPACK_DEBIAN_PACKAGE_DEPENDS "libbullet-dev, libccd-dev, libstdc++6")
+    set(CPACK_DEBIAN_PACKAGE_DEPENDS "libstdc++6")
+    if(NOT TAUT_BUNDLED) # what the static library links has the shared ones with it
+        string(PREPEND CPACK_DEBIAN_PACKAGE_DEPENDS "libbullet-dev, libccd-dev, ")
+    endif()
 endif()
 include(CPack)

@@ -1,5 +1,5 @@
 # What the static library links, found the same way by Taut's build and by find_package(taut):
-#   ccd                                       target of libccd's own package
+#   taut::ccd                                 libccd, by its own package
 #   taut::BulletCollision, taut::LinearMath   two of Bullet's libraries, in single precision
 #   TAUT_DEPENDENCIES_MISSING                 names of what was not found
 # Debian's Bullet package for CMake is broken and names libraries that Taut must not use: look for the files.
@@ -8,6 +8,8 @@ set(TAUT_DEPENDENCIES_MISSING "")
 find_package(ccd QUIET)
 if(NOT TARGET ccd)
     list(APPEND TAUT_DEPENDENCIES_MISSING libccd)
+elseif(NOT TARGET taut::ccd)
+    add_library(taut::ccd ALIAS ccd)
 endif()
 
 foreach(name IN ITEMS LinearMath BulletCollision)
