@@ -66,7 +66,8 @@ void add_hud(render::DrawList& list, const HudFigures& f) {
     };
     line(f.scene, kTitle, kWhite, kTitle + 14);
     line(f.description, kSmall, kDim, kSmall + 15);
-    line(text_of("frame %u/%u   t = %.2f s", f.frame, f.frames, f.time), kText, kWhite, kLine);
+    line(f.frames > 0 ? text_of("frame %u/%u   t = %.2f s", f.frame, f.frames, f.time) : text_of("frame %u", f.frame),
+         kText, kWhite, kLine);
     line(text_of("step %.2f ms of %.2f ms", f.step_ms, f.budget_ms), kText, kWhite, kLine - 2);
     float full = width - 2 * kPadding, share = static_cast<float>(std::clamp(f.step_ms / f.budget_ms, 0.0, 1.0));
     Colour bar = f.step_ms > f.budget_ms ? kLate : f.step_ms > 0.5 * f.budget_ms ? kBusy : kGood;

@@ -12,8 +12,8 @@ namespace demo {
 // What the panel shows.
 struct HudFigures {
     std::string scene, description;
-    uint32_t frame = 0, frames = 0;
-    double time = 0;  // simulated [s]
+    uint32_t frame = 0, frames = 0;  // of frames; 0: nobody knows of how many, nor the time
+    double time = 0;                 // simulated [s]
     double step_ms = 0, budget_ms = 0;
     double joint_error = 0, worst_joint_error = 0;  // now, and so far [m]
     bool has_joints = false;                        // rigid ones

@@ -5,20 +5,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "film.h"
 #include "hud.h"
 #include "options.h"
-#include "png_file.h"
 #include "render/egl_context.h"
+#include "replay_film.h"
 #include "scene_export.h"
 #include "scene_view.h"
 #include "scenes/catalogue.h"
-#include "video.h"
 
 namespace demo {
 
@@ -34,8 +33,8 @@ double ms_since(Clock::time_point begin) {
 
 // Figures over all frames so far.
 struct Figures {
-    uint32_t frames = 0, drawn = 0;
-    double step_sum_ms = 0, step_worst_ms = 0, draw_sum_ms = 0, write_sum_ms = 0;
+    uint32_t frames = 0;
+    double step_sum_ms = 0, step_worst_ms = 0;
     double joint_error = 0, penetration = 0;  // worst [m]
     uint32_t quarantined = 0;
 };
@@ -131,15 +130,13 @@ public:
         if (!options.csv.empty()) table_ = std::make_unique<PoseTable>(options.csv, world_);
         record(0);
         if (!options.render) return;
-        if (!options.video.empty())
-            video_ = std::make_unique<Video>(options.video, options.width, options.height,
-                                             1.0 / (scene.world.time_step * options.every));
-        if (!options.out.empty()) std::filesystem::create_directories(options.out);
-        renderer_ = std::make_unique<render::Renderer>(render::RendererOptions{options.width, options.height, 4, 2048});
-        std::fprintf(stderr, "%s\n", renderer_->description().c_str());
-        view_ = std::make_unique<SceneView>(scene, world_, *renderer_);
+        film_ = std::make_unique<Film>(options, scene.name, 1.0 / (scene.world.time_step * options.every));
+        view_ = std::make_unique<SceneView>(scene, world_, film_->renderer());
         list_.camera = view_->camera();
-        if (options.compare) set_up_twin();
+        if (options.compare)
+            set_up_twin();
+        else if (options.follow || !scene.camera.follow.empty())
+            view_->follow(static_cast<float>(options.width) / static_cast<float>(options.height));
     }
 
     void go() {
@@ -148,11 +145,11 @@ public:
             if (gltf_) gltf_->watch();
             if ((frame + 1) % options_.every == 0) {
                 record(frame + 1);
-                if (renderer_) draw(frame);
+                if (film_ && frame + 1 >= options_.from) draw(frame);
             }
             show_progress(frame + 1);
         }
-        if (video_) video_->finish();
+        if (film_) film_->finish();
         if (gltf_) gltf_->write(options_.gltf);
         if (table_) table_->finish();
         record_file_.end(world_.world);
@@ -166,7 +163,7 @@ private:
     // Both in view: further off, each in the middle of its half of the picture.
     void set_up_twin() {
         constexpr float kFurther = 1.45f;
-        twin_ = std::make_unique<Twin>(scene_, *renderer_);
+        twin_ = std::make_unique<Twin>(scene_, film_->renderer());
         render::Camera& camera = list_.camera;
         const render::Vec3 back = (camera.eye - camera.target) * kFurther;
         camera.eye = camera.target + back;
@@ -175,7 +172,9 @@ private:
         aside_ = render::view_axes(render::normalised(back * -1.0f)).right * (0.5f * half_width);
         render::Stage stage = view_->stage();
         const render::Vec3 reach = {std::fabs(aside_.x), 0, std::fabs(aside_.z)};
-        renderer_->set_stage({stage.low - reach, stage.high + reach, stage.ground_height});
+        stage.low = stage.low - reach;
+        stage.high = stage.high + reach;
+        film_->renderer().set_stage(stage);
     }
 
     void add_scene(SceneView& view, bool tension, render::Vec3 offset) {
@@ -203,6 +202,7 @@ private:
         auto begin = Clock::now();
         world_.step();
         step_ms_ = ms_since(begin);
+        if (view_) view_->step();
         profile_ = world_.profile();
         ++figures_.frames;
         figures_.step_sum_ms += step_ms_;
@@ -218,8 +218,8 @@ private:
     }
 
     void draw(uint32_t frame) {
-        auto begin = Clock::now();
         list_.clear();
+        if (!twin_) list_.camera = view_->camera();
         bool tension = options_.tension.value_or(has_forces());
         add_scene(*view_, tension, aside_ * -1.0f);
         if (twin_) add_scene(twin_->view(), tension, aside_);
@@ -230,13 +230,7 @@ private:
         if (options_.hud && options_.curves) add_curves(list_, curves_, frames_, {options_.width, options_.height});
         if (options_.hud) add_soft_legend(list_, scene_, {options_.width, options_.height});
         if (options_.hud && twin_) add_captions();
-        const render::Picture& picture = renderer_->draw(list_);
-        ++figures_.drawn;
-        figures_.draw_sum_ms += ms_since(begin);
-        begin = Clock::now();
-        if (!options_.out.empty()) write_png(frame_path(frame), picture);
-        if (video_) video_->add(picture);
-        figures_.write_sum_ms += ms_since(begin);
+        film_->add(list_, frame);
     }
 
     void add_captions() {
@@ -279,12 +273,6 @@ private:
 
     bool has_forces() const { return !scene_.joints.empty() || !scene_.cables.empty(); }
 
-    std::string frame_path(uint32_t frame) const {
-        char number[16];
-        std::snprintf(number, sizeof number, "_%05u.png", frame);
-        return (std::filesystem::path(options_.out) / (scene_.name + number)).string();
-    }
-
     void show_progress(uint32_t done) const {
         if (!isatty(STDERR_FILENO)) return;
         std::fprintf(stderr, "\r%s: frame %u/%u, step %.2f ms ", scene_.name.c_str(), done, frames_, step_ms_);
@@ -296,11 +284,10 @@ private:
     uint32_t frames_;
     RecordFile record_file_;
     scenes::TautWorld world_;
-    std::unique_ptr<render::Renderer> renderer_;
+    std::unique_ptr<Film> film_;
     std::unique_ptr<SceneView> view_;
     std::unique_ptr<Twin> twin_;
     render::Vec3 aside_{};  // from the middle to the twin [m]
-    std::unique_ptr<Video> video_;
     std::unique_ptr<GltfExport> gltf_;
     std::unique_ptr<PoseTable> table_;
     render::DrawList list_;
@@ -334,30 +321,18 @@ nlohmann::ordered_json Run::json() const {
     if (twin_) json["without_geometric_stiffness"] = twin_->json();
     if (gltf_) json["gltf"] = options_.gltf;
     if (table_) json["csv"] = options_.csv;
-    if (!renderer_) return json;
-    json["size"] = std::to_string(options_.width) + "x" + std::to_string(options_.height);
-    json["gl_renderer"] = renderer_->gl_renderer();
-    json["software"] = renderer_->software();
-    json["samples"] = renderer_->samples();
-    json["mean_draw_ms"] = figures_.draw_sum_ms / std::max(1u, figures_.drawn);
-    json["mean_write_ms"] = figures_.write_sum_ms / std::max(1u, figures_.drawn);
-    if (!options_.out.empty()) json["out"] = options_.out;
-    if (!options_.video.empty()) json["video"] = options_.video;
+    if (film_) film_->describe(json);
     return json;
 }
 
 void Run::print_summary() const {
-    const uint32_t every = options_.every;
-    if (renderer_ && !options_.out.empty() && figures_.drawn > 0)
-        std::fprintf(stderr, "frames: %u PNG in %s, %s to %s\n", figures_.drawn, options_.out.c_str(),
-                     std::filesystem::path(frame_path(every - 1)).filename().c_str(),
-                     std::filesystem::path(frame_path(figures_.drawn * every - 1)).filename().c_str());
-    if (video_) std::fprintf(stderr, "video: %u frames in %s\n", figures_.drawn, options_.video.c_str());
+    if (film_) film_->print_summary();
     std::fprintf(stderr, "step: mean %.3f ms, worst %.3f ms\n", figures_.step_sum_ms / figures_.frames,
                  figures_.step_worst_ms);
 }
 
 int run(const Options& options) {
+    if (!options.replay.empty()) return play(options) ? kFine : kRunFailed;
     scenes::Scene scene = scene_of(options);
     Run film(options, scene);
     film.go();
@@ -385,6 +360,9 @@ int main(int argc, char** argv) {
     try {
         return demo::run(*options);
     } catch (const scenes::BadScene& error) {
+        std::fprintf(stderr, "taut-demo: %s\n", error.what());
+        return demo::kBadArguments;
+    } catch (const demo::NoRecording& error) {
         std::fprintf(stderr, "taut-demo: %s\n", error.what());
         return demo::kBadArguments;
     } catch (const render::NoEglDevice& error) {

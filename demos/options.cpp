@@ -46,17 +46,22 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
     CLI::Option* frames_flag = app.add_option("--frames", frames, "frames, one step each (default: the scene's)")
                                    ->check(CLI::Range(1, 1000000));
     app.add_option("--every", options.every, "draw one frame of so many")->check(CLI::Range(1, 1000000));
+    app.add_option("--from", options.from, "draw none of the frames before this one")->check(CLI::Range(1, 1000000));
     app.add_option("--out", options.out, "folder for PNG frames (default: out; none with --video alone)");
     app.add_option("--size", size, "picture size, WxH (default: 1280x720)");
     app.add_option("--video", options.video, "film, made by ffmpeg");
     app.add_option("--json", options.json, "also write the figures to this file");
-    app.add_option("--gltf", options.gltf,
-                   "animated glTF 2.0 file (.glb) of the drawn frames; draws none without --out or --video");
-    app.add_option("--csv", options.csv, "table of the poses of bodies and vertices in those frames");
-    app.add_option("--record", options.record, "recording of the run, for taut-replay");
+    CLI::Option* gltf_flag =
+        app.add_option("--gltf", options.gltf,
+                       "animated glTF 2.0 file (.glb) of the drawn frames; draws none without --out or --video");
+    CLI::Option* csv_flag =
+        app.add_option("--csv", options.csv, "table of the poses of bodies and vertices in those frames");
+    CLI::Option* record_flag = app.add_option("--record", options.record, "recording of the run, for taut-replay");
     app.add_option("--threads", options.threads, "threads of a step")->check(CLI::Range(1, 64));
-    app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
-    app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");
+    CLI::Option* seed_flag =
+        app.add_option("--seed", options.seed, "above 0: a random start, the same for the same seed");
+    CLI::Option* swept_flag =
+        app.add_flag("--swept", options.swept, "cloths and solids are swept, not solved directly");
     app.add_flag("--from-point", options.from_point, "what begins tangled has all its vertices in one point");
     app.add_flag("!--no-line-search", options.line_search, "minimisation takes each of Newton's steps as it comes");
     CLI::Option* mesh_flag =
@@ -79,12 +84,23 @@ std::optional<Options> read_options(int argc, char** argv, int* exit_code) {
         app.add_option("--solver", solver, "one of taut_solver: block_ldlt, projected_gauss_seidel ...");
     app.add_flag("--no-render", no_render, "simulate only");
     app.add_flag("--no-hud", no_hud, "leave out the figures in the picture");
-    app.add_flag("--sleep", options.sleep, "let what came to rest sleep; it is drawn darker");
-    app.add_flag("--contacts", options.contacts, "draw contact points, with needles as long as their forces");
-    app.add_flag("--curves", options.curves, "draw curves of energy, joint error and step time");
-    app.add_flag("--compare", options.compare, "draw the same scene without geometric stiffness beside it");
+    CLI::Option* sleep_flag = app.add_flag("--sleep", options.sleep, "let what came to rest sleep; it is drawn darker");
+    CLI::Option* contacts_flag =
+        app.add_flag("--contacts", options.contacts, "draw contact points, with needles as long as their forces");
+    CLI::Option* curves_flag =
+        app.add_flag("--curves", options.curves, "draw curves of energy, joint error and step time");
+    CLI::Option* compare_flag =
+        app.add_flag("--compare", options.compare, "draw the same scene without geometric stiffness beside it");
+    app.add_flag("--follow", options.follow, "the camera keeps all that moves in its frame")->excludes(compare_flag);
     CLI::Option* tension_flag = app.add_flag("--tension,!--no-tension", tension,
                                              "colour joints by their force (default: on in scenes with joints)");
+    CLI::Option* replay_flag = app.add_option(
+        "--replay", options.replay,
+        "draw a recording (of --record or of any program) in place of a scene, and tell whether it comes out the same");
+    for (CLI::Option* of_scenes :
+         {scene_flag, mesh_flag, cloth_flag, solid_flag, urdf_flag, gltf_flag, csv_flag, record_flag, seed_flag,
+          swept_flag, substeps_flag, solver_flag, sleep_flag, contacts_flag, curves_flag, compare_flag, tension_flag})
+        replay_flag->excludes(of_scenes);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -15,10 +15,12 @@ struct Options {
     bool line_search = true;
     std::optional<uint32_t> frames;  // else the scene's own number
     uint32_t every = 1;              // draws the last of each so many frames
+    uint32_t from = 1;               // draws none before
     std::string out;                 // folder of the PNG frames, empty: none
     std::string video, json;         // files, empty: none
     std::string gltf, csv;           // likewise
     std::string record;              // file of a recording, likewise
+    std::string replay;              // the recording that is played in place of a scene, likewise
     int width = 1280, height = 720;
     uint32_t threads = 1;
     uint64_t seed = 0;
@@ -29,6 +31,7 @@ struct Options {
     bool contacts = false;
     bool curves = false;
     bool sleep = false;           // what came to rest sleeps, and is drawn darker
+    bool follow = false;          // the camera keeps all that moves in its frame
     bool compare = false;         // beside it the same scene without geometric stiffness
     std::optional<bool> tension;  // else on for scenes with joints
 };

@@ -18,46 +18,12 @@ using render::Vec3;
 using scenes::Look;
 using scenes::ShapeKind;
 
-constexpr float kRodRadius = 0.04f, kRopeRadius = 0.028f, kPointRadius = 0.05f,
-                kCableWeightRadius = 0.30f;  // drawn sizes [m]
-constexpr float kContactRadius = 0.03f;      // [m]
+constexpr float kCableWeightRadius = 0.30f, kContactRadius = 0.03f;  // drawn sizes [m]
 // Needles of contacts: one that bears the weight of the median body is so long, one of ten times it the longest [m].
 constexpr float kNeedle = 0.30f, kLongestNeedle = 10 * kNeedle;
 
 const Colour kLinkGrey = from_srgb(0xA9B4C0), kStop = from_srgb(0xFF2F4F), kDecoration = from_srgb(0xE8B23A),
              kPin = from_srgb(0x2A2F36), kContact = from_srgb(0xFFE14D), kNormal = from_srgb(0xFF3D81);
-
-Vec3 vec(taut_pos p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
-
-bool is_asleep(taut_body body) {
-    uint32_t awake = 1;
-    scenes::check(taut_body_get_awake(body, &awake), "asking whether a body is awake");
-    return awake == 0;
-}
-
-Colour darker(const Colour& colour) { return {0.4f * colour.x, 0.4f * colour.y, 0.4f * colour.z}; }
-
-Instance rod(Vec3 a, Vec3 b, float radius, Colour colour) {
-    Vec3 along = b - a;
-    float half = 0.5f * length(along);
-    Instance instance;
-    instance.mesh = render::kMeshCylinder;
-    instance.position = (a + b) * 0.5f;
-    instance.scale = {radius, std::max(half, 1e-4f), radius};
-    instance.rotation = render::from_y_to(half > 0 ? normalised(along) : Vec3{0, 1, 0});
-    instance.colour = colour;
-    return instance;
-}
-
-Instance ball(Vec3 centre, float radius, Colour colour, float gloss) {
-    Instance instance;
-    instance.mesh = render::kMeshSphere;
-    instance.position = centre;
-    instance.scale = {radius, radius, radius};
-    instance.colour = colour;
-    instance.gloss = gloss;
-    return instance;
-}
 
 // 0 for a joint that broke.
 float force_on(taut_joint joint) {
@@ -102,24 +68,55 @@ Colour TensionScale::colour(float force) const {
 }
 
 SceneView::SceneView(const scenes::Scene& scene, const scenes::TautWorld& world, render::Renderer& renderer)
-    : scene_(scene), world_(world), scale_(scene) {
-    for (size_t i = 0; i < scene.shapes.size(); ++i) {
-        uint32_t mesh = render::kMeshBox;
-        const ShapeKind kind = scene.shapes[i].kind;
-        if (kind == ShapeKind::sphere) mesh = render::kMeshSphere;
-        if (kind == ShapeKind::cylinder) mesh = render::kMeshDrum;
-        const std::vector<render::Vertex> own = own_mesh(scene.shapes[i], world.shapes[i]);
-        if (!own.empty()) mesh = renderer.add_mesh(own);
-        meshes_.push_back(mesh);
-    }
+    : scene_(scene), world_(world), renderer_(renderer), scale_(scene) {
+    for (size_t i = 0; i < scene.shapes.size(); ++i)
+        meshes_.push_back(mesh_of(scene.shapes[i], world.shapes[i], renderer));
     renderer.set_stage(stage());
 }
 
 render::Stage SceneView::stage() const { return {vec(scene_.stage.low), vec(scene_.stage.high), 0}; }
 
+namespace {
+
+// What the viewer looks through: all that is not drawn.
+int32_t hides_view(taut_body body, taut_collider, void* user) {
+    const auto& scene = *static_cast<const scenes::Scene*>(user);
+    uint64_t index = 0;
+    if (taut_body_get_user_data(body, &index) != TAUT_OK || index >= scene.bodies.size()) return 0;
+    const Look look = scene.bodies[index].look;
+    return look != Look::hidden && look != Look::wall;
+}
+
+}  // namespace
+
 render::Camera SceneView::camera() const {
-    return {vec(scene_.camera.eye), vec(scene_.camera.target),
-            scene_.camera.vertical_fov_deg * std::numbers::pi_v<float> / 180};
+    const render::Camera still = {vec(scene_.camera.eye), vec(scene_.camera.target),
+                                  scene_.camera.vertical_fov_deg * std::numbers::pi_v<float> / 180};
+    if (!follows_) return still;
+    taut_query_filter filter;
+    taut_query_filter_init(&filter);
+    filter.accept = hides_view;
+    filter.user_data = const_cast<scenes::Scene*>(&scene_);
+    return clear_view(above_ground(follows_->camera(), 0), world_.world, {}, filter).camera;
+}
+
+void SceneView::follow(float aspect) {
+    const render::Camera still = camera();
+    follows_.emplace(still, size_of(scene_.world.gravity), aspect);
+    step();
+}
+
+void SceneView::step() {
+    if (!follows_) return;
+    std::vector<taut_body> bodies;
+    for (const int body : scene_.camera.follow) bodies.push_back(world_.bodies[static_cast<size_t>(body)]);
+    if (bodies.empty()) bodies = moving_bodies(world_.world);
+    const std::optional<scenes::Bounds> box = bounds_of(bodies);
+    if (!box) return;
+    follows_->follow(vec(box->low), vec(box->high), scene_.world.time_step);
+    render::Stage here = stage();
+    here.include(vec(box->low), vec(box->high));
+    renderer_.set_stage(here);
 }
 
 void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) const {
@@ -127,7 +124,7 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
     taut_pose pose = world_.pose(index);
     Instance instance;
     instance.position = vec(pose.position);
-    instance.rotation = {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w};
+    instance.rotation = quat(pose.rotation);
     instance.colour = colour;
     instance.gloss = body.look == Look::steel ? 0.9f : 0.22f;
     if (body.kind == TAUT_BODY_PARTICLE) {
@@ -147,45 +144,14 @@ void SceneView::add_body(render::DrawList& list, size_t index, Colour colour) co
         Instance piece = instance;
         piece.position =
             instance.position + rotate(instance.rotation, {part.position.x, part.position.y, part.position.z});
-        const taut_quat whole = scenes::times(pose.rotation, part.rotation);
-        piece.rotation = {whole.x, whole.y, whole.z, whole.w};
+        piece.rotation = quat(scenes::times(pose.rotation, part.rotation));
         add_shape(list, part.shape, piece);
     }
 }
 
-void SceneView::add_shape(render::DrawList& list, int index, Instance instance) const {
-    const scenes::Shape& shape = scene_.shapes[static_cast<size_t>(index)];
-    instance.mesh = meshes_[static_cast<size_t>(index)];
-    const Colour colour = instance.colour;
-    float r = shape.radius;
-    switch (shape.kind) {
-        case ShapeKind::plane:
-            return;  // the renderer's ground
-        case ShapeKind::box:
-            instance.scale = {shape.half_extents.x, shape.half_extents.y, shape.half_extents.z};
-            break;
-        case ShapeKind::sphere:
-            instance.scale = {r, r, r};
-            break;
-        case ShapeKind::cylinder:
-            instance.scale = {r, shape.half_length, r};
-            break;
-        case ShapeKind::hull:
-        case ShapeKind::scaled_hull:
-        case ShapeKind::mesh:
-        case ShapeKind::height_field:
-        case ShapeKind::cone:
-        case ShapeKind::tapered_capsule:
-            break;  // meshes of their own
-        case ShapeKind::capsule: {
-            Vec3 half = rotate(instance.rotation, {0, shape.half_length, 0});
-            list.instances.push_back(rod(instance.position - half, instance.position + half, r, colour));
-            list.instances.push_back(ball(instance.position - half, r, colour, instance.gloss));
-            list.instances.push_back(ball(instance.position + half, r, colour, instance.gloss));
-            return;
-        }
-    }
-    list.instances.push_back(instance);
+void SceneView::add_shape(render::DrawList& list, int index, const Instance& instance) const {
+    const auto shape = static_cast<size_t>(index);
+    demo::add_shape(list, scene_.shapes[shape], meshes_[shape], instance);
 }
 
 void SceneView::add_bodies(render::DrawList& list, bool tension) const {
@@ -304,48 +270,16 @@ void SceneView::add_joints(render::DrawList& list, bool tension) const {
 void SceneView::add_cables(render::DrawList& list, bool tension) {
     for (size_t i = 0; i < scene_.cables.size(); ++i) {
         const taut_cable cable = world_.cables[i];
-        uint32_t count = 0;
-        taut_cable_get_points(cable, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
-        points_.resize(count);
-        tensions_.resize(count);
-        scenes::check(taut_cable_get_points(cable, points_.data(), count, &count), "reading a cable's points");
-        scenes::check(taut_cable_get_tensions(cable, tensions_.data(), count, &count), "reading a cable's tensions");
+        scenes::check(read_all(taut_cable_get_points, cable, points_), "reading a cable's points");
+        scenes::check(read_all(taut_cable_get_tensions, cable, tensions_), "reading a cable's tensions");
         const float radius = 0.5f * scene_.cables[i].def.diameter;
-        for (uint32_t segment = 0; segment < count; ++segment) {
+        for (size_t segment = 0; segment + 1 < points_.size(); ++segment) {
             const Colour colour = tension ? scale_.colour(std::fabs(tensions_[segment])) : kLinkGrey;
             const Vec3 a = vec(points_[segment]), b = vec(points_[segment + 1]);
             list.instances.push_back(rod(a, b, radius, colour));
             list.instances.push_back(ball(b, radius, colour, 0.22f));
         }
     }
-}
-
-namespace {
-
-// What both kinds of soft bodies are read by.
-auto points_reader(taut_cloth) { return taut_cloth_get_points; }
-auto points_reader(taut_solid) { return taut_solid_get_points; }
-auto normals_reader(taut_cloth) { return taut_cloth_get_normals; }
-auto normals_reader(taut_solid) { return taut_solid_get_normals; }
-auto triangles_reader(taut_cloth) { return taut_cloth_get_triangles; }
-auto triangles_reader(taut_solid) { return taut_solid_get_triangles; }
-
-// The whole of an array; entries: numbers in each.
-template <class Read, class Handle, class T>
-void read_all(Read read, Handle handle, std::vector<T>& out, size_t entries = 1) {
-    uint32_t count = 0;
-    read(handle, nullptr, 0, &count);  // TAUT_TOO_SMALL tells the number
-    out.resize(count * entries);
-    scenes::check(read(handle, out.data(), count, &count), "reading a soft body");
-}
-
-}  // namespace
-
-template <class Handle>
-void SceneView::read_surface(Handle handle) {
-    read_all(points_reader(handle), handle, points_);
-    read_all(normals_reader(handle), handle, normals_);
-    read_all(triangles_reader(handle), handle, triangles_, 3);
 }
 
 // The mean of the elements about each vertex, so that colours pass smoothly from one to the next.
@@ -364,26 +298,17 @@ void SceneView::put_on(const scenes::Skin& skin) {
     std::vector<float> values(at_vertices_.empty() ? 0 : skin.corners.size() / 4);
     for (size_t i = 0; i < skin.corners.size() && !values.empty(); ++i)
         values[i / 4] += skin.weights[i] * at_vertices_[skin.corners[i]];
-    points_ = skin_points(skin, points_);
+    surface_.points = skin_points(skin, surface_.points);
     at_vertices_ = std::move(values);
-    triangles_ = skin.triangles;
-    normals_ = normals_of(points_, triangles_);
+    surface_.triangles = skin.triangles;
+    surface_.normals = normals_of(surface_.points, surface_.triangles);
 }
 
 void SceneView::add_surface(render::DrawList& list, const Paint& paint) const {
-    const auto corner = [&](size_t k, float side) {
-        const uint32_t v = triangles_[k];
-        const Vec3 normal = {normals_[v].x, normals_[v].y, normals_[v].z};
-        const Colour colour =
-            paint.most > 0 ? TensionScale::ramp(at_vertices_[v] / static_cast<float>(paint.most)) : paint.plain;
-        // Both sides lie apart, lest they shade each other.
-        list.surfaces.push_back(
-            {vec(points_[v]) + normal * (side * 0.001f), normal * side, side > 0 ? colour : darker(colour), 0.1f});
+    const auto colour = [&](uint32_t v) {
+        return paint.most > 0 ? TensionScale::ramp(at_vertices_[v] / static_cast<float>(paint.most)) : paint.plain;
     };
-    for (size_t t = 0; t < triangles_.size(); t += 3) {
-        for (size_t k = 0; k < 3; ++k) corner(t + k, 1);
-        for (size_t k = 3; paint.both_sides && k-- > 0;) corner(t + k, -1);
-    }
+    surface_.add(list, colour, paint.both_sides);
 }
 
 void SceneView::add_softs(render::DrawList& list) {
@@ -393,10 +318,10 @@ void SceneView::add_softs(render::DrawList& list) {
     };
     for (size_t i = 0; i < scene_.cloths.size(); ++i) {
         const Paint paint = paint_of(scene_.cloths[i].look, kClothPaint, true);
-        read_surface(world_.cloths[i]);
+        surface_.read(world_.cloths[i]);
         if (paint.most > 0) {
-            read_all(taut_cloth_get_strains, world_.cloths[i], values_);
-            spread_over_vertices(triangles_, 3, points_.size());
+            scenes::check(read_all(taut_cloth_get_strains, world_.cloths[i], values_), "reading strains");
+            spread_over_vertices(surface_.triangles, 3, surface_.points.size());
         }
         add_surface(list, paint);
     }
@@ -404,11 +329,11 @@ void SceneView::add_softs(render::DrawList& list) {
         const scenes::Solid& solid = scene_.solids[i];
         Paint paint = paint_of(solid.look, kSolidPaint, false);
         if (solid.cells.empty()) paint.most = 0;  // what samples tell is nobody's cells
-        read_surface(world_.solids[i]);
+        surface_.read(world_.solids[i]);
         at_vertices_.clear();
         if (paint.most > 0) {
-            read_all(taut_solid_get_stresses, world_.solids[i], values_);
-            spread_over_vertices(solid.cells, solid.def.corners, points_.size());
+            scenes::check(read_all(taut_solid_get_stresses, world_.solids[i], values_), "reading stresses");
+            spread_over_vertices(solid.cells, solid.def.corners, surface_.points.size());
         }
         if (!solid.skin.triangles.empty()) put_on(solid.skin);
         add_surface(list, paint);

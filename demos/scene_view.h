@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
-#include "render/renderer.h"
+#include "draw_parts.h"
+#include "render/follow_camera.h"
 #include "scenes/taut_world.h"
 
 namespace demo {
@@ -29,6 +31,9 @@ public:
     SceneView(const scenes::Scene& scene, const scenes::TautWorld& world, render::Renderer& renderer);
 
     render::Camera camera() const;
+    // From here on the camera follows what the scene says, or all that moves. aspect: width over height.
+    void follow(float aspect);
+    void step();  // after each of the world's
     render::Stage stage() const;
     void add_bodies(render::DrawList& list, bool tension) const;
     void add_joints(render::DrawList& list, bool tension) const;
@@ -40,7 +45,7 @@ public:
 
 private:
     void add_body(render::DrawList& list, size_t index, render::Colour colour) const;
-    void add_shape(render::DrawList& list, int shape, render::Instance instance) const;
+    void add_shape(render::DrawList& list, int shape, const render::Instance& instance) const;
     void add_hinge(render::DrawList& list, size_t index, render::Vec3 at) const;
     void add_arms(render::DrawList& list, size_t index, const std::array<render::Vec3, 2>& anchors, bool tension) const;
     float needle_scale() const;
@@ -49,8 +54,6 @@ private:
         bool both_sides;
         double most;  // of values_, at the top of the scale; 0: plain
     };
-    template <class Handle>
-    void read_surface(Handle handle);
     void spread_over_vertices(const std::vector<uint32_t>& elements, size_t corners, size_t vertices);
     void put_on(const scenes::Skin& skin);
     void add_surface(render::DrawList& list, const Paint& paint) const;
@@ -59,13 +62,14 @@ private:
 
     const scenes::Scene& scene_;
     const scenes::TautWorld& world_;
+    render::Renderer& renderer_;
+    std::optional<render::FollowCamera> follows_;
     TensionScale scale_;
     std::vector<uint32_t> meshes_;  // of each shape
     std::vector<taut_contact> contacts_;
     std::vector<taut_pos> points_;  // of a cable
     std::vector<float> tensions_;
-    std::vector<taut_vec3> normals_;  // of a cloth or solid
-    std::vector<uint32_t> triangles_;
+    Surface surface_;                          // of a cloth or solid
     std::vector<float> values_, at_vertices_;  // strain or stress
 };
 

@@ -27,6 +27,9 @@ struct Camera {
     float vertical_fov = 0.7f;  // [rad]
 };
 
+// Pictures begin at a hundredth of the distance of what is looked at [m].
+inline float near_plane(const Camera& camera) { return 0.01f * length(camera.eye - camera.target); }
+
 // Meshes that always exist; add_mesh() returns further ones.
 enum BuiltinMesh : uint32_t {
     kMeshBox,
@@ -39,6 +42,7 @@ enum BuiltinMesh : uint32_t {
 // How an instance is drawn.
 enum class Pass : uint8_t {
     solid,    // lit, throws and receives shadows
+    ghost,    // lit, seen through, throws none
     overlay,  // unlit, pulled towards the viewer so that points inside touching bodies stay visible
 };
 
@@ -100,10 +104,16 @@ struct DrawList {
     }
 };
 
-// What stays for a whole film: the box that the sun's shadow map is fitted to, and the ground.
+// What stays for many pictures: the box that the sun's shadow map is fitted to, and the ground.
 struct Stage {
     Vec3 low{-10, 0, -10}, high{10, 10, 10};  // [m]
     float ground_height = 0;                  // [m]
+    bool ground = true;                       // there is one
+
+    void include(Vec3 a, Vec3 b) {
+        low = {std::fmin(low.x, a.x), std::fmin(low.y, a.y), std::fmin(low.z, a.z)};
+        high = {std::fmax(high.x, b.x), std::fmax(high.y, b.y), std::fmax(high.z, b.z)};
+    }
 };
 
 }  // namespace render

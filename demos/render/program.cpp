@@ -72,7 +72,7 @@ DepthMap::~DepthMap() {
 }
 
 void DepthMap::fit(Vec3 direction, Vec3 low, Vec3 high) {
-    ViewAxes axes = view_axes(direction);
+    axes = view_axes(direction);
     Vec3 view_low = {1e9f, 1e9f, 1e9f}, view_high = view_low * -1.0f;
     for (int corner = 0; corner < 8; ++corner) {
         Vec3 p = {corner & 1 ? low.x : high.x, corner & 2 ? low.y : high.y, corner & 4 ? low.z : high.z};
@@ -84,6 +84,46 @@ void DepthMap::fit(Vec3 direction, Vec3 low, Vec3 high) {
     view_high.z += 10.0f;
     clip_from_world = orthographic(view_low, view_high) * view_matrix({0, 0, 0}, axes);
     texel = std::max(view_high.x - view_low.x, view_high.y - view_low.y) / static_cast<float>(size);
+    scale_x = 1 / (view_high.x - view_low.x);
+    scale_y = 1 / (view_high.y - view_low.y);
+    depth = view_high.z - view_low.z;
+}
+
+namespace {
+
+GLuint texture_in(GLuint framebuffer, GLenum attachment, GLint format, GLenum channels, int width, int height) {
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, channels, GL_FLOAT, nullptr);
+    for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+    return texture;
+}
+
+}  // namespace
+
+AroundMap::AroundMap(int picture_width, int picture_height)
+    : width((picture_width + 1) / 2), height((picture_height + 1) / 2) {
+    for (GLuint* framebuffer : {&depth_framebuffer, &found_framebuffer, &blurred_framebuffer})
+        glGenFramebuffers(1, framebuffer);
+    depths =
+        texture_in(depth_framebuffer, GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, width, height);
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+    check_complete("depth");
+    found = texture_in(found_framebuffer, GL_COLOR_ATTACHMENT0, GL_RG32F, GL_RG, width, height);
+    check_complete("obscurance");
+    blurred = texture_in(blurred_framebuffer, GL_COLOR_ATTACHMENT0, GL_RG32F, GL_RG, width, height);
+    check_complete("blurred");
+}
+
+AroundMap::~AroundMap() {
+    for (GLuint* framebuffer : {&depth_framebuffer, &found_framebuffer, &blurred_framebuffer})
+        glDeleteFramebuffers(1, framebuffer);
+    for (GLuint* texture : {&depths, &found, &blurred}) glDeleteTextures(1, texture);
 }
 
 PictureTarget::PictureTarget(int width, int height, int wanted_samples) {

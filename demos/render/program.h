@@ -47,7 +47,21 @@ struct DepthMap {
     int size;
     GLuint texture = 0, framebuffer = 0;
     Mat4 clip_from_world;
-    float texel = 0;  // size of a texel in the world [m]
+    ViewAxes axes;
+    float texel = 0, scale_x = 0, scale_y = 0;  // size of a texel in the world [m]; of the map along its axes [1/m]
+    float depth = 0;                            // of its box [m]
+};
+
+// A picture of half the size that says of each place how far away it is, and how much light things near by keep off.
+struct AroundMap {
+    AroundMap(int picture_width, int picture_height);
+    ~AroundMap();
+    AroundMap(const AroundMap&) = delete;
+    AroundMap& operator=(const AroundMap&) = delete;
+
+    int width, height;
+    GLuint depths = 0, found = 0, blurred = 0;  // textures
+    GLuint depth_framebuffer = 0, found_framebuffer = 0, blurred_framebuffer = 0;
 };
 
 // Multisampled colour and depth with a plain colour target that they are resolved to.

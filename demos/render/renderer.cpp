@@ -17,7 +17,12 @@ namespace {
 
 constexpr int kZenithMapSize = 1024;
 constexpr float kOverlayPull = 0.5f;  // [m]; see Pass::overlay
-constexpr int kSunUnit = 1, kZenithUnit = 2;
+// Of a camera no further away than usual, else in proportion: how far one sees, the ground's half width, haze [1/m].
+constexpr float kUsual = 30, kFar = 900, kGround = 600, kHaze = 0.009f;
+constexpr float kGhost = 0.25f;  // share of a pixel that ghosts cover
+constexpr int kSunUnit = 1, kZenithUnit = 2, kSunDepthUnit = 3, kAroundUnit = 4;
+constexpr float kSunTangent = 0.015f;  // of its half angle: a light through thin clouds, three times as wide as the sun
+constexpr float kAroundReach = 0.045f;                // of the distance of what is looked at
 const Vec3 kSun = normalised({0.42f, 0.80f, 0.43f});  // towards the sun
 
 // What the GPU reads for one instance.
@@ -99,13 +104,23 @@ struct Renderer::Inside {
           target(o.width, o.height, o.samples),
           sun_map(o.shadow_size),
           zenith_map(kZenithMapSize),
+          around(o.width, o.height),
           solid({shaders::kSolidVertex}, {shaders::kLight, shaders::kSolidFragment}),
           depth({shaders::kSolidVertex}, {shaders::kDepthFragment}),
           ground({shaders::kGroundVertex}, {shaders::kLight, shaders::kGroundFragment}),
+          ground_depth({shaders::kGroundVertex}, {shaders::kDepthFragment}),
+          around_found({shaders::kScreenVertex}, {shaders::kAroundFragment}),
+          around_blur({shaders::kScreenVertex}, {shaders::kAroundBlur}),
           sky({shaders::kSkyVertex}, {shaders::kLight, shaders::kSkyFragment}),
           hud(o.width, o.height) {
         glGenVertexArrays(1, &empty_array);
         glGenBuffers(1, &instance_buffer);
+        glGenSamplers(1, &plain_sampler);
+        for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+            glSamplerParameteri(plain_sampler, filter, GL_NEAREST);
+        glSamplerParameteri(plain_sampler, GL_TEXTURE_COMPARE_MODE, GL_NONE);
+        for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+            glSamplerParameteri(plain_sampler, wrap, GL_CLAMP_TO_EDGE);
         for (const auto& mesh : {box_mesh(), sphere_mesh(24), sphere_mesh(6), cylinder_mesh(16), cylinder_mesh(64)})
             meshes.push_back(upload(mesh, instance_buffer));
         surface = surface_array();
@@ -123,13 +138,14 @@ struct Renderer::Inside {
         glDeleteVertexArrays(1, &surface.array);
         glDeleteBuffers(1, &surface.vertices);
         glDeleteBuffers(1, &instance_buffer);
+        glDeleteSamplers(1, &plain_sampler);
         glDeleteVertexArrays(1, &empty_array);
     }
 
     void set_stage(const Stage& s) {
         stage = s;
         Vec3 low = s.low, high = s.high;
-        low.y = std::min(low.y, s.ground_height);
+        if (s.ground) low.y = std::min(low.y, s.ground_height);
         sun_map.fit(kSun * -1.0f, low, high);
         zenith_map.fit({0, -1, 0}, low, high);
     }
@@ -138,7 +154,16 @@ struct Renderer::Inside {
     void take_surfaces(const std::vector<SurfaceVertex>& list);
     void draw_pass(Program& program, Pass pass);
     void draw_depth(DepthMap& map);
+    void draw_ground(Program& program, const Camera& camera);
+    void draw_around(const Camera& camera);
     void set_light(Program& program, const Camera& camera);
+    struct View {
+        float far;         // [m]
+        float across, up;  // tangents of half the field of view
+        ViewAxes axes;
+        Mat4 clip;
+    };
+    View view_of(const Camera& camera) const;
     void draw_world(const Camera& camera);
     void read_back();
 
@@ -146,9 +171,11 @@ struct Renderer::Inside {
     RendererOptions options;
     PictureTarget target;
     DepthMap sun_map, zenith_map;
-    Program solid, depth, ground, sky;
+    AroundMap around;
+    Program solid, depth, ground, ground_depth, around_found, around_blur, sky;
     HudBatch hud;
     GLuint empty_array = 0, instance_buffer = 0;
+    GLuint plain_sampler = 0;  // of depths as numbers
     std::vector<GpuMesh> meshes;
     GpuMesh surface;
     Stage stage;
@@ -219,57 +246,128 @@ void Renderer::Inside::draw_depth(DepthMap& map) {
     glDisable(GL_DEPTH_CLAMP);
 }
 
+Renderer::Inside::View Renderer::Inside::view_of(const Camera& camera) const {
+    const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+    View view;
+    view.far = kFar * std::max(1.0f, length(camera.target - camera.eye) / kUsual);
+    view.up = std::tan(0.5f * camera.vertical_fov);
+    view.across = view.up * aspect;
+    view.axes = view_axes(normalised(camera.target - camera.eye));
+    view.clip =
+        perspective(camera.vertical_fov, aspect, near_plane(camera), view.far) * view_matrix(camera.eye, view.axes);
+    return view;
+}
+
+void Renderer::Inside::draw_ground(Program& program, const Camera& camera) {
+    if (!stage.ground) return;
+    const View view = view_of(camera);
+    program.set("clip_from_world", view.clip);
+    program.set("eye", camera.eye);
+    program.set("height", stage.ground_height);
+    program.set("half_width", kGround / kFar * view.far);
+    glDisable(GL_CULL_FACE);
+    glBindVertexArray(empty_array);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glEnable(GL_CULL_FACE);
+}
+
+// How far away everything is, then how much light what is near keeps off, then that without its pattern.
+void Renderer::Inside::draw_around(const Camera& camera) {
+    const View view = view_of(camera);
+    const float reach = kAroundReach * length(camera.target - camera.eye);
+    glViewport(0, 0, around.width, around.height);
+    glBindFramebuffer(GL_FRAMEBUFFER, around.depth_framebuffer);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    depth.use();
+    depth.set("clip_from_world", view.clip);
+    draw_pass(depth, Pass::solid);
+    ground_depth.use();
+    draw_ground(ground_depth, camera);
+
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(empty_array);
+    glActiveTexture(GL_TEXTURE0 + kAroundUnit);
+    glBindFramebuffer(GL_FRAMEBUFFER, around.found_framebuffer);
+    glBindTexture(GL_TEXTURE_2D, around.depths);
+    around_found.use();
+    around_found.set("depths", kAroundUnit);
+    around_found.set("planes", near_plane(camera), view.far);
+    around_found.set("tangents", view.across, view.up);
+    around_found.set("around_reach", reach);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindFramebuffer(GL_FRAMEBUFFER, around.blurred_framebuffer);
+    glBindTexture(GL_TEXTURE_2D, around.found);
+    around_blur.use();
+    around_blur.set("around", kAroundUnit);
+    around_blur.set("around_reach", reach);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glEnable(GL_DEPTH_TEST);
+}
+
 void Renderer::Inside::set_light(Program& program, const Camera& camera) {
     program.use();
     program.set("sun", kSun);
     program.set("eye", camera.eye);
+    program.set("haze", kHaze / std::max(1.0f, length(camera.target - camera.eye) / kUsual));
     program.set("sun_clip", sun_map.clip_from_world);
     program.set("zenith_clip", zenith_map.clip_from_world);
     program.set("texel", sun_map.texel, zenith_map.texel);
     program.set("sun_map", kSunUnit);
     program.set("zenith_map", kZenithUnit);
+    program.set("sun_depths", kSunDepthUnit);
+    program.set("sun_right", sun_map.axes.right);
+    program.set("sun_up", sun_map.axes.up);
+    program.set("sun_scale", sun_map.scale_x, sun_map.scale_y);
+    program.set("sun_depth", sun_map.depth);
+    program.set("sun_tangent", kSunTangent);
+    program.set("around", kAroundUnit);
+    program.set("around_reach", kAroundReach * length(camera.target - camera.eye));
 }
 
 void Renderer::Inside::draw_world(const Camera& camera) {
-    float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-    ViewAxes axes = view_axes(normalised(camera.target - camera.eye));
-    Mat4 clip = perspective(camera.vertical_fov, aspect, 0.1f, 900.0f) * view_matrix(camera.eye, axes);
-    for (auto [unit, map] : {std::pair(kSunUnit, &sun_map), std::pair(kZenithUnit, &zenith_map)}) {
+    const View view = view_of(camera);
+    const std::pair<int, GLuint> maps[] = {{kSunUnit, sun_map.texture},
+                                           {kZenithUnit, zenith_map.texture},
+                                           {kSunDepthUnit, sun_map.texture},
+                                           {kAroundUnit, around.blurred}};
+    for (const auto& [unit, texture] : maps) {
         glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-        glBindTexture(GL_TEXTURE_2D, map->texture);
+        glBindTexture(GL_TEXTURE_2D, texture);
     }
+    glBindSampler(kSunDepthUnit, plain_sampler);
 
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     set_light(sky, camera);
-    float tangent = std::tan(0.5f * camera.vertical_fov);
-    sky.set("right", axes.right * (tangent * aspect));
-    sky.set("up", axes.up * tangent);
-    sky.set("back", axes.back);
+    sky.set("right", view.axes.right * view.across);
+    sky.set("up", view.axes.up * view.up);
+    sky.set("back", view.axes.back);
     glBindVertexArray(empty_array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
 
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
     set_light(solid, camera);
-    solid.set("clip_from_world", clip);
+    solid.set("clip_from_world", view.clip);
     solid.set("viewer", camera.eye);
     solid.set("unlit", 0);
     solid.set("pull", 0.0f);
+    solid.set("cover", 1.0f);
     draw_pass(solid, Pass::solid);
 
-    glDisable(GL_CULL_FACE);
     set_light(ground, camera);
-    ground.set("clip_from_world", clip);
-    ground.set("height", stage.ground_height);
-    glBindVertexArray(empty_array);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    glEnable(GL_CULL_FACE);
+    draw_ground(ground, camera);
 
     solid.use();
+    solid.set("cover", kGhost);
+    glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    draw_pass(solid, Pass::ghost);
+    glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    solid.set("cover", 1.0f);
     solid.set("unlit", 1);
     solid.set("pull", kOverlayPull);
     draw_pass(solid, Pass::overlay);
+    glBindSampler(kSunDepthUnit, 0);
 }
 
 void Renderer::Inside::read_back() {
@@ -317,6 +415,7 @@ const Picture& Renderer::draw(const DrawList& list) {
     glEnable(GL_CULL_FACE);
     in.draw_depth(in.sun_map);
     in.draw_depth(in.zenith_map);
+    in.draw_around(list.camera);
 
     int width = in.options.width, height = in.options.height;
     glBindFramebuffer(GL_FRAMEBUFFER, in.target.drawn);

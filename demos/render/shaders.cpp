@@ -6,15 +6,23 @@ namespace render::shaders {
 // sRGB.
 const char* const kLight = R"(
 uniform vec3 sun, eye;
+uniform float haze;  // [1/m]
 uniform mat4 sun_clip, zenith_clip;
 uniform sampler2DShadow sun_map, zenith_map;
-uniform vec2 texel;  // size of a shadow map texel in the world [m]: sun, zenith
+uniform sampler2D sun_depths, around;  // the sun's map as numbers; see around_visible
+uniform vec2 texel;                    // size of a shadow map texel in the world [m]: sun, zenith
+uniform vec3 sun_right, sun_up;        // axes of the sun's map
+uniform vec2 sun_scale;                // of it along them [1/m]
+uniform float sun_depth, sun_tangent;  // depth of its box [m]; of the sun's half angle
+uniform float around_reach;            // [m]
 const vec3 kHorizon = vec3(0.80, 0.98, 1.18), kZenith = vec3(0.07, 0.25, 0.66);
 const vec3 kSunLight = vec3(3.30, 3.00, 2.55), kSkyLight = vec3(0.55, 0.70, 0.95);
-const vec3 kGroundLight = vec3(0.30, 0.28, 0.25);
+const vec3 kGroundLight = vec3(0.30, 0.28, 0.25), kFloor = vec3(0.42, 0.44, 0.46);
 vec3 sky_colour(vec3 d) {
-    vec3 c = mix(kHorizon, kZenith, pow(clamp(d.y, 0.0, 1.0), 0.5));
-    return c + vec3(1.0, 0.85, 0.6) * 0.25 * pow(max(dot(d, sun), 0.0), 24.0);
+    // Below the horizon is what a ground without end would be.
+    vec3 c = d.y > 0.0 ? mix(kHorizon, kZenith, sqrt(d.y)) : mix(kHorizon, kFloor, smoothstep(0.0, 0.3, -d.y));
+    float towards = max(dot(d, sun), 0.0);
+    return c + vec3(1.0, 0.85, 0.6) * (0.25 * pow(towards, 24.0) + 4.0 * smoothstep(0.9995, 0.9999, towards));
 }
 vec3 film(vec3 c) {  // filmic curve: a toe for contrast, a shoulder for highlights
     c *= 0.60;
@@ -23,21 +31,66 @@ vec3 film(vec3 c) {  // filmic curve: a toe for contrast, a shoulder for highlig
 vec3 fogged(vec3 c, vec3 p) {
     vec3 d = p - eye;
     float r = length(d);
-    float f = 1.0 - exp(-pow(r * 0.0090, 2.0));
+    float f = 1.0 - exp(-pow(r * haze, 2.0));
     return mix(c, kHorizon, f);
 }
+// Turns a pattern from pixel to pixel, so that its gaps do not line up (Jimenez 2014).
+mat2 turn_of_pixel() {
+    float a = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return mat2(cos(a), sin(a), -sin(a), cos(a));
+}
+// Points that fill a unit disc evenly, from its middle outwards by the golden angle: i at sqrt((i + 0.5) / 16).
+const vec2 kDisc[16] = vec2[16](
+    vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371),
+    vec2(-0.522, -0.092), vec2(0.495, -0.315), vec2(-0.165, 0.616), vec2(-0.316, -0.608),
+    vec2(0.685, 0.250), vec2(-0.712, 0.294), vec2(0.343, -0.734), vec2(0.254, 0.809),
+    vec2(-0.765, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779), vec2(-0.126, -0.976));
+// Share of the sun's disc that a point sees. What is z metres nearer to the sun blurs the shadow by z times the tangent
+// of the disc's half angle: z is the mean over what is within the widest such disc (Fernando 2005).
 float sun_visible(vec3 p, vec3 n, float facing) {
-    // Along the normal by about the filter's radius, more at grazing light: no acne, no gap.
-    vec3 q = p + n * texel.x * (1.2 + 2.2 * sqrt(max(1.0 - facing * facing, 0.0)));
-    vec4 c = sun_clip * vec4(q, 1.0);
-    vec3 s = c.xyz * 0.5 + 0.5;
+    const int kSearched = 12, kFiltered = 16;
+    const float kWhole = 1.1547;  // brings the first twelve points to the unit disc
+    // Along the normal by about a texel: no acne, no gap.
+    vec3 q = p + n * texel.x * (1.0 + sqrt(max(1.0 - facing * facing, 0.0)));
+    vec3 s = (sun_clip * vec4(q, 1.0)).xyz * 0.5 + 0.5;
     if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
-    vec2 t = 1.0 / vec2(textureSize(sun_map, 0));
+    // The plane that the point lies in goes on under the filter: its depth a metre across.
+    vec2 slope = vec2(dot(n, sun_right), dot(n, sun_up)) / (max(facing, 0.1) * sun_depth);
+    mat2 turn = turn_of_pixel();
+    float widest = s.z * sun_depth * sun_tangent, near = 0.0, blockers = 0.0;
+    for (int i = 0; i < kSearched; ++i) {
+        vec2 at = turn * kDisc[i] * (kWhole * widest);
+        float z = texture(sun_depths, s.xy + at * sun_scale).r;
+        if (z < s.z + dot(slope, at)) {
+            near += z;
+            blockers += 1.0;
+        }
+    }
+    if (blockers == 0.0) return 1.0;
+    float radius = max((s.z - near / blockers) * sun_depth * sun_tangent, 1.5 * texel.x);
     float lit = 0.0;
-    for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-            lit += texture(sun_map, vec3(s.xy + vec2(i, j) * t * 1.1, s.z - 0.0002));
-    return lit / 9.0;
+    for (int i = 0; i < kFiltered; ++i) {
+        vec2 at = turn * kDisc[i] * radius;
+        lit += texture(sun_map, vec3(s.xy + at * sun_scale, s.z + dot(slope, at) - 0.0001));
+    }
+    return lit / float(kFiltered);
+}
+// Share of the light from around that comes to a place between things near it: of the picture of it, which has a texel
+// for four pixels, those texels that are as far away.
+float around_visible() {
+    vec2 at = gl_FragCoord.xy * 0.5 - 0.5;
+    ivec2 first = ivec2(floor(at)), last = textureSize(around, 0) - 1;
+    vec2 f = at - vec2(first);
+    float depth = 1.0 / gl_FragCoord.w, sum = 0.0, all = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 o = ivec2(i & 1, i >> 1);
+        vec2 t = texelFetch(around, clamp(first + o, ivec2(0), last), 0).rg;
+        vec2 w = mix(1.0 - f, f, vec2(o));
+        float weight = w.x * w.y * max(1.0 - abs(t.g - depth) / around_reach, 0.0) + 1e-5;
+        sum += weight * t.r;
+        all += weight;
+    }
+    return sum / all;
 }
 // Share of the sky above that a point sees: a second depth map from the zenith, widely filtered.
 float sky_visible(vec3 p, vec3 n) {
@@ -54,7 +107,7 @@ float sky_visible(vec3 p, vec3 n) {
 vec3 lit_colour(vec3 albedo, vec3 p, vec3 n, float gloss) {
     float facing = max(dot(n, sun), 0.0);
     float direct = facing > 0.0 ? facing * sun_visible(p, n, facing) : 0.0;
-    float open = sky_visible(p, n);
+    float open = sky_visible(p, n) * around_visible();
     vec3 ambient = mix(kGroundLight, kSkyLight, n.y * 0.5 + 0.5) * open;
     vec3 view = normalize(eye - p), middle = normalize(view + sun);
     float fresnel = pow(1.0 - max(dot(n, view), 0.0), 5.0);
@@ -98,6 +151,7 @@ in vec3 world, local, local_normal, half_size;
 in vec4 paint;
 flat in vec4 turn;
 uniform int bevelled, unlit;
+uniform float cover;
 out vec4 colour;
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 void main() {
@@ -116,7 +170,7 @@ void main() {
         n = normalize(n + lean * (0.8 * shown));
         albedo *= 1.0 + 0.12 * shown * min(length(lean), 1.0);
     }
-    colour = vec4(lit_colour(albedo, world, turned(turn, n), paint.a), 1.0);
+    colour = vec4(lit_colour(albedo, world, turned(turn, n), paint.a), cover);
 }
 )";
 
@@ -127,11 +181,11 @@ void main() {}
 const char* const kGroundVertex = R"(
 uniform mat4 clip_from_world;
 uniform vec3 eye;
-uniform float height;
+uniform float height, half_width;
 out vec3 world;
 void main() {
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    world = vec3(eye.x + corner.x * 600.0, height, eye.z + corner.y * 600.0);
+    world = vec3(eye.x + corner.x * half_width, height, eye.z + corner.y * half_width);
     gl_Position = clip_from_world * vec4(world, 1.0);
 }
 )";
@@ -171,7 +225,8 @@ float concrete(vec2 p) {
     return sum;
 }
 void main() {
-    float r = length(world - eye);
+    // Distances count in those at which a camera usually is.
+    float r = length(world - eye) * haze / 0.009;
     // Slabs of a metre in two tones.
     vec2 slab = floor(world.xz);
     float odd = mod(slab.x + slab.y, 2.0) * exp(-r / 45.0);
@@ -179,7 +234,8 @@ void main() {
     albedo *= 1.0 + 0.42 * concrete(world.xz);
     float minor = lines(world.xz, 1.0, 0.008) * exp(-r / 22.0);
     float major = lines(world.xz, 10.0, 0.03) * exp(-r / 70.0);
-    albedo = mix(albedo, vec3(0.11, 0.12, 0.135), 0.75 * minor);
+    float fine = lines(world.xz, 0.1, 0.0008) * exp(-r / 2.0);
+    albedo = mix(albedo, vec3(0.11, 0.12, 0.135), max(0.75 * minor, 0.4 * fine));
     albedo = mix(albedo, vec3(0.52, 0.56, 0.62), 0.75 * major);
     colour = vec4(lit_colour(albedo, world, vec3(0.0, 1.0, 0.0), 0.10), 1.0);
 }
@@ -199,6 +255,73 @@ const char* const kSkyFragment = R"(
 in vec3 direction;
 out vec4 colour;
 void main() { colour = vec4(film(sky_colour(normalize(direction))), 1.0); }
+)";
+
+const char* const kScreenVertex = R"(
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+// After the obscurance of McGuire et al. 2011: of points on a spiral about each texel, those above its plane and near.
+// The spiral is turned by texel in squares of four by four, over which kAroundBlur takes the mean.
+const char* const kAroundFragment = R"(
+uniform sampler2D depths;
+uniform vec2 planes, tangents;  // near and far [m]; of half the field of view
+uniform float around_reach;     // [m]
+out vec2 result;                // share of light, distance along the view [m]
+// By the golden angle, evenly outwards.
+const vec2 kSpiral[12] = vec2[12](
+    vec2(0.042, 0.000), vec2(-0.092, 0.084), vec2(0.018, -0.208), vec2(0.177, 0.231),
+    vec2(-0.369, -0.065), vec2(0.387, -0.246), vec2(-0.141, 0.523), vec2(-0.288, -0.555),
+    vec2(0.665, 0.243), vec2(-0.732, 0.302), vec2(0.371, -0.793), vec2(0.287, 0.914));
+vec3 place(ivec2 texel) {
+    ivec2 size = textureSize(depths, 0);
+    float d = 2.0 * texelFetch(depths, clamp(texel, ivec2(0), size - 1), 0).r - 1.0;
+    float z = 2.0 * planes.x * planes.y / (planes.x + planes.y - d * (planes.y - planes.x));
+    return vec3(((vec2(texel) + 0.5) / vec2(size) * 2.0 - 1.0) * tangents * z, z);
+}
+// Along a surface: the nearer one of the two neighbours.
+vec3 along(vec3 before, vec3 here, vec3 after) {
+    return abs(before.z - here.z) < abs(after.z - here.z) ? here - before : after - here;
+}
+void main() {
+    const int kPoints = 12;
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec3 p = place(at);
+    vec3 n = normalize(cross(along(place(at - ivec2(0, 1)), p, place(at + ivec2(0, 1))),
+                             along(place(at - ivec2(1, 0)), p, place(at + ivec2(1, 0)))));
+    float texels = around_reach / p.z * float(textureSize(depths, 0).y) / (2.0 * tangents.y);
+    if (p.z > 0.5 * planes.y || texels < 1.0) {
+        result = vec2(1.0, p.z);
+        return;
+    }
+    float a = 6.2831853 * float((at.x & 3) * 4 + ((at.y + (at.x & 3) * 2) & 3)) / 16.0, sum = 0.0;
+    mat2 turn = texels * mat2(cos(a), sin(a), -sin(a), cos(a));
+    for (int i = 0; i < kPoints; ++i) {
+        vec3 v = place(at + ivec2(round(turn * kSpiral[i]))) - p;
+        float square = dot(v, v), above = dot(v, n) - 0.002 * p.z;
+        sum += max(1.0 - square / (around_reach * around_reach), 0.0) * max(above, 0.0) * inversesqrt(square + 1e-12);
+    }
+    result = vec2(max(1.0 - 2.2 * sum / float(kPoints), 0.0), p.z);
+}
+)";
+
+const char* const kAroundBlur = R"(
+uniform sampler2D around;
+uniform float around_reach;
+out vec2 result;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(around, 0) - 1;
+    float depth = texelFetch(around, at, 0).g, sum = 0.0, all = 0.0;
+    for (int i = 0; i < 16; ++i) {
+        vec2 t = texelFetch(around, clamp(at + ivec2((i & 3) - 2, (i >> 2) - 2), ivec2(0), last), 0).rg;
+        float weight = max(1.0 - abs(t.g - depth) / around_reach, 0.0);
+        sum += weight * t.r;
+        all += weight;
+    }
+    result = vec2(sum / all, depth);
+}
 )";
 
 const char* const kHudVertex = R"(

@@ -130,7 +130,7 @@ Scene build_car(double, double, const Options& options) {
                            scene.bodies[static_cast<size_t>(rear[1])].position, across, across, -1));
     scene.roles.load = chassis;
     scene.forces = ForceScale{2, 5};
-    scene.camera = {{2, 4.5, 15}, {0, 0.8, 0}, 46};
+    scene.camera = {{5, 3.4, 8}, {0, 0.8, 0}, 46, {chassis}};
     scene.stage = {{-14, 0, -14}, {14, 4, 14}};
     perturb(scene, options.seed);
     return scene;

@@ -231,6 +231,7 @@ struct ForceScale {
 struct Camera {
     taut_pos eye{}, target{};
     float vertical_fov_deg = 38;
+    std::vector<int> follow{};  // bodies that stay in the frame, from the direction in which the eye is; none: it stays
 };
 
 // A box that is drawn and touches nothing.

@@ -111,7 +111,7 @@ Scene build_soft_car(double, double, const Options& options) {
         add_static_box(scene, {-0.9 + 0.75 * i, 0.035, i % 2 == 0 ? 0.5 : -0.5}, 0.09, 0.035, 0.35, Look::stone);
     scene.roles.load = chassis;
     scene.forces = ForceScale{0, 4};
-    scene.camera = {{1.0, 1.7, 4.0}, {-0.1, 0.3, 0}, 44};
+    scene.camera = {{1.0, 1.7, 4.0}, {-0.1, 0.3, 0}, 44, {chassis}};
     scene.stage = {{-4, 0, -2.5}, {4, 1.5, 2.5}};
     perturb(scene, options.seed);
     return scene;
