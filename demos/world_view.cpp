@@ -20,6 +20,7 @@ using scenes::ShapeKind;
 
 const Colour kSensor = from_srgb(0x4FC28B), kQuarantine = from_srgb(0xFF2F4F);
 constexpr float kPlaneHalfWidth = 50;  // of a plane that is not level [m]
+constexpr float kThinnest = 1e-3f;     // radius of a cable that is still seen, of the distance of what is looked at
 // Level is what deviates by less than single precision tells.
 constexpr double kLevel = 1 - 1e-6;
 
@@ -107,9 +108,6 @@ Look look_of(taut_body_kind kind, uint32_t flags) {
     if (kind == TAUT_BODY_STATIC) return Look::stone;
     return kind == TAUT_BODY_KINEMATIC ? Look::steel : Look::crate;
 }
-
-// A number that a body keeps, whatever world it is replayed in.
-size_t number_of(taut_body body) { return static_cast<size_t>(body.bits & 0xffffffffu); }
 
 }  // namespace
 
@@ -226,7 +224,7 @@ void WorldView::add_cable(render::DrawList& list, taut_cable cable) {
             taut_collider_def def;
             taut_collider_def_init(&def);
             check(taut_collider_get_def(colliders_[0], &def), "reading a collider");
-            radius = std::max(drawn(def.shape).shape.radius, render::near_plane(list.camera) / 20);
+            radius = std::max(drawn(def.shape).shape.radius, kThinnest * length(list.camera.eye - list.camera.target));
         }
     }
     const Colour colour = colour_of(Look::link, 0);
@@ -274,6 +272,9 @@ void WorldView::add_joints(render::DrawList& list) {
         }
     }
 }
+
+// Bodies are numbered as they are first seen, so that each keeps its colour.
+size_t WorldView::number_of(taut_body body) { return numbers_.try_emplace(body.bits, numbers_.size()).first->second; }
 
 void WorldView::add_body(render::DrawList& list, taut_body body) {
     uint32_t enabled = 0;

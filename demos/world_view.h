@@ -37,6 +37,7 @@ private:
     void add_joints(render::DrawList& list);
     void add_softs(render::DrawList& list, const std::vector<taut_body>& bodies);
     const Drawn& drawn(taut_shape shape);
+    size_t number_of(taut_body body);
     render::Vec3 at(taut_pos p) const { return vec(placement_.picture(p)); }
 
     taut_world world_;
@@ -46,8 +47,9 @@ private:
     Placement placement_;
     std::optional<double> ground_;  // height in the picture [m]
     std::optional<render::FollowCamera> camera_;
-    std::map<uint64_t, Drawn> shapes_;  // by handle
-    std::set<uint64_t> between_;        // static bodies between the eye and what moves: they are seen through
+    std::map<uint64_t, Drawn> shapes_;    // by handle
+    std::map<uint64_t, size_t> numbers_;  // of bodies, by handle
+    std::set<uint64_t> between_;          // static bodies between the eye and what moves: they are seen through
     std::vector<taut_collider> colliders_;
     Surface surface_;
 };

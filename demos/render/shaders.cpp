@@ -48,12 +48,12 @@ const vec2 kDisc[16] = vec2[16](
 // Share of the sun's disc that a point sees. What is z metres nearer to the sun blurs the shadow by z times the tangent
 // of the disc's half angle: z is the mean over what is within the widest such disc (Fernando 2005).
 float sun_visible(vec3 p, vec3 n, float facing) {
-    const int kSearched = 12, kFiltered = 16;
-    const float kWhole = 1.1547;  // brings the first twelve points to the unit disc
+    const int kSearched = 8, kFiltered = 16;
+    const float kWhole = 1.4142;  // brings the first eight points to the unit disc
     // Along the normal by about a texel: no acne, no gap.
     vec3 q = p + n * texel.x * (1.0 + sqrt(max(1.0 - facing * facing, 0.0)));
     vec3 s = (sun_clip * vec4(q, 1.0)).xyz * 0.5 + 0.5;
-    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
+    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
     // The plane that the point lies in goes on under the filter: its depth a metre across.
     vec2 slope = vec2(dot(n, sun_right), dot(n, sun_up)) / (max(facing, 0.1) * sun_depth);
     mat2 turn = turn_of_pixel();
@@ -66,7 +66,7 @@ float sun_visible(vec3 p, vec3 n, float facing) {
             blockers += 1.0;
         }
     }
-    if (blockers == 0.0) return 1.0;
+    if (blockers == 0.0 || blockers == float(kSearched)) return 1.0 - blockers / float(kSearched);
     float radius = max((s.z - near / blockers) * sun_depth * sun_tangent, 1.5 * texel.x);
     float lit = 0.0;
     for (int i = 0; i < kFiltered; ++i) {
@@ -96,7 +96,7 @@ float around_visible() {
 float sky_visible(vec3 p, vec3 n) {
     vec4 c = zenith_clip * vec4(p + n * 0.12 + vec3(0.0, 0.03, 0.0), 1.0);
     vec3 s = c.xyz * 0.5 + 0.5;
-    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
+    if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
     vec2 t = 1.0 / (texel.y * vec2(textureSize(zenith_map, 0)));  // of one metre
     const vec2 tap[8] = vec2[8](vec2(0.18, 0.05), vec2(-0.12, 0.22), vec2(-0.20, -0.18), vec2(0.10, -0.30),
                                 vec2(0.55, 0.30), vec2(-0.45, 0.50), vec2(-0.55, -0.42), vec2(0.48, -0.52));
@@ -271,10 +271,9 @@ uniform vec2 planes, tangents;  // near and far [m]; of half the field of view
 uniform float around_reach;     // [m]
 out vec2 result;                // share of light, distance along the view [m]
 // By the golden angle, evenly outwards.
-const vec2 kSpiral[12] = vec2[12](
-    vec2(0.042, 0.000), vec2(-0.092, 0.084), vec2(0.018, -0.208), vec2(0.177, 0.231),
-    vec2(-0.369, -0.065), vec2(0.387, -0.246), vec2(-0.141, 0.523), vec2(-0.288, -0.555),
-    vec2(0.665, 0.243), vec2(-0.732, 0.302), vec2(0.371, -0.793), vec2(0.287, 0.914));
+const vec2 kSpiral[8] = vec2[8](
+    vec2(0.062, 0.000), vec2(-0.138, 0.127), vec2(0.027, -0.311), vec2(0.266, 0.347),
+    vec2(-0.554, -0.098), vec2(0.580, -0.369), vec2(-0.211, 0.785), vec2(-0.432, -0.832));
 vec3 place(ivec2 texel) {
     ivec2 size = textureSize(depths, 0);
     float d = 2.0 * texelFetch(depths, clamp(texel, ivec2(0), size - 1), 0).r - 1.0;
@@ -286,7 +285,7 @@ vec3 along(vec3 before, vec3 here, vec3 after) {
     return abs(before.z - here.z) < abs(after.z - here.z) ? here - before : after - here;
 }
 void main() {
-    const int kPoints = 12;
+    const int kPoints = 8;
     ivec2 at = ivec2(gl_FragCoord.xy);
     vec3 p = place(at);
     vec3 n = normalize(cross(along(place(at - ivec2(0, 1)), p, place(at + ivec2(0, 1))),
