@@ -61,7 +61,7 @@ float sun_visible(vec3 p, vec3 n, float facing) {
     for (int i = 0; i < kSearched; ++i) {
         vec2 at = turn * kDisc[i] * (kWhole * widest);
         float z = texture(sun_depths, s.xy + at * sun_scale).r;
-        if (z < s.z + dot(slope, at)) {
+        if (z < min(s.z + dot(slope, at), 1.0)) {  // 1: nothing is there
             near += z;
             blockers += 1.0;
         }
