@@ -48,8 +48,8 @@ const vec2 kDisc[16] = vec2[16](
 // Share of the sun's disc that a point sees. What is z metres nearer to the sun blurs the shadow by z times the tangent
 // of the disc's half angle: z is the mean over what is within the widest such disc (Fernando 2005).
 float sun_visible(vec3 p, vec3 n, float facing) {
-    const int kSearched = 8, kFiltered = 16;
-    const float kWhole = 1.4142;  // brings the first eight points to the unit disc
+    const int kSearched = 12, kFiltered = 16;
+    const float kWhole = 1.1547;  // brings the first twelve points to the unit disc
     // Along the normal by about a texel: no acne, no gap.
     vec3 q = p + n * texel.x * (1.0 + sqrt(max(1.0 - facing * facing, 0.0)));
     vec3 s = (sun_clip * vec4(q, 1.0)).xyz * 0.5 + 0.5;
@@ -66,7 +66,7 @@ float sun_visible(vec3 p, vec3 n, float facing) {
             blockers += 1.0;
         }
     }
-    if (blockers == 0.0 || blockers == float(kSearched)) return 1.0 - blockers / float(kSearched);
+    if (blockers == 0.0) return 1.0;
     float radius = max((s.z - near / blockers) * sun_depth * sun_tangent, 1.5 * texel.x);
     float lit = 0.0;
     for (int i = 0; i < kFiltered; ++i) {
