@@ -122,7 +122,7 @@ PlaneLevel level_of_tapered(const Shape& shape, const Vec2& at) {
 // phi(r(x), y) of level(r, y): d2phi/dx2 = sum phi_ab grad a grad b + phi_r/r around the axis.
 template <class Level>
 LevelSet turned(const Vec3& at, Level&& level) {
-    const double r = std::hypot(at.x(), at.z());
+    const double r = hypotenuse(at.x(), at.z());
     const PlaneLevel of = level(Vec2(r, at.y()));
     const Vec3 out = r > 0 ? Vec3(at.x() / r, 0, at.z() / r) : Vec3(Vec3::UnitX());
     const Vec3 around(-out.z(), 0, out.x());

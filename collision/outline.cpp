@@ -33,7 +33,8 @@ struct Profile {
         for (int i = 0; i <= steps; ++i) {
             const float latitude = std::lerp(from, to, float(i) / float(steps));
             const bool pole = std::abs(latitude) == kTurn / 4;
-            add(pole ? 0 : radius * std::cos(latitude), middle + radius * std::sin(latitude), latitude == bend);
+            const SineCosine turn = sine_cosine(double(latitude));
+            add(pole ? 0 : radius * float(turn.cosine), middle + radius * float(turn.sine), latitude == bend);
         }
     }
 };
@@ -41,7 +42,8 @@ struct Profile {
 // Two balls and what is between them: the flank touches both at the latitude a, sin a = (r_low - r_high) / length. A
 // ball within the other has no part in it.
 Profile capsule_profile(float low, float high, float half) {
-    const float latitude = std::asin(std::clamp((low - high) / (2 * half), -1.0f, 1.0f));
+    const double sine = std::clamp((double(low) - double(high)) / (2 * double(half)), -1.0, 1.0);
+    const float latitude = float(angle_of(sine, std::sqrt((1 - sine) * (1 + sine))));
     Profile out;
     if (latitude > -kTurn / 4) out.add_arc(low, -half, -kTurn / 4, latitude, latitude);
     if (latitude < kTurn / 4) out.add_arc(high, half, latitude, kTurn / 4, latitude);
@@ -73,8 +75,8 @@ Profile profile_of(const Shape& shape) {
 }
 
 Vec3f at(const Ring& ring, int side) {
-    const float turn = kTurn * float(side % kSides) / kSides;
-    return {ring.radius * std::cos(turn), ring.height, ring.radius * std::sin(turn)};
+    const SineCosine turn = sine_cosine(double(kTurn) * (side % kSides) / kSides);
+    return {ring.radius * float(turn.cosine), ring.height, ring.radius * float(turn.sine)};
 }
 
 void outline_of(const Profile& profile, LineSink& lines) {

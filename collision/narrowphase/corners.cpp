@@ -1,7 +1,6 @@
 // What stands out of a shape: points at which it may touch what is flat before any of its edges does.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include "collision/narrowphase/core.h"
@@ -23,8 +22,8 @@ public:
     }
     void add_rim(float radius, float height, uint32_t first) {
         for (uint32_t k = 0; k < kRimCorners; ++k) {
-            const double angle = 2 * std::numbers::pi * k / kRimCorners;
-            add({radius * static_cast<float>(std::cos(angle)), height, radius * static_cast<float>(std::sin(angle))}, 0,
+            const SineCosine turn = sine_cosine(2 * std::numbers::pi * k / kRimCorners);
+            add({radius * static_cast<float>(turn.cosine), height, radius * static_cast<float>(turn.sine)}, 0,
                 first + k);
         }
     }

@@ -1,7 +1,6 @@
 #include "api/contacts.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "detect/surface_point.h"
 
@@ -18,7 +17,7 @@ taut_contact public_contact(const World& world, const Pair& pair, int i) {
             {normal.x(), normal.y(), normal.z()},
             point.separation,
             to_float(substep * double{force.normal}),
-            to_float(substep * std::hypot(double{force.tangent1}, double{force.tangent2})),
+            to_float(substep * hypotenuse(double{force.tangent1}, double{force.tangent2})),
             world.collider_handle(pair.collider_a()),
             world.collider_handle(pair.collider_b())};
 }
@@ -69,7 +68,7 @@ taut_contact public_contact(const World& world, const SurfaceContact& contact) {
             {contact.normal.x(), contact.normal.y(), contact.normal.z()},
             contact.gap,
             to_float(substep * double{contact.force.normal}),
-            to_float(substep * std::hypot(double{contact.force.tangent1}, double{contact.force.tangent2})),
+            to_float(substep * hypotenuse(double{contact.force.tangent1}, double{contact.force.tangent2})),
             world.collider_handle(contact.collider[1]),
             world.collider_handle(contact.collider[0])};
 }

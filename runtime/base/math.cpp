@@ -30,6 +30,46 @@ double cosine(double x) {
                                                                               y * (-1.0 / 6402373705728000.0)))))))));
 }
 
+// Less the nearest multiple of pi/2, of which the first two parts have 33 bits each, so that their multiples are exact
+// (Cody and Waite 1980).
+SineCosine sine_cosine(double x) {
+    constexpr double kHalfPi[3] = {1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21};
+    const double quarters = std::round(x * 0.63661977236758134);  // 2/pi
+    const double rest = ((x - quarters * kHalfPi[0]) - quarters * kHalfPi[1]) - quarters * kHalfPi[2];
+    const double s = rest * sinc(rest), c = cosine(rest);
+    switch (static_cast<int64_t>(quarters) & 3) {
+        case 0:
+            return {s, c};
+        case 1:
+            return {c, -s};
+        case 2:
+            return {-s, -c};
+        default:
+            return {-c, s};
+    }
+}
+
+// The root of the sum of squares, its error taken off by one step of Newton's method with the residual that squares of
+// differences leave (Borges 2021, ACM TOMS 47(1), without fused arithmetic). Where squares would leave the range of
+// numbers, of a vector scaled by a power of two.
+double hypotenuse(double x, double y) {
+    const double ax = std::abs(x), ay = std::abs(y);
+    const double large = ax < ay ? ay : ax, small = ax < ay ? ax : ay;
+    if (!(small > large * 0x1p-54)) return large + small;  // the square below half an ulp; or not-a-number
+    const double scale = large > 0x1p+511 ? 0x1p-600 : small < 0x1p-459 ? 0x1p+600 : 1;
+    const double a = large * scale, b = small * scale;
+    const double length = std::sqrt(a * a + b * b);
+    double residual;  // length^2 - a^2 - b^2
+    if (length <= 2 * b) {
+        const double over = length - b;
+        residual = a * (2 * over - a) + (over - 2 * (a - b)) * over;
+    } else {
+        const double over = length - a;
+        residual = 2 * over * (a - 2 * b) + ((4 * over - b) * b + over * over);
+    }
+    return (length - residual / (2 * length)) / scale;
+}
+
 // atan t = atan c + atan((t - c) / (1 + t c)) with c = 0, 1/2 or 1 leaves |t| <= 1/4; Taylor to t^27: error < 1e-17.
 double angle_of(double y, double x) {
     const double ax = std::abs(x), ay = std::abs(y);

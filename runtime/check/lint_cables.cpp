@@ -1,4 +1,3 @@
-#include <cmath>
 #include <utility>
 
 #include "check/lint_context.h"
@@ -20,7 +19,7 @@ bool is_round(collision::ShapeKind kind) {
 double bend_at_point(const World& world, const Cable& cable, uint32_t point) {
     const Vec3 a = cable_point(world, cable, point) - cable_point(world, cable, point - 1);
     const Vec3 b = cable_point(world, cable, point + 1) - cable_point(world, cable, point);
-    return std::atan2(a.cross(b).norm(), a.dot(b));
+    return angle_of(a.cross(b).norm(), a.dot(b));
 }
 
 class CableLint {

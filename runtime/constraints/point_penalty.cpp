@@ -93,7 +93,7 @@ void point_penalty_hessian(double stiffness, const Vec3& point, const Vec3 (&tri
             b.col(k).segment<3>(3 * (at.corner[0] + 1)) += r;
         }
         const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2> gram = edge.transpose() * edge;
-        matrix -= 2 * b * gram.ldlt().solve(b.transpose());
+        matrix -= 2 * b.lazyProduct(gram.ldlt().solve(b.transpose()).eval());
     }
     matrix = phi.first * matrix + phi.second * gradient * gradient.transpose();
     Eigen::Map<Eigen::Matrix<double, 12, 12, Eigen::RowMajor>>(out, 12, 12) = matrix;

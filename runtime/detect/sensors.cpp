@@ -109,7 +109,7 @@ bool is_within(const Nodes& nodes, const Soft& soft, const Vec3& point) {
         const double across = r[0].dot(r[1].cross(r[2]));
         const double along = length[0] * length[1] * length[2] + r[0].dot(r[1]) * length[2] +
                              r[1].dot(r[2]) * length[0] + r[2].dot(r[0]) * length[1];
-        angle += std::atan2(across, along);
+        angle += angle_of(across, along);
     }
     constexpr double kHalfSphere = 3.14159265358979;  // of sums of halves of solid angles
     return std::abs(angle) > kHalfSphere;

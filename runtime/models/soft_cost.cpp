@@ -76,7 +76,7 @@ SoftCost cost_of(const World& world, const SoftPlan& plan) {
     const bool solid = plan.soft.kind == SoftKind::solid;
     const double step = world.def.time_step, least = world.least_substeps();
     const auto pairs = static_cast<double>(couplings_of(plan));
-    double direct = solid ? kSolidPair * pairs * pairs : kSheetPair * std::pow(pairs, 1.5);
+    double direct = solid ? kSolidPair * pairs * pairs : kSheetPair * pairs * std::sqrt(pairs);
     double swept = kSweptNode * static_cast<double>(plan.position.size()), shortest = step / least, weight = 0;
     bool sweeps = true;
     for (const ElementPlan& of : plan.element) {

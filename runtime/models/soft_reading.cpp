@@ -48,7 +48,7 @@ void soft_normals(const World& world, const Soft& soft, Array<Vec3>& out) {
         const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
         for (int n = 0; n < 3; ++n) {
             const Vec3 a = x[(n + 1) % 3] - x[n], b = x[(n + 2) % 3] - x[n];
-            out[corner[n]] += std::atan2(a.cross(b).norm(), a.dot(b)) * normal;
+            out[corner[n]] += angle_of(a.cross(b).norm(), a.dot(b)) * normal;
         }
     }
     for (Vec3& normal : out)
@@ -61,7 +61,7 @@ double triangle_strain(const World& world, const Soft& soft, uint32_t triangle) 
         f += vertex_of(world, soft, soft.triangle[3 * size_t{triangle} + n]) *
              Eigen::RowVector2d::Map(&soft.rest[6 * size_t{triangle} + 2 * n]);
     const Eigen::Matrix2d c = f.transpose() * f;
-    const double mean = 0.5 * c.trace(), apart = std::hypot(0.5 * (c(0, 0) - c(1, 1)), c(0, 1));
+    const double mean = 0.5 * c.trace(), apart = hypotenuse(0.5 * (c(0, 0) - c(1, 1)), c(0, 1));
     return std::sqrt(mean + apart) - 1;
 }
 

@@ -94,7 +94,7 @@ private:
             double q[2];
             for (int t = 0; t < 2; ++t)
                 q[t] = impact.impulse[1 + t] - (rate(impact, 1 + t, bodies_) - impact.drive[t]) / impact.k_across;
-            const double size = std::hypot(q[0], q[1]), part = size > limit ? limit / size : 1;
+            const double size = hypotenuse(q[0], q[1]), part = size > limit ? limit / size : 1;
             for (int t = 0; t < 2; ++t) push(impact, 1 + t, part * q[t] - impact.impulse[1 + t], bodies_);
         }
     }

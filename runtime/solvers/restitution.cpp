@@ -350,7 +350,7 @@ private:
             for (int n = 0; n < impact.sides; ++n) add_side(impact, impact.side[n], r, k);
         }
         impact.k = yields(impact, 0, k(0, 0));
-        impact.k_across = yields(impact, 1, 0.5 * (k(1, 1) + k(2, 2)) + std::hypot(0.5 * (k(1, 1) - k(2, 2)), k(1, 2)));
+        impact.k_across = yields(impact, 1, 0.5 * (k(1, 1) + k(2, 2)) + hypotenuse(0.5 * (k(1, 1) - k(2, 2)), k(1, 2)));
         impact.approach = impact.known[0];
         for (const Impact::Side* side = impact.side; side < impact.side + impact.sides; ++side) {
             if (side->body == kNone) continue;

@@ -1,7 +1,6 @@
 #include "solvers/turning_path.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 namespace taut {
 namespace {
@@ -43,11 +42,8 @@ void TurningPath::begin(std::span<const double> z, std::span<const double> d) {
 
 void TurningPath::follow(std::span<const double> z, std::span<const double> d, double part, std::span<double> place,
                          std::span<double> way) const {
-    for (PieceTurn& turn : std::span(m_.turn).subspan(island_.first_piece, island_.pieces)) {
-        const double speed = turn.angular.norm();
-        turn.turned = Mat3::Identity();
-        if (speed > 0) turn.turned = Eigen::AngleAxisd(part * speed, turn.angular / speed).toRotationMatrix();
-    }
+    for (PieceTurn& turn : std::span(m_.turn).subspan(island_.first_piece, island_.pieces))
+        turn.turned = rotation_from_vector(part * turn.angular).toRotationMatrix();
     team_.for_ranges(island_.points, kPathGrain, [&](uint32_t begin, uint32_t end) {
         for (uint32_t i = begin; i < end; ++i) {
             const Vec3 from = Vec3::Map(&z[3 * size_t{i}]), along = Vec3::Map(&d[3 * size_t{i}]);

@@ -281,7 +281,7 @@ void Problem::find_inverses(Masses masses) {
         };
         if (unit.law == Unit::Law::disc) {  // the same along both, so that friction stays opposed to the slip
             const double half = 0.5 * (d(0, 0) + d(1, 1));
-            d = (half + std::hypot(0.5 * (d(0, 0) - d(1, 1)), d(0, 1))) * RowMatrix::Identity(2, 2);
+            d = (half + hypotenuse(0.5 * (d(0, 0) - d(1, 1)), d(0, 1))) * RowMatrix::Identity(2, 2);
         }
         for (int r = 0; r < unit.rows; ++r) {
             if (is_solved(unit, r) && d(r, r) > 0 && !is_idle(r)) continue;

@@ -35,6 +35,107 @@ TEST(Cosine, IsCosine) {
     EXPECT_LE(worst, kClose);
 }
 
+TEST(SineCosine, AreThoseOfAnyAngle) {
+    double worst = 0;
+    for (double size : {1e-9, 1.0, 3.0, 30.0, 1e3, 1e6})
+        for (int i = -5000; i <= 5000; ++i) {
+            const double x = size * i / 5000;
+            const SineCosine found = sine_cosine(x);
+            worst = std::max({worst, std::abs(found.sine - std::sin(x)), std::abs(found.cosine - std::cos(x))});
+        }
+    EXPECT_LE(worst, 3e-16);
+    // What a quarter lacks of its rounded value (Muller 2016, table 1.1) is the cosine there.
+    EXPECT_NEAR(sine_cosine(kHalfPi).cosine, 6.123233995736766e-17, 1e-31);
+    EXPECT_NEAR(sine_cosine(2 * kHalfPi).sine, 1.2246467991473532e-16, 1e-31);
+}
+
+TEST(Hypotenuse, IsTheLengthWithinAnUlp) {
+    std::mt19937_64 engine(5);
+    std::uniform_real_distribution<double> exponent(-500, 500), apart(-60, 60), mantissa(1, 2);
+    long double worst = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const int scale = static_cast<int>(exponent(engine));
+        const double x = std::ldexp(mantissa(engine), scale);
+        const double y =
+            std::ldexp(mantissa(engine), scale + static_cast<int>(i % 2 ? apart(engine) / 20 : apart(engine)));
+        const long double exact = std::sqrt(static_cast<long double>(x) * x + static_cast<long double>(y) * y);
+        worst = std::max(worst, std::abs(hypotenuse(x, y) - exact) / exact);
+        EXPECT_EQ(hypotenuse(-y, x), hypotenuse(x, y));
+    }
+    EXPECT_LE(worst, 0x1p-52L);  // half an ulp is 2^-53 of a power of two
+    EXPECT_EQ(hypotenuse(3, 4), 5);
+    EXPECT_EQ(hypotenuse(0, 0), 0);
+    EXPECT_EQ(hypotenuse(0x3p+1000, 0x4p+1000), 0x5p+1000);
+    EXPECT_EQ(hypotenuse(0x3p-1060, 0x4p-1060), 0x5p-1060);
+    EXPECT_EQ(hypotenuse(1e300, 1e-300), 1e300);
+    EXPECT_TRUE(std::isnan(hypotenuse(std::nan(""), 1)));
+    EXPECT_TRUE(std::isinf(hypotenuse(HUGE_VAL, 1)));
+}
+
+// What Eigen adds in which order, and what it takes for the least, hangs on the processor's registers.
+TEST(Eigen, AddsFloatsInOneOrderEverywhere) {
+    std::mt19937_64 engine(6);
+    std::uniform_real_distribution<float> number(-1, 1);
+    int told = 0;
+    for (int i = 0; i < 1000; ++i) {
+        Eigen::Matrix<float, 6, 1> a;
+        Mat3f m, n;
+        for (int k = 0; k < 6; ++k) a[k] = number(engine);
+        for (int k = 0; k < 9; ++k) m.data()[k] = number(engine), n.data()[k] = number(engine);
+        const Vec3f v = a.head<3>();
+        EXPECT_EQ(v.sum(), v[0] + (v[1] + v[2]));
+        EXPECT_EQ(v.dot(m.col(0)), v[0] * m(0, 0) + (v[1] * m(1, 0) + v[2] * m(2, 0)));
+        EXPECT_EQ(a.sum(), ((a[0] + a[2]) + (a[1] + a[3])) + (a[4] + a[5]));
+        const Mat3f product = m * n;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_EQ(product(r, c), m(r, 0) * n(0, c) + (m(r, 1) * n(1, c) + m(r, 2) * n(2, c)));
+        told += (v[0] + v[1]) + v[2] != v.sum();
+    }
+    EXPECT_GT(told, 0);  // the other order is another number
+}
+
+TEST(Eigen, AddsDoublesInOneOrderEverywhere) {
+    std::mt19937_64 engine(7);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 a(number(engine), number(engine), number(engine)), b(number(engine), number(engine), number(engine));
+        EXPECT_EQ(a.sum(), (a[0] + a[1]) + a[2]);
+        EXPECT_EQ(a.dot(b), (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]);
+        Mat3 m = hat(a) + b * a.transpose();
+        const Mat3 product = m * m;
+        for (int c = 0; c < 3; ++c) {
+            for (int r = 0; r < 2; ++r)
+                EXPECT_EQ(product(r, c), (m(r, 0) * m(0, c) + m(r, 1) * m(1, c)) + m(r, 2) * m(2, c));
+            EXPECT_EQ(product(2, c), m(2, 0) * m(0, c) + (m(2, 1) * m(1, c) + m(2, 2) * m(2, c)));
+        }
+    }
+}
+
+TEST(Eigen, TakesTheFirstOfEqualsAndOfNotANumberEverywhere) {
+    const auto same = [](double a, double b) {
+        return std::isnan(a) ? std::isnan(b) : a == b && std::signbit(a) == std::signbit(b);
+    };
+    const double values[] = {0.0, -0.0, 1, -1, std::nan("")};
+    for (const double x : values)
+        for (const double y : values) {
+            const double least = y < x ? y : x, largest = x < y ? y : x;
+            const Vec3 low = Vec3::Constant(x).cwiseMin(Vec3::Constant(y)),
+                       high = Vec3::Constant(x).cwiseMax(Vec3::Constant(y));
+            const Eigen::Vector4f few = Eigen::Vector4f::Constant(static_cast<float>(x)),
+                                  more = Eigen::Vector4f::Constant(static_cast<float>(y));
+            const Eigen::Vector4f few_low = few.cwiseMin(more), few_high = few.cwiseMax(more);
+            for (int k = 0; k < 3; ++k) {
+                EXPECT_TRUE(same(low[k], least)) << x << ' ' << y;
+                EXPECT_TRUE(same(high[k], largest)) << x << ' ' << y;
+                EXPECT_TRUE(same(double{few_low[k]}, least)) << x << ' ' << y;
+                EXPECT_TRUE(same(double{few_high[k]}, largest)) << x << ' ' << y;
+            }
+            EXPECT_TRUE(same(Eigen::Vector2d(x, y).minCoeff(), least)) << x << ' ' << y;
+            EXPECT_TRUE(same(Eigen::Vector2d(x, y).maxCoeff(), largest)) << x << ' ' << y;
+        }
+}
+
 TEST(DecayOver, IsTheExponential) {
     EXPECT_EQ(decay_over(0).left, 1);
     EXPECT_EQ(decay_over(0).mean, 1);
