@@ -198,8 +198,13 @@ void describe(Visitor& visitor, Of& of, bool kept) {
     TAUT_FIELDS(visitor, part, manifold, then, round_a, round_b);
     for (int k = 0; k < manifold.count; ++k) TAUT_FIELDS(visitor, force[k]);
     TAUT_FIELDS(visitor, friction, restitution, spinning, rolling, stiffness, patch, torque, spin_slip, drive,
-                drive_spin, sticking, easy_part, easy, driven, directed, rolls_a, rolls_b, touching, pushed, answered,
-                in_block, loaded, cache);
+                drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, cache);
+    bool rubs = sticking != 0 || easy_part != 1 || directed;  // by laws of its own
+    TAUT_ASIDE(visitor, rubs);
+    if (rubs)
+        TAUT_FIELDS(visitor, sticking, easy_part, easy, directed);
+    else if constexpr (!std::is_const_v<Of>)
+        sticking = 0, easy_part = 1, directed = false;
     TAUT_ASIDE(visitor, asks);
     if (kept) describe(visitor, found, manifold.count);
 }
