@@ -13,6 +13,8 @@ arm64_packages=(libc6-dev:arm64 libbullet-dev:arm64 libccd-dev:arm64 libgtest-de
     libtinyobjloader-dev:arm64 libtinyxml2-dev:arm64)
 bundle_packages=(dpkg-dev pkgconf python3)
 bundle_sources=(bullet libccd)
+windows_packages=(g++-mingw-w64-x86-64-posix wine64)
+windows_sources=(googletest tinyxml2 tinyobjloader)
 report_packages=(libode-dev gnuplot-nox fonts-dejavu-core)
 
 say() { printf '%s\n' "$*" >&2; }

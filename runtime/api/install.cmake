@@ -6,7 +6,9 @@ set(here ${PROJECT_SOURCE_DIR}/runtime/api)
 
 if(BUILD_SHARED_LIBS)
     install(TARGETS taut EXPORT tautTargets
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${package_dir})
 endif()
 install(TARGETS taut_static EXPORT tautStaticTargets

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <thread>
 
+#include "base/printf_like.h"
 #include "record/arguments.h"
 #include "record/format.h"
 #include "record/recorded.h"
@@ -113,7 +114,7 @@ private:
         return {bytes, static_cast<uint32_t>(world.bits), baked_, arena_, answer, this};
     }
     // The end of the replay, with what is said from then on.
-    [[gnu::format(printf, 3, 4)]] bool stop(taut_result code, const char* format, ...);
+    TAUT_PRINTF_LIKE(3, 4) bool stop(taut_result code, const char* format, ...);
     bool damaged() {
         return stop(TAUT_INVALID_ARGUMENT, "the recording is damaged at byte %llu",
                     static_cast<unsigned long long>(offset_));

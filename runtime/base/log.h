@@ -3,10 +3,11 @@
 
 #include <taut/base.h>
 
+#include "base/printf_like.h"
+
 namespace taut {
 
 // Formats as printf, cut at 255 bytes. Nothing happens without a hook, nor where it throws.
-void log_line(const taut_hooks& hooks, taut_log_level level, const char* format, ...)
-    __attribute__((format(printf, 3, 4)));
+TAUT_PRINTF_LIKE(3, 4) void log_line(const taut_hooks& hooks, taut_log_level level, const char* format, ...);
 
 }  // namespace taut

@@ -82,8 +82,12 @@ void* Memory::take_from_host(size_t size, size_t alignment) {
     if (hooks_.allocate) {
         pointer = hooks_.allocate(size, alignment, hooks_.memory_user_data);
     } else {
+#if defined(_WIN32)
+        pointer = _aligned_malloc(size, alignment);
+#else
         const size_t rounded = (size + alignment - 1) / alignment * alignment;
         pointer = std::aligned_alloc(alignment, rounded);
+#endif
     }
     if (!pointer) throw std::bad_alloc();
     bytes_ += size;
@@ -96,7 +100,11 @@ void Memory::give_to_host(void* pointer, size_t size, size_t alignment) noexcept
     if (hooks_.free)
         hooks_.free(pointer, size, alignment, hooks_.memory_user_data);
     else
+#if defined(_WIN32)
+        _aligned_free(pointer);
+#else
         std::free(pointer);
+#endif
 }
 
 }  // namespace taut

@@ -3,13 +3,15 @@
 
 #include <taut/base.h>
 
+#include "base/printf_like.h"
+
 namespace taut {
 
 // Sets the calling thread's text (printf format, cut at 511 bytes) and returns the code.
-[[gnu::format(printf, 2, 3)]] taut_result refuse(taut_result code, const char* format, ...) noexcept;
+TAUT_PRINTF_LIKE(2, 3) taut_result refuse(taut_result code, const char* format, ...) noexcept;
 
 // More at its end.
-[[gnu::format(printf, 1, 2)]] void add_to_error(const char* format, ...) noexcept;
+TAUT_PRINTF_LIKE(1, 2) void add_to_error(const char* format, ...) noexcept;
 
 const char* last_error() noexcept;
 

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "aligned_memory.h"
 #include "starts.h"
 #include "support.h"
 
@@ -27,11 +28,11 @@ struct AtomicLedger {
                     auto& ledger = *static_cast<AtomicLedger*>(self);
                     if (ledger.left.fetch_sub(1) <= 0) return nullptr;
                     ledger.bytes += static_cast<int64_t>(size);
-                    return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+                    return allocate_aligned(size, alignment);
                 },
                 [](void* pointer, size_t size, size_t, void* self) {
                     static_cast<AtomicLedger*>(self)->bytes -= static_cast<int64_t>(size);
-                    std::free(pointer);
+                    free_aligned(pointer);
                 },
                 this};
     }

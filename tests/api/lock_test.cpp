@@ -3,6 +3,7 @@
 #include <thread>
 #include <vector>
 
+#include "aligned_memory.h"
 #include "calls.h"
 
 using namespace taut_test;
@@ -87,12 +88,10 @@ TEST(Lock, DestructionIsNotReentered) {
     static int refused;
     refused = 0;
     taut_hooks hooks = {};
-    hooks.allocate = [](size_t size, size_t alignment, void*) {
-        return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    };
+    hooks.allocate = [](size_t size, size_t alignment, void*) { return allocate_aligned(size, alignment); };
     hooks.free = [](void* pointer, size_t, size_t, void*) {
         refused += taut_world_destroy(world) == TAUT_STALE_HANDLE && taut_world_step(world) == TAUT_STALE_HANDLE;
-        std::free(pointer);
+        free_aligned(pointer);
     };
     world = make_world(hooks);
     add_particle(world, 0, 0, 0);

@@ -15,6 +15,8 @@
 
 #include <taut/taut.h>
 
+#include "aligned_memory.h"
+
 #define ASSERT_OK(call) ASSERT_EQ(call, TAUT_OK) << taut_last_error()
 #define EXPECT_OK(call) EXPECT_EQ(call, TAUT_OK) << taut_last_error()
 
@@ -59,7 +61,7 @@ private:
             ++failed;
             return nullptr;
         }
-        void* pointer = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+        void* pointer = allocate_aligned(size, alignment);
         blocks_[pointer] = {size, alignment};
         bytes += size;
         return pointer;
@@ -72,7 +74,7 @@ private:
         }
         bytes -= size;
         blocks_.erase(block);
-        std::free(pointer);
+        free_aligned(pointer);
     }
 
     std::unordered_map<void*, Block> blocks_;

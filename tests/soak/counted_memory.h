@@ -6,6 +6,8 @@
 
 #include <taut/taut.h>
 
+#include "aligned_memory.h"
+
 namespace soak {
 
 class CountedMemory {
@@ -13,11 +15,11 @@ public:
     void hook(taut_hooks& hooks) {
         hooks.allocate = [](size_t size, size_t alignment, void* self) -> void* {
             static_cast<CountedMemory*>(self)->bytes_ += size;
-            return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+            return allocate_aligned(size, alignment);
         };
         hooks.free = [](void* pointer, size_t size, size_t, void* self) {
             static_cast<CountedMemory*>(self)->bytes_ -= size;
-            std::free(pointer);
+            free_aligned(pointer);
         };
         hooks.memory_user_data = this;
     }

@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "aligned_memory.h"
 #include "scenes/running_scene.h"
 #include "soak/allocation_counter.h"
 
@@ -71,9 +72,9 @@ TEST_P(SteadyShort, TakesNoMemoryAfterWarmUp) {
     scenes::Scene scene = GetParam().scene ? scenes::make_scene(GetParam().scene, {0, {}, GetParam().swept}) : bin();
     scene.world.hooks.allocate = [](size_t size, size_t alignment, void* self) -> void* {
         ++static_cast<Hook*>(self)->taken;
-        return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+        return allocate_aligned(size, alignment);
     };
-    scene.world.hooks.free = [](void* pointer, size_t, size_t, void*) { std::free(pointer); };
+    scene.world.hooks.free = [](void* pointer, size_t, size_t, void*) { free_aligned(pointer); };
     scene.world.hooks.memory_user_data = &hook;
     const scenes::TautWorld world(scene);
     for (int i = 0; i < GetParam().warm_up; ++i) ok(taut_world_step(world.world));

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <map>
 
+#include "aligned_memory.h"
+
 namespace taut::test {
 namespace {
 
@@ -26,7 +28,7 @@ struct Host {
             Host& host = *static_cast<Host*>(self);
             ++host.calls;
             if (host.empty_handed) return nullptr;
-            void* pointer = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+            void* pointer = allocate_aligned(size, alignment);
             host.live[pointer] = {size, alignment};
             return pointer;
         };
@@ -39,7 +41,7 @@ struct Host {
                 return;
             }
             host.live.erase(at);
-            std::free(pointer);
+            free_aligned(pointer);
         };
         h.memory_user_data = this;
         return h;

@@ -5,6 +5,7 @@
 #include <new>
 #include <random>
 
+#include "aligned_memory.h"
 #include "unit/partition_graph.h"
 
 namespace taut::test {
@@ -124,9 +125,9 @@ struct Scarce {
             uint32_t& budget = static_cast<Scarce*>(self)->left;
             if (budget == 0) return nullptr;
             --budget;
-            return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+            return allocate_aligned(size, alignment);
         };
-        hooks.free = [](void* at, size_t, size_t, void*) { std::free(at); };
+        hooks.free = [](void* at, size_t, size_t, void*) { free_aligned(at); };
         hooks.memory_user_data = this;
         return hooks;
     }

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "aligned_memory.h"
+
 namespace {
 
 using namespace taut;
@@ -82,9 +84,9 @@ taut_hooks hooks_of(int& left) {
     taut_hooks hooks{};
     hooks.allocate = [](size_t size, size_t alignment, void* pieces) -> void* {
         if (--*static_cast<int*>(pieces) < 0) return nullptr;
-        return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+        return allocate_aligned(size, alignment);
     };
-    hooks.free = [](void* pointer, size_t, size_t, void*) { std::free(pointer); };
+    hooks.free = [](void* pointer, size_t, size_t, void*) { free_aligned(pointer); };
     hooks.memory_user_data = &left;
     return hooks;
 }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "aligned_memory.h"
 #include "event_watch.h"
 
 namespace taut_test {
@@ -199,9 +200,9 @@ private:
         taut_hooks_init(&out);
         if (one_in(2)) {
             out.allocate = [](size_t size, size_t alignment, void*) -> void* {
-                return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+                return allocate_aligned(size, alignment);
             };
-            out.free = [](void* pointer, size_t, size_t, void*) { std::free(pointer); };
+            out.free = [](void* pointer, size_t, size_t, void*) { free_aligned(pointer); };
         }
         if (one_in(2)) out.log = [](taut_log_level, const char*, void*) {};
         if (one_in(4)) {

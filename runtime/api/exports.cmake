@@ -1,0 +1,17 @@
+# TAUT_EXPORTS: the names that a DLL gives away, those that the headers declare. A program of Windows calls them without
+# an attribute in the headers, whether they lie in a DLL or in the program.
+file(GLOB headers CONFIGURE_DEPENDS include/taut/*.h)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${headers})
+set(names "")
+foreach(header IN LISTS headers)
+    file(STRINGS ${header} declared REGEX "^TAUT_API ")
+    foreach(line IN LISTS declared)
+        string(REGEX MATCH "taut_[a-z0-9_]*\\(" name "${line}")
+        string(REPLACE "(" "" name "${name}")
+        list(APPEND names ${name})
+    endforeach()
+endforeach()
+list(SORT names)
+list(JOIN names "\n    " names)
+set(TAUT_EXPORTS ${PROJECT_BINARY_DIR}/taut.def)
+file(CONFIGURE OUTPUT ${TAUT_EXPORTS} CONTENT "EXPORTS\n    @names@\n" @ONLY)
