@@ -1,5 +1,5 @@
-// How much of a statistic runs: all of it in the tests labelled statistics (TAUT_STARTS=all in the environment), a part in
-// the quick ones, few where sanitizers make each start some ten times as long (TAUT_STARTS=few).
+// How much of a statistic runs: all of it in the tests labelled statistics (TAUT_STARTS=all in the environment), a part
+// in the quick ones, few where sanitizers make each start some ten times as long (TAUT_STARTS=few).
 #pragma once
 
 #include <cstdlib>
