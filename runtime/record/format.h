@@ -15,7 +15,7 @@
 namespace taut {
 
 constexpr char kRecordMagic[8] = {'T', 'A', 'U', 'T', 'R', 'E', 'C', '\n'};
-constexpr uint32_t kRecordVersion = 1;
+constexpr uint32_t kRecordVersion = 2;
 
 enum class Record : uint32_t {
     head = 0x80000000,  // version of the format, of the library, the world's def, names of calls
