@@ -68,8 +68,9 @@ typedef struct taut_material {
  * counts as 1e-6. Where both surfaces have a direction, what they let slip adds up: the ellipse's matrix, 1 of a circle
  * and 1 + (1 / m^2 - 1) d d^T of a direction d, is 1 and what either has beyond it.
  *
- * Grains, and contacts of cloths, solids, and worlds that minimise, have the material's friction alone. Rolling and
- * spinning friction know no direction.
+ * Static friction is that of contacts that the solvers block_ldlt and projected_gauss_seidel sweep: those that a direct
+ * solve takes in with joints, and those of other solvers, have the material's. Grains, and contacts of cloths, solids,
+ * and worlds that minimise, have the material's friction alone. Rolling and spinning friction know no direction.
  */
 typedef struct taut_friction {
     float static_friction; /**< coefficient while it sticks, [0, 100]; below the material's friction: that. Default 0 */

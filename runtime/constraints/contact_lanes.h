@@ -88,9 +88,10 @@ struct alignas(64) LaneDrive {
     float speed[2][kLanes];     // what friction drives the slip of body b on a to, of the rows of the tangents [m/s]
     float part[kLanes];         // friction along tangent 2, in parts of that along tangent 1
     float friction[2][kLanes];  // coefficients: where it slides, where it sticks
-    float slid[kLanes];         // at the end of the last substep: compliance of its sliding [1/kg]; 0: it stuck
-    float slides[kLanes];       // the same of this substep, as relaxed sweeps found it last
-    float way[2][kLanes];       // friction at the start of the substep, of the rows [N s]
+    float slid[kLanes];    // at the end of the last substep: compliance of its sliding [1/kg]; 0: it stuck; -1: it is
+                           // new and sticks, as loads that are not found yet do not tell whether it slides
+    float slides[kLanes];  // the same of this substep, as relaxed sweeps found it last
+    float way[2][kLanes];  // friction at the start of the substep, of the rows [N s]
 };
 
 struct alignas(64) LaneRolling {   // about normal, tangent 1, tangent 2; lanes without it have zero arms

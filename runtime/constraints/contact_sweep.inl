@@ -154,7 +154,9 @@ struct ContactSweep {
         const F ratio = F::max(slip, least) / F::max(kinetic * first, least);
         const F compliance = F::if_greater(F::all(1e30f), ratio, ratio, F::all(1e30f));
         const F slides = F::if_greater(iso * slip, creep, compliance, zero);
-        F::if_greater(e1 * e1 + e2 * e2, most * most, slides, zero).store(drive.slides);
+        const F fresh = F::if_greater(zero, F::load(drive.slid), one, zero);
+        F::if_greater(e1 * e1 + e2 * e2, most * most, F::if_greater(fresh, zero, zero, slides), zero)
+            .store(drive.slides);
         return friction;
     }
 

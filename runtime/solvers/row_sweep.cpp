@@ -71,7 +71,7 @@ public:
         p[0] = std::max(0.0, asked);
         move_to(p);
 
-        solve_circle(s, (turns_round(s) ? block_.sticking : block_.friction) * p[0]);
+        solve_circle(s, block_.friction * p[0]);
         if (!(biased && block_.hits)) return;
         p = impulse();
         p[0] = std::max(0.0, asked - s.row(0).tail<2>().dot(p.tail<2>() - before) / s(0, 0));
@@ -92,15 +92,6 @@ public:
     }
 
 private:
-    // Friction that slides and would go against what it was sticks at once, where that holds more.
-    bool turns_round(const RowMatrix& s) const {
-        if (!(block_.sticking > block_.friction)) return false;
-        const double mass = 1 / largest_across(s);
-        const RowVector p = impulse(), v = velocity();
-        double along = 0;
-        for (int t = 0; t < 2; ++t) along += block_.way[t] * (p[1 + t] - mass * (v[1 + t] - block_.drive[t]));
-        return along < 0;
-    }
     // Rows 1 and 2 towards no slip on a circle; isotropic where they slide.
     void solve_circle(const RowMatrix& s, double limit) {
         RowVector p = impulse();

@@ -61,8 +61,7 @@ void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* p
         to.speed[1][lane] = tangents.part * drive.dot(tangents.t2);
         if (!pair->sticks_better()) continue;
         const float slip = pair->force[k].slip;
-        const bool starts_to_slide = slip < 0 && slips(nodes, *pair, static_cast<int>(k));
-        to.slides[lane] = starts_to_slide ? 1 : std::max(slip, 0.0f);
+        to.slides[lane] = slip < 0 && slips(nodes, *pair, static_cast<int>(k)) ? 1 : slip;
     }
 }
 

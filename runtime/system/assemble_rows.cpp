@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "constraints/soft_contact.h"
-#include "detect/approach.h"
 #include "state/levers.h"
 #include "system/assemble.h"
 #include "system/operators.h"
@@ -271,15 +270,6 @@ void set_drive(const Pair& pair, int k, RowBlock& block) {
     block.drive[1] = tangents.part * speed.dot(tangents.t2);
 }
 
-// The coefficient of a point as it slides or sticks; of a new one by how it moves.
-void set_friction(const Nodes& nodes, const Pair& pair, int k, RowBlock& block) {
-    block.friction = block.kinetic = pair.friction;
-    if (!pair.sticks_better()) return;
-    block.sticking = pair.sticking;
-    const float slip = pair.force[k].slip;
-    if (!(slip > 0 || (slip < 0 && slips(nodes, pair, k)))) block.friction = block.sticking;
-}
-
 // Friction torques of a pair whose points' rows begin at `points`.
 void add_rolling(System& system, Pair& pair, uint32_t points) {
     RowBlock& block = add_block(system, kRolling);
@@ -309,7 +299,7 @@ void add_contacts(System& system, std::span<const uint32_t> active_pairs, Pairs&
                     ? add_point(system, pair, rows.span_data.emplace_back(span_contact_data(system, nodes, pair, k)))
                     : add_point(system, pair, rows.data.emplace_back(contact_data(system, nodes, pairs, pair, k)));
             block.surface_pair = &pair;
-            set_friction(nodes, pair, k, block);
+            block.friction = pair.friction;
             block.restitution = pair.restitution;
             block.pair = pairs.active[p].pair;
             block.point = static_cast<uint8_t>(k);
@@ -485,45 +475,6 @@ void begin_substep(System& system, const RowBlock& block, double frame_left, dou
     }
 }
 
-// What a contact point with static friction did in the last substep decides what it does in this one.
-void begin_friction(const System& system, RowBlock& block) {
-    if (!(block.sticking > 0)) return;
-    for (uint32_t t = 0; t < 2; ++t) block.way[t] = system.rows.impulse[block.row + 1 + t];
-    if (block.contact->slip >= 0) block.friction = block.contact->slip > 0 ? block.kinetic : block.sticking;
-}
-
-// The law of contact_sweep.inl: what it does from now on. Of blocks c itself tells, but for friction that turned round.
-void follow_friction(const System& system, bool in_block, const RowBlock& block) {
-    const double* mu = &system.rows.impulse[block.row];
-    const bool slid = block.friction < block.sticking, turned = mu[1] * block.way[0] + mu[2] * block.way[1] < 0;
-    float& slip = block.contact->slip;
-    if (in_block && slip >= 0) {
-        if (slid && turned) slip = 0;
-        return;
-    }
-    RowMatrix effective = RowMatrix::Zero(3, 3);
-    for (int n = 0; n < block.type->nodes; ++n) effective += effective_mass(system, block, n);
-    const double k = largest_across(effective);
-    const double v[2] = {rate(system, block, 1, system.exact) - block.drive[0],
-                         rate(system, block, 2, system.exact) - block.drive[1]};
-    double stopping = 0;  // squared
-    for (int t = 0; t < 2; ++t) {
-        const double to = mu[1 + t] - (k > 0 ? v[t] / k : 0);
-        stopping += to * to;
-    }
-    const bool goes_on = slid && !turned;
-    double push = 0;  // of the pair, whose points' rows follow each other
-    for (int p = 0; p < block.surface_pair->manifold.count; ++p) push += mu[3 * (p - block.point)];
-    const double most = mu[0] * (goes_on ? block.kinetic : block.sticking), limit = block.kinetic * mu[0];
-    const double creep = goes_on ? 0 : double{kSlips} * (block.sticking - block.kinetic) * push * k;
-    const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1]);
-    const bool slides = stopping > most * most && speed > creep;
-    if (in_block)
-        slip = slides ? -1 : 0;  // c begins anew
-    else
-        slip = slides ? static_cast<float>(std::clamp(speed / std::max(limit, 1e-30), 1e-30, 1e30)) : 0;
-}
-
 void evaluate_run(System& system, const ElementRun& run) {
     Rows& rows = system.rows;
     const RowBlock& first = rows.block[run.first];
@@ -559,7 +510,6 @@ void evaluate_rows(Team& team, System& system, double frame_left, double frame) 
     });
     size_t next_rolling = 0;  // their data are in the order of their blocks
     for (size_t i = rows.joints; i < rows.block.size(); ++i) {
-        begin_friction(system, rows.block[i]);
         Pose poses[kMaxNodes];
         poses_of(system, rows.block[i], poses);
         if (rows.block[i].type->bound == Bound::load) rows.rolling_data[next_rolling++].align(poses);
@@ -573,10 +523,8 @@ void load_contact_rows(System& system) {
 }
 
 void store_contact_rows(const System& system) {
-    for (size_t i = 0; i < system.rows.block.size(); ++i) {
-        const RowBlock& block = system.rows.block[i];
+    for (const RowBlock& block : system.rows.block) {
         if (!block.contact) continue;
-        if (block.sticking > 0) follow_friction(system, i >= system.rows.lasting, block);
         const double* mu = &system.rows.impulse[block.row];
         if (block.pushed && mu[0] > 0) *block.pushed = true;
         const auto force = [&](int row) { return static_cast<float>(mu[row] / system.scheme.h); };

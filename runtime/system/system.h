@@ -57,9 +57,7 @@ struct RowBlock {
     ContactForce* contact;           // what a contact point carries on; null for joints
     bool* pushed;                    // of a contact point: its pair's
     const PairRecord* surface_pair;  // of a contact point of a pair; else null
-    double friction;                 // of a cone, as it slides or sticks in this substep
-    double kinetic, sticking;        // of a cone: that where it slides, and where it sticks if that is more, else 0
-    double way[2];                   // of a cone with `sticking`: its friction at the start of the substep [N s]
+    double friction;                 // of a cone
     double drive[2];                 // of a cone: J v that friction drives the tangents to [m/s]
     double arm[2];                   // of a load: spinning, rolling [m]
     uint32_t loaded, loads;          // of a load: first row of its contact points, each of three; how many there are

@@ -6,6 +6,7 @@
 static taut_world world;
 static taut_body body, other, wall, door;
 static taut_shape shape;
+static taut_collider runner;
 static taut_joint joint;
 static taut_cable cable;
 static taut_cloth cloth;

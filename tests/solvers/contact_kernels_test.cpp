@@ -299,17 +299,13 @@ void add_surface(Pair& pair, Random& random) {
     pair.drive_spin = random.vector().cast<float>();
 }
 
-// Static friction and friction by direction of some pairs.
+// Friction by direction of some pairs.
 void add_law(Pair& pair, Random& random) {
-    if (random.unit() < 0.7) {
-        const Vec3f along = random.vector().cast<float>(), n = pair.manifold.normal;
-        pair.directed = true;
-        pair.easy = (along - n.dot(along) * n).normalized();
-        pair.easy_part = static_cast<float>(0.05 + 0.9 * random.unit());
-    }
     if (random.unit() < 0.3) return;
-    pair.sticking = 1.5f * pair.friction;
-    for (int k = 0; k < pair.manifold.count; ++k) pair.force[k].slip = random.unit() < 0.5 ? 0 : 0.1f;
+    const Vec3f along = random.vector().cast<float>(), n = pair.manifold.normal;
+    pair.directed = true;
+    pair.easy = (along - n.dot(along) * n).normalized();
+    pair.easy_part = static_cast<float>(0.05 + 0.9 * random.unit());
 }
 
 // Bodies of many masses touching at random, with impulses carried in: a few colours, none of them the last.
