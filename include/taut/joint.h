@@ -81,13 +81,13 @@ typedef enum taut_joint_solve {
     TAUT_JOINT_SOLVE_SOFT = 1,
     /** By need and cost. Directly with all that it hangs together with where that costs at most three times what sweeps
         do, as of chains and doors, or where a joint can break, whose force is exact then. Ragdolls, whose stops come
-       and go, and nets are swept while sweeps give way by less than 1/500 of the size of a joint's smaller body, else
-        solved directly, until sweeps would have held them for a quarter of a second. From the start they are solved
-        directly where sweeps would not hold the weight of the heaviest of their bodies by the lightest, and where they
-        hang, n joints deep, by what does not move: sweeps carry a force from joint to joint in a substep h, in which
-        the last falls by g (n h)^2 / 2. That is worth c times the cost where it is over c^2 / 500 of a body's size.
-        What has no size, a particle, is held directly, and so is what hangs on a direct joint, within the bound
-        above. */
+        and go, and nets are swept while sweeps give way by less than 1/500 of the size of a joint's smaller body and no
+        joint stands open by as much for a second, as of jammed limbs, else solved directly, until sweeps would have
+        held them for a quarter of a second. From the start they are solved directly where sweeps would not hold the
+        weight of the heaviest of their bodies by the lightest, and where they hang, n joints deep, by what does not
+        move: sweeps carry a force from joint to joint in a substep h, in which the last falls by g (n h)^2 / 2. That is
+        worth c times the cost where it is over c^2 / 500 of a body's size. What has no size, a particle, is held
+        directly, and so is what hangs on a direct joint, within the bound above. */
     TAUT_JOINT_SOLVE_BY_LOAD = 2,
     TAUT_JOINT_SOLVE_MAX = 0x7fffffff
 } taut_joint_solve;
