@@ -504,12 +504,13 @@ TAUT_API taut_result taut_joint_set_axis(taut_joint joint, uint32_t axis, const 
 /** Changes target and speed of a drive alone; TAUT_INVALID_ARGUMENT for an axis without one. */
 TAUT_API taut_result taut_joint_set_target(taut_joint joint, uint32_t axis, float target, float speed);
 /** Changes compliance [m/N] and damping [N s/m] of locked positions, for a distance joint also of its stops; ranges as
- *  in the defs. */
+ *  in the defs. TAUT_INVALID_ARGUMENT for gears, which hold angles alone. */
 TAUT_API taut_result taut_joint_set_compliance(taut_joint joint, float compliance, float damping);
 /** Changes compliance [rad/(N m)] and damping [N m s/rad] of locked angles; TAUT_INVALID_ARGUMENT for ball and distance
- *  joints. */
+ *  joints and pulleys. */
 TAUT_API taut_result taut_joint_set_angular_compliance(taut_joint joint, float compliance, float damping);
-/** Changes what the joint breaks at [N], [N m], [0, 1e24]; 0: never. See taut_joint_break_event. */
+/** Changes what the joint breaks at [N], [N m], [0, 1e24]; 0: never. TAUT_INVALID_ARGUMENT for a force of gears and a
+ *  torque of joints that hold no angles. See taut_joint_break_event. */
 TAUT_API taut_result taut_joint_set_break(taut_joint joint, float force, float torque);
 /** Changes the length of a distance joint or pulley [m], [1e-4, 1e6]; stops and drive move along. TAUT_INVALID_ARGUMENT
  *  for another kind. */

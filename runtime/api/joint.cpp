@@ -171,6 +171,7 @@ taut_result taut_joint_set_compliance(taut_joint handle, float compliance, float
     Check check(__func__);
     check.number("compliance", compliance, kCompliance).number("damping", damping, kDamping);
     return change(check, handle, [&](World&, Joint& joint) {
+        if (!check.require(holds_points(kind_of(joint)), "joint holds angles alone")) return check.result();
         joint.compliance = compliance;
         joint.damping = damping;
         if (has_length(joint) && joint.axis[0].mode == AxisMode::limited) {
@@ -186,7 +187,7 @@ taut_result taut_joint_set_angular_compliance(taut_joint handle, float complianc
     Check check(__func__);
     check.number("compliance", compliance, kCompliance).number("damping", damping, kDamping);
     return change(check, handle, [&](World&, Joint& joint) {
-        if (!check.require(joint.type->angular != 0, "joint locks no angles")) return check.result();
+        if (!check.require(holds_angles(kind_of(joint)), "joint holds no angles")) return check.result();
         joint.angular_compliance = compliance;
         joint.angular_damping = damping;
         return TAUT_OK;
@@ -198,6 +199,10 @@ taut_result taut_joint_set_break(taut_joint handle, float force, float torque) {
     Check check(__func__);
     check.number("force", force, kJointForce).number("torque", torque, kJointForce);
     return change(check, handle, [&](World&, Joint& joint) {
+        const JointKind& kind = kind_of(joint);
+        check.require(force == 0 || holds_points(kind), "force of a joint that holds angles alone")
+            .require(torque == 0 || holds_angles(kind), "torque of a joint that holds no angles");
+        if (!check) return check.result();
         joint.break_force = or_never(force);
         joint.break_torque = or_never(torque);
         return TAUT_OK;

@@ -369,7 +369,9 @@ TEST(JointChanges, AreCheckedAndTakeEffect) {
     EXPECT_EQ(taut_joint_set_collide_connected(hinge, 2), TAUT_INVALID_ARGUMENT);
     for (taut_joint plain : {p.ball, p.rod}) {
         EXPECT_EQ(taut_joint_set_angular_compliance(plain, 0, 0), TAUT_INVALID_ARGUMENT);
-        EXPECT_TRUE(contains(taut_last_error(), "locks no angles")) << taut_last_error();
+        EXPECT_TRUE(contains(taut_last_error(), "holds no angles")) << taut_last_error();
+        EXPECT_EQ(taut_joint_set_break(plain, 10, 10), TAUT_INVALID_ARGUMENT);
+        EXPECT_TRUE(contains(taut_last_error(), "torque of a joint that holds no angles")) << taut_last_error();
     }
     EXPECT_EQ(taut_joint_set_axis(p.ball, 0, &def), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_joint_set_axis(hinge, 0, nullptr), TAUT_NULL_POINTER);

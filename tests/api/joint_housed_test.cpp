@@ -149,7 +149,14 @@ TEST_F(Housed, RefuseWhatOthersHave) {
         EXPECT_EQ(taut_joint_set_ratio(gear, ratio), TAUT_INVALID_ARGUMENT) << ratio;
     EXPECT_EQ(taut_joint_get_length(gear, &number), TAUT_INVALID_ARGUMENT);
     EXPECT_EQ(taut_joint_set_length(gear, 2), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_joint_set_compliance(gear, 0, 0), TAUT_INVALID_ARGUMENT);
+    EXPECT_TRUE(contains(taut_last_error(), "holds angles alone")) << taut_last_error();
+    EXPECT_EQ(taut_joint_set_break(gear, 10, 10), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_joint_set_break(pulley, 10, 10), TAUT_INVALID_ARGUMENT);
+    EXPECT_EQ(taut_joint_set_angular_compliance(pulley, 0, 0), TAUT_INVALID_ARGUMENT);
     EXPECT_TRUE(watch.unchanged());
+    EXPECT_OK(taut_joint_set_break(gear, 0, 10));
+    EXPECT_OK(taut_joint_set_break(pulley, 10, 0));
 }
 
 TEST_F(Housed, GoWithTheirHousing) {
