@@ -105,7 +105,7 @@ bool hold(const Nodes& nodes, float borne, double time_step, const Carried& from
     if (!sticks(pair) || !(tipped(nodes, pair, from, now) <= kTips)) return false;
     const Slip slip(nodes, pair, from);
     const double inv_mass = std::max(nodes.mass[pair.a].inv_mass, nodes.mass[pair.b].inv_mass);
-    const double friction = static_cast<double>(pair.friction * pair.easy_part * borne);
+    const double friction = static_cast<double>(pair.friction * pair.slide_factor * borne);
     if (!(slip.way.norm() <= friction * inv_mass * time_step * time_step)) return false;
     drive_back(slip, time_step, pair);
     return true;

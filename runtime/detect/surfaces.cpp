@@ -56,19 +56,19 @@ void direct_friction(const ColliderTraits& a, const ColliderTraits& b, const col
     const double xx = x[0] * x[0] + x[1] * x[1], yy = y[0] * y[0] + y[1] * y[1], xy = x[0] * y[0] + x[1] * y[1];
     const double half = 0.5 * (xx + yy), diff = 0.5 * (xx - yy), root = std::sqrt(diff * diff + xy * xy);
     const double area = x[0] * y[1] - x[1] * y[0], largest = half + root;
-    pair.easy_part = 1;
+    pair.slide_factor = 1;
     if (!(largest > 0)) return;
     const double least = std::min(area * area / largest, largest);
     const double u = diff >= 0 ? diff + root : xy, v = diff >= 0 ? xy : root - diff;
     const auto shorter = static_cast<float>(1 / std::sqrt(1 + least));
     pair.friction *= shorter;
     pair.sticking *= shorter;
-    pair.easy_part = static_cast<float>(std::sqrt((1 + least) / (1 + largest)));
+    pair.slide_factor = static_cast<float>(std::sqrt((1 + least) / (1 + largest)));
     const Vec3 along = u * t1 + v * t2;
     if (root > 0)
-        pair.easy = along.normalized().cast<float>();
+        pair.slide_direction = along.normalized().cast<float>();
     else
-        pair.easy_part = 1;
+        pair.slide_factor = 1;
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ void combine_surfaces(const Nodes& nodes, const ColliderTraits& a, const Collide
     if (pair.directed)
         direct_friction(a, b, at_a, at_b, pair);
     else
-        pair.easy_part = 1;
+        pair.slide_factor = 1;
     pair.restitution = restitution_of(one, other);
     pair.spinning = std::max(one.spinning_friction, other.spinning_friction);
     pair.rolling = std::max(one.rolling_friction, other.rolling_friction);

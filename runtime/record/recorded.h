@@ -31,7 +31,7 @@ public:
         begin(call, first.bits);
     }
     ~Recorded() {
-        if (seat_ != 0) [[unlikely]]
+        if (slot_ != 0) [[unlikely]]
             end();
     }
     Recorded(const Recorded&) = delete;
@@ -43,7 +43,7 @@ private:
     void begin(Call call, uint64_t handle) noexcept;
     void end() noexcept;
 
-    uint32_t seat_ = 0, outer_ = 0;  // slots of worlds, 0: not recorded; of the call around this one
+    uint32_t slot_ = 0, outer_ = 0;  // slots of worlds, 0: not recorded; of the call around this one
     Call call_{};
     const void* at_[kMostParameters];
 };

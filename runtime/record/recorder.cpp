@@ -205,45 +205,45 @@ private:
 // ---------------------------------------------------------------- the table
 
 // Who is busy has the recorder for himself. The lock stands here, not in the world, as that of Hold does.
-struct Seat {
+struct Slot {
     std::atomic<bool> busy{false};
     Recorder* recorder = nullptr;
 };
-constinit std::array<Seat, kWorldSlots> seats;
-// The slot of the world whose seat this thread holds, 0: none.
-thread_local uint32_t seat_of_thread = 0;
+constinit std::array<Slot, kWorldSlots> slots;
+// The world slot that this thread holds, 0: none.
+thread_local uint32_t slot_of_thread = 0;
 
 // The recorder of a world, for as long as this lives; null: there is none, or another call has it.
-class SeatHold {
+class SlotHold {
 public:
-    SeatHold(uint32_t world, bool waits) noexcept : seat_(seats[world_slot_of(world)]), outer_(seat_of_thread) {
+    SlotHold(uint32_t world, bool waits) noexcept : slot_(slots[world_slot_of(world)]), outer_(slot_of_thread) {
         if (outer_ == world_slot_of(world)) return;
-        while (seat_.busy.exchange(true, std::memory_order_acquire)) {
+        while (slot_.busy.exchange(true, std::memory_order_acquire)) {
             if (!waits) return;
             std::this_thread::yield();
         }
         held_ = true;
-        seat_of_thread = world_slot_of(world);
-        if (seat_.recorder && seat_.recorder->world() == world) recorder_ = seat_.recorder;
+        slot_of_thread = world_slot_of(world);
+        if (slot_.recorder && slot_.recorder->world() == world) recorder_ = slot_.recorder;
     }
-    ~SeatHold() {
+    ~SlotHold() {
         if (!held_) return;
-        seat_of_thread = outer_;
-        seat_.busy.store(false, std::memory_order_release);
+        slot_of_thread = outer_;
+        slot_.busy.store(false, std::memory_order_release);
     }
-    SeatHold(const SeatHold&) = delete;
-    SeatHold& operator=(const SeatHold&) = delete;
+    SlotHold(const SlotHold&) = delete;
+    SlotHold& operator=(const SlotHold&) = delete;
 
     Recorder* recorder() const { return recorder_; }
-    Seat& seat() const { return seat_; }
-    // Goes on holding it. Returns what seat_of_thread was before.
+    Slot& slot() const { return slot_; }
+    // Goes on holding it. Returns what slot_of_thread was before.
     uint32_t leave() {
         held_ = false;
         return outer_;
     }
 
 private:
-    Seat& seat_;
+    Slot& slot_;
     uint32_t outer_;
     bool held_ = false;
     Recorder* recorder_ = nullptr;
@@ -275,27 +275,27 @@ int32_t ask_recorded(const taut_pre_solve* contact, taut_pre_solve_answer* answe
 }  // namespace
 
 void Recorded::begin(Call call, uint64_t handle) noexcept {
-    SeatHold hold(static_cast<uint32_t>(handle & kThisWorld), false);
+    SlotHold hold(static_cast<uint32_t>(handle & kThisWorld), false);
     if (!hold.recorder() || !hold.recorder()->begin(call, at_)) return;
     outer_ = hold.leave();
     call_ = call;
-    seat_ = seat_of_thread;
+    slot_ = slot_of_thread;
     tell_result(TAUT_OK);
 }
 
 void Recorded::end() noexcept {
-    Seat& seat = seats[seat_];
-    seat.recorder->end(call_, at_, told_result());
-    seat_of_thread = outer_;
-    seat.busy.store(false, std::memory_order_release);
+    Slot& slot = slots[slot_];
+    slot.recorder->end(call_, at_, told_result());
+    slot_of_thread = outer_;
+    slot.busy.store(false, std::memory_order_release);
 }
 
 void note_change(const char* call, uint32_t world) noexcept {
-    if (seat_of_thread == world_slot_of(world)) {
-        seats[seat_of_thread].recorder->note_change_within();
+    if (slot_of_thread == world_slot_of(world)) {
+        slots[slot_of_thread].recorder->note_change_within();
         return;
     }
-    const SeatHold hold(world, true);
+    const SlotHold hold(world, true);
     if (hold.recorder()) hold.recorder()->unrecorded(call);
 }
 
@@ -307,28 +307,28 @@ bool start_recording(const World& world, const taut_record_def& checked_def) {
         free_recorder(recorder, hooks);
         return false;
     }
-    const SeatHold hold(world.id, true);
-    hold.seat().recorder = recorder;
+    const SlotHold hold(world.id, true);
+    hold.slot().recorder = recorder;
     recorded_worlds.fetch_add(1, std::memory_order_relaxed);
     return true;
 }
 
 bool is_within_recording(uint32_t world) noexcept {
-    return seat_of_thread != 0 && seat_of_thread == world_slot_of(world);
+    return slot_of_thread != 0 && slot_of_thread == world_slot_of(world);
 }
 
 bool is_recorded(const World& world) noexcept {
-    const SeatHold hold(world.id, true);
+    const SlotHold hold(world.id, true);
     return hold.recorder() != nullptr;
 }
 
 void end_recording(uint32_t world) noexcept {
     if (!recording()) return;
-    const SeatHold hold(world, true);
+    const SlotHold hold(world, true);
     Recorder* const recorder = hold.recorder();
     if (!recorder) return;
     recorder->finish();
-    hold.seat().recorder = nullptr;
+    hold.slot().recorder = nullptr;
     recorded_worlds.fetch_sub(1, std::memory_order_relaxed);
     const taut_hooks hooks = recorder->hooks();
     free_recorder(recorder, hooks);
@@ -336,7 +336,7 @@ void end_recording(uint32_t world) noexcept {
 
 void end_recording(World& world) noexcept {
     {
-        const SeatHold hold(world.id, true);
+        const SlotHold hold(world.id, true);
         if (hold.recorder() && world.pre_solve.ask) world.pre_solve = hold.recorder()->host();
     }
     end_recording(world.id);
@@ -344,7 +344,7 @@ void end_recording(World& world) noexcept {
 
 PreSolve recorded_pre_solve(const World& world, PreSolve host) noexcept {
     if (!recording()) return host;
-    Recorder* const recorder = seats[world_slot_of(world.id)].recorder;  // held by the call that sets it
+    Recorder* const recorder = slots[world_slot_of(world.id)].recorder;  // held by the call that sets it
     if (!recorder || recorder->world() != world.id) return host;
     recorder->host() = host;
     return host.ask ? PreSolve{ask_recorded, recorder} : PreSolve{};

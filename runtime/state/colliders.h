@@ -106,9 +106,10 @@ void describe(Visitor& visitor, Of& of) {
     auto& [density, material, filter, surface_velocity, surface_spin, one_way, static_friction, slide_factor,
            slide_direction] = of;
     TAUT_FIELDS(visitor, density, material, filter, surface_velocity, surface_spin, one_way);
-    bool rubs = static_friction != 0 || slide_factor != 0 || slide_direction != Vec3f::Zero();  // by laws of its own
-    TAUT_ASIDE(visitor, rubs);
-    if (rubs)
+    bool own_friction =
+        static_friction != 0 || slide_factor != 0 || slide_direction != Vec3f::Zero();  // by laws of its own
+    TAUT_ASIDE(visitor, own_friction);
+    if (own_friction)
         TAUT_FIELDS(visitor, static_friction, slide_factor, slide_direction);
     else if constexpr (!std::is_const_v<Of>)
         static_friction = slide_factor = 0, slide_direction = Vec3f::Zero();

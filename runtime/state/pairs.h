@@ -155,11 +155,12 @@ struct PairRecord {
     // Velocity of body b against a that friction drives to, that of a's surface less that of b's, both against their
     // bodies: drive + drive_spin x p [m/s], world axes, p as the points of the manifold.
     Vec3f drive = Vec3f::Zero(), drive_spin = Vec3f::Zero();
-    float sticking = 0;          // friction of a point that does not slide, where that is more
-    float easy_part = 1;         // friction along `easy` is so many times that across it
-    Vec3f easy = Vec3f::Zero();  // unit, world axes, along the contact; where easy_part is 1 it means nothing
-    bool driven = false;         // else drive and drive_spin mean nothing
-    bool directed = false;       // a side has a direction of friction, which turns with it
+    float sticking = 0;      // friction of a point that does not slide, where that is more
+    float slide_factor = 1;  // friction along `slide_direction` is so many times that across it
+    // Unit, world axes, along the contact; where slide_factor is 1 it means nothing.
+    Vec3f slide_direction = Vec3f::Zero();
+    bool driven = false;                    // else drive and drive_spin mean nothing
+    bool directed = false;                  // a side has a direction of friction, which turns with it
     bool rolls_a = false, rolls_b = false;  // contact levers stay while the shape turns: collision::rolls()
     bool touching = false;                  // overlapped or was pushed in the last step
     bool pushed = false;                    // some point was in this step, in any of its substeps
@@ -192,19 +193,19 @@ struct PairRecord {
 template <class Visitor, Like<PairRecord> Of>
 void describe(Visitor& visitor, Of& of, bool kept) {
     auto& [part, next, manifold, then, round_a, round_b, force, friction, restitution, spinning, rolling, stiffness,
-           patch, torque, spin_slip, drive, drive_spin, sticking, easy_part, easy, driven, directed, rolls_a, rolls_b,
-           touching, pushed, answered, in_block, loaded, asks, cache, found] =
+           patch, torque, spin_slip, drive, drive_spin, sticking, slide_factor, slide_direction, driven, directed,
+           rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, asks, cache, found] =
         of;  // next: follows from the order of records
     TAUT_FIELDS(visitor, part, manifold, then, round_a, round_b);
     for (int k = 0; k < manifold.count; ++k) TAUT_FIELDS(visitor, force[k]);
     TAUT_FIELDS(visitor, friction, restitution, spinning, rolling, stiffness, patch, torque, spin_slip, drive,
                 drive_spin, driven, rolls_a, rolls_b, touching, pushed, answered, in_block, loaded, cache);
-    bool rubs = sticking != 0 || easy_part != 1 || directed;  // by laws of its own
-    TAUT_ASIDE(visitor, rubs);
-    if (rubs)
-        TAUT_FIELDS(visitor, sticking, easy_part, easy, directed);
+    bool own_friction = sticking != 0 || slide_factor != 1 || directed;  // by laws of its own
+    TAUT_ASIDE(visitor, own_friction);
+    if (own_friction)
+        TAUT_FIELDS(visitor, sticking, slide_factor, slide_direction, directed);
     else if constexpr (!std::is_const_v<Of>)
-        sticking = 0, easy_part = 1, directed = false;
+        sticking = 0, slide_factor = 1, directed = false;
     TAUT_ASIDE(visitor, asks);
     if (kept) describe(visitor, found, manifold.count);
 }
@@ -269,14 +270,14 @@ struct Tangents {
     float part = 1;  // in (0, 1]
 };
 inline Tangents tangents_of(const PairRecord& pair) {
-    const Vec3f &n = pair.manifold.normal, easy = pair.easy - n.dot(pair.easy) * n;
-    const float size = pair.easy_part < 1 ? easy.norm() : 0;
+    const Vec3f &n = pair.manifold.normal, along = pair.slide_direction - n.dot(pair.slide_direction) * n;
+    const float size = pair.slide_factor < 1 ? along.norm() : 0;
     if (!(size > 0)) {  // all ways alike
         const Vec3f t1 = tangent_of(n);
         return {t1, n.cross(t1), 1};
     }
-    const Vec3f t2 = easy / size;
-    return {t2.cross(n), t2, pair.easy_part};
+    const Vec3f t2 = along / size;
+    return {t2.cross(n), t2, pair.slide_factor};
 }
 // What rows have of a friction, and back; world axes.
 inline std::array<float, 2> rows_of(const Tangents& of, const Vec3f& friction) {
@@ -296,10 +297,10 @@ inline ContactForce from_rows(const PairRecord& pair, const ContactForce& rows, 
     return {rows.normal, friction.dot(o1), friction.dot(n.cross(o1)), rows.slip};
 }
 inline ContactForce to_rows(const PairRecord& pair, const ContactForce& force) {
-    return pair.easy_part < 1 ? to_rows(pair, force, tangents_of(pair)) : force;
+    return pair.slide_factor < 1 ? to_rows(pair, force, tangents_of(pair)) : force;
 }
 inline ContactForce from_rows(const PairRecord& pair, const ContactForce& rows) {
-    return pair.easy_part < 1 ? from_rows(pair, rows, tangents_of(pair)) : rows;
+    return pair.slide_factor < 1 ? from_rows(pair, rows, tangents_of(pair)) : rows;
 }
 // The same of friction torques, which know no direction.
 inline Tangents torque_tangents_of(const PairRecord& pair) {
@@ -308,10 +309,10 @@ inline Tangents torque_tangents_of(const PairRecord& pair) {
     return of;
 }
 inline ContactForce torque_to_rows(const PairRecord& pair) {
-    return pair.easy_part < 1 ? to_rows(pair, pair.torque, torque_tangents_of(pair)) : pair.torque;
+    return pair.slide_factor < 1 ? to_rows(pair, pair.torque, torque_tangents_of(pair)) : pair.torque;
 }
 inline ContactForce torque_from_rows(const PairRecord& pair, const ContactForce& rows) {
-    return pair.easy_part < 1 ? from_rows(pair, rows, torque_tangents_of(pair)) : rows;
+    return pair.slide_factor < 1 ? from_rows(pair, rows, torque_tangents_of(pair)) : rows;
 }
 
 // A pair with contact points in this frame, in brief: what partition and assembly go through.

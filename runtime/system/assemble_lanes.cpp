@@ -40,7 +40,7 @@ void fill_lane(LanePoint& p, int lane, const Levers& levers, float separation, f
 }
 
 // Whether a pair's points need a LaneDrive.
-bool is_driven(const Pair& pair) { return pair.driven || pair.sticks_better() || pair.easy_part < 1; }
+bool is_driven(const Pair& pair) { return pair.driven || pair.sticks_better() || pair.slide_factor < 1; }
 
 // What the surfaces of a pair, if any, make of the friction of its points.
 void fill_drive(ContactLanes& lanes, const LaneGroup& g, int lane, const Pair* pair, const Nodes& nodes) {
