@@ -1,6 +1,6 @@
 #include "constraints/element.h"
 
-#include <Eigen/Eigenvalues>
+#include "constraints/positive_part.h"
 
 namespace taut {
 namespace {
@@ -48,13 +48,8 @@ void element_hessian(const ElementType& type, const ElementBatch& batch, const E
         const Jacobian force = Modulus(d.material, rows, rows).lazyProduct(j) / d.softness[batch.index(i)];
         sum += j.transpose().lazyProduct(force);
         Eigen::Map<Square> out(k + size_t{i} * static_cast<uint32_t>(width * width), width, width);
-        if (part == Curvature::raw) {
-            out = sum;
-            continue;
-        }
-        const Eigen::SelfAdjointEigenSolver<Square> eigen(sum);
-        out = Square(eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal())
-                  .lazyProduct(eigen.eigenvectors().transpose());
+        out = sum;
+        if (part == Curvature::positive) clip_negative(out.data(), width);
     }
 }
 

@@ -50,7 +50,7 @@ bool orthotropic_solid(const OrthotropicSolid& of, double (&compliance)[36]) {
     const Eigen::Vector3d scale = normal.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     constexpr double kLeastResistance = 1e-9;  // of a strain, against that of the axes: what an inverse can bear
-    if (!is_positive<3>(scaled - kLeastResistance * Eigen::Matrix3d::Identity())) return false;
+    if (!is_positive<Eigen::Matrix3d>(scaled - kLeastResistance * Eigen::Matrix3d::Identity())) return false;
     std::fill_n(compliance, 36, 0.0);
     for (int r = 0; r < 3; ++r) {
         for (int s = 0; s < 3; ++s) compliance[r * 6 + s] = normal(r, s);
