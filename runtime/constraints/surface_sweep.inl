@@ -94,6 +94,30 @@ struct SurfaceSweep {
         put(isotropic, t.isotropic_mass);
     }
 
+    // Least k of lanes where each side that moves has nodes that are held, 0 elsewhere. What is free of a side, by a
+    // share w of its weights, would move by 1 / w times what the contact asks for, a million times so at a pinned
+    // corner; with k at least sum w_i^2 / m_i over w it moves by no more than that.
+    template <bool Turns>
+    static F least_by_held(const SurfaceGroup& g, const V& lever) {
+        const F zero = F::all(0), one = F::all(1);
+        F least = zero, whole = zero;  // whole: 1 where a side has nothing that is held
+        for (const F& sign : {one, F::all(-1)}) {
+            F free = zero, held = zero, k = zero;
+            for (uint32_t n = 0; n < kSurfaceNodes; ++n) {
+                const F weight = F::max(sign * F::load(g.weight[n]), zero), inv_mass = F::load(g.inv_mass[n]);
+                F moves = inv_mass;
+                if constexpr (Turns)
+                    if (n == 0) moves = moves + dot(lever, lever);
+                free = free + F::if_greater(moves, zero, weight, zero);
+                held = held + F::if_greater(moves, zero, zero, weight);
+                k = k + weight * weight * inv_mass;
+            }
+            whole = F::if_greater(free, zero, F::if_greater(held, zero, whole, one), whole);
+            least = F::max(least, k * inverse(free));
+        }
+        return F::if_greater(whole, zero, zero, least);
+    }
+
     // before(new mass) comes ahead, put(value, array) writes a value of all lanes. What was hit already keeps the
     // approach speed that it had.
     template <bool Turns, class Before, class Put>
@@ -106,6 +130,7 @@ struct SurfaceSweep {
             const F weight = F::load(g.weight[n]);
             linear = linear + weight * weight * F::load(g.inv_mass[n]);
         }
+        const F least_k = least_by_held<Turns>(g, ends.lever);
         F k = linear;
         if constexpr (Turns) {
             SurfaceTurning& t = view.turning[g.turning];
@@ -132,11 +157,12 @@ struct SurfaceSweep {
                 lose(c2, f.t2, f.n);
                 k = F::if_greater(held, zero, F::if_greater(k, least, k, zero), k);
             }
+            k11 = F::max(k11, least_k), k22 = F::max(k22, least_k);
             prepare_tangents(t, k11, k22, k12, held, least, put);
             put(c1, t.coupling[0]);
             put(c2, t.coupling[1]);
         }
-        const F mass = inverse(k);
+        const F mass = inverse(F::max(k, least_k));
         before(mass);
         put(mass, g.normal_mass);
         put(F::if_greater(F::load(g.peak), F::all(0), F::load(g.approach), dot(ends.apart(), f.n)), g.approach);

@@ -339,6 +339,31 @@ TEST_P(SurfaceRows, FollowTheGapAsTheirNodesMove) {
         }
 }
 
+// Where both sides are held but for a share of their weights, as at pinned corners that meet, what is free is not
+// thrown by 1 / share times what the contact asks for.
+TEST(SurfaceRow, OfHeldNodesThrowsNoOthers) {
+    const auto speed_of = [](double share) {
+        Rig rig;
+        const uint32_t ground = rig.fixed(), other = rig.fixed();
+        const uint32_t p = rig.particle(0.002, Vec3::Zero(), Vec3::Zero());
+        const uint32_t q = rig.particle(0.01, Vec3::Zero(), Vec3::Zero());
+        touch_surface(rig, {{ground, 1 - share}, {p, share}, {other, share - 1}, {q, -share}}, Vec3::UnitY(), -0.005);
+        rig.gravity.setZero();
+        rig.begin(kProjectedGaussSeidel);
+        rig.predict();
+        rig.solve();
+        double most = 0;
+        for (const uint32_t node : {p, q}) most = std::max(most, rig.w.system.exact[rig.w.system.at(node)].v.norm());
+        return most;
+    };
+    const double asked = speed_of(1);
+    EXPECT_GT(asked, 0.1);
+    for (const double share : {1e-7, 1e-5, 1e-3, 0.01, 0.1, 0.5}) {
+        EXPECT_LE(speed_of(share), 2 * asked) << share;
+        EXPECT_GT(speed_of(share), 0.1 * asked) << share;
+    }
+}
+
 // One contact above its surface is solved at once and exactly: the gap closes at the end of the substep.
 TEST(SurfaceRow, HasTheEffectiveMassOfItsNodes) {
     for (uint64_t seed = 1; seed <= 20; ++seed) {
