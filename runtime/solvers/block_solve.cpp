@@ -131,14 +131,28 @@ void BlockSolve::gather_rows() {
     split.make_room();
 }
 
-// With the impulses that the laws of all bounded rows ask for.
-void BlockSolve::solve_laws() {
+// Steps towards the impulses that the laws of all bounded rows ask for. False where these, or the linearisations in
+// between, lead away from them: further than the substep began.
+bool BlockSolve::approach_laws() {
     constexpr uint32_t kMostSteps = 10;  // loads of 1 to 5000 times a sheet's mass end within micrometres
     solve_linear();
-    bool is_far = true;
-    for (uint32_t step = 0; step < kMostSteps && is_far; ++step) {
-        is_far = split.improve();
+    double missed = 0;
+    for (uint32_t step = 0; step < kMostSteps; ++step) {
+        missed = split.improve();
+        if (began_off_ < 0) began_off_ = missed;
         solve_linear();
+        if (missed <= split.near()) return true;
+    }
+    return missed <= began_off_;
+}
+
+// With the impulses that the laws of all bounded rows ask for. Frictions whose bounds follow the pushes that they cause
+// may have no such impulses, or none that sweeps find (tangled cloths); without friction the laws are those of a
+// minimum, and have.
+void BlockSolve::solve_laws() {
+    if (!approach_laws()) {
+        split.begin_anew();
+        approach_laws();
     }
     split.move_free_parts();
     take_solution();

@@ -124,6 +124,7 @@ private:
     void slow_velocities(const RowBlock& block, double* slow) const;
     void filter_lines();
     bool splits() const { return b_.elastic_runs > 0 && !set.empty(); }
+    bool approach_laws();
     void solve_laws();
     bool solve_round();
     void advance(bool first);
@@ -169,9 +170,10 @@ private:
     System& sys_;
     Block& b_;
     uint32_t nodes_;
-    bool relaxed_ = false;  // System::kept belongs to the present solution
-    bool renewed_ = false;  // the matrix has K of new forces
-    EnergyGain gained_;     // by a guarded block's solution, before limit_gain
+    double began_off_ = -1;  // what the first step towards the laws of rows missed; -1: none yet [m/s]
+    bool relaxed_ = false;   // System::kept belongs to the present solution
+    bool renewed_ = false;   // the matrix has K of new forces
+    EnergyGain gained_;      // by a guarded block's solution, before limit_gain
 };
 
 }  // namespace taut

@@ -62,14 +62,28 @@ void ContactSplit::make_room() {
         }
     }
     of_.begin.push_back(static_cast<uint32_t>(of_.touch.size()));
-    for (uint32_t i = 0; i < touched; ++i) {
+    begin_at_start();
+    find_free_parts();
+    find_loads();
+}
+
+void ContactSplit::begin_at_start() {
+    for (uint32_t i = 0; i < of_.node.size(); ++i) {
         const Velocity& u = sys_.start[sys_.at(b_.nodes[of_.node[i]])];
         Vec3::Map(&of_.velocity[i * kDof]) = u.v;
         Vec3::Map(&of_.velocity[i * kDof] + 3) = u.w;
     }
-    find_free_parts();
-    find_loads();
 }
+
+void ContactSplit::begin_anew() {
+    begin_at_start();
+    for (BoundedRow& row : set_.rows()) {
+        row.mu = 0;
+        if (row.kind == Kind::tangent) row.limit = 0;
+    }
+}
+
+double ContactSplit::near() const { return kNear / sys_.scheme.h; }
 
 // Of nodes themselves, and by contacts of what hangs together freely on either side: its mass in equal parts on its
 // contacts with others, and there by the weights of the nodes. How many a node has is kept where its R^-1 will be, of a
@@ -186,9 +200,8 @@ void ContactSplit::move_free_parts() {
         std::copy_n(&b_.solution[size_t{of_.node[k]} * kDof], size_of(k), &of_.velocity[k * kDof]);
     list_rows();
     WholeParts whole(*this);
-    const double near = kNear / sys_.scheme.h;
     for (uint32_t sweep = 0; sweep < kMostLawSweeps; ++sweep)
-        if (sweep_laws(whole, set_.rows(), static_cast<uint32_t>(of_.row.size())) <= near) break;
+        if (sweep_laws(whole, set_.rows(), static_cast<uint32_t>(of_.row.size())) <= near()) break;
     for (uint32_t k = 0; k < of_.node.size(); ++k)
         if (!is_split(k)) std::copy_n(&of_.velocity[k * kDof], size_of(k), &b_.solution[size_t{of_.node[k]} * kDof]);
     for (uint32_t i = 0; i < b_.nodes.size(); ++i)
@@ -285,7 +298,7 @@ void ContactSplit::list_rows() {
     }
 }
 
-bool ContactSplit::improve() {
+double ContactSplit::improve() {
     if (!of_.built) build();
     double apart = 0;  // [m/s]
     for (uint32_t i = 0; i < of_.node.size(); ++i) {
@@ -299,7 +312,7 @@ bool ContactSplit::improve() {
         }
     }
     list_rows();
-    const double near = kNear / sys_.scheme.h, least = std::max(near, kShare * apart);
+    const double least = std::max(near(), kShare * apart);
     double miss = 0;
     for (uint32_t sweep = 0; sweep < kMostLawSweeps; ++sweep) {
         ++s_.report.rounds;
@@ -307,7 +320,7 @@ bool ContactSplit::improve() {
         miss = std::max(miss, now);
         if (now <= least) break;
     }
-    return std::max(apart, miss) > near;
+    return std::max(apart, miss);
 }
 
 }  // namespace taut

@@ -29,8 +29,12 @@ public:
     // After the last solve: what hangs together freely by as much as the impulses R (x - z) that its nodes miss make of
     // it as a whole, and by what contacts answer to that: momentum is kept after any number of steps.
     void move_free_parts();
-    // After a solve with z and the impulses as they are: those of the next one. False if the next one is the last.
-    bool improve();
+    // After a solve with z and the impulses as they are: those of the next one. Returns by how much the two halves and
+    // the laws are missed [m/s].
+    double improve();
+    double near() const;  // what may be missed [m/s]
+    // From the velocities at the substep's start on, without impulses and without friction.
+    void begin_anew();
 
     // See row_laws.h.
     BoundedRow& row(uint32_t i) { return set_.rows()[of_.row[i]]; }
@@ -49,6 +53,7 @@ private:
     double* at(Array<double>& of, size_t slot) const { return of.data() + slot * kDof * kDof; }
     double mass_of(uint32_t place) const { return s_.nodes.mass[b_.nodes[place]].mass; }
     double miss_of(uint32_t place) const;
+    void begin_at_start();
     void find_loads();
     void find_free_parts();
     void list_rows();
