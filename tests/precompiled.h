@@ -1,7 +1,7 @@
-// Headers that most tests include, for builds with TAUT_PRECOMPILE.
+// Headers that most tests include, for builds with TAUT_PRECOMPILE; figures.h is in front of all tests in any build.
 #pragma once
 
-#include <gtest/gtest.h>
+#include "figures.h"
 
 #include <algorithm>
 #include <cmath>
