@@ -304,8 +304,8 @@ void add_law(Pair& pair, Random& random) {
     if (random.unit() < 0.3) return;
     const Vec3f along = random.vector().cast<float>(), n = pair.manifold.normal;
     pair.directed = true;
-    pair.easy = (along - n.dot(along) * n).normalized();
-    pair.easy_part = static_cast<float>(0.05 + 0.9 * random.unit());
+    pair.slide_direction = (along - n.dot(along) * n).normalized();
+    pair.slide_factor = static_cast<float>(0.05 + 0.9 * random.unit());
 }
 
 // Bodies of many masses touching at random, with impulses carried in: a few colours, none of them the last.

@@ -357,7 +357,7 @@ TEST(SurfaceRow, OfHeldNodesThrowsNoOthers) {
         return most;
     };
     const double asked = speed_of(1);
-    EXPECT_GT(asked, 0.1);
+    EXPECT_GT(asked, 0.01);
     for (const double share : {1e-7, 1e-5, 1e-3, 0.01, 0.1, 0.5}) {
         EXPECT_LE(speed_of(share), 2 * asked) << share;
         EXPECT_GT(speed_of(share), 0.1 * asked) << share;
