@@ -16,9 +16,10 @@ files == 1 { # figures.md
     apart = $4 == "<=" ? $5 - $3 : $3 - $5
     if ($5 != 0) apart /= $5 < 0 ? -$5 : $5
     if (key in nearest && nearest[key] <= apart) next
-    if ($4 == ">=" && $5 == 0) next # that something is there at all
+    if ($4 == ">=" && $5 == 0 || $5 >= 1e30) next # that something is there at all, and times that are not held
     nearest[key] = apart
     gsub(/\|/, "\\|", $2)
+    if (length($2) > 100) $2 = substr($2, 1, 97) "..."
     row[key] = sprintf("| `%s` | `%s` | %.3g | %s %.3g |", $1, $2, $3, $4, $5)
     tests[$1] = 1
 }
