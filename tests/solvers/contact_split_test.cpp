@@ -116,9 +116,9 @@ INSTANTIATE_TEST_SUITE_P(Seeds, FallsOnNet, testing::Range<uint32_t>(1, 13));
 
 TEST_P(FallsOnNet, ContactsObeyTheirLaws) {
     constexpr double kFriction = 0.5;  // of the rig's contacts
-    // Ten steps from no impulse leave up to 3 % of an impact of .5 m/s, thirty 1 %; the next substep goes on from
-    // there.
-    constexpr double kNear = 0.02;  // [m/s]
+    // Ten steps from no impulse leave 0.02 m/s in 388 of 399 starts and 0.035 in the worst, of bodies that come down at
+    // up to 1 m/s; the next substep goes on from there.
+    constexpr double kNear = 0.04;  // [m/s]
     const Eigen::MatrixXd a = matrix();
     Eigen::MatrixXd j;
     Eigen::VectorXd goal, start = Eigen::VectorXd::Zero(unknowns + 6);
@@ -149,8 +149,8 @@ TEST_P(FallsOnNet, ContactsObeyTheirLaws) {
         EXPECT_LT((v - expected.segment<3>(place[i])).norm(), kNear) << "node " << i;
     }
     const Velocity& u = rig.w.system.exact[rig.w.system.at(body)];
-    EXPECT_LT((u.v - expected.segment<3>(unknowns)).norm(), kNear);
-    EXPECT_LT((u.w - expected.tail<3>()).norm(), 5 * kNear);
+    EXPECT_LT((u.v - expected.segment<3>(unknowns)).norm(), kNear / 2);
+    EXPECT_LT((u.w - expected.tail<3>()).norm(), 2.5 * kNear);
 }
 
 }  // namespace
