@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "continuum_lab.h"
 
@@ -40,8 +41,8 @@ TEST(Bending, AnglesAreThoseOfKnownFolds) {
         at.data[0] = 0;
         EXPECT_NEAR(turned_by(at), angle, 1e-14);
         at.data[0] = 0.3;
-        EXPECT_NEAR(std::remainder(turned_by(at) - (angle - 0.3), 2 * M_PI), 0, 1e-14);
-        EXPECT_LE(std::abs(turned_by(at)), M_PI);
+        EXPECT_NEAR(std::remainder(turned_by(at) - (angle - 0.3), 2 * std::numbers::pi), 0, 1e-14);
+        EXPECT_LE(std::abs(turned_by(at)), std::numbers::pi);
     }
 }
 
@@ -50,7 +51,7 @@ TEST(Bending, FollowsTheShortWayToItsRest) {
     Single at(kDihedralElement);
     FoldedPair(-3).put(at);
     at.data[0] = 3;
-    EXPECT_NEAR(turned_by(at), 2 * M_PI - 6, 1e-13);
+    EXPECT_NEAR(turned_by(at), 2 * std::numbers::pi - 6, 1e-13);
 }
 
 TEST(Bending, QuadraticFormIsTheChordOfTheAngle) {

@@ -1,6 +1,7 @@
 // Who carries what: contact pressure under stacks, joint forces of hanging chains, the shape of a hanging cable.
 #include <ctime>
 #include <map>
+#include <numbers>
 
 #include "physics/joint_lab.h"
 
@@ -136,7 +137,7 @@ TEST(ByLoad, ChangesToAndFroWithoutAKick) {
         double fastest = 0, widest = 0;
         bool direct = false;
         for (int frame = 0; frame < 900; ++frame) {
-            const double pull = 1300 + 900 * std::sin(2 * M_PI * frequency * frame / 60.0);
+            const double pull = 1300 + 900 * std::sin(2 * std::numbers::pi * frequency * frame / 60.0);
             ok(taut_body_apply_force(before, {0, static_cast<float>(-pull), 0}, {0, 0, 0}));
             world.step();
             const taut_profile profile = world.profile();

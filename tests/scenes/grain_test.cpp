@@ -1,4 +1,5 @@
 // Grains poured on a rough bed: they come to rest in a heap whose slope rises with their friction.
+#include <numbers>
 #include "scenes/heap_slope.h"
 #include "starts.h"
 
@@ -16,7 +17,7 @@ double mean_slope(const char* friction) {
         for (int i = 0; i < 420; ++i) run.step();
         EXPECT_TRUE(run.sound());
         EXPECT_LT(run.pile_speed(), 0.1) << "friction " << friction << ", seed " << seed;
-        sum += slope_of(run) * 180 / M_PI;
+        sum += slope_of(run) * 180 / std::numbers::pi;
     }
     return sum / static_cast<double>(count);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <numeric>
 
 #include "scenes/running_scene.h"
@@ -17,7 +18,8 @@ inline double slope_of(const RunningScene& run) {
     for (int i : run.scene.roles.pile) {
         const auto x = run.body(static_cast<size_t>(i)).position;
         const size_t ring = static_cast<size_t>(std::hypot(x.x, x.z) / kRing);
-        const size_t sector = static_cast<size_t>((std::atan2(x.z, x.x) / (2 * M_PI) + 0.5) * kSectors) % kSectors;
+        const size_t sector =
+            static_cast<size_t>((std::atan2(x.z, x.x) / (2 * std::numbers::pi) + 0.5) * kSectors) % kSectors;
         if (ring >= top.size()) top.resize(ring + 1, {});
         top[ring][sector] = std::max(top[ring][sector], x.y);
     }

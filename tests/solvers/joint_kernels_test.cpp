@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "constraints/instance.h"
 #include "constraints/random.h"
@@ -298,7 +299,7 @@ struct Written {
                 solve_row(r, sign, kStep * carried, c, gap > 0 || c > 0 ? -gap / kStep : push, 0, 1e30);
             };
             if (axis.max_force > 0) {
-                const double k = axis.stiffness, d = axis.damping, rate = kStep * k + d, turn = 2 * M_PI;
+                const double k = axis.stiffness, d = axis.damping, rate = kStep * k + d, turn = 2 * std::numbers::pi;
                 const double at = block.angular(r) ? error[r] - turn * std::round(error[r] / turn) : error[r];
                 const double most = kStep * axis.max_force, softest = 2 * s(r, r) * kStep * k / rate;
                 solve_row(r, 1, kStep * memory.drive, std::max(1 / (kStep * rate), softest),
@@ -306,7 +307,7 @@ struct Written {
             }
             if (axis.friction > 0) solve_row(r, 1, rubbed(r), 0, 0, -most_friction(r), most_friction(r));
             if (axis.mode == AxisMode::limited) {
-                const double middle = 0.5 * (axis.lower + axis.upper), turn = 2 * M_PI;
+                const double middle = 0.5 * (axis.lower + axis.upper), turn = 2 * std::numbers::pi;
                 const double at =
                     block.angular(r) ? error[r] - turn * std::round((error[r] - middle) / turn) : error[r];
                 stop(1, at - axis.lower, memory.lower);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "bench/crossings.h"
@@ -157,7 +158,7 @@ double way_out(const scenes::Shape& shape, const taut_pos& p) {
     if (shape.kind == scenes::ShapeKind::box || shape.kind == scenes::ShapeKind::hull)
         return bench::overlap_depth({&shape, {}, {0, 0, 0, 1}}, {&point, p, {0, 0, 0, 1}});
     constexpr int kAngles = 360;
-    double best = M_PI, width = M_PI, least = INFINITY;
+    double best = std::numbers::pi, width = std::numbers::pi, least = INFINITY;
     for (int round = 0; round < 3; ++round, width *= 2.0 / kAngles) {  // ever closer about the best
         const double middle = best;
         for (int i = -kAngles; i <= kAngles; ++i) {
