@@ -1,5 +1,6 @@
 // Grains poured on a rough bed: they come to rest in a heap whose slope rises with their friction.
 #include <numbers>
+
 #include "scenes/heap_slope.h"
 #include "starts.h"
 
