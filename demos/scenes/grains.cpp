@@ -34,10 +34,9 @@ void pour(Scene& scene, const Poured& of, taut_pos above, Random& random) {
     const int ball = sphere_shape(scene, of.radius);
     for (int i = 0; i < of.count; ++i) {
         const int column = i % of.columns, row = i / of.columns % of.rows, layer = i / (of.columns * of.rows);
-        const taut_vec3 jitter = random.in_cube(0.1 * of.radius);
-        const taut_pos at = plus(above, (column - 0.5 * (of.columns - 1)) * spacing + static_cast<double>(jitter.x),
-                                 of.radius + layer * spacing + static_cast<double>(jitter.y),
-                                 (row - 0.5 * (of.rows - 1)) * spacing + static_cast<double>(jitter.z));
+        const taut_pos place = plus(above, (column - 0.5 * (of.columns - 1)) * spacing, of.radius + layer * spacing,
+                                    (row - 0.5 * (of.rows - 1)) * spacing);
+        const taut_pos at = scattered(place, 0.1 * of.radius, 0.1 * of.radius, random);
         scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, 0.5f, mass, of.look)));
     }
 }
@@ -65,10 +64,9 @@ Scene build_grains(double n, double r, const Options& options) {
         // A loose column, out of line enough to scatter as it lands.
         const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
         const double middle = 0.5 * (kRow - 1), beside = 3 * kGrainRadius, above = 2.6 * kGrainRadius;
-        const taut_vec3 jitter = random.in_cube(0.45 * kGrainRadius);
         const taut_pos at =
-            plus({(column - middle) * beside, 4 * kGrainRadius + layer * above, (row - middle) * beside}, jitter.x,
-                 0.4 * jitter.y, jitter.z);
+            scattered({(column - middle) * beside, 4 * kGrainRadius + layer * above, (row - middle) * beside},
+                      0.45 * kGrainRadius, 0.18 * kGrainRadius, random);
         scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, friction)));
     }
     perturb(scene, options.seed);
@@ -92,10 +90,9 @@ Scene build_grains_box(double n, double, const Options& options) {
     for (int i = 0; i < count; ++i) {
         const int column = i % kRow, row = i / kRow % kRow, layer = i / (kRow * kRow);
         const double middle = 0.5 * (kRow - 1);
-        const taut_vec3 jitter = random.in_cube(kJitter);
         const taut_pos at =
-            plus({(column - middle) * kSpacing, 2 * kGrainRadius + layer * kSpacing, (row - middle) * kSpacing},
-                 jitter.x, jitter.y, jitter.z);
+            scattered({(column - middle) * kSpacing, 2 * kGrainRadius + layer * kSpacing, (row - middle) * kSpacing},
+                      kJitter, kJitter, random);
         scene.roles.pile.push_back(scene.add_body(grain_at(ball, at, 0.5f)));
     }
     perturb(scene, options.seed);

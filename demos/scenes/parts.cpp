@@ -13,7 +13,7 @@ constexpr int32_t kChainGroup = -1;  // links and weight of one chain don't coll
 
 // Turns the whole chain about its anchor in the x-y plane.
 void turn_chain(Scene& scene, const Chain& chain, double angle) {
-    double c = std::cos(angle), s = std::sin(angle);
+    double c = cosine(angle), s = sine(angle);
     for (int index : chain.bodies) {
         Body& body = scene.bodies[index];
         double x = body.position.x - chain.anchor.x, y = body.position.y - chain.anchor.y;
@@ -192,7 +192,7 @@ void add_chain(Scene& scene, const ChainPlan& plan) {
     chain.anchor = plan.anchor;
     chain.link_length = plan.link_length;
     chain.length = plan.links * plan.link_length + plan.weight_reach;
-    double half = plan.link_length / 2, c = std::cos(plan.angle), s = std::sin(plan.angle);
+    double half = plan.link_length / 2, c = cosine(plan.angle), s = sine(plan.angle);
     int link_shape = box_shape(scene, half, plan.link_thickness / 2, plan.link_thickness / 2);
     taut_pos end_of_last = plan.anchor;
     int last = kWorld;

@@ -3,11 +3,18 @@
 
 #include <cmath>
 
+#include "random.h"
 #include "scene.h"
 
 namespace scenes {
 
 inline taut_pos plus(taut_pos p, double dx, double dy, double dz) { return {p.x + dx, p.y + dy, p.z + dz}; }
+// A place up to `far` from another along x and z and `up` along y [m], by chance. In double precision all along: g++ 12
+// leaves out roundings to float on the way where it works on two numbers at once.
+inline taut_pos scattered(taut_pos at, double far, double up, Random& random) {
+    const double x = far * random.around_zero(), y = up * random.around_zero(), z = far * random.around_zero();
+    return plus(at, x, y, z);
+}
 inline taut_pos minus(taut_pos a, taut_pos b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline taut_pos middle(taut_pos a, taut_pos b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2}; }
 inline double length(taut_pos v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }

@@ -39,10 +39,15 @@ private:
     uint64_t state_;
 };
 
+// Sine and cosine to 2^-40, the same on every machine: of angles near a multiple of a quarter turn those of C libraries
+// have other bits.
+inline double sine(double angle) { return std::round(std::sin(angle) * 0x1p40) * 0x1p-40; }
+inline double cosine(double angle) { return std::round(std::cos(angle) * 0x1p40) * 0x1p-40; }
+
 // Rotation by an angle [rad] about a unit axis.
 inline taut_quat turn(taut_vec3 axis, double angle) {
-    float s = static_cast<float>(std::sin(0.5 * angle));
-    return {axis.x * s, axis.y * s, axis.z * s, static_cast<float>(std::cos(0.5 * angle))};
+    const auto s = static_cast<float>(sine(0.5 * angle));
+    return {axis.x * s, axis.y * s, axis.z * s, static_cast<float>(cosine(0.5 * angle))};
 }
 
 }  // namespace scenes
