@@ -205,11 +205,36 @@ void Team::enqueue() {
 }
 
 void Team::wake(uint32_t helpers, uint32_t call) {
-    for (uint32_t worker = 1; worker <= helpers; ++worker) {
-        wake_[worker].call.store(call, std::memory_order_release);
-        wake_[worker].call.notify_one();
-    }
+    for (uint32_t worker = 1; worker <= helpers; ++worker) wake_[worker].set(call);
 }
+
+#if defined(__linux__)
+void Team::Wake::set(uint32_t call) {
+    call_.store(call, std::memory_order_release);
+    call_.notify_one();
+}
+
+uint32_t Team::Wake::other_than(uint32_t last) {
+    call_.wait(last, std::memory_order_acquire);
+    return call_.load(std::memory_order_acquire);
+}
+#else
+// Where the system has no futex, atomics of libstdc++ 12 lose wake-ups: they look at the value before they take the
+// lock.
+void Team::Wake::set(uint32_t call) {
+    {
+        const std::lock_guard lock(mutex_);
+        call_.store(call, std::memory_order_release);
+    }
+    changed_.notify_one();
+}
+
+uint32_t Team::Wake::other_than(uint32_t last) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return call_.load(std::memory_order_acquire) != last; });
+    return call_.load(std::memory_order_acquire);
+}
+#endif
 
 // A thread that wakes may be queued behind the one that woke it, though other cores are idle: for 4 ms, as measured on
 // virtual machines whose cores tell of no common cache. So the own threads leave the caller's core alone. Returns how
@@ -277,10 +302,8 @@ void Team::work_in_scope(const ProfileScopes& scopes, const Job& job, uint32_t c
 }
 
 void Team::live(uint32_t worker) {
-    const std::atomic<uint32_t>& wake = wake_[worker].call;
     for (uint32_t call = 0;;) {
-        wake.wait(call, std::memory_order_acquire);
-        call = wake.load(std::memory_order_acquire);
+        call = wake_[worker].other_than(call);
         if (call == kQuit) return;
         help(call, worker);
     }

@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <thread>
 #include <type_traits>
@@ -221,8 +223,17 @@ private:
     alignas(64) std::atomic<uint32_t> call_{0};
     // The last call that an own thread was woken for. kQuit: it ends.
     static constexpr uint32_t kQuit = UINT32_MAX;
-    struct alignas(64) Wake {
-        std::atomic<uint32_t> call{0};
+    class alignas(64) Wake {
+    public:
+        void set(uint32_t call);
+        uint32_t other_than(uint32_t last);  // sleeps until there is one
+
+    private:
+        std::atomic<uint32_t> call_{0};
+#if !defined(__linux__)
+        std::mutex mutex_;
+        std::condition_variable changed_;
+#endif
     };
     std::vector<Wake> wake_;  // by worker
 };
