@@ -112,7 +112,8 @@ TEST_F(Surfaces, MeetASphereAtAConvexEdgeAlongTheLineOfCentres) {
 }
 
 // The sides of a box as triangles against the box itself: the deepest part is as far away, to a millimetre, but where
-// one of the two takes another axis than the other: in 24 of 4618 that met; 2 of 100 are allowed.
+// one of the two takes another axis than the other, or the triangles have no contact 11 to 15 mm away: in 24 of 4618
+// that met; 2 of 100 are allowed.
 TEST_F(Surfaces, MeetRoundShapesAsABoxOfThatFormDoes) {
     const Vec3f half(0.7f, 0.4f, 0.5f);
     Soup soup;
